@@ -1,0 +1,26 @@
+# Every library the project links, found once. Rooms name the imported targets they use.
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(glm REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(PostgreSQL REQUIRED)
+find_package(OpenSSL REQUIRED)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
+pkg_check_modules(EGL REQUIRED IMPORTED_TARGET egl)
+pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
+pkg_check_modules(PNG REQUIRED IMPORTED_TARGET libpng)
+pkg_check_modules(TIFF REQUIRED IMPORTED_TARGET libtiff-4)
+pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
+
+# Boost 1.81 is used as headers only (Asio, Beast compiled in one unit, Uuid). Where the machine has another version
+# installed, `./run` and `./test` unpack 1.81 into build/deps and name it here; the user's packages stay as they are.
+set(STRATA_BOOST_INCLUDE "" CACHE PATH "Folder that holds boost/version.hpp of 1.81, when it is not the system's")
+add_library(strata_boost INTERFACE)
+if(STRATA_BOOST_INCLUDE)
+  target_include_directories(strata_boost SYSTEM BEFORE INTERFACE ${STRATA_BOOST_INCLUDE})
+endif()
+target_compile_definitions(strata_boost INTERFACE BOOST_ASIO_SEPARATE_COMPILATION BOOST_BEAST_SEPARATE_COMPILATION
+                                                  BOOST_ASIO_NO_DEPRECATED)

@@ -1,0 +1,14 @@
+# strata_room(NAME SOURCES… [PUBLIC libs…] [PRIVATE libs…]): one room of the server, a static library `strata_NAME`.
+# What a room links is what it may include: the arrows of ARCHITECTURE.md are these link lines.
+function(strata_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(strata_${name} STATIC ${ROOM_SOURCES})
+  target_include_directories(strata_${name} PUBLIC ${PROJECT_BINARY_DIR}/rooms/${name})
+  # A room sees its own headers and those of the rooms it links, because each room exports only its own folder.
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/rooms/${name})
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/rooms/${name}/${name} SYMBOLIC)
+  target_link_libraries(strata_${name} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE} strata_warnings)
+endfunction()
+
+add_library(strata_warnings INTERFACE)
+target_compile_options(strata_warnings INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/problem.h"
+
+namespace strata {
+
+struct Project {
+  std::int64_t id = 0;
+  std::string name;
+  std::string slug;
+  std::string description;
+  std::int64_t version = 1;
+};
+
+enum class Unit { mm, cm, m };
+double metres_per(Unit unit);
+std::string_view name(Unit unit);
+std::optional<Unit> parse_unit(std::string_view name);
+
+// What `atlas` reports of a model (GET /models/{model}).
+struct AtlasReport {
+  std::string source;  // "file": UVs of the scan were kept; "made": unwrapped here
+  int lowest_resolution = 2048;
+  int charts = 0;
+  double coverage = 0;           // share of texels that lie on the surface, at lowest_resolution
+  double overlap = 0;            // share of covered texels with more than one owner, at lowest_resolution
+  double stretch_mean = 0;       // area-weighted surface area per uv area, relative to the mean
+  double stretch_p99 = 0;
+  double texel_area_max = 0;     // unit², largest surface area of one texel at lowest_resolution
+};
+
+struct Repair {
+  std::string what;  // "dropped degenerate faces"
+  std::uint64_t count = 0;
+};
+
+struct SourceFile {
+  std::string name;
+  std::string sha256;  // lower-case hex
+  std::uint64_t bytes = 0;
+};
+
+struct Model {
+  std::int64_t id = 0;
+  std::int64_t project_id = 0;
+  std::string name;
+  std::string slug;
+  Unit unit = Unit::m;
+  bool unit_assumed = true;
+  bool scale_verified = false;
+  std::string up = "z";     // "x", "y" or "z"
+  std::string north;        // free: degrees from +y, or empty
+  std::string crs;          // "EPSG:n" or empty
+  glm::dvec3 origin{0};     // model space is world minus origin
+  std::uint64_t triangles = 0;
+  std::uint64_t vertices = 0;
+  glm::dvec3 bounds_min{0};  // world
+  glm::dvec3 bounds_max{0};
+  double area = 0;           // unit²
+  AtlasReport atlas;
+  std::vector<Repair> repairs;
+  std::vector<SourceFile> source_files;
+  int default_resolution = 2048;  // of new layers
+  std::string inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit;
+  std::int64_t sequence = 0;  // of the last journal entry
+  std::int64_t version = 1;
+
+  double metres() const { return metres_per(unit); }
+  double area_m2() const { return area * metres() * metres(); }
+};
+
+nlohmann::json to_json(const Project& project);
+nlohmann::json to_json(const Model& model, const std::string& project_slug);
+nlohmann::json to_json(const AtlasReport& atlas, double metres_per_unit);
+AtlasReport atlas_from_json(const nlohmann::json& json);  // of our own stored form, see store
+
+}  // namespace strata

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <string>
+
+#include "core/problem.h"
+
+namespace strata {
+
+// Shared between a long piece of work and those who watch it. The worker calls `report` and stops soon after
+// `cancelled()` turns true by returning `cancelled_problem()`. Thread-safe.
+class Progress {
+ public:
+  void report(double fraction, std::string message) {
+    std::lock_guard lock(mutex_);
+    fraction_ = fraction;
+    message_ = std::move(message);
+  }
+  double fraction() const {
+    std::lock_guard lock(mutex_);
+    return fraction_;
+  }
+  std::string message() const {
+    std::lock_guard lock(mutex_);
+    return message_;
+  }
+  void cancel() { cancelled_ = true; }
+  bool cancelled() const { return cancelled_; }
+
+ private:
+  mutable std::mutex mutex_;
+  double fraction_ = 0;
+  std::string message_;
+  std::atomic<bool> cancelled_{false};
+};
+
+inline tl::unexpected<Problem> cancelled_problem() { return fail(499, "Cancelled", "The work was cancelled."); }
+
+}  // namespace strata

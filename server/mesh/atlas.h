@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/progress.h"
+#include "mesh/triangle_mesh.h"
+
+namespace strata::mesh {
+
+// Texture coordinates for every corner, and what can be said of them.
+struct Atlas {
+  std::vector<glm::vec2> corner_uvs;  // 3 a triangle, inside [0,1]²
+  AtlasReport report;
+};
+
+// The file's own UVs, where they can carry layers: inside one tile, every triangle with area has uv area (up to 0.1 % of the
+// surface may not), and at least 99.5 % of covered texels at `lowest_resolution` have one owner (the rest is reported as
+// `overlap`). Otherwise an error that says why, and the caller makes an atlas.
+Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress& progress);
+
+// Our own unwrap: cone-bounded charts grown on a smoothed copy, planar projection, injective at texel level by an
+// occupancy grid, small charts absorbed, skyline packing with ≥ 2 texels between charts at `lowest_resolution`,
+// verified at final density (conflicting faces are moved to charts of their own).
+Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progress& progress);
+
+}  // namespace strata::mesh

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/palette.h"
+#include "core/problem.h"
+#include "core/stroke.h"
+#include "core/tile.h"
+#include "core/tile_mirror.h"
+#include "mesh/geometry.h"
+#include "mesh/surface_map.h"
+
+namespace strata::render {
+
+// Handles stay valid until removed or until the context is lost; 0 is none. A handle of another generation is refused.
+using ModelHandle = std::uint64_t;
+using LayerHandle = std::uint64_t;
+using ViewHandle = std::uint64_t;
+
+struct RendererOptions {
+  std::string shader_dir;                 // folder `shaders`
+  std::uint64_t gpu_memory_bytes = 0;     // budget; 0: 70 % of what the driver reports, or 4 GiB
+  bool debug = false;                     // KHR_debug context; errors are counted (see `debug_errors`)
+  std::size_t queue_capacity = 4096;
+};
+
+struct GpuInfo {
+  std::string vendor, renderer, version;
+  bool software = false;
+  int max_texture_size = 0, max_array_layers = 0, max_texture_units = 0, max_image_units = 0;
+};
+
+// What one stroke batch did. Tiles whose written mask is empty are not in it.
+struct WrittenTile {
+  TileAddress address;
+  TileMask written;  // surface and gutter texels the tool wrote, whether or not the value changed
+  TileData after;
+};
+struct StrokeOutcome {
+  std::vector<WrittenTile> tiles;
+  glm::vec3 written_min{0}, written_max{0};  // model-space box of the written blocks; for changed screen rectangles
+  double gpu_ms = 0;
+};
+
+struct TileUpload {
+  TileAddress address;
+  std::shared_ptr<const TileData> data;  // null or empty: the tile becomes empty and its page is freed
+};
+
+struct LayerStyle {  // one layer in a view, bottom to top
+  LayerHandle layer = 0;
+  std::shared_ptr<const Palette> palette;
+  float opacity = 1;
+};
+
+struct PixelRect {
+  int x = 0, y = 0, width = 0, height = 0;  // origin top left
+  bool operator==(const PixelRect&) const = default;
+};
+
+struct FrameRequest {
+  ViewHandle view = 0;
+  Camera camera;
+  int width = 0, height = 0;              // pixels of the picture (the camera's window scaled to this size)
+  std::vector<LayerStyle> layers;
+  // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's last frame: the
+  // rectangle they cover is shaded and returned. A changed camera, size or style shades everything anyway.
+  struct Box { glm::vec3 min, max; };
+  std::optional<std::vector<Box>> changed;
+  Rgba background_top{242, 240, 236, 255}, background_bottom{214, 211, 205, 255};
+  bool align_to_16 = true;                // grow the rectangle to multiples of 16 for JPEG parts
+};
+struct Frame {
+  PixelRect rect;                         // what `pixels` covers; empty when nothing changed
+  int width = 0, height = 0;              // of the whole picture
+  std::vector<std::uint8_t> pixels;       // RGBA8, rect.width × rect.height, top row first
+  double render_ms = 0;
+};
+
+// Owns the GPU: one thread with the EGL context and a bounded queue (invariant 1 of ARCHITECTURE.md). All functions are
+// thread-safe and return at once; callbacks run on the GPU thread and must be quick. Order: edits and layer changes in
+// the order given, before frames, before background work (uploads of models and surface maps, in slices). A full queue or
+// a stopped renderer answers with a Problem 503; a lost context answers pending work with a Problem 503 titled "GPU lost".
+class Renderer {
+ public:
+  // Starts the thread and waits for the context. The error says what was tried and how to mend it.
+  static Result<std::unique_ptr<Renderer>> start(RendererOptions options);
+  ~Renderer();  // asks to stop and joins
+
+  GpuInfo info() const;
+  std::uint64_t gpu_bytes_used() const;
+  std::uint64_t layer_bytes_used(LayerHandle layer) const;   // page table and pages
+  int debug_errors() const;
+
+  template <class T>
+  using Done = std::function<void(Result<T>)>;
+
+  void add_model(std::shared_ptr<const mesh::Geometry> geometry, Done<ModelHandle> done);
+  void remove_model(ModelHandle model);  // and its layers, surface maps and views
+  // Needed before strokes at this resolution; baked by the caller, uploaded in slices.
+  void add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map, Done<void> done);
+
+  void add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done);
+  void remove_layer(LayerHandle layer);
+  // Sets whole tiles (load, fill, undo, import); done after the GPU has them. In order with strokes.
+  void write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done);
+  void paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done);
+
+  // Views keep a g-buffer and the last picture. Requests of one view replace each other while they wait ("latest wins"):
+  // the replaced request's callback gets a Problem 409 titled "Superseded".
+  void add_view(ModelHandle model, Done<ViewHandle> done);
+  void remove_view(ViewHandle view);
+  void draw(FrameRequest request, Done<Frame> done);
+
+  // Called on the GPU thread after a lost context was replaced: every handle given before is void.
+  void on_context_lost(std::function<void()> callback);
+  void lose_context_for_test();  // destroys the context, as a driver reset would
+
+ private:
+  Renderer();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace strata::render

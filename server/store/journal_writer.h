@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/problem.h"
+#include "store/journal.h"
+
+namespace strata::store {
+
+class Store;
+
+// The thread that makes edits durable, with a connection of its own (synchronous_commit on). Entries commit in the order
+// given; what waits is grouped into one transaction. A failed commit is retried in order until `retry_for` has passed
+// since its first failure (reconnecting each time; an entry whose id is already in the journal with the same sequence counts
+// as saved, since the first try may have committed before the answer was lost). Then every waiting entry is answered with the
+// Problem, in order, and the writer starts anew with what comes later.
+class JournalWriter {
+ public:
+  struct Options {
+    std::chrono::milliseconds retry_for{30'000};
+    std::size_t max_waiting_bytes = 256u << 20;
+  };
+  using Done = std::function<void(Result<void>)>;  // called on the writer's thread, in order
+
+  JournalWriter(Store& store, Options options);
+  ~JournalWriter();  // writes what waits, then joins
+
+  // False when the queue is full or failing: the caller refuses new edits (`accepting()` tells beforehand).
+  bool submit(JournalEntry entry, Done done);
+  bool accepting() const;
+  void drain();  // waits until everything submitted before is answered
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace strata::store

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/history.h"
+#include "core/layer.h"
+#include "core/model.h"
+#include "core/tile_mirror.h"
+#include "store/journal.h"
+
+namespace strata::store {
+
+struct StoreOptions {
+  std::string dsn;           // libpq connection string
+  int connections = 8;       // pooled, for everything but the journal writer
+};
+
+struct StoreInfo {
+  std::string server_version;
+  std::int64_t schema_version = 0;
+  std::uint64_t database_bytes = 0;
+};
+
+// Everything durable. All calls block the calling thread, are thread-safe and take a connection from the pool; when
+// the database is away they return a Problem 503 ("Database unavailable") after trying to reconnect. Constraint
+// failures are a Problem 409, unknown ids 404, a stale `version` 412.
+class Store {
+ public:
+  // Connects and applies the missing migrations of `migrations_dir`; a newer schema than known is refused.
+  static Result<std::unique_ptr<Store>> open(StoreOptions options, const std::filesystem::path& migrations_dir);
+  ~Store();
+
+  Result<StoreInfo> info();
+  bool ready();  // one quick round trip
+
+  // --- projects; `default` exists from the start. `ref` is an id in digits or a slug.
+  Result<std::vector<Project>> projects();
+  Result<Project> project(const std::string& ref);
+  Result<Project> create_project(Project project);
+  Result<Project> update_project(Project project);        // where version equals; returns it with version + 1
+  Result<void> delete_project(std::int64_t id);           // refused (409) while it has models, and for `default`
+
+  // --- models
+  struct NewModel {
+    Model model;                                          // id 0; slug wished, made unique
+    std::vector<std::uint8_t> geometry;                   // mesh::encode_geometry
+    struct Source { std::string name; std::filesystem::path file; };
+    std::vector<Source> sources;                          // streamed in bit for bit, hashed on the way
+  };
+  Result<Model> create_model(const NewModel& model, const std::function<bool()>& cancelled);  // one transaction
+  Result<std::vector<Model>> models(std::optional<std::int64_t> project_id = {});
+  Result<Model> model(const std::string& ref);
+  Result<Model> update_model(Model model);
+  Result<void> delete_model(std::int64_t id);
+  Result<std::vector<std::uint8_t>> geometry(std::int64_t model_id);
+  // Streams a source file in chunks ≤ 1 MiB; `sink` returns false to stop.
+  Result<SourceFile> read_source(std::int64_t model_id, const std::string& name,
+                                 const std::function<bool(std::span<const std::uint8_t>)>& sink);
+
+  // --- layers
+  Result<std::vector<Layer>> layers(std::int64_t model_id);  // by order
+  Result<Layer> layer(std::int64_t model_id, const std::string& ref);
+  Result<Layer> create_layer(Layer layer);
+  Result<Layer> update_layer(Layer layer);
+  Result<void> delete_layer(std::int64_t id);
+
+  // --- journal (reads; writes go through JournalWriter)
+  // All tiles of a layer after `at_sequence` (nothing: the newest).
+  Result<TileMirror::Snapshot> load_tiles(const Layer& layer, std::optional<std::int64_t> at_sequence = {});
+  // Every revision of these tiles, newest first, with what their edits are now.
+  struct TileHistory { TileAddress tile; std::vector<PastRevision> newest_first; };
+  Result<std::vector<TileHistory>> load_history(const Layer& layer, std::span<const TileAddress> tiles);
+  // Tiles that the given edits wrote, with the union of their written masks.
+  struct WrittenTiles { TileAddress tile; TileMask written; };
+  Result<std::vector<WrittenTiles>> written_by(const Layer& layer, std::span<const std::int64_t> sequences);
+  struct HistoryPage { std::vector<JournalRow> rows; std::int64_t total = 0; };
+  Result<HistoryPage> history(std::int64_t layer_id, int limit, int offset);
+  Result<std::optional<JournalRow>> find_edit(std::int64_t model_id, const Uuid& id);
+  // The sequences (ascending) of the newest stroke of `user` on the layer that is in force / that is undone and not
+  // followed by a newer in-force stroke of the same user; empty when there is none.
+  Result<std::vector<std::int64_t>> undoable(std::int64_t layer_id, const std::string& user);
+  Result<std::vector<std::int64_t>> redoable(std::int64_t layer_id, const std::string& user);
+  Result<std::int64_t> last_sequence(std::int64_t model_id);
+  Result<std::uint64_t> revision_bytes(std::int64_t model_id);
+
+  // --- answers to changing HTTP calls, by Idempotency-Key; kept for 7 days
+  Result<std::optional<nlohmann::json>> find_answer(const std::string& key);
+  Result<void> keep_answer(const std::string& key, const nlohmann::json& answer);
+
+  // --- people: users, sessions and tokens; secrets are stored hashed (SHA-256 of random 256-bit tokens)
+  enum class TokenKind { session, script, owner_link };
+  struct Principal { std::string user; std::string role; TokenKind kind; };  // role: "owner"
+  Result<std::string> create_token(TokenKind kind, const std::string& user, const std::string& role,
+                                   std::optional<std::chrono::seconds> lifetime);
+  Result<std::optional<Principal>> find_token(const std::string& token);
+  Result<std::optional<std::string>> redeem_owner_link(const std::string& link);   // → session token; a link may be used again until revoked
+  Result<void> revoke_token(const std::string& token);
+  Result<bool> has_owner_link();
+
+ private:
+  Store();
+  friend class JournalWriter;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace strata::store
