@@ -1,0 +1,26 @@
+#include "core/layer.h"
+
+#include <nlohmann/json.hpp>
+
+namespace strata {
+
+nlohmann::json to_json(const Layer& layer) {
+  nlohmann::json json{{"id", layer.id},
+                      {"model", layer.model_id},
+                      {"name", layer.name},
+                      {"slug", layer.slug},
+                      {"kind", layer.kind == LayerKind::database ? "database" : "numeric"},
+                      {"type", name(layer.type)},
+                      {"resolution", layer.resolution},
+                      {"unit", layer.unit},
+                      {"description", layer.description},
+                      {"palette", to_json(layer.palette)},
+                      {"opacity", layer.opacity},
+                      {"visible", layer.visible},
+                      {"order", layer.order},
+                      {"sequence", layer.sequence}};
+  if (layer.table) json["table"] = *layer.table;
+  return json;
+}
+
+}  // namespace strata

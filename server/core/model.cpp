@@ -1,0 +1,97 @@
+#include "core/model.h"
+
+namespace strata {
+namespace {
+
+nlohmann::json vec3(const glm::dvec3& v) { return nlohmann::json::array({v.x, v.y, v.z}); }
+
+}  // namespace
+
+double metres_per(Unit unit) {
+  switch (unit) {
+    case Unit::mm: return 0.001;
+    case Unit::cm: return 0.01;
+    default: return 1.0;
+  }
+}
+
+std::string_view name(Unit unit) {
+  switch (unit) {
+    case Unit::mm: return "mm";
+    case Unit::cm: return "cm";
+    default: return "m";
+  }
+}
+
+std::optional<Unit> parse_unit(std::string_view text) {
+  for (Unit unit : {Unit::mm, Unit::cm, Unit::m})
+    if (name(unit) == text) return unit;
+  return std::nullopt;
+}
+
+nlohmann::json to_json(const Project& project) {
+  return {{"id", project.id}, {"name", project.name}, {"slug", project.slug}, {"description", project.description}};
+}
+
+nlohmann::json to_json(const AtlasReport& atlas, double metres_per_unit) {
+  return {{"source", atlas.source},
+          {"lowest_resolution", atlas.lowest_resolution},
+          {"charts", atlas.charts},
+          {"coverage", atlas.coverage},
+          {"overlap", atlas.overlap},
+          {"stretch_mean", atlas.stretch_mean},
+          {"stretch_p99", atlas.stretch_p99},
+          {"texel_area_max_m2", atlas.texel_area_max * metres_per_unit * metres_per_unit}};
+}
+
+AtlasReport atlas_from_json(const nlohmann::json& json) {
+  AtlasReport atlas;
+  atlas.source = json.value("source", std::string("made"));
+  atlas.lowest_resolution = json.value("lowest_resolution", 2048);
+  atlas.charts = json.value("charts", 0);
+  atlas.coverage = json.value("coverage", 0.0);
+  atlas.overlap = json.value("overlap", 0.0);
+  atlas.stretch_mean = json.value("stretch_mean", 0.0);
+  atlas.stretch_p99 = json.value("stretch_p99", 0.0);
+  atlas.texel_area_max = json.value("texel_area_max_m2", 0.0);  // stored with metres_per_unit = 1
+  return atlas;
+}
+
+nlohmann::json to_json(const Model& model, const std::string& project_slug) {
+  nlohmann::json repairs = nlohmann::json::array();
+  for (const auto& repair : model.repairs) repairs.push_back({{"what", repair.what}, {"count", repair.count}});
+  nlohmann::json files = nlohmann::json::array();
+  for (const auto& file : model.source_files)
+    files.push_back({{"name", file.name}, {"sha256", file.sha256}, {"bytes", file.bytes}});
+  return {{"id", model.id},
+          {"name", model.name},
+          {"slug", model.slug},
+          {"project", project_slug},
+          {"unit", name(model.unit)},
+          {"unit_assumed", model.unit_assumed},
+          {"scale_verified", model.scale_verified},
+          {"up", model.up},
+          {"north", model.north},
+          {"crs", model.crs},
+          {"origin", vec3(model.origin)},
+          {"triangles", model.triangles},
+          {"vertices", model.vertices},
+          {"bounds", {{"min", vec3(model.bounds_min)}, {"max", vec3(model.bounds_max)}}},
+          {"area_m2", model.area_m2()},
+          {"atlas", to_json(model.atlas, model.metres())},
+          {"repairs", repairs},
+          {"source_files", files},
+          {"default_resolution", model.default_resolution},
+          {"inventory_number", model.inventory_number},
+          {"owner", model.owner},
+          {"creator", model.creator},
+          {"captured", model.captured},
+          {"method", model.method},
+          {"accuracy", model.accuracy},
+          {"processing", model.processing},
+          {"rights_uri", model.rights_uri},
+          {"credit", model.credit},
+          {"sequence", model.sequence}};
+}
+
+}  // namespace strata

@@ -1,0 +1,38 @@
+#include "core/tile.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace strata {
+
+bool TileMask::any() const {
+  return std::any_of(words.begin(), words.end(), [](std::uint64_t word) { return word != 0; });
+}
+
+int TileMask::count() const {
+  int sum = 0;
+  for (auto word : words) sum += std::popcount(word);
+  return sum;
+}
+
+std::uint32_t TileData::bits(int texel) const {
+  const int width = texel_bytes();
+  std::uint32_t out = 0;
+  std::memcpy(&out, values.data() + std::size_t(texel) * width, width);
+  return out;
+}
+
+void TileData::write(int texel, std::uint32_t bits) {
+  const int width = texel_bytes();
+  std::memcpy(values.data() + std::size_t(texel) * width, &bits, width);
+  valid.set(texel);
+}
+
+void TileData::clear(int texel) {
+  const int width = texel_bytes();
+  std::memset(values.data() + std::size_t(texel) * width, 0, width);
+  valid.reset(texel);
+}
+
+}  // namespace strata
