@@ -7,8 +7,9 @@
 
 namespace strata {
 
-// One revision of a tile and what its edit is now: `writer` is false for the entries that undo, redo and restore leave
-// (they move content but are nobody's paint); `in_force` is false for an edit that is undone.
+// One revision of a tile and what its edit is now: `writer` is false for the entries that undo and redo leave
+// (they move content but are nobody's paint); `in_force` is false for an edit that is undone. A restore is a writer: later undos
+// see what it brought back.
 struct PastRevision {
   std::int64_t sequence = 0;
   bool writer = true;

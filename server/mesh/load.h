@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 
 #include "core/progress.h"
 #include "mesh/triangle_mesh.h"
@@ -18,5 +19,8 @@ struct LoadedMesh {
 // the file cannot hold, indices out of range, NaN or infinite coordinates (with their number), no triangle at all.
 // Memory stays within 4 × the file + 200 MB. Thread: any.
 Result<LoadedMesh> load_mesh(const std::filesystem::path& file, const std::string& filename, Progress& progress);
+
+// The same for a file that is already in memory.
+Result<LoadedMesh> load_mesh_bytes(std::span<const std::uint8_t> bytes, const std::string& filename, Progress& progress);
 
 }  // namespace strata::mesh

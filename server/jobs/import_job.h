@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/progress.h"
+#include "store/store.h"
+
+namespace strata::jobs {
+
+struct ImportRequest {
+  std::filesystem::path file;     // uploaded bytes
+  std::string filename;           // the user's name of it: its extension names the format
+  std::string name;               // of the model; empty: from the file name
+  std::string project = "default";
+  std::optional<Unit> unit;       // empty: metres, `unit_assumed`
+  std::string up;                 // "", "x", "y", "z"
+  std::string crs;
+  int resolution = 0;             // default of new layers; 0: 2048
+  bool strict = false;            // refuse a file that needs repair
+};
+
+// File → mesh → atlas → geometry → one transaction. Everything or nothing: a bad file or a cancel leaves nothing behind.
+Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress);
+
+// The demo project: the pot of mesh::make_demo_pot with two filled layers, `cracks` and `pieces` (as in the paper's
+// figure 1), painted by rule on its surface map. Idempotent: returns the model there already is.
+Result<Model> make_demo(store::Store& store, Progress& progress, double detail = 1.0);
+
+}  // namespace strata::jobs

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+
+namespace strata::jobs {
+
+enum class JobState { queued, running, done, failed, cancelled };
+
+struct JobStatus {
+  std::int64_t id = 0;
+  JobState state = JobState::queued;
+  double progress = 0;
+  std::string message;
+  std::optional<Problem> problem;
+  std::optional<std::int64_t> model;
+};
+
+// Long work, one at a time on a thread of its own, in order of asking. Finished jobs are remembered (the newest 1000).
+class JobQueue {
+ public:
+  JobQueue();
+  ~JobQueue();  // cancels what runs, joins
+  using Work = std::function<Result<std::int64_t>(Progress&)>;  // the model's id
+  Result<std::int64_t> add(Work work);  // refused (503) when 64 wait
+  std::optional<JobStatus> status(std::int64_t id) const;
+  std::vector<JobStatus> all() const;
+  bool cancel(std::int64_t id);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace strata::jobs

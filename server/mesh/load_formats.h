@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "mesh/load.h"
+
+namespace strata::mesh {
+
+// The steps behind `load_mesh`, for its own files only. The parsers give triangles whose indices are in range, in file order,
+// unwelded, with notes of what they ignored; `repair` brings them into the form that `load_mesh` promises.
+Result<LoadedMesh> parse_ply(std::span<const std::uint8_t> bytes, Progress& progress);
+Result<LoadedMesh> parse_obj(std::span<const std::uint8_t> bytes, Progress& progress);
+Result<void> repair(LoadedMesh& loaded, Progress& progress);
+
+// Parsers report up to this share of the whole, `repair` from there on.
+constexpr double kParsedShare = 0.6;
+
+// 422, the one title of every fault in a mesh file.
+inline tl::unexpected<Problem> refuse_file(std::string detail) {
+  return fail(422, "Mesh file refused", std::move(detail), "file");
+}
+
+// Adds a line to the report when there is something to report.
+inline void note(std::vector<Repair>& repairs, std::string what, std::uint64_t count) {
+  if (count > 0) repairs.push_back({std::move(what), count});
+}
+
+}  // namespace strata::mesh

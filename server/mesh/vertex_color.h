@@ -1,0 +1,42 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace strata::mesh {
+
+inline std::uint32_t channel_byte(double value) {
+  return value >= 0 ? static_cast<std::uint32_t>(std::lround(std::min(value, 255.0))) : 0u;  // NaN is 0, too
+}
+
+inline std::uint32_t pack_color(double red, double green, double blue, double alpha) {
+  return channel_byte(red) | channel_byte(green) << 8 | channel_byte(blue) << 16 | channel_byte(alpha) << 24;
+}
+
+// Colours given as real numbers are 0…1 in some files and 0…255 in others, and no header says which. They are taken as
+// 0…1 until a channel exceeds 1; then those stored so far are rescaled (each was 0 or about 1 of 255).
+class RealColorScale {
+ public:
+  std::uint32_t pack(double red, double green, double blue, double alpha, std::vector<std::uint32_t>& stored) {
+    if (!bytes_ && std::max({red, green, blue, alpha}) > 1.0) {
+      bytes_ = true;
+      for (std::uint32_t& color : stored) {
+        for (int shift = 0; shift < 32; shift += 8) {
+          const std::uint32_t channel = (color >> shift) & 0xffu;
+          color = (color & ~(0xffu << shift)) | (channel >= 128 ? 1u : 0u) << shift;
+        }
+      }
+    }
+    const double scale = bytes_ ? 1.0 : 255.0;
+    return pack_color(red * scale, green * scale, blue * scale, alpha * scale);
+  }
+  // Alpha where the file has none, in the scale of the colours seen so far.
+  double opaque() const { return bytes_ ? 255.0 : 1.0; }
+
+ private:
+  bool bytes_ = false;
+};
+
+}  // namespace strata::mesh

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/layer.h"
+#include "core/tile_mirror.h"
+#include "mesh/search_tree.h"
+#include "mesh/surface_map.h"
+
+namespace strata::query {
+
+// A layer as a query sees it: metadata and a consistent snapshot of its tiles.
+struct LayerView {
+  Layer layer;
+  TileMirror::Snapshot snapshot;
+};
+
+struct LayerValue {
+  std::string layer;  // slug
+  bool valid = false;
+  double value = 0;
+};
+
+struct SurfacePoint {
+  bool hit = false;
+  glm::dvec3 position{0};  // world
+  glm::vec3 normal{0};
+  double distance = 0;     // from the asked point, or along the ray; model units
+  glm::vec2 uv{0};
+  std::vector<LayerValue> values;
+};
+
+// Value at a texture coordinate: the texel that holds it (nearest), as the screen shows it.
+LayerValue value_at(const LayerView& view, glm::vec2 uv);
+
+SurfacePoint nearest_point(const mesh::SearchTree& tree, const glm::dvec3& origin, const glm::dvec3& world_point,
+                           const std::vector<LayerView>& layers);
+SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const Camera& camera, double x, double y,
+                  const std::vector<LayerView>& layers);
+
+}  // namespace strata::query

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "query/statistics.h"
+#include "query/values.h"
+#include "room/edit.h"
+#include "store/store.h"
+#include "stream/viewer.h"
+
+namespace strata::room {
+
+// What the people in a room hear. Called on the room's strand, in one order for all; must return quickly (post to a socket).
+class Listener {
+ public:
+  virtual ~Listener() = default;
+  struct Edit {
+    std::int64_t layer_id = 0;
+    std::string layer;        // slug
+    std::int64_t sequence = 0;
+    Uuid id, stroke;
+    int n = 0;
+    bool is_stroke = false;
+    std::string user, op;
+    EditAnswer answer;
+  };
+  virtual void edit_applied(const Edit& edit) = 0;                        // visible, not yet durable
+  virtual void edit_saved(const Edit& edit) = 0;                          // durable
+  virtual void edits_unsaved(const std::vector<Edit>& edits, const Problem& why) = 0;  // rolled back
+  enum class LayerChange { created, changed, deleted };
+  virtual void layer_changed(LayerChange change, const Layer& layer) = 0;
+  virtual void model_changed(const Model& model) = 0;
+  virtual void presence_changed() = 0;
+};
+
+// Layers as one person sees them; what is not set follows the layer's default.
+struct LayerView {
+  std::int64_t layer_id = 0;
+  std::optional<bool> visible;
+  std::optional<double> opacity;
+  std::optional<Palette> palette;
+};
+
+struct Presence {
+  Uuid session;
+  std::string user, color;
+  std::optional<glm::dvec3> pointer;  // world
+};
+
+class Room;
+
+// One connection in a room. Methods are thread-safe and return at once. Destroying it leaves the room.
+class Member {
+ public:
+  virtual ~Member() = default;
+  virtual Uuid session() const = 0;
+  virtual void camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) = 0;
+  virtual Result<void> layers(std::uint32_t view_id, std::vector<LayerView> layers) = 0;
+  virtual void ack(std::uint32_t view_id, std::uint64_t frame) = 0;
+  virtual void pointer(std::optional<glm::dvec3> world) = 0;
+};
+
+// One open model. The only place that joins store, renderer, streams and queries: keeps the order of edits, the tile mirrors,
+// undo, the journal and who is there. All methods are thread-safe; callbacks run on the room's strand.
+class Room {
+ public:
+  virtual ~Room() = default;
+
+  virtual Model model() const = 0;
+  virtual std::vector<Layer> layers() const = 0;
+  virtual Result<Layer> layer(const std::string& ref) const = 0;      // id or slug
+  virtual std::int64_t sequence() const = 0;
+  virtual std::int64_t durable_sequence() const = 0;
+
+  // `applied` when it is visible (may be empty), `saved` when it is durable or has failed: exactly one call of `saved`.
+  using Applied = std::function<void(const EditAnswer&)>;
+  using Saved = std::function<void(Result<EditAnswer>)>;
+  virtual void edit(EditRequest request, Applied applied, Saved saved) = 0;
+
+  virtual std::unique_ptr<Member> join(std::string user, Listener* listener, stream::Viewer::Send send) = 0;
+  virtual std::vector<Presence> presence() const = 0;
+  // Last saved batch of strokes that are not ended and touched in the last minutes, for `welcome`.
+  struct OpenStroke { Uuid stroke; int n; };
+  virtual std::vector<OpenStroke> open_strokes() const = 0;
+
+  // Metadata; blocking (database), announced to the listeners.
+  virtual Result<Layer> create_layer(Layer layer) = 0;
+  virtual Result<Layer> update_layer(Layer layer) = 0;
+  virtual Result<void> delete_layer(std::int64_t id) = 0;
+  virtual Result<Model> update_model(Model model) = 0;
+
+  // Queries; may take a while the first time (search tree, surface map), so call from a worker thread.
+  virtual Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers) = 0;
+  virtual Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
+                                                             const std::vector<std::string>& layers) = 0;
+  virtual Result<query::SurfacePoint> pick(const Camera& camera, double x, double y, const std::vector<std::string>& layers) = 0;
+  virtual Result<query::Statistics> statistics(const std::string& layer) = 0;
+  virtual Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) = 0;
+  // One picture, waits for it. RGBA8, top row first. Without `layers`: those visible by default.
+  virtual Result<render::Frame> picture(const Camera& camera, std::optional<std::vector<std::string>> layers) = 0;
+};
+
+struct RoomOptions {
+  std::chrono::seconds close_after{60};        // after the last user left
+  std::size_t max_waiting_edits = 512;         // more are refused (429)
+  std::chrono::milliseconds retry_for{30'000}; // commits that fail
+};
+
+// Opens rooms on first use and closes them after the last user left.
+class Rooms {
+ public:
+  Rooms(store::Store& store, render::Renderer& renderer, stream::StreamContext stream, RoomOptions options);
+  ~Rooms();
+  // Blocking: loads the model (geometry and layers) when it is not open.
+  Result<std::shared_ptr<Room>> open(const std::string& model_ref);
+  void forget(std::int64_t model_id);  // the model was deleted: members are told, the room closes
+  std::size_t open_rooms() const;
+  void drain();                        // waits until every edit is durable or refused; no new ones are taken
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace strata::room

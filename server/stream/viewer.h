@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/camera.h"
+#include "render/renderer.h"
+#include "stream/jpeg_pool.h"
+
+namespace strata::stream {
+
+// The parts of the flow that every viewer of one server shares.
+struct StreamContext {
+  render::Renderer* renderer = nullptr;
+  JpegPool* encoder = nullptr;
+};
+
+// An encoded message as it goes to the socket: frame header (protocol/frame_header.h) and payload in one buffer.
+using FrameBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
+
+// One view of one client: from camera and changes to encoded frames, by the flow rules of ARCHITECTURE.md:
+// the newest camera wins; frames echo the camera's number; at most `window` frames are sent but not acknowledged; when there is
+// no credit nothing is drawn, and what changed meanwhile is drawn once credit returns; nothing changed → nothing sent;
+// a frame of a moving camera is followed by a full-quality one within 250 ms of the last input; quality never falls
+// while painting. Thread-safe; `send` is called on encoder threads, in frame order, never concurrently.
+class Viewer : public std::enable_shared_from_this<Viewer> {
+ public:
+  struct Options {
+    std::uint32_t view_id = 0;
+    int window = 2;                 // frames on their way
+    int max_width = 3840, max_height = 2160;
+  };
+  using Send = std::function<void(FrameBytes)>;
+
+  static std::shared_ptr<Viewer> create(StreamContext context, render::ModelHandle model, Options options, Send send);
+  ~Viewer();
+
+  void set_camera(std::uint64_t camera_seq, const Camera& camera, bool moving);
+  void set_layers(std::vector<render::LayerStyle> layers);
+  // Model-space box that an edit changed; `sequence` is what frames drawn after this will show.
+  void changed(const render::FrameRequest::Box& box, std::int64_t sequence);
+  void changed_everywhere(std::int64_t sequence);
+  void ack(std::uint64_t frame);
+  // After a lost context: the model has a new handle; everything is drawn anew.
+  void reset_model(render::ModelHandle model, std::vector<render::LayerStyle> layers);
+  void close();  // nothing is sent after it returns
+
+  struct Stats {
+    std::uint64_t frames = 0, bytes = 0, dropped = 0;
+    double last_render_ms = 0, last_encode_ms = 0;
+  };
+  Stats stats() const;
+
+ private:
+  Viewer();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace strata::stream
