@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/problem.h"
+
+// The binary message that carries one rectangle of a picture: see protocol/frame.md, whose rules are named in brackets.
+namespace strata::protocol {
+
+constexpr std::size_t kFrameHeaderBytes = 56;
+constexpr std::uint8_t kFrameVersion = 1;
+constexpr std::uint32_t kMaxFrameSize = 8192;                // pixels a side
+constexpr std::uint64_t kMaxSafeInteger = (1ULL << 53) - 1;  // exact in a JavaScript number
+
+enum class FrameCodec : std::uint8_t { jpeg = 1, png = 2 };
+
+struct FrameHeader {
+  FrameCodec codec = FrameCodec::jpeg;
+  bool keyframe = false;  // the rectangle is the whole picture
+  bool still = false;     // full quality; nothing better follows
+  bool last = false;      // last rectangle of this frame: draw, then ack
+  std::uint32_t view_id = 0;
+  std::uint32_t frame = 0;
+  std::uint64_t camera_seq = 0;
+  std::uint64_t scene_sequence = 0;
+  std::uint32_t x = 0, y = 0, width = 0, height = 0;  // of the rectangle, origin top left
+  std::uint32_t full_width = 0, full_height = 0;
+  std::uint32_t render_us = 0, encode_us = 0;
+  std::uint32_t payload_bytes = 0;
+  bool operator==(const FrameHeader&) const = default;
+};
+
+// The first bytes of the message. Precondition: the header keeps the rules (asserted); our own code made it.
+std::array<std::uint8_t, kFrameHeaderBytes> encode_frame_header(const FrameHeader& header);
+
+// The header of a whole message; the payload is what follows kFrameHeaderBytes. Refused: a message that is too short or
+// too long, and every header that breaks a rule; the Problem's field is the name of the member.
+Result<FrameHeader> decode_frame_header(std::span<const std::uint8_t> message);
+
+}  // namespace strata::protocol

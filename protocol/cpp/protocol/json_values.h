@@ -1,0 +1,146 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/layer.h"
+#include "core/model.h"
+#include "core/problem.h"
+#include "core/stroke.h"
+#include "core/uuid.h"
+
+// What the generated reading and writing is made of. JSON that comes in here has passed `validate`, so that no type is
+// in doubt; for anything else nlohmann-json throws.
+namespace strata::protocol {
+
+template <class T>
+struct is_vector : std::false_type {};
+template <class T>
+struct is_vector<std::vector<T>> : std::true_type {};
+template <class T>
+struct is_string_map : std::false_type {};
+template <class T>
+struct is_string_map<std::map<std::string, T>> : std::true_type {};
+template <class T>
+struct is_optional : std::false_type {};
+template <class T>
+struct is_optional<std::optional<T>> : std::true_type {};
+
+using IdOrSlug = std::variant<std::int64_t, std::string>;
+
+// Types of the core that stand for a definition (`x-cpp-type` in the schemas).
+void read_core(const nlohmann::json& json, Uuid& value);
+void read_core(const nlohmann::json& json, glm::dvec2& value);
+void read_core(const nlohmann::json& json, glm::dvec3& value);
+void read_core(const nlohmann::json& json, glm::dmat4& value);
+void read_core(const nlohmann::json& json, strata::Camera& value);
+void read_core(const nlohmann::json& json, strata::ToolShape& value);
+void read_core(const nlohmann::json& json, strata::ValueType& value);
+void read_core(const nlohmann::json& json, strata::LayerKind& value);
+void read_core(const nlohmann::json& json, strata::Unit& value);
+void read_core(const nlohmann::json& json, IdOrSlug& value);
+nlohmann::json write_core(const Uuid& value);
+nlohmann::json write_core(const glm::dvec2& value);
+nlohmann::json write_core(const glm::dvec3& value);
+nlohmann::json write_core(const glm::dmat4& value);
+nlohmann::json write_core(const strata::Camera& value);
+nlohmann::json write_core(const strata::ToolShape& value);
+nlohmann::json write_core(const strata::ValueType& value);
+nlohmann::json write_core(const strata::LayerKind& value);
+nlohmann::json write_core(const strata::Unit& value);
+nlohmann::json write_core(const IdOrSlug& value);
+
+template <class T>
+void read_value(const nlohmann::json& json, T& value) {
+  if constexpr (std::is_same_v<T, nlohmann::json>) {
+    value = json;
+  } else if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
+    json.get_to(value);
+  } else if constexpr (is_vector<T>::value) {
+    value.clear();
+    value.reserve(json.size());
+    for (const auto& item : json) read_value(item, value.emplace_back());
+  } else if constexpr (is_string_map<T>::value) {
+    for (const auto& [key, item] : json.items()) read_value(item, value[key]);
+  } else if constexpr (is_optional<T>::value) {
+    if (json.is_null()) value.reset();
+    else read_value(json, value.emplace());
+  } else if constexpr (requires { read_core(json, value); }) {
+    read_core(json, value);
+  } else {
+    read(json, value);
+  }
+}
+
+template <class T>
+nlohmann::json write_value(const T& value) {
+  if constexpr (std::is_same_v<T, nlohmann::json> || std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
+    return value;
+  } else if constexpr (is_vector<T>::value) {
+    nlohmann::json json = nlohmann::json::array();
+    for (const auto& item : value) json.push_back(write_value(item));
+    return json;
+  } else if constexpr (is_string_map<T>::value) {
+    nlohmann::json json = nlohmann::json::object();
+    for (const auto& [key, item] : value) json[key] = write_value(item);
+    return json;
+  } else if constexpr (requires { write_core(value); }) {
+    return write_core(value);
+  } else {
+    return to_json(value);
+  }
+}
+
+template <class T>
+void read_member(const nlohmann::json& json, const char* name, T& value) {
+  read_value(json.at(name), value);
+}
+
+template <class T>
+void read_optional_member(const nlohmann::json& json, const char* name, T& value) {
+  const auto member = json.find(name);
+  if (member == json.end()) return;
+  if constexpr (is_optional<T>::value) {
+    if (member->is_null()) value.reset();
+    else read_value(*member, value.emplace());
+  } else {
+    read_value(*member, value);
+  }
+}
+
+template <class T>
+void write_member(nlohmann::json& json, const char* name, const T& value) {
+  json[name] = write_value(value);
+}
+
+template <class T>
+void write_optional_member(nlohmann::json& json, const char* name, const std::optional<T>& value) {
+  if (value) json[name] = write_value(*value);
+}
+
+inline std::string join_field(const std::string& parent, const std::string& member) {
+  return parent.empty() ? member : parent + "." + member;
+}
+
+// Puts the path of the surrounding object before the field that a check named (".view" or "view").
+Result<void> named_in_message(Result<void> checked, const std::string& parent);
+
+// `check` of whatever a variant holds, where that has one.
+template <class Variant>
+Result<void> check_alternative(const Variant& variant, const std::string& field) {
+  return std::visit(
+      [&](const auto& value) -> Result<void> {
+        if constexpr (requires { check(value, field); }) return check(value, field);
+        else return {};
+      },
+      variant);
+}
+
+}  // namespace strata::protocol

@@ -1,0 +1,105 @@
+#include "protocol/strict_json.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace strata::protocol {
+namespace {
+
+using nlohmann::json;
+
+// Builds the value event by event, so that depth and duplicates are seen before memory is spent on them.
+class StrictBuilder : public nlohmann::json_sax<json> {
+ public:
+  explicit StrictBuilder(int max_depth) : max_depth_(max_depth) {}
+
+  json take() { return std::move(root_); }
+  Problem take_problem() { return std::move(problem_); }
+
+  bool null() override { return put(nullptr); }
+  bool boolean(bool value) override { return put(value); }
+  bool number_integer(number_integer_t value) override { return put(value); }
+  bool number_unsigned(number_unsigned_t value) override { return put(value); }
+  bool number_float(number_float_t value, const string_t& text) override {
+    if (!std::isfinite(value)) return refuse(422, "Number not usable", "The number " + text.substr(0, 40) + " is too large.");
+    return put(value);
+  }
+  bool string(string_t& text) override {
+    if (has_nul(text)) return false;
+    return put(std::move(text));
+  }
+  bool binary(binary_t&) override { return false; }  // never comes from text
+
+  bool start_object(std::size_t) override { return open(json::object()); }
+  bool key(string_t& name) override {
+    if (has_nul(name)) return false;
+    if (open_.back()->contains(name))
+      return refuse(422, "Member given twice", "The member \"" + name.substr(0, 100) + "\" stands twice in one object.");
+    key_ = std::move(name);
+    return true;
+  }
+  bool end_object() override { return close(); }
+  bool start_array(std::size_t) override { return open(json::array()); }
+  bool end_array() override { return close(); }
+
+  bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
+    if (error.id == 406) return refuse(422, "Number not usable", "A number near byte " + std::to_string(position) + " is too large.");
+    return refuse(400, "Malformed JSON", "The text stops being JSON near byte " + std::to_string(position) + ".");
+  }
+
+ private:
+  json* add(json&& value) {
+    if (open_.empty()) return &(root_ = std::move(value));
+    json& parent = *open_.back();
+    if (parent.is_array()) {
+      parent.push_back(std::move(value));
+      return &parent.back();
+    }
+    return &(parent[key_] = std::move(value));
+  }
+  bool put(json&& value) {
+    add(std::move(value));
+    return true;
+  }
+  // A pointer to an open value stays good: while it is open, only its own children grow.
+  bool open(json&& container) {
+    if (static_cast<int>(open_.size()) >= max_depth_)
+      return refuse(422, "Nested too deeply", "At most " + std::to_string(max_depth_) + " objects and lists may lie in each other.");
+    open_.push_back(add(std::move(container)));
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+  bool has_nul(const std::string& text) {
+    if (text.find('\0') == std::string::npos) return false;
+    refuse(422, "Text not usable", "A text holds the character U+0000, which cannot be stored.");
+    return true;
+  }
+  bool refuse(int status, const char* title, std::string detail) {
+    problem_ = Problem{status, title, std::move(detail), {}};
+    return false;
+  }
+
+  int max_depth_;
+  json root_;
+  std::vector<json*> open_;
+  std::string key_;
+  Problem problem_;
+};
+
+}  // namespace
+
+Result<json> parse_json(std::string_view text, const JsonLimits& limits) {
+  if (text.size() > limits.max_bytes)
+    return fail(413, "Too much at once", "At most " + std::to_string(limits.max_bytes) + " bytes of JSON are taken; these are " +
+                                             std::to_string(text.size()) + ".");
+  StrictBuilder builder(limits.max_depth);
+  if (!json::sax_parse(text.begin(), text.end(), &builder)) return tl::unexpected<Problem>(builder.take_problem());
+  return builder.take();
+}
+
+}  // namespace strata::protocol

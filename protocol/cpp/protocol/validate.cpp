@@ -1,0 +1,181 @@
+#include "protocol/validate.h"
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+#include <vector>
+
+namespace strata::protocol {
+namespace {
+
+using nlohmann::json;
+
+const json& definitions() {
+  static const json parsed = json::parse(schema_bundle()).at("definitions");
+  return parsed;
+}
+
+const valijson::Schema& built(Schema schema) {
+  static std::array<std::once_flag, kSchemaCount> once;
+  static std::array<std::unique_ptr<valijson::Schema>, kSchemaCount> schemas;
+  const auto index = static_cast<std::size_t>(schema);
+  std::call_once(once[index], [&] {
+    const json document{{"$ref", "#/definitions/" + std::string(name(schema))}, {"definitions", definitions()}};
+    auto result = std::make_unique<valijson::Schema>();
+    valijson::SchemaParser(valijson::SchemaParser::kDraft7)
+        .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), *result);
+    schemas[index] = std::move(result);
+  });
+  return *schemas[index];
+}
+
+const json& resolve(const json& schema) {
+  const json* node = &schema;
+  while (node->contains("$ref"))
+    node = &definitions().at(node->at("$ref").get_ref<const std::string&>().substr(sizeof("#/definitions/") - 1));
+  return *node;
+}
+
+// The part of a schema that a member of `value` answers to; null when none is found. A choice by `op` follows the op.
+const json* child_schema(const json& schema, const json& value, const std::string& step) {
+  const json& node = resolve(schema);
+  if (value.is_array()) return node.contains("items") ? &node["items"] : nullptr;
+  if (auto properties = node.find("properties"); properties != node.end() && properties->contains(step) && !node.contains("allOf"))
+    return &properties->at(step);
+  if (node.contains("allOf") && value.contains("op"))
+    for (const auto& branch : node["allOf"])
+      if (branch["if"]["properties"]["op"]["const"] == value["op"]) return child_schema(branch["then"], value, step);
+  if (auto rest = node.find("additionalProperties"); rest != node.end() && rest->is_object()) return &*rest;
+  return nullptr;
+}
+
+std::string listed(const json& values) {
+  std::string text;
+  for (const auto& value : values) text += (text.empty() ? "" : ", ") + value.dump();
+  return text;
+}
+
+std::string number(const json& value) { return value.dump(); }
+
+// In words, what a schema lets through.
+std::string expectation(const json& schema) {
+  const json& node = resolve(schema);
+  if (node.contains("const")) return "exactly " + node["const"].dump();
+  if (node.contains("enum")) return "one of " + listed(node["enum"]);
+  if (node.contains("oneOf") && !node.contains("type")) {
+    std::string text;
+    for (const auto& choice : node["oneOf"]) text += (text.empty() ? "" : ", or ") + expectation(choice);
+    return text;
+  }
+  const std::string type = node.value("type", std::string("value"));
+  if (type == "integer" || type == "number") {
+    std::string text = type == "integer" ? "a whole number" : "a number";
+    if (node.contains("exclusiveMinimum")) text += " above " + number(node["exclusiveMinimum"]);
+    if (node.contains("minimum")) text += " from " + number(node["minimum"]);
+    if (node.contains("maximum")) text += (node.contains("minimum") ? " to " : " up to ") + number(node["maximum"]);
+    return text;
+  }
+  if (type == "string") {
+    if (node.value("minLength", 0) == 36 && node.contains("pattern")) return "a UUID such as 123e4567-e89b-42d3-a456-426614174000";
+    std::string text = "a text of " + std::to_string(node.value("minLength", 0)) + " to " + number(node["maxLength"]) + " characters";
+    if (node.contains("pattern")) text += " like " + node["pattern"].get<std::string>();
+    return text;
+  }
+  if (type == "array") {
+    const auto least = node["minItems"], most = node["maxItems"];
+    const std::string count = least == most ? number(least) : number(least) + " to " + number(most);
+    return "a list of " + count + " items, each " + expectation(node["items"]);
+  }
+  if (type == "boolean") return "true or false";
+  if (type == "object") return "an object";
+  return type;
+}
+
+std::string quoted_at_end(const std::string& text) {
+  const auto end = text.rfind('\'');
+  const auto begin = end == std::string::npos || end == 0 ? std::string::npos : text.find('\'', text.find(": '") == std::string::npos ? 0 : text.find(": '"));
+  return begin == std::string::npos || begin >= end ? std::string() : text.substr(begin + 1, end - begin - 1);
+}
+
+// Names of the members of which a `oneOf` of an object demands exactly one.
+std::vector<std::string> exclusive_members(const json* schema) {
+  std::vector<std::string> names;
+  if (schema == nullptr) return names;
+  const json& node = resolve(*schema);
+  if (!node.contains("oneOf")) return names;
+  for (const auto& choice : node["oneOf"])
+    if (choice.contains("required")) names.push_back(choice["required"][0].get<std::string>());
+  return names;
+}
+
+tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::string& field,
+                                const valijson::ValidationResults::Error& error) {
+  std::string path = field;
+  const json* value = &whole;
+  const json* rule = &definitions().at(std::string(name(schema)));
+  auto enter = [&](const std::string& step) { path += (path.empty() ? "" : ".") + step.substr(0, 100); };
+  for (std::size_t i = 1; i < error.context.size() && value != nullptr; ++i) {  // context[0] is "<root>"
+    const std::string& bracketed = error.context[i];
+    const std::string step = bracketed.substr(1, bracketed.size() - 2);
+    if (rule != nullptr) rule = child_schema(*rule, *value, step);
+    if (value->is_array()) {
+      path += bracketed;
+      value = &value->at(static_cast<std::size_t>(std::stoul(step)));
+    } else {
+      enter(step);
+      value = value->contains(step) ? &value->at(step) : nullptr;
+    }
+  }
+  // A choice by `op` is an object with the rules of the chosen branch.
+  if (rule != nullptr && value != nullptr && value->is_object() && value->contains("op"))
+    if (const json& node = resolve(*rule); node.contains("allOf"))
+      for (const auto& branch : node["allOf"])
+        if (branch["if"]["properties"]["op"]["const"] == (*value)["op"]) rule = &branch["then"];
+
+  const std::string& said = error.description;
+  if (said.starts_with("Missing required")) {
+    const std::string member = quoted_at_end(said);
+    const auto exclusive = exclusive_members(rule);
+    if (!exclusive.empty() && member == exclusive.front()) {
+      enter(member);
+      return fail(422, "Member missing", "Give exactly one of " + listed(json(exclusive)) + ".", path);
+    }
+    const json* missing = rule == nullptr ? nullptr : child_schema(*rule, *value, member);
+    enter(member);
+    return fail(422, "Member missing", "It must be given" + (missing ? ": " + expectation(*missing) : std::string()) + ".", path);
+  }
+  if (said.starts_with("Failed to validate against exactly one")) {
+    const auto exclusive = exclusive_members(rule);
+    if (exclusive.size() > 1) enter(exclusive.back());
+    return fail(422, "Members exclude each other", "Give exactly one of " + listed(json(exclusive)) + ".", path);
+  }
+  if (said.starts_with("Object contains a property")) {
+    enter(quoted_at_end(said));
+    return fail(422, "Unknown member", "This object has no such member; check its spelling or leave it out.", path);
+  }
+  if (said.starts_with("Object should have no fewer")) return fail(422, "Nothing given", "Give at least one member.", path);
+  if (said.starts_with("Value type"))
+    return fail(422, "Wrong type", "It must be " + (rule ? expectation(*rule) : std::string("of another type")) + ".", path);
+  return fail(422, "Value not allowed", rule ? "It must be " + expectation(*rule) + "." : said, path);
+}
+
+}  // namespace
+
+Result<void> validate(Schema schema, const json& json, const std::string& field) {
+  thread_local valijson::Validator validator;  // keeps the compiled patterns
+  const valijson::adapters::NlohmannJsonAdapter target(json);
+  if (validator.validate(built(schema), target, nullptr)) return {};
+  valijson::ValidationResults results;
+  validator.validate(built(schema), target, &results);
+  valijson::ValidationResults::Error first;
+  results.popError(first);
+  return explain(schema, json, field, first);
+}
+
+}  // namespace strata::protocol

@@ -1,0 +1,1 @@
+"""Turns the JSON Schemas of protocol/messages into C++, TypeScript and OpenAPI. See ../generate.py."""

@@ -1,0 +1,54 @@
+"""Writes openapi.json: openapi.yaml with the schemas of protocol/messages inlined as components."""
+
+import json
+import pathlib
+
+import yaml  # Debian: python3-yaml
+
+from .schemas import Protocol, strip
+
+
+def point_to_components(node):
+    """References into the schema files become references to components."""
+    if isinstance(node, dict):
+        result = {}
+        for key, value in node.items():
+            if key == "$ref" and "/definitions/" in value:
+                result[key] = "#/components/schemas/" + value.rsplit("/", 1)[1]
+            else:
+                result[key] = point_to_components(value)
+        return result
+    return [point_to_components(value) for value in node] if isinstance(node, list) else node
+
+
+def references(node) -> set[str]:
+    if isinstance(node, dict):
+        found = {node["$ref"]} if isinstance(node.get("$ref"), str) else set()
+        return found.union(*[references(value) for value in node.values()])
+    return set().union(*[references(value) for value in node]) if isinstance(node, list) else set()
+
+
+def write(protocol: Protocol, source: pathlib.Path) -> str:
+    document = point_to_components(yaml.safe_load(source.read_text()))
+    schemas = document.setdefault("components", {}).setdefault("schemas", {})
+    prefix = "#/components/schemas/"
+    wanted = [ref for ref in references(document) if ref.startswith(prefix)]
+    while wanted:
+        name = wanted.pop().removeprefix(prefix)
+        if name not in schemas:
+            if name not in protocol.schemas:
+                raise SystemExit(f"{source.name}: there is no schema {name}")
+            schemas[name] = point_to_components(strip(protocol.schemas[name], lambda key: key.startswith("x-")))
+            wanted += [ref for ref in references(schemas[name]) if ref.startswith(prefix)]
+    document["components"]["schemas"] = dict(sorted(schemas.items()))
+    for ref in references(document):
+        resolve(document, ref)
+    return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
+
+
+def resolve(document, ref: str):
+    node = document
+    for part in ref.removeprefix("#/").split("/"):
+        if part not in node:
+            raise SystemExit(f"openapi.yaml: {ref} leads nowhere")
+        node = node[part]
