@@ -101,7 +101,9 @@ class Room {
   virtual Result<query::Statistics> statistics(const std::string& layer) = 0;
   virtual Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) = 0;
   // One picture, waits for it. RGBA8, top row first. Without `layers`: those visible by default.
-  virtual Result<render::Frame> picture(const Camera& camera, std::optional<std::vector<std::string>> layers) = 0;
+  // `at`: layers as they were after that sequence.
+  virtual Result<render::Frame> picture(const Camera& camera, std::optional<std::vector<std::string>> layers,
+                                        std::optional<std::int64_t> at = {}) = 0;
 };
 
 struct RoomOptions {

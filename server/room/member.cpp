@@ -1,0 +1,108 @@
+#include "room/member.h"
+
+#include "room/open_room.h"
+
+namespace strata::room {
+namespace {
+
+constexpr std::size_t kMaxViews = 4;  // of one connection
+
+}  // namespace
+
+RoomMember::RoomMember(std::shared_ptr<OpenRoom> room, std::string user, std::string color, Listener* listener,
+                       stream::Viewer::Send send)
+    : room_(std::move(room)), user_(std::move(user)), color_(std::move(color)), listener_(listener), send_(std::move(send)) {}
+
+RoomMember::~RoomMember() {
+  room_->leave(this);
+  for (auto& [id, view] : views_) view.viewer->close();
+}
+
+RoomMember::View* RoomMember::view(std::uint32_t view_id, bool make) {
+  auto found = views_.find(view_id);
+  if (found != views_.end()) return &found->second;
+  if (!make || views_.size() >= kMaxViews) return nullptr;
+  View& made = views_[view_id];
+  stream::Viewer::Options options;
+  options.view_id = view_id;
+  made.viewer = stream::Viewer::create(room_->stream_context(), room_->model_handle(), options, send_);
+  made.viewer->set_layers(styles(made));
+  return &made;
+}
+
+std::vector<render::LayerStyle> RoomMember::styles(const View& view) const {
+  std::vector<render::LayerStyle> styles;
+  for (const auto& state : room_->layer_states()) {
+    auto own = view.overrides.find(state.layer.id);
+    const LayerView none;
+    const LayerView& mine = own == view.overrides.end() ? none : own->second;
+    if (!mine.visible.value_or(state.layer.visible)) continue;
+    auto palette = view.palettes.find(state.layer.id);
+    styles.push_back({state.handle, palette == view.palettes.end() ? state.palette : palette->second,
+                      static_cast<float>(mine.opacity.value_or(state.layer.opacity))});
+  }
+  return styles;
+}
+
+void RoomMember::camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) {
+  std::lock_guard lock(mutex_);
+  if (View* v = view(view_id, true)) v->viewer->set_camera(seq, camera, moving);
+}
+
+Result<void> RoomMember::layers(std::uint32_t view_id, std::vector<LayerView> layers) {
+  std::lock_guard lock(mutex_);
+  View* v = view(view_id, true);
+  if (!v) return fail(422, "Too many views", "One connection has at most " + std::to_string(kMaxViews) + " views.", "view_id");
+  for (auto& own : layers) {
+    if (own.palette) v->palettes[own.layer_id] = std::make_shared<const Palette>(*own.palette);
+    LayerView& kept = v->overrides[own.layer_id];
+    kept.layer_id = own.layer_id;
+    if (own.visible) kept.visible = own.visible;
+    if (own.opacity) kept.opacity = own.opacity;
+  }
+  v->viewer->set_layers(styles(*v));
+  return {};
+}
+
+void RoomMember::ack(std::uint32_t view_id, std::uint64_t frame) {
+  std::lock_guard lock(mutex_);
+  if (View* v = view(view_id, false)) v->viewer->ack(frame);
+}
+
+void RoomMember::pointer(std::optional<glm::dvec3> world) {
+  {
+    std::lock_guard lock(mutex_);
+    pointer_ = world;
+  }
+  room_->announce_presence();
+}
+
+Presence RoomMember::presence() const {
+  std::lock_guard lock(mutex_);
+  return {session_, user_, color_, pointer_};
+}
+
+void RoomMember::content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,
+                                 std::int64_t sequence) {
+  const auto state = room_->layer_state(layer_id);
+  std::lock_guard lock(mutex_);
+  for (auto& [id, view] : views_) {
+    auto own = view.overrides.find(layer_id);
+    const bool shown = own != view.overrides.end() && own->second.visible ? *own->second.visible
+                                                                         : state && state->layer.visible;
+    if (!shown) continue;
+    box ? view.viewer->changed(*box, sequence) : view.viewer->changed_everywhere(sequence);
+  }
+}
+
+void RoomMember::styles_changed() {
+  std::lock_guard lock(mutex_);
+  for (auto& [id, view] : views_) view.viewer->set_layers(styles(view));
+}
+
+void RoomMember::model_changed(render::ModelHandle model) {
+  std::lock_guard lock(mutex_);
+  for (auto& [id, view] : views_) view.viewer->reset_model(model, styles(view));
+}
+
+}  // namespace strata::room

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "room/room.h"
+
+namespace strata::room {
+
+class OpenRoom;
+
+// A connection of one person: the views they look through and what they show in each.
+class RoomMember final : public Member {
+ public:
+  RoomMember(std::shared_ptr<OpenRoom> room, std::string user, std::string color, Listener* listener, stream::Viewer::Send send);
+  ~RoomMember() override;
+
+  Uuid session() const override { return session_; }
+  void camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) override;
+  Result<void> layers(std::uint32_t view_id, std::vector<LayerView> layers) override;
+  void ack(std::uint32_t view_id, std::uint64_t frame) override;
+  void pointer(std::optional<glm::dvec3> world) override;
+
+  Listener* listener() const { return listener_; }
+  Presence presence() const;
+  // Called by the room.
+  void content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box, std::int64_t sequence);
+  void styles_changed();
+  void model_changed(render::ModelHandle model);
+
+ private:
+  struct View {
+    std::shared_ptr<stream::Viewer> viewer;
+    std::map<std::int64_t, LayerView> overrides;
+    std::map<std::int64_t, std::shared_ptr<const Palette>> palettes;  // of overrides
+  };
+  View* view(std::uint32_t view_id, bool make);
+  std::vector<render::LayerStyle> styles(const View& view) const;
+
+  const std::shared_ptr<OpenRoom> room_;
+  const Uuid session_ = random_uuid();
+  const std::string user_, color_;
+  Listener* const listener_;
+  const stream::Viewer::Send send_;
+  mutable std::mutex mutex_;
+  std::map<std::uint32_t, View> views_;
+  std::optional<glm::dvec3> pointer_;
+};
+
+}  // namespace strata::room

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <boost/asio/thread_pool.hpp>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "room/edit_pipeline.h"
+#include "room/member.h"
+#include "room/room.h"
+
+namespace strata::room {
+
+// What rooms share.
+struct RoomParts {
+  store::Store& store;
+  store::JournalWriter& writer;
+  render::Renderer& renderer;
+  stream::StreamContext stream;
+  boost::asio::thread_pool& strands;  // room strands run here: short work
+  boost::asio::thread_pool& workers;  // bakes, history: long work
+  RoomOptions options;
+};
+
+class OpenRoom final : public Room, public PipelineHost, public std::enable_shared_from_this<OpenRoom> {
+ public:
+  // Loads everything; blocks.
+  static Result<std::shared_ptr<OpenRoom>> open(const RoomParts& parts, const std::string& model_ref);
+  OpenRoom(const RoomParts& parts, Model model, std::shared_ptr<const mesh::Geometry> geometry);
+  ~OpenRoom() override;
+
+  // --- Room
+  Model model() const override;
+  std::vector<Layer> layers() const override;
+  Result<Layer> layer(const std::string& ref) const override;
+  std::int64_t sequence() const override;
+  std::int64_t durable_sequence() const override;
+  void edit(EditRequest request, Applied applied, Saved saved) override;
+  std::unique_ptr<Member> join(std::string user, Listener* listener, stream::Viewer::Send send) override;
+  std::vector<Presence> presence() const override;
+  std::vector<OpenStroke> open_strokes() const override;
+  Result<Layer> create_layer(Layer layer) override;
+  Result<Layer> update_layer(Layer layer) override;
+  Result<void> delete_layer(std::int64_t id) override;
+  Result<Model> update_model(Model model) override;
+  Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers) override;
+  Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
+                                                     const std::vector<std::string>& layers) override;
+  Result<query::SurfacePoint> pick(const Camera& camera, double x, double y, const std::vector<std::string>& layers) override;
+  Result<query::Statistics> statistics(const std::string& layer) override;
+  Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) override;
+  Result<render::Frame> picture(const Camera& camera, std::optional<std::vector<std::string>> layers,
+                                std::optional<std::int64_t> at) override;
+
+  // --- PipelineHost (on the strand)
+  LayerState* find_layer(std::int64_t id) override;
+  const Model& pipeline_model() const override { return model_; }
+  void content_changed(const LayerState& layer, const std::optional<render::FrameRequest::Box>& box,
+                       std::int64_t sequence) override;
+  void edit_applied(const Listener::Edit& edit) override;
+  void edit_saved(const Listener::Edit& edit) override;
+  void edits_unsaved(const std::vector<Listener::Edit>& edits, const Problem& why) override;
+  void reload_from_store() override;
+
+  // --- for members
+  stream::StreamContext stream_context() const { return parts_.stream; }
+  render::ModelHandle model_handle() const;
+  std::vector<LayerState> layer_states() const;  // in drawing order
+  std::optional<LayerState> layer_state(std::int64_t id) const;
+  void leave(RoomMember* member);
+  void announce_presence();
+
+  // --- for Rooms
+  void gpu_lost();
+  bool deserted(std::chrono::steady_clock::time_point now) const;  // nobody for `close_after`
+  void touch();
+  bool idle();          // every edit is durable; asks the strand, blocks
+  void shut();          // refuses what waits and lets go of the GPU; blocks
+  std::int64_t id() const { return model_id_; }
+
+ private:
+  template <class Work>
+  auto on_strand(Work work) const;                       // runs there and waits for the result
+  template <class Tell>
+  void tell(Tell tell);                                  // every listener
+  Result<LayerState> put_on_gpu(const Layer& layer, std::shared_ptr<TileMirror> mirror, render::ModelHandle model) const;
+  Result<std::shared_ptr<TileMirror>> load_mirror(const Layer& layer) const;
+  Result<void> add_to_gpu(bool from_store);              // model and all layers; blocks
+  void rebuild(bool from_store);
+  void sort_layers_changed();
+  std::shared_ptr<const mesh::SearchTree> search_tree();
+  Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs) const;
+  Result<LayerState> state(const std::string& ref) const;
+
+  const RoomParts parts_;
+  const std::int64_t model_id_;
+  const std::shared_ptr<const mesh::Geometry> geometry_;
+  const Strand strand_;
+  const std::shared_ptr<SurfaceMaps> maps_;
+  std::shared_ptr<EditPipeline> pipeline_;
+
+  mutable std::mutex mutex_;                 // model_, layers_, model_handle_, tree_, last_used_, strokes_
+  Model model_;
+  std::map<std::int64_t, LayerState> layers_;  // changed on the strand only
+  render::ModelHandle model_handle_ = 0;
+  std::shared_ptr<const mesh::SearchTree> tree_;
+  std::once_flag tree_once_;
+  std::chrono::steady_clock::time_point last_used_;
+  std::atomic<std::int64_t> sequence_{0}, durable_{0};
+  struct RecentStroke {
+    int n = 0;
+    std::chrono::steady_clock::time_point at;
+  };
+  std::unordered_map<Uuid, RecentStroke> strokes_;
+
+  mutable std::recursive_mutex members_mutex_;  // recursive: a listener may ask for presence while it is told
+  std::vector<RoomMember*> members_;
+  int joined_ = 0;
+};
+
+}  // namespace strata::room

@@ -1,0 +1,64 @@
+// One rendered picture for a script: a view of its own, drawn once.
+#include "room/await.h"
+#include "room/open_room.h"
+
+namespace strata::room {
+namespace {
+
+// Removes what a picture put on the GPU, however it ends.
+struct Borrowed {
+  render::Renderer& renderer;
+  render::ViewHandle view = 0;
+  std::vector<render::LayerHandle> layers;
+  ~Borrowed() {
+    if (view) renderer.remove_view(view);
+    for (auto layer : layers) renderer.remove_layer(layer);
+  }
+};
+
+}  // namespace
+
+Result<render::Frame> OpenRoom::picture(const Camera& camera, std::optional<std::vector<std::string>> layers,
+                                        std::optional<std::int64_t> at) {
+  touch();
+  std::vector<LayerState> shown;
+  if (layers) {
+    for (const auto& ref : *layers) {
+      auto found = state(ref);
+      if (!found) return tl::unexpected(found.error());
+      shown.push_back(std::move(*found));
+    }
+  } else {
+    for (auto& candidate : layer_states())
+      if (candidate.layer.visible) shown.push_back(std::move(candidate));
+  }
+  if (at && *at > durable_)
+    return fail(422, "Sequence not reached", "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
+
+  Borrowed borrowed{parts_.renderer, 0, {}};
+  const auto model = model_handle();
+  render::FrameRequest request;
+  for (const auto& item : shown) {
+    render::LayerHandle handle = item.handle;
+    if (at) {
+      auto past = parts_.store.load_tiles(item.layer, at);
+      if (!past) return tl::unexpected(past.error());
+      auto mirror = std::make_shared<TileMirror>(item.layer.type, item.layer.resolution);
+      mirror->put(past->tiles, *at);
+      auto copy = put_on_gpu(item.layer, std::move(mirror), model);
+      if (!copy) return tl::unexpected(copy.error());
+      handle = copy->handle;
+      borrowed.layers.push_back(handle);
+    }
+    request.layers.push_back({handle, item.palette, static_cast<float>(item.layer.opacity)});
+  }
+  auto view = await<render::ViewHandle>([&](auto done) { parts_.renderer.add_view(model, std::move(done)); });
+  if (!view) return tl::unexpected(view.error());
+  borrowed.view = request.view = *view;
+  request.camera = camera;
+  request.width = camera.width;
+  request.height = camera.height;
+  return await<render::Frame>([&](auto done) { parts_.renderer.draw(std::move(request), std::move(done)); });
+}
+
+}  // namespace strata::room

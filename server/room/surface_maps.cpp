@@ -1,0 +1,91 @@
+#include "room/surface_maps.h"
+
+#include <boost/asio/post.hpp>
+
+#include "room/await.h"
+
+namespace strata::room {
+
+SurfaceMaps::MapPtr SurfaceMaps::get(int resolution) const {
+  std::lock_guard lock(mutex_);
+  auto found = entries_.find(resolution);
+  return found != entries_.end() && found->second.on_gpu ? found->second.baked : nullptr;
+}
+
+void SurfaceMaps::request(int resolution, Ready ready) {
+  MapPtr map;
+  {
+    std::lock_guard lock(mutex_);
+    Entry& entry = entries_[resolution];
+    if (!entry.on_gpu) {
+      entry.waiting.push_back(std::move(ready));
+      if (!entry.working) start(resolution);
+      return;
+    }
+    map = entry.baked;
+  }
+  ready(map);
+}
+
+Result<SurfaceMaps::MapPtr> SurfaceMaps::wait(int resolution) {
+  return await<MapPtr>([&](auto ready) { request(resolution, std::move(ready)); });
+}
+
+void SurfaceMaps::set_model(render::ModelHandle model) {
+  std::lock_guard lock(mutex_);
+  model_ = model;
+  for (auto& [resolution, entry] : entries_) {
+    entry.on_gpu = false;
+    if (entry.baked && !entry.working) start(resolution);
+  }
+}
+
+void SurfaceMaps::start(int resolution) {
+  Entry& entry = entries_[resolution];
+  entry.working = true;
+  boost::asio::post(workers_, [self = shared_from_this(), resolution] {
+    MapPtr map;
+    render::ModelHandle model = 0;
+    {
+      std::lock_guard lock(self->mutex_);
+      map = self->entries_[resolution].baked;
+      model = self->model_;
+    }
+    if (!map) {
+      auto baked = mesh::bake_surface_map(*self->geometry_, resolution, self->progress_);
+      if (!baked) return self->finish(resolution, tl::unexpected(baked.error()));
+      map = std::make_shared<const mesh::SurfaceMap>(std::move(*baked));
+      std::lock_guard lock(self->mutex_);
+      self->entries_[resolution].baked = map;
+    }
+    self->upload(resolution, std::move(map), model);
+  });
+}
+
+void SurfaceMaps::upload(int resolution, MapPtr map, render::ModelHandle model) {
+  renderer_.add_surface_map(model, map, [self = shared_from_this(), resolution, map, model](Result<void> done) {
+    if (done) return self->finish(resolution, map);
+    // The model's handle changed while the map was on its way (lost context): try again with the new one.
+    render::ModelHandle now = 0;
+    {
+      std::lock_guard lock(self->mutex_);
+      now = self->model_;
+    }
+    if (now != model) return self->upload(resolution, map, now);
+    self->finish(resolution, tl::unexpected(done.error()));
+  });
+}
+
+void SurfaceMaps::finish(int resolution, Result<MapPtr> result) {
+  std::vector<Ready> waiting;
+  {
+    std::lock_guard lock(mutex_);
+    Entry& entry = entries_[resolution];
+    entry.working = false;
+    entry.on_gpu = result.has_value();
+    waiting.swap(entry.waiting);
+  }
+  for (auto& ready : waiting) ready(result);
+}
+
+}  // namespace strata::room

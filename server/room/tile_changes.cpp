@@ -1,0 +1,93 @@
+#include "room/tile_changes.h"
+
+#include <bit>
+#include <cstring>
+#include <set>
+
+namespace strata::room {
+namespace {
+
+template <class Visit>
+void for_each_texel(const TileMask& mask, Visit visit) {
+  for (int w = 0; w < kMaskWords; ++w)
+    for (std::uint64_t left = mask.words[w]; left; left &= left - 1) visit(w * 64 + std::countr_zero(left));
+}
+
+// Texels whose value or validity differs.
+TileMask differing(const TileData& a, const TileData& b) {
+  TileMask mask;
+  const int width = a.texel_bytes();
+  for (int w = 0; w < kMaskWords; ++w) mask.words[w] = a.valid.words[w] ^ b.valid.words[w];
+  if (std::memcmp(a.values.data(), b.values.data(), a.values.size()) == 0) return mask;
+  for (int texel = 0; texel < kTexelsPerTile; ++texel)
+    if (std::memcmp(&a.values[std::size_t(texel) * width], &b.values[std::size_t(texel) * width], width) != 0)
+      mask.set(texel);
+  return mask;
+}
+
+}  // namespace
+
+std::shared_ptr<const TileData> tile_or_empty(const TileMap& tiles, TileAddress address, ValueType type) {
+  auto found = tiles.find(address);
+  if (found != tiles.end() && found->second) return found->second;
+  return std::make_shared<const TileData>(type);
+}
+
+ChangeCount count_changes(const TileChange& change, const mesh::SurfaceMap& map) {
+  ChangeCount count;
+  TileMask changed = differing(*change.before, *change.after);
+  if (!changed.any()) return count;
+  const TileMask surface = map.surface_in_tile(change.address);
+  for (int w = 0; w < kMaskWords; ++w) changed.words[w] &= surface.words[w];
+  for_each_texel(changed, [&](int texel) {
+    ++count.texels;
+    count.area += map.area_of(change.address, texel);
+  });
+  return count;
+}
+
+std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map, bool erase,
+                                        std::uint32_t bits) {
+  std::vector<TileChange> changes;
+  const int tiles_per_side = map.resolution / kTileSize;
+  for (int y = 0; y < tiles_per_side; ++y)
+    for (int x = 0; x < tiles_per_side; ++x) {
+      const TileAddress address{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+      const TileMask owned = map.owned_in_tile(address);
+      if (!owned.any()) continue;
+      auto before = tile_or_empty(tiles, address, type);
+      if (erase && !before->valid.any()) continue;
+      auto after = std::make_shared<TileData>(*before);
+      for_each_texel(owned, [&](int texel) { erase ? after->clear(texel) : after->write(texel, bits); });
+      changes.push_back({address, std::move(before), std::move(after), owned});
+    }
+  return changes;
+}
+
+std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& wished, ValueType type,
+                                        const mesh::SurfaceMap& map) {
+  std::set<TileAddress> addresses;
+  for (const auto& [address, data] : tiles) addresses.insert(address);
+  for (const auto& [address, data] : wished) addresses.insert(address);
+  std::vector<TileChange> changes;
+  for (TileAddress address : addresses) {
+    auto before = tile_or_empty(tiles, address, type);
+    auto after = std::make_shared<TileData>(*tile_or_empty(wished, address, type));
+    const TileMask owned = map.owned_in_tile(address);
+    TileMask foreign;
+    for (int w = 0; w < kMaskWords; ++w) foreign.words[w] = after->valid.words[w] & ~owned.words[w];
+    for_each_texel(foreign, [&](int texel) { after->clear(texel); });
+    const TileMask written = differing(*before, *after);
+    if (written.any()) changes.push_back({address, std::move(before), std::move(after), written});
+  }
+  return changes;
+}
+
+TileChange resolve_change(const TileMap& tiles, TileAddress address, ValueType type,
+                          std::span<const PastRevision> newest_first, const TileMask& texels) {
+  auto before = tile_or_empty(tiles, address, type);
+  auto after = std::make_shared<const TileData>(resolve_tile(*before, newest_first, texels));
+  return {address, std::move(before), std::move(after), texels};
+}
+
+}  // namespace strata::room
