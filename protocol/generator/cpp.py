@@ -79,6 +79,12 @@ class Writer:
             return False
         return any(self.has_camera(other) for other in self.protocol.dependencies(definition.type))
 
+    def has_check(self, name: str) -> bool:
+        """Choices of a checked union get a check of their own even when empty: otherwise a call with one of them would
+        turn it into the union and come back for ever."""
+        unions = [d for d in self.order if d.type.kind == "union" and name in d.type.values]
+        return self.has_camera(name) or any(self.has_camera(union.name) for union in unions)
+
     # --- header
 
     def header(self) -> str:
@@ -139,7 +145,7 @@ class Writer:
         text += f"  bool operator==(const {name}&) const = default;\n}};\n" + self.functions(name)
         if definition.schema.get("x-camera"):
             text += f"strata::Camera camera_of(const {name}& value);\n"
-        if self.has_camera(name):
+        if self.has_check(name):
             text += f"Result<void> check(const {name}& value, const std::string& field);\n"
         return text + f"template <>\ninline constexpr Schema schema_of<{name}> = Schema::{name};\n\n"
 
@@ -208,7 +214,7 @@ class Writer:
                      "  return {value.view, value.projection, value.width, value.height};\n}\n\n"
                      f"Result<void> check(const {name}& value, const std::string& field) {{\n"
                      "  return named_in_message(strata::validate(camera_of(value), \"\"), field);\n}\n\n")
-        elif self.has_camera(name):
+        elif self.has_check(name):
             checks = ""
             for member in members:
                 inner = member.type
@@ -220,7 +226,9 @@ class Writer:
                 condition = f"value.{member.name} ? " if optional else ""
                 otherwise = " : Result<void>{}" if optional else ""
                 checks += (f'  if (auto ok = {condition}{call}({access}, join_field(field, "{member.name}")){otherwise}; !ok) return ok;\n')
-            text += f"Result<void> check(const {name}& value, const std::string& field) {{\n{checks}  return {{}};\n}}\n\n"
+            blank = "" if checks else "[[maybe_unused]] "
+            text += (f"Result<void> check({blank}const {name}& value, {blank}const std::string& field) {{\n"
+                     f"{checks}  return {{}};\n}}\n\n")
         return text
 
     def define_union(self, union: str, names: list) -> str:

@@ -216,7 +216,7 @@ def bundle_for_validation(protocol: Protocol) -> dict:
             ops = [protocol.definitions[choice].op for choice in definition.type.values]
             schema = {
                 "type": "object", "required": ["op"], "properties": {"op": {"type": "string", "enum": ops}},
-                "allOf": [{"if": {"properties": {"op": {"const": op}}}, "then": {"$ref": "#/definitions/" + choice}}
+                "allOf": [{"if": {"required": ["op"], "properties": {"op": {"const": op}}}, "then": {"$ref": "#/definitions/" + choice}}
                           for op, choice in zip(ops, definition.type.values)]}
         definitions[name] = schema
     return {"definitions": definitions}

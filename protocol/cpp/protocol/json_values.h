@@ -91,6 +91,8 @@ nlohmann::json write_value(const T& value) {
     nlohmann::json json = nlohmann::json::object();
     for (const auto& [key, item] : value) json[key] = write_value(item);
     return json;
+  } else if constexpr (is_optional<T>::value) {
+    return value ? write_value(*value) : nlohmann::json(nullptr);
   } else if constexpr (requires { write_core(value); }) {
     return write_core(value);
   } else {

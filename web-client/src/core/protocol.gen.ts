@@ -195,7 +195,7 @@ export interface Model {
 /** What a layer holds at a point. */
 export interface SurfaceValue {
   valid: boolean;
-  /** Absent where the texel is not valid. */
+  /** 0 where the texel is not valid. */
   value?: number;
 }
 
@@ -318,10 +318,8 @@ export interface Ack {
 /** Where this viewer's pointer is. */
 export interface PresenceUpdate {
   op: "presence";
-  /** Default: 0. */
-  view_id?: number;
-  /** Pixel of the view's newest camera; null or absent: the pointer is elsewhere. */
-  pointer?: Point2 | null;
+  /** World position under it, as `picked` tells; null or absent: it is off the model. */
+  pointer?: Point3 | null;
 }
 
 /** What is at a pixel. */
@@ -411,6 +409,13 @@ export interface LayerEvent {
   user?: string;
 }
 
+/** The model's description changed, or it was deleted. `model` is there for changed. */
+export interface ModelEvent {
+  op: "model";
+  event: "changed" | "deleted";
+  model?: Model;
+}
+
 /** A record was created, changed or deleted. */
 export interface RecordEvent {
   op: "record";
@@ -420,18 +425,13 @@ export interface RecordEvent {
   user?: string;
 }
 
-/** Where a pointer touches the surface. */
-export interface PresencePointer {
-  position: Point3;
-  normal?: Point3;
-}
-
 /** One viewer. */
 export interface PresenceUser {
   session: string;
   name: string;
   color: string;
-  pointer?: PresencePointer;
+  /** World position; absent: off the model. */
+  pointer?: Point3;
 }
 
 /** Who is here. Everyone on the model, the receiver too; not stored. */
@@ -440,7 +440,7 @@ export interface Presence {
   users: PresenceUser[];
 }
 
-/** What is at the pixel. Only `hit` and `id` are there when the pixel is off the model. */
+/** What is at the pixel. Off the model there is no position, and no value is valid. */
 export interface Picked {
   op: "picked";
   id?: string;
@@ -639,7 +639,7 @@ export interface Restore {
   sequence: number;
 }
 
-/** Point on the surface and the values there. Off the model only `hit` is there. */
+/** Point on the surface and the values there. Off the model there is no position, and no value is valid. */
 export interface SurfacePoint {
   hit: boolean;
   position?: Point3;
@@ -670,19 +670,12 @@ export interface PickRequest {
   y: number;
 }
 
-/** A layer in a rendered picture. An absent member is the layer's own default. */
-export interface FrameLayer {
-  layer: LayerRef;
-  opacity?: number;
-  palette?: Palette;
-}
-
 /** One rendered picture. */
 export interface FrameRequest {
   /** Its width × height is the size of the picture. */
   camera: Camera;
-  /** Exactly these are drawn, bottom to top; absent: the visible ones. */
-  layers?: FrameLayer[];
+  /** Exactly these are drawn, bottom to top; absent: those visible by default. */
+  layers?: LayerRef[];
   /** As of this sequence; absent: now. */
   at?: number;
   /** Default: "jpeg". */
@@ -693,7 +686,6 @@ export interface FrameRequest {
 export interface HistogramBin {
   from: number;
   to: number;
-  texels: number;
   area_m2: number;
 }
 
@@ -706,16 +698,16 @@ export interface KeyStatistics {
   bounds: Bounds;
 }
 
-/** Statistics of a layer, weighted by surface area. `min`, `max`, `mean` and `std` are absent while the layer is empty; `keys` is there for whole-number layers with at most 65 536 different values. */
+/** Statistics of a layer, weighted by surface area. Of valid texels on the surface. `min`, `max`, `mean` and `std` are null while the layer is empty; `keys` is empty for fractions and for more than 4096 different values. */
 export interface Statistics {
   texels: number;
   area_m2: number;
-  min?: number;
-  max?: number;
-  mean?: number;
-  std?: number;
+  min: number | null;
+  max: number | null;
+  mean: number | null;
+  std: number | null;
   histogram: HistogramBin[];
-  keys?: KeyStatistics[];
+  keys: KeyStatistics[];
 }
 
 /** Whether the server can work. */
@@ -745,6 +737,7 @@ export type ServerMessage =
   | Saved
   | Unsaved
   | LayerEvent
+  | ModelEvent
   | RecordEvent
   | Presence
   | Picked
@@ -758,6 +751,7 @@ const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([
   "saved",
   "unsaved",
   "layer",
+  "model",
   "record",
   "presence",
   "picked",

@@ -95,6 +95,22 @@ void read(const nlohmann::json& json, LayerEventEvent& value) {
 
 nlohmann::json to_json(const LayerEventEvent& value) { return name(value); }
 
+std::string_view name(ModelEventEvent value) {
+  switch (value) {
+    case ModelEventEvent::changed: return "changed";
+    case ModelEventEvent::deleted: return "deleted";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ModelEventEvent& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "changed") value = ModelEventEvent::changed;
+  if (text == "deleted") value = ModelEventEvent::deleted;
+}
+
+nlohmann::json to_json(const ModelEventEvent& value) { return name(value); }
+
 std::string_view name(RecordEventEvent value) {
   switch (value) {
     case RecordEventEvent::created: return "created";
@@ -219,6 +235,10 @@ nlohmann::json to_json(const EditFill& value) {
   json["mode"] = "where";
   write_member(json, "where", value.where);
   return json;
+}
+
+Result<void> check([[maybe_unused]] const EditFill& value, [[maybe_unused]] const std::string& field) {
+  return {};
 }
 
 void read(const nlohmann::json& json, Edit& value) {
@@ -528,14 +548,12 @@ nlohmann::json to_json(const Ack& value) {
 }
 
 void read(const nlohmann::json& json, PresenceUpdate& value) {
-  read_optional_member(json, "view_id", value.view_id);
   read_optional_member(json, "pointer", value.pointer);
 }
 
 nlohmann::json to_json(const PresenceUpdate& value) {
   nlohmann::json json = nlohmann::json::object();
   json["op"] = "presence";
-  write_member(json, "view_id", value.view_id);
   write_optional_member(json, "pointer", value.pointer);
   return json;
 }
@@ -693,6 +711,19 @@ nlohmann::json to_json(const LayerEvent& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, ModelEvent& value) {
+  read_member(json, "event", value.event);
+  read_optional_member(json, "model", value.model);
+}
+
+nlohmann::json to_json(const ModelEvent& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "model";
+  write_member(json, "event", value.event);
+  write_optional_member(json, "model", value.model);
+  return json;
+}
+
 void read(const nlohmann::json& json, RecordEvent& value) {
   read_member(json, "event", value.event);
   read_member(json, "table", value.table);
@@ -707,18 +738,6 @@ nlohmann::json to_json(const RecordEvent& value) {
   write_member(json, "table", value.table);
   write_member(json, "key", value.key);
   write_optional_member(json, "user", value.user);
-  return json;
-}
-
-void read(const nlohmann::json& json, PresencePointer& value) {
-  read_member(json, "position", value.position);
-  read_optional_member(json, "normal", value.normal);
-}
-
-nlohmann::json to_json(const PresencePointer& value) {
-  nlohmann::json json = nlohmann::json::object();
-  write_member(json, "position", value.position);
-  write_optional_member(json, "normal", value.normal);
   return json;
 }
 
@@ -1090,20 +1109,6 @@ Result<void> check(const PickRequest& value, const std::string& field) {
   return {};
 }
 
-void read(const nlohmann::json& json, FrameLayer& value) {
-  read_member(json, "layer", value.layer);
-  read_optional_member(json, "opacity", value.opacity);
-  read_optional_member(json, "palette", value.palette);
-}
-
-nlohmann::json to_json(const FrameLayer& value) {
-  nlohmann::json json = nlohmann::json::object();
-  write_member(json, "layer", value.layer);
-  write_optional_member(json, "opacity", value.opacity);
-  write_optional_member(json, "palette", value.palette);
-  return json;
-}
-
 void read(const nlohmann::json& json, FrameRequest& value) {
   read_member(json, "camera", value.camera);
   read_optional_member(json, "layers", value.layers);
@@ -1128,7 +1133,6 @@ Result<void> check(const FrameRequest& value, const std::string& field) {
 void read(const nlohmann::json& json, HistogramBin& value) {
   read_member(json, "from", value.from);
   read_member(json, "to", value.to);
-  read_member(json, "texels", value.texels);
   read_member(json, "area_m2", value.area_m2);
 }
 
@@ -1136,7 +1140,6 @@ nlohmann::json to_json(const HistogramBin& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "from", value.from);
   write_member(json, "to", value.to);
-  write_member(json, "texels", value.texels);
   write_member(json, "area_m2", value.area_m2);
   return json;
 }
@@ -1162,24 +1165,24 @@ nlohmann::json to_json(const KeyStatistics& value) {
 void read(const nlohmann::json& json, Statistics& value) {
   read_member(json, "texels", value.texels);
   read_member(json, "area_m2", value.area_m2);
-  read_optional_member(json, "min", value.min);
-  read_optional_member(json, "max", value.max);
-  read_optional_member(json, "mean", value.mean);
-  read_optional_member(json, "std", value.std);
+  read_member(json, "min", value.min);
+  read_member(json, "max", value.max);
+  read_member(json, "mean", value.mean);
+  read_member(json, "std", value.std);
   read_member(json, "histogram", value.histogram);
-  read_optional_member(json, "keys", value.keys);
+  read_member(json, "keys", value.keys);
 }
 
 nlohmann::json to_json(const Statistics& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "texels", value.texels);
   write_member(json, "area_m2", value.area_m2);
-  write_optional_member(json, "min", value.min);
-  write_optional_member(json, "max", value.max);
-  write_optional_member(json, "mean", value.mean);
-  write_optional_member(json, "std", value.std);
+  write_member(json, "min", value.min);
+  write_member(json, "max", value.max);
+  write_member(json, "mean", value.mean);
+  write_member(json, "std", value.std);
   write_member(json, "histogram", value.histogram);
-  write_optional_member(json, "keys", value.keys);
+  write_member(json, "keys", value.keys);
   return json;
 }
 
@@ -1273,6 +1276,7 @@ std::optional<Schema> server_message_schema(std::string_view op) {
   if (op == Saved::kOp) return Schema::Saved;
   if (op == Unsaved::kOp) return Schema::Unsaved;
   if (op == LayerEvent::kOp) return Schema::LayerEvent;
+  if (op == ModelEvent::kOp) return Schema::ModelEvent;
   if (op == RecordEvent::kOp) return Schema::RecordEvent;
   if (op == Presence::kOp) return Schema::Presence;
   if (op == Picked::kOp) return Schema::Picked;
@@ -1300,6 +1304,10 @@ void read(const nlohmann::json& json, ServerMessage& value) {
   }
   if (op == LayerEvent::kOp) {
     read(json, value.emplace<LayerEvent>());
+    return;
+  }
+  if (op == ModelEvent::kOp) {
+    read(json, value.emplace<ModelEvent>());
     return;
   }
   if (op == RecordEvent::kOp) {

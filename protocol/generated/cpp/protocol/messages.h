@@ -72,8 +72,8 @@ enum class Schema {
   Saved,
   Unsaved,
   LayerEvent,
+  ModelEvent,
   RecordEvent,
-  PresencePointer,
   PresenceUser,
   Presence,
   Picked,
@@ -100,14 +100,13 @@ enum class Schema {
   PositionsRequest,
   PositionsResponse,
   PickRequest,
-  FrameLayer,
   FrameRequest,
   HistogramBin,
   KeyStatistics,
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 81;
+constexpr int kSchemaCount = 80;
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
 
@@ -154,6 +153,7 @@ struct EditFill {
 };
 void read(const nlohmann::json& json, EditFill& value);
 nlohmann::json to_json(const EditFill& value);
+Result<void> check(const EditFill& value, const std::string& field);
 template <>
 inline constexpr Schema schema_of<EditFill> = Schema::EditFill;
 
@@ -242,7 +242,7 @@ inline constexpr Schema schema_of<SourceFile> = Schema::SourceFile;
 // What a layer holds at a point.
 struct SurfaceValue {
   bool valid = false;
-  std::optional<double> value;  // Absent where the texel is not valid.
+  std::optional<double> value;  // 0 where the texel is not valid.
   bool operator==(const SurfaceValue&) const = default;
 };
 void read(const nlohmann::json& json, SurfaceValue& value);
@@ -416,8 +416,7 @@ inline constexpr Schema schema_of<Ack> = Schema::Ack;
 // Where this viewer's pointer is.
 struct PresenceUpdate {
   static constexpr std::string_view kOp = "presence";
-  int view_id = 0;
-  std::optional<glm::dvec2> pointer;  // Pixel of the view's newest camera; null or absent: the pointer is elsewhere.
+  std::optional<glm::dvec3> pointer;  // World position under it, as `picked` tells; null or absent: it is off the model.
   bool operator==(const PresenceUpdate&) const = default;
 };
 void read(const nlohmann::json& json, PresenceUpdate& value);
@@ -548,6 +547,23 @@ nlohmann::json to_json(const LayerEvent& value);
 template <>
 inline constexpr Schema schema_of<LayerEvent> = Schema::LayerEvent;
 
+enum class ModelEventEvent { changed, deleted };
+std::string_view name(ModelEventEvent value);
+void read(const nlohmann::json& json, ModelEventEvent& value);
+nlohmann::json to_json(const ModelEventEvent& value);
+
+// The model's description changed, or it was deleted. `model` is there for changed.
+struct ModelEvent {
+  static constexpr std::string_view kOp = "model";
+  ModelEventEvent event{};
+  std::optional<nlohmann::json> model;
+  bool operator==(const ModelEvent&) const = default;
+};
+void read(const nlohmann::json& json, ModelEvent& value);
+nlohmann::json to_json(const ModelEvent& value);
+template <>
+inline constexpr Schema schema_of<ModelEvent> = Schema::ModelEvent;
+
 enum class RecordEventEvent { created, changed, deleted };
 std::string_view name(RecordEventEvent value);
 void read(const nlohmann::json& json, RecordEventEvent& value);
@@ -567,23 +583,12 @@ nlohmann::json to_json(const RecordEvent& value);
 template <>
 inline constexpr Schema schema_of<RecordEvent> = Schema::RecordEvent;
 
-// Where a pointer touches the surface.
-struct PresencePointer {
-  glm::dvec3 position{0};
-  std::optional<glm::dvec3> normal;
-  bool operator==(const PresencePointer&) const = default;
-};
-void read(const nlohmann::json& json, PresencePointer& value);
-nlohmann::json to_json(const PresencePointer& value);
-template <>
-inline constexpr Schema schema_of<PresencePointer> = Schema::PresencePointer;
-
 // One viewer.
 struct PresenceUser {
   Uuid session;
   std::string name;
   std::string color;
-  std::optional<PresencePointer> pointer;
+  std::optional<glm::dvec3> pointer;  // World position; absent: off the model.
   bool operator==(const PresenceUser&) const = default;
 };
 void read(const nlohmann::json& json, PresenceUser& value);
@@ -602,7 +607,7 @@ nlohmann::json to_json(const Presence& value);
 template <>
 inline constexpr Schema schema_of<Presence> = Schema::Presence;
 
-// What is at the pixel. Only `hit` and `id` are there when the pixel is off the model.
+// What is at the pixel. Off the model there is no position, and no value is valid.
 struct Picked {
   static constexpr std::string_view kOp = "picked";
   std::optional<std::string> id;
@@ -827,7 +832,7 @@ nlohmann::json to_json(const Restore& value);
 template <>
 inline constexpr Schema schema_of<Restore> = Schema::Restore;
 
-// Point on the surface and the values there. Off the model only `hit` is there.
+// Point on the surface and the values there. Off the model there is no position, and no value is valid.
 struct SurfacePoint {
   bool hit = false;
   std::optional<glm::dvec3> position;
@@ -877,18 +882,6 @@ Result<void> check(const PickRequest& value, const std::string& field);
 template <>
 inline constexpr Schema schema_of<PickRequest> = Schema::PickRequest;
 
-// A layer in a rendered picture. An absent member is the layer's own default.
-struct FrameLayer {
-  LayerRef layer;
-  std::optional<double> opacity;
-  std::optional<nlohmann::json> palette;
-  bool operator==(const FrameLayer&) const = default;
-};
-void read(const nlohmann::json& json, FrameLayer& value);
-nlohmann::json to_json(const FrameLayer& value);
-template <>
-inline constexpr Schema schema_of<FrameLayer> = Schema::FrameLayer;
-
 enum class FrameRequestFormat { jpeg, png };
 std::string_view name(FrameRequestFormat value);
 void read(const nlohmann::json& json, FrameRequestFormat& value);
@@ -897,7 +890,7 @@ nlohmann::json to_json(const FrameRequestFormat& value);
 // One rendered picture.
 struct FrameRequest {
   strata::Camera camera;  // Its width × height is the size of the picture.
-  std::optional<std::vector<FrameLayer>> layers;  // Exactly these are drawn, bottom to top; absent: the visible ones.
+  std::optional<std::vector<LayerRef>> layers;  // Exactly these are drawn, bottom to top; absent: those visible by default.
   std::optional<std::int64_t> at;  // As of this sequence; absent: now.
   FrameRequestFormat format = FrameRequestFormat::jpeg;
   bool operator==(const FrameRequest&) const = default;
@@ -912,7 +905,6 @@ inline constexpr Schema schema_of<FrameRequest> = Schema::FrameRequest;
 struct HistogramBin {
   double from = 0;
   double to = 0;
-  std::int64_t texels = 0;
   double area_m2 = 0;
   bool operator==(const HistogramBin&) const = default;
 };
@@ -935,7 +927,7 @@ nlohmann::json to_json(const KeyStatistics& value);
 template <>
 inline constexpr Schema schema_of<KeyStatistics> = Schema::KeyStatistics;
 
-// Statistics of a layer, weighted by surface area. `min`, `max`, `mean` and `std` are absent while the layer is empty; `keys` is there for whole-number layers with at most 65 536 different values.
+// Statistics of a layer, weighted by surface area. Of valid texels on the surface. `min`, `max`, `mean` and `std` are null while the layer is empty; `keys` is empty for fractions and for more than 4096 different values.
 struct Statistics {
   std::int64_t texels = 0;
   double area_m2 = 0;
@@ -944,7 +936,7 @@ struct Statistics {
   std::optional<double> mean;
   std::optional<double> std;
   std::vector<HistogramBin> histogram;
-  std::optional<std::vector<KeyStatistics>> keys;
+  std::vector<KeyStatistics> keys;
   bool operator==(const Statistics&) const = default;
 };
 void read(const nlohmann::json& json, Statistics& value);
@@ -969,7 +961,7 @@ std::optional<Schema> client_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ClientMessage& value);
 nlohmann::json to_json(const ClientMessage& value);
 
-using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, RecordEvent, Presence, Picked, ProblemMessage>;
+using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, ModelEvent, RecordEvent, Presence, Picked, ProblemMessage>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> server_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ServerMessage& value);

@@ -1,0 +1,204 @@
+// The fixtures and golden vectors of protocol/ are read by the web client's tests, too: both languages must agree.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <thread>
+
+#include "protocol/parse.h"
+
+namespace strata::protocol {
+namespace {
+
+using nlohmann::json;
+
+struct Fixture {
+  std::string name;
+  std::string schema;  // a definition's name, or ClientMessage
+  json content;
+  std::string text() const { return content.contains("text") ? content["text"].get<std::string>() : content["json"].dump(); }
+};
+
+std::vector<Fixture> fixtures(const std::string& folder) {
+  std::vector<Fixture> found;
+  for (const auto& entry : std::filesystem::directory_iterator(STRATA_SOURCE_DIR "/protocol/fixtures/" + folder)) {
+    std::ifstream file(entry.path());
+    json content = json::parse(file);
+    found.push_back({entry.path().stem(), content.at("schema"), content});
+  }
+  return found;
+}
+
+std::optional<Schema> schema_named(const std::string& wanted) {
+  for (int i = 0; i < kSchemaCount; ++i)
+    if (name(static_cast<Schema>(i)) == wanted) return static_cast<Schema>(i);
+  return std::nullopt;
+}
+
+bool is_client_message(const Fixture& f) {
+  const json& body = f.content.value("json", json());
+  const std::string op = body.is_object() && body.contains("op") && body["op"].is_string() ? body["op"] : "";
+  const auto schema = client_message_schema(op);
+  return f.schema == "ClientMessage" || (schema && name(*schema) == f.schema);
+}
+
+bool is_server_message(const Fixture& f) {
+  const json& body = f.content["json"];
+  const auto schema = body.contains("op") ? server_message_schema(body["op"].get<std::string>()) : std::nullopt;
+  return schema && name(*schema) == f.schema;
+}
+
+constexpr const char* kId = "0b6fbb21-7e3c-4b1c-9a55-2a2f6a1a9c01";
+
+TEST(ProtocolMessages, every_valid_fixture_passes_its_schema) {
+  const auto all = fixtures("valid");
+  ASSERT_GT(all.size(), 40u);
+  for (const auto& f : all) {
+    const auto schema = schema_named(f.schema);
+    ASSERT_TRUE(schema) << f.name << ": no schema " << f.schema;
+    const auto ok = validate(*schema, f.content["json"]);
+    EXPECT_TRUE(ok) << f.name << ": " << (ok ? "" : ok.error().field + ": " + ok.error().detail);
+  }
+}
+
+TEST(ProtocolMessages, every_client_message_has_a_valid_fixture_that_survives_reading_and_writing) {
+  std::map<std::size_t, int> seen;
+  for (const auto& f : fixtures("valid")) {
+    if (!is_client_message(f)) continue;
+    const auto message = parse_client_message(f.text());
+    ASSERT_TRUE(message) << f.name << ": " << message.error().detail;
+    ++seen[message->index()];
+    const auto again = parse_client_message(to_text(*message));
+    ASSERT_TRUE(again) << f.name << ": " << to_text(*message) << again.error().detail;
+    EXPECT_EQ(*message, *again) << f.name;
+    // Nothing that the client said is lost; what it left out appears at its default.
+    const json written = json::parse(to_text(*message));
+    for (const auto& [member, value] : f.content["json"].items())
+      if (!value.is_null() && member != "camera" && member != "edit") {
+        EXPECT_EQ(written.value(member, json()), value) << f.name << "." << member;
+      }
+  }
+  EXPECT_EQ(seen.size(), std::variant_size_v<ClientMessage>);
+}
+
+TEST(ProtocolMessages, every_server_message_has_a_valid_fixture_that_is_written_back_unchanged) {
+  std::map<std::size_t, int> seen;
+  for (const auto& f : fixtures("valid")) {
+    if (is_client_message(f) || !is_server_message(f)) continue;
+    const auto message = parse_server_message(f.text());
+    ASSERT_TRUE(message) << f.name << ": " << message.error().detail;
+    ++seen[message->index()];
+    EXPECT_EQ(json::parse(to_text(*message)), f.content["json"]) << f.name;
+  }
+  EXPECT_EQ(seen.size(), std::variant_size_v<ServerMessage>);
+}
+
+TEST(ProtocolMessages, every_invalid_fixture_is_refused_with_the_field_it_names) {
+  const auto all = fixtures("invalid");
+  ASSERT_GT(all.size(), 70u);
+  for (const auto& f : all) {
+    Problem problem;
+    if (is_client_message(f)) {
+      const auto message = parse_client_message(f.text());
+      ASSERT_FALSE(message) << f.name;
+      problem = message.error();
+    } else {
+      const auto ok = validate(schema_named(f.schema).value(), f.content["json"]);
+      ASSERT_FALSE(ok) << f.name;
+      problem = ok.error();
+    }
+    EXPECT_EQ(problem.field, f.content["field"].get<std::string>()) << f.name << ": " << problem.title << ": " << problem.detail;
+    EXPECT_EQ(problem.status, f.content["status"].get<int>()) << f.name;
+    EXPECT_FALSE(problem.title.empty()) << f.name;
+    EXPECT_GT(problem.detail.size(), 10u) << f.name;
+  }
+}
+
+TEST(ProtocolMessages, a_problem_says_what_belongs_in_the_field) {
+  auto ok = validate(Schema::Ack, json{{"op", "ack"}, {"frame", -1}});
+  ASSERT_FALSE(ok);
+  EXPECT_EQ(ok.error().detail, "It must be a whole number from 0 to 4294967295.");
+  ok = validate(Schema::LayerCreate, json{{"name", "x"}, {"type", "u64"}});
+  ASSERT_FALSE(ok);
+  EXPECT_EQ(ok.error().detail, R"(It must be one of "u8", "u16", "u32", "i8", "i16", "i32", "f16", "f32".)");
+  ok = validate(Schema::Undo, json{{"op", "undo"}, {"layer", 1}}, "messages[2]");
+  ASSERT_FALSE(ok);
+  EXPECT_EQ(ok.error().field, "messages[2].id");
+}
+
+TEST(ProtocolMessages, a_refused_message_still_tells_its_id) {
+  std::string ref;
+  EXPECT_FALSE(parse_client_message(R"({"op":"undo","id":"abc"})", &ref));
+  EXPECT_EQ(ref, "abc");
+  const json problem = to_json(problem_message(Problem{422, "Member missing", "It must be given.", "layer"}, ref));
+  EXPECT_TRUE(validate(Schema::ProblemMessage, problem));
+  EXPECT_EQ(problem["ref"], "abc");
+}
+
+TEST(ProtocolMessages, a_stroke_arrives_as_it_was_sent) {
+  const auto message = parse_client_message(R"({"op":"stroke.begin","id":")" + std::string(kId) +
+                                            R"(","stroke":")" + kId + R"(","layer":"cracks","value":7,"radius_mm":2.5,"shape":"square",
+      "camera":{"view":[1,0,0,0,0,1,0,0,0,0,1,0,4,5,6,1],"projection":[1,0,0,0,0,1,0,0,0,0,-1,0,0,0,0,1],"width":800,"height":600}})");
+  ASSERT_TRUE(message) << message.error().field << message.error().detail;
+  const auto& begin = std::get<StrokeBegin>(*message);
+  EXPECT_EQ(to_string(begin.id), kId);
+  EXPECT_EQ(to_ref(begin.layer), "cracks");
+  EXPECT_EQ(begin.value, 7);
+  EXPECT_FALSE(begin.erase);
+  EXPECT_FALSE(begin.radius_px);
+  EXPECT_EQ(begin.radius_mm, 2.5);
+  EXPECT_EQ(begin.shape, ToolShape::square);
+  EXPECT_EQ(begin.camera.view[3], glm::dvec4(4, 5, 6, 1));  // column-major
+  EXPECT_EQ(begin.camera.width, 800);
+}
+
+TEST(ProtocolMessages, a_text_is_refused_by_its_size_before_it_is_read) {
+  JsonLimits limits;
+  limits.max_bytes = 100;
+  const auto message = parse_client_message("{\"op\":\"hello\",\"client\":\"" + std::string(100, 'x') + "\"}", nullptr, limits);
+  ASSERT_FALSE(message);
+  EXPECT_EQ(message.error().status, 413);
+}
+
+TEST(ProtocolMessages, nesting_is_taken_up_to_the_limit_and_not_beyond) {
+  auto nested = [](int depth) { return std::string(static_cast<std::size_t>(depth), '[') + std::string(static_cast<std::size_t>(depth), ']'); };
+  EXPECT_TRUE(parse_json(nested(32)));
+  const auto deep = parse_json(nested(33));
+  ASSERT_FALSE(deep);
+  EXPECT_EQ(deep.error().title, "Nested too deeply");
+  EXPECT_FALSE(parse_json(nested(100000)));
+}
+
+TEST(ProtocolMessages, invalid_utf_8_is_refused) {
+  const auto parsed = parse_json("{\"op\":\"\xC3\x28\"}");
+  ASSERT_FALSE(parsed);
+  EXPECT_EQ(parsed.error().status, 400);
+}
+
+TEST(ProtocolMessages, every_schema_can_be_built) {
+  for (int i = 0; i < kSchemaCount; ++i) {
+    const auto schema = static_cast<Schema>(i);
+    EXPECT_FALSE(name(schema).empty());
+    EXPECT_FALSE(validate(schema, json(nullptr))) << name(schema);
+  }
+}
+
+TEST(ProtocolMessages, many_threads_may_validate_at_once) {
+  const auto all = fixtures("valid");
+  std::atomic<int> refused{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 8; ++t)
+    threads.emplace_back([&] {
+      for (int round = 0; round < 5; ++round)
+        for (const auto& f : all)
+          if (!validate(schema_named(f.schema).value(), f.content["json"])) ++refused;
+    });
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(refused, 0);
+}
+
+}  // namespace
+}  // namespace strata::protocol
