@@ -1,0 +1,257 @@
+#include "store/cluster.h"
+
+#include <fcntl.h>
+#include <libpq-fe.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <fstream>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <thread>
+
+#include "core/log.h"
+#include "store/cluster_process.h"
+#include "store/hash.h"
+#include "store/pg.h"
+
+namespace strata::store {
+namespace fs = std::filesystem;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr std::size_t kLongestSocketPath = 107;  // sockaddr_un
+constexpr std::uintmax_t kLargestLog = 16u << 20;
+
+std::string quoted(const std::string& value) {
+  std::string out = "'";
+  for (const char c : value) {
+    if (c == '\'' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "'";
+}
+
+}  // namespace
+
+struct Cluster::Impl {
+  fs::path folder;   // data_dir/postgres
+  fs::path data;     // folder/pgdata
+  fs::path sockets;  // folder, or a short one where its path is too long for a socket
+  fs::path programs;
+  fs::path log_file;
+  DatabaseUser user;
+  int lock_fd = -1;
+
+  // The keeper thread runs every fork and wait; others hand it work.
+  std::thread keeper;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<std::packaged_task<Result<void>()>> tasks;
+  bool stopping = false;
+  bool watching = false;
+  std::atomic<pid_t> postmaster{0};
+
+  ~Impl() {
+    if (keeper.joinable()) {
+      (void)on_keeper([this] { return stop(); });
+      {
+        std::lock_guard lock(mutex);
+        stopping = true;
+        changed.notify_all();
+      }
+      keeper.join();
+    }
+    if (lock_fd >= 0) close(lock_fd);
+  }
+
+  Result<void> on_keeper(std::function<Result<void>()> work) {
+    std::packaged_task<Result<void>()> task(std::move(work));
+    auto outcome = task.get_future();
+    {
+      std::lock_guard lock(mutex);
+      tasks.push_back(std::move(task));
+      changed.notify_all();
+    }
+    return outcome.get();
+  }
+
+  void keep() {
+    std::unique_lock lock(mutex);
+    while (!stopping) {
+      if (tasks.empty()) {
+        changed.wait_for(lock, 100ms);
+        if (watching && tasks.empty() && !stopping) {
+          lock.unlock();
+          if (!running()) {
+            log::warning("database: the private PostgreSQL stopped, starting it again");
+            if (auto started = run(); !started) log::error("database: " + started.error().detail);
+          }
+          lock.lock();
+        }
+        continue;
+      }
+      auto task = std::move(tasks.front());
+      tasks.erase(tasks.begin());
+      lock.unlock();
+      task();
+      lock.lock();
+    }
+  }
+
+  Result<void> prepare(const fs::path& data_dir) {
+    auto who = database_user();
+    if (!who) return tl::unexpected(who.error());
+    user = std::move(*who);
+    std::error_code error;
+    folder = fs::absolute(data_dir, error).lexically_normal() / "postgres";
+    data = folder / "pgdata";
+    log_file = folder / "postgres.log";
+    if (auto given = give_folder(folder, user); !given) return given;
+
+    lock_fd = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    if (lock_fd < 0 || flock(lock_fd, LOCK_EX | LOCK_NB) != 0)
+      return fail(409, "Data folder in use",
+                  "Another Strata server uses " + data_dir.string() + ". Stop it, or choose another --data.");
+
+    sockets = folder;
+    if ((folder / ".s.PGSQL.5432.lock").string().size() > kLongestSocketPath) {
+      sockets = "/tmp/strata-" + to_hex(sha256(folder.string())).substr(0, 16);
+      if (mkdir(sockets.c_str(), 0700) == 0 && user.switch_user && chown(sockets.c_str(), user.uid, user.gid) != 0)
+        return fail(500, "Socket folder not usable", "Cannot give " + sockets.string() + " to " + user.name + ".");
+      struct stat info {};
+      if (lstat(sockets.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != user.uid || (info.st_mode & 077) != 0)
+        return fail(500, "Socket folder not usable", sockets.string() + " belongs to someone else. Remove it.");
+    }
+    if (fs::exists(log_file, error) && fs::file_size(log_file, error) > kLargestLog)
+      fs::rename(log_file, folder / "postgres.log.1", error);
+
+    int major = 0;
+    if (std::ifstream version(data / "PG_VERSION"); version) version >> major;
+    auto found = find_programs(major);
+    if (!found) return tl::unexpected(found.error());
+    programs = *found;
+    return major > 0 ? Result<void>{} : initialise();
+  }
+
+  // In a folder of another name first: an initdb cut short leaves nothing that looks like a database.
+  Result<void> initialise() {
+    const fs::path fresh = folder / "pgdata.new";
+    std::error_code error;
+    fs::remove_all(fresh, error);
+    auto child = spawn({programs / "initdb", "-D", fresh, "-U", "strata", "-A", "trust", "-E", "UTF8", "--locale=C.UTF-8",
+                        "--no-instructions"},
+                       user, log_file, SIGKILL);
+    if (!child) return tl::unexpected(child.error());
+    int status = 0;
+    while (waitpid(*child, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (status != 0) return fail(500, "Database not made", "initdb failed in " + folder.string() + ": " + tail(log_file));
+    fs::rename(fresh, data, error);
+    if (error) return fail(500, "Database not made", "Cannot rename " + fresh.string() + ": " + error.message() + ".");
+    return {};
+  }
+
+  bool running() {
+    const pid_t pid = postmaster;
+    if (pid <= 0) return false;
+    int status = 0;
+    const pid_t ended = waitpid(pid, &status, WNOHANG);
+    if (ended == 0 || (ended < 0 && errno == EINTR)) return true;
+    postmaster = 0;
+    return false;
+  }
+
+  // The one that answers is ours, not one that a killed server left behind and that is still ending.
+  bool owns_data() const {
+    pid_t owner = 0;
+    std::ifstream(data / "postmaster.pid") >> owner;
+    return owner == postmaster;
+  }
+
+  std::string dsn(const std::string& database) const {
+    return "host=" + quoted(sockets.string()) + " port=5432 user=strata dbname=" + quoted(database);
+  }
+
+  // After a `kill -9` of the postmaster its orphans hold the lock file and the shared memory until they notice, so a
+  // start that fails at once is tried again every 100 ms.
+  Result<void> run() {
+    if (running()) return {};
+    const auto deadline = Clock::now() + 30s;
+    for (;;) {
+      auto child = spawn({programs / "postgres", "-D", data, "-k", sockets, "-p", "5432", "-c", "listen_addresses=", "-c",
+                          "unix_socket_permissions=0700", "-c", "jit=off", "-c", "max_wal_size=2GB", "-c",
+                          "log_timezone=UTC", "-c", "log_min_messages=warning", "-c", "logging_collector=off"},
+                         user, log_file, SIGINT);
+      if (!child) return tl::unexpected(child.error());
+      postmaster = *child;
+      // Replaying the log after a crash may take minutes; it ends by itself, or the postmaster does.
+      while (running()) {
+        if (owns_data() && PQping(dsn("postgres").c_str()) == PQPING_OK) return {};
+        std::this_thread::sleep_for(10ms);
+      }
+      if (Clock::now() >= deadline)
+        return fail(503, "Database not started", "PostgreSQL in " + folder.string() + " does not start: " + tail(log_file));
+      std::this_thread::sleep_for(100ms);
+    }
+  }
+
+  Result<void> stop() {
+    if (!running()) return {};
+    kill(postmaster, SIGINT);  // fast: ends sessions, writes a checkpoint
+    int status = 0;
+    while (waitpid(postmaster, &status, 0) < 0 && errno == EINTR) {
+    }
+    postmaster = 0;
+    return {};
+  }
+
+  Result<void> make_database() {
+    auto connection = PgConnection::connect(dsn("postgres"));
+    if (!connection) return tl::unexpected(connection.error());
+    auto known = connection->query("SELECT 1 FROM pg_database WHERE datname = 'strata'");
+    if (!known) return tl::unexpected(known.error());
+    return known->rows() > 0 ? Result<void>{} : connection->script("CREATE DATABASE strata");
+  }
+};
+
+Cluster::Cluster() : impl_(std::make_unique<Impl>()) {}
+Cluster::~Cluster() = default;
+
+Result<std::unique_ptr<Cluster>> Cluster::start(const fs::path& data_dir) {
+  std::unique_ptr<Cluster> cluster(new Cluster);
+  Impl& impl = *cluster->impl_;
+  impl.keeper = std::thread([&impl] { impl.keep(); });
+  auto started = impl.on_keeper([&]() -> Result<void> {
+    if (auto prepared = impl.prepare(data_dir); !prepared) return prepared;
+    if (auto running = impl.run(); !running) return running;
+    return impl.make_database();
+  });
+  if (!started) return tl::unexpected(started.error());
+  return cluster;
+}
+
+std::string Cluster::dsn() const { return impl_->dsn("strata"); }
+std::string Cluster::dsn(const std::string& database) const { return impl_->dsn(database); }
+int Cluster::postmaster_pid() const { return impl_->postmaster; }
+
+Result<void> Cluster::ensure_running() {
+  return impl_->on_keeper([this] { return impl_->run(); });
+}
+
+void Cluster::watch() {
+  std::lock_guard lock(impl_->mutex);
+  impl_->watching = true;
+  impl_->changed.notify_all();
+}
+
+}  // namespace strata::store

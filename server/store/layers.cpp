@@ -1,0 +1,128 @@
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+#define STRATA_LAYER_COLUMNS                                                                                       \
+  "id, model_id, name, slug::text, kind, type, resolution, unit, description, palette, opacity, visible, draw_order, " \
+  "records_table, sequence, version"
+
+Result<Layer> read_layer(const PgResult& rows, int i) {
+  Layer layer;
+  layer.id = rows.integer(i, 0);
+  layer.model_id = rows.integer(i, 1);
+  layer.name = rows.text(i, 2);
+  layer.slug = rows.text(i, 3);
+  layer.kind = rows.text(i, 4) == "database" ? LayerKind::database : LayerKind::numeric;
+  const auto type = parse_value_type(rows.text(i, 5));
+  if (!type) return fail(500, "Damaged layer", "Layer " + std::to_string(layer.id) + " has an unknown value type.");
+  layer.type = *type;
+  layer.resolution = static_cast<int>(rows.integer(i, 6));
+  layer.unit = rows.text(i, 7);
+  layer.description = rows.text(i, 8);
+  // One damaged palette must not hide a layer's paint.
+  layer.palette = palette_from_json(rows.json(i, 9)).value_or(default_palette(layer.type, layer.kind == LayerKind::database));
+  layer.opacity = rows.real(i, 10);
+  layer.visible = rows.boolean(i, 11);
+  layer.order = static_cast<int>(rows.integer(i, 12));
+  if (!rows.null(i, 13)) layer.table = rows.text(i, 13);
+  layer.sequence = rows.integer(i, 14);
+  layer.version = rows.integer(i, 15);
+  return layer;
+}
+
+Result<void> check(const Layer& layer) {
+  if (auto good = check_name(layer.name); !good) return good;
+  if (!(layer.opacity >= 0 && layer.opacity <= 1))
+    return fail(400, "Bad opacity", "`opacity` must be between 0 and 1.", "opacity");
+  if (layer.table)
+    if (auto good = check_text(*layer.table, "table"); !good) return good;
+  if (auto good = check_json(to_json(layer.palette), "palette"); !good) return good;
+  return check_texts({{&layer.slug, "slug"}, {&layer.unit, "unit"}, {&layer.description, "description"}});
+}
+
+}  // namespace
+
+Result<std::vector<Layer>> Store::layers(std::int64_t model_id) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
+    auto known = connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id));
+    if (!known) return tl::unexpected(known.error());
+    if (known->rows() == 0) return not_found("model", std::to_string(model_id));
+    auto rows = connection.query(
+        "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE model_id = $1 ORDER BY draw_order, id", Params().integer(model_id));
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<Layer> layers;
+    for (int i = 0; i < rows->rows(); ++i) {
+      auto layer = read_layer(*rows, i);
+      if (!layer) return tl::unexpected(layer.error());
+      layers.push_back(std::move(*layer));
+    }
+    return layers;
+  });
+}
+
+Result<Layer> Store::layer(std::int64_t model_id, const std::string& ref) {
+  if (!check_text(ref, "layer")) return not_found("layer", ref);
+  return impl_->pool.read([&](PgConnection& connection) -> Result<Layer> {
+    const auto id = id_of(ref);
+    auto rows = id ? connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE model_id = $1 AND id = $2",
+                                      Params().integer(model_id).integer(*id))
+                   : connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE model_id = $1 AND slug = $2",
+                                      Params().integer(model_id).text(ref));
+    if (!rows) return tl::unexpected(rows.error());
+    if (rows->rows() == 0) return not_found("layer", ref);
+    return read_layer(*rows, 0);
+  });
+}
+
+Result<Layer> Store::create_layer(Layer layer) {
+  if (auto good = check(layer); !good) return tl::unexpected(good.error());
+  return impl_->pool.write([&](PgConnection& connection) -> Result<Layer> {
+    auto model = connection.query("SELECT 1 FROM models WHERE id = $1 FOR KEY SHARE", Params().integer(layer.model_id));
+    if (!model) return tl::unexpected(model.error());
+    if (model->rows() == 0) return not_found("model", std::to_string(layer.model_id));
+    auto row = insert_with_slug(
+        connection, "SELECT slug::text FROM layers WHERE slug LIKE $1 AND model_id = $2", layer.model_id,
+        layer.slug.empty() ? layer.name : layer.slug, [&](const std::string& slug) {
+          return connection.query(
+              "INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
+              "draw_order, records_table) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13) "
+              "ON CONFLICT (model_id, slug) DO NOTHING RETURNING " STRATA_LAYER_COLUMNS,
+              Params().integer(layer.model_id).text(layer.name).text(slug)
+                  .text(layer.kind == LayerKind::database ? "database" : "numeric").text(name(layer.type))
+                  .integer(layer.resolution).text(layer.unit).text(layer.description).json(to_json(layer.palette))
+                  .real(layer.opacity).boolean(layer.visible).integer(layer.order).optional_text(layer.table));
+        });
+    if (!row) return tl::unexpected(row.error());
+    return read_layer(*row, 0);
+  });
+}
+
+Result<Layer> Store::update_layer(Layer layer) {
+  if (auto good = check(layer); !good) return tl::unexpected(good.error());
+  return impl_->pool.write([&](PgConnection& connection) -> Result<Layer> {
+    auto row = connection.query(
+        "UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
+        "draw_order = $10, records_table = $11, version = version + 1 WHERE id = $1 AND version = $2 "
+        "RETURNING " STRATA_LAYER_COLUMNS,
+        Params().integer(layer.id).integer(layer.version).text(layer.name).text(layer.slug).text(layer.unit)
+            .text(layer.description).json(to_json(layer.palette)).real(layer.opacity).boolean(layer.visible)
+            .integer(layer.order).optional_text(layer.table));
+    if (!row) return tl::unexpected(row.error());
+    if (row->rows() > 0) return read_layer(*row, 0);
+    auto known = connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(layer.id));
+    if (!known) return tl::unexpected(known.error());
+    if (known->rows() == 0) return not_found("layer", std::to_string(layer.id));
+    return stale("layer");
+  });
+}
+
+Result<void> Store::delete_layer(std::int64_t id) {
+  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+    auto done = connection.query("DELETE FROM layers WHERE id = $1", Params().integer(id));
+    if (!done) return tl::unexpected(done.error());
+    return done->affected() > 0 ? Result<void>{} : not_found("layer", std::to_string(id));
+  });
+}
+
+}  // namespace strata::store

@@ -1,0 +1,235 @@
+#include "store/blobs.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+constexpr const char* kSelectModels =
+    "SELECT m.id, m.project_id, m.name, m.slug::text, m.unit, m.unit_assumed, m.scale_verified, m.up, m.north, m.crs, "
+    "m.origin, m.bounds_min, m.bounds_max, m.triangles, m.vertices, m.area, m.atlas, m.repairs, m.default_resolution, "
+    "m.inventory_number, m.owner, m.creator, m.captured, m.method, m.accuracy, m.processing, m.rights_uri, m.credit, "
+    "m.sequence, m.version, "
+    "(SELECT coalesce(jsonb_agg(jsonb_build_object('name', s.name, 'sha256', encode(s.sha256, 'hex'), 'bytes', b.bytes) "
+    "ORDER BY s.position), '[]') FROM model_sources s JOIN blobs b USING (sha256) WHERE s.model_id = m.id) "
+    "FROM models m ";
+
+glm::dvec3 read_vec3(const PgResult& rows, int i, int column) {
+  const auto v = rows.reals(i, column);
+  return v.size() == 3 ? glm::dvec3(v[0], v[1], v[2]) : glm::dvec3(0);
+}
+
+Model read_model(const PgResult& rows, int i) {
+  Model m;
+  int c = 0;
+  m.id = rows.integer(i, c++);
+  m.project_id = rows.integer(i, c++);
+  m.name = rows.text(i, c++);
+  m.slug = rows.text(i, c++);
+  m.unit = parse_unit(rows.text(i, c++)).value_or(Unit::m);
+  m.unit_assumed = rows.boolean(i, c++);
+  m.scale_verified = rows.boolean(i, c++);
+  m.up = rows.text(i, c++);
+  m.north = rows.text(i, c++);
+  m.crs = rows.text(i, c++);
+  m.origin = read_vec3(rows, i, c++);
+  m.bounds_min = read_vec3(rows, i, c++);
+  m.bounds_max = read_vec3(rows, i, c++);
+  m.triangles = static_cast<std::uint64_t>(rows.integer(i, c++));
+  m.vertices = static_cast<std::uint64_t>(rows.integer(i, c++));
+  m.area = rows.real(i, c++);
+  m.atlas = atlas_from_json(rows.json(i, c++));
+  for (const auto& repair : rows.json(i, c++))
+    m.repairs.push_back({repair.value("what", std::string()), repair.value("count", std::uint64_t{0})});
+  m.default_resolution = static_cast<int>(rows.integer(i, c++));
+  for (std::string* text : {&m.inventory_number, &m.owner, &m.creator, &m.captured, &m.method, &m.accuracy, &m.processing,
+                            &m.rights_uri, &m.credit})
+    *text = rows.text(i, c++);
+  m.sequence = rows.integer(i, c++);
+  m.version = rows.integer(i, c++);
+  for (const auto& file : rows.json(i, c++))
+    m.source_files.push_back({file.at("name"), file.at("sha256"), file.at("bytes")});
+  return m;
+}
+
+Result<void> check(const Model& m) {
+  if (auto good = check_name(m.name); !good) return good;
+  if (m.up != "x" && m.up != "y" && m.up != "z")
+    return fail(400, "Bad direction", "`up` must be \"x\", \"y\" or \"z\".", "up");
+  for (const auto& repair : m.repairs)
+    if (auto good = check_text(repair.what, "repairs"); !good) return good;
+  return check_texts({{&m.slug, "slug"}, {&m.north, "north"}, {&m.crs, "crs"}, {&m.inventory_number, "inventory_number"},
+                      {&m.owner, "owner"}, {&m.creator, "creator"}, {&m.captured, "captured"}, {&m.method, "method"},
+                      {&m.accuracy, "accuracy"}, {&m.processing, "processing"}, {&m.rights_uri, "rights_uri"},
+                      {&m.credit, "credit"}, {&m.atlas.source, "atlas"}});
+}
+
+// What can be changed later: $1 name, $2 slug, … $19 credit.
+Params metadata(const Model& m, const std::string& slug) {
+  Params params;
+  params.text(m.name).text(slug).integer(m.project_id).text(name(m.unit)).boolean(m.unit_assumed).boolean(m.scale_verified)
+      .text(m.up).text(m.north).text(m.crs).integer(m.default_resolution).text(m.inventory_number).text(m.owner)
+      .text(m.creator).text(m.captured).text(m.method).text(m.accuracy).text(m.processing).text(m.rights_uri).text(m.credit);
+  return params;
+}
+
+PgArray array_of(const glm::dvec3& v) {
+  PgArray array(oid::kFloat8);
+  array.add(v.x);
+  array.add(v.y);
+  array.add(v.z);
+  return array;
+}
+
+Result<PgResult> insert_model(PgConnection& connection, const Model& m, const std::string& slug, const Sha256& geometry) {
+  auto repairs = nlohmann::json::array();
+  for (const auto& repair : m.repairs) repairs.push_back({{"what", repair.what}, {"count", repair.count}});
+  Params params = metadata(m, slug);
+  params.array(array_of(m.origin)).array(array_of(m.bounds_min)).array(array_of(m.bounds_max))
+      .integer(static_cast<std::int64_t>(m.triangles)).integer(static_cast<std::int64_t>(m.vertices)).real(m.area)
+      .json(to_json(m.atlas, 1.0)).json(repairs).bytes(geometry);
+  return connection.query(
+      "INSERT INTO models (name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, "
+      "inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, "
+      "origin, bounds_min, bounds_max, triangles, vertices, area, atlas, repairs, geometry) "
+      "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20, $21, $22, $23, $24, "
+      "$25, $26, $27, $28) ON CONFLICT (slug) DO NOTHING RETURNING id",
+      params);
+}
+
+Result<Model> model_by_id(PgConnection& connection, std::int64_t id) {
+  static const std::string sql = std::string(kSelectModels) + "WHERE m.id = $1";
+  auto rows = connection.query(sql.c_str(), Params().integer(id));
+  if (!rows) return tl::unexpected(rows.error());
+  if (rows->rows() == 0) return not_found("model", std::to_string(id));
+  return read_model(*rows, 0);
+}
+
+}  // namespace
+
+Result<Model> Store::create_model(const NewModel& fresh, const std::function<bool()>& cancelled) {
+  if (auto good = check(fresh.model); !good) return tl::unexpected(good.error());
+  for (const auto& source : fresh.sources) {
+    if (source.name.empty() || source.name.size() > kLongestName)
+      return fail(400, "Bad file name", "A file's name must have 1 to 255 bytes.", "source_files");
+    if (auto good = check_text(source.name, "source_files"); !good) return tl::unexpected(good.error());
+  }
+  return impl_->pool.write([&](PgConnection& connection) -> Result<Model> {
+    auto geometry = keep_blob(connection, fresh.geometry, cancelled);
+    if (!geometry) return tl::unexpected(geometry.error());
+    std::vector<Sha256> hashes;
+    for (const auto& source : fresh.sources) {
+      auto hash = keep_file(connection, source.file, "source_files", cancelled);
+      if (!hash) return tl::unexpected(hash.error());
+      hashes.push_back(*hash);
+    }
+    const Model& m = fresh.model;
+    auto row = insert_with_slug(connection, "SELECT slug::text FROM models WHERE slug LIKE $1", {},
+                                m.slug.empty() ? m.name : m.slug, [&](const std::string& slug) {
+                                  return insert_model(connection, m, slug, *geometry);
+                                });
+    if (!row) return tl::unexpected(row.error());
+    const std::int64_t id = row->integer(0, 0);
+    for (std::size_t i = 0; i < hashes.size(); ++i) {
+      auto kept = connection.query("INSERT INTO model_sources (model_id, name, position, sha256) VALUES ($1, $2, $3, $4)",
+                                   Params().integer(id).text(fresh.sources[i].name).integer(static_cast<std::int64_t>(i))
+                                       .bytes(hashes[i]));
+      if (!kept) return tl::unexpected(kept.error());
+    }
+    if (cancelled && cancelled()) return fail(499, "Cancelled", "The work was cancelled.");
+    return model_by_id(connection, id);
+  });
+}
+
+Result<std::vector<Model>> Store::models(std::optional<std::int64_t> project_id) {
+  static const std::string sql = std::string(kSelectModels) + "WHERE $1 IS NULL OR m.project_id = $1 ORDER BY m.id";
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Model>> {
+    auto rows = connection.query(sql.c_str(), Params().optional_integer(project_id));
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<Model> models;
+    for (int i = 0; i < rows->rows(); ++i) models.push_back(read_model(*rows, i));
+    return models;
+  });
+}
+
+Result<Model> Store::model(const std::string& ref) {
+  if (!check_text(ref, "model")) return not_found("model", ref);
+  static const std::string by_slug = std::string(kSelectModels) + "WHERE m.slug = $1";
+  return impl_->pool.read([&](PgConnection& connection) -> Result<Model> {
+    if (const auto id = id_of(ref)) return model_by_id(connection, *id);
+    auto rows = connection.query(by_slug.c_str(), Params().text(ref));
+    if (!rows) return tl::unexpected(rows.error());
+    if (rows->rows() == 0) return not_found("model", ref);
+    return read_model(*rows, 0);
+  });
+}
+
+Result<Model> Store::update_model(Model m) {
+  if (auto good = check(m); !good) return tl::unexpected(good.error());
+  return impl_->pool.write([&](PgConnection& connection) -> Result<Model> {
+    auto row = connection.query(
+        "UPDATE models SET name = $1, slug = $2, project_id = $3, unit = $4, unit_assumed = $5, scale_verified = $6, up = $7, "
+        "north = $8, crs = $9, default_resolution = $10, inventory_number = $11, owner = $12, creator = $13, captured = $14, "
+        "method = $15, accuracy = $16, processing = $17, rights_uri = $18, credit = $19, version = version + 1 "
+        "WHERE id = $20 AND version = $21 RETURNING id",
+        metadata(m, m.slug).integer(m.id).integer(m.version));
+    if (!row) return tl::unexpected(row.error());
+    auto now = model_by_id(connection, m.id);
+    if (now && row->rows() == 0) return stale("model");
+    return now;
+  });
+}
+
+Result<void> Store::delete_model(std::int64_t id) {
+  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+    auto used = connection.query("SELECT geometry FROM models WHERE id = $1 UNION "
+                                 "SELECT sha256 FROM model_sources WHERE model_id = $1", Params().integer(id));
+    if (!used) return tl::unexpected(used.error());
+    std::vector<std::vector<std::uint8_t>> hashes;
+    for (int i = 0; i < used->rows(); ++i) {
+      const Bytes hash = used->bytes(i, 0);
+      hashes.emplace_back(hash.begin(), hash.end());
+    }
+    auto done = connection.query("DELETE FROM models WHERE id = $1", Params().integer(id));
+    if (!done) return tl::unexpected(done.error());
+    if (done->affected() == 0) return not_found("model", std::to_string(id));
+    return drop_unused(connection, hashes);
+  });
+}
+
+Result<std::vector<std::uint8_t>> Store::geometry(std::int64_t model_id) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
+    auto row = connection.query("SELECT b.sha256, b.bytes FROM models m JOIN blobs b ON b.sha256 = m.geometry WHERE m.id = $1",
+                                Params().integer(model_id));
+    if (!row) return tl::unexpected(row.error());
+    if (row->rows() == 0) return not_found("model", std::to_string(model_id));
+    return read_blob(connection, row->bytes(0, 0), row->integer(0, 1));
+  });
+}
+
+// One query a chunk: a slow reader of the stream holds no connection while it reads.
+Result<SourceFile> Store::read_source(std::int64_t model_id, const std::string& file,
+                                      const std::function<bool(std::span<const std::uint8_t>)>& sink) {
+  if (!check_text(file, "name")) return not_found("source file", file);
+  auto known = impl_->pool.read([&](PgConnection& connection) {
+    return connection.query("SELECT b.sha256, b.bytes FROM model_sources s JOIN blobs b USING (sha256) "
+                            "WHERE s.model_id = $1 AND s.name = $2", Params().integer(model_id).text(file));
+  });
+  if (!known) return tl::unexpected(known.error());
+  if (known->rows() == 0) return not_found("source file", file);
+  const SourceFile source{file, to_hex(known->bytes(0, 0)), static_cast<std::uint64_t>(known->integer(0, 1))};
+  std::uint64_t sent = 0;
+  for (std::int64_t number = 0; sent < source.bytes; ++number) {
+    auto chunk = impl_->pool.read([&](PgConnection& connection) {
+      return connection.query("SELECT data FROM blob_chunks WHERE sha256 = $1 AND chunk = $2",
+                              Params().bytes(known->bytes(0, 0)).integer(number));
+    });
+    if (!chunk) return tl::unexpected(chunk.error());
+    if (chunk->rows() == 0) return fail(404, "Not found", "The model was deleted while its file was read.");
+    const Bytes data = chunk->bytes(0, 0);
+    if (!sink(data)) break;
+    sent += data.size();
+  }
+  return source;
+}
+
+}  // namespace strata::store

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "store/pg.h"
+
+namespace strata::store {
+
+// Connections shared by threads. A caller waits for a free one; broken ones are replaced. When the database is away,
+// connecting is tried again for `kReconnectFor` (a restart takes about that long) before the Problem 503.
+class Pool {
+ public:
+  static constexpr std::chrono::milliseconds kReconnectFor{3000};
+
+  Pool(std::string dsn, int size) : dsn_(std::move(dsn)), free_slots_(size) {}
+
+  const std::string& dsn() const { return dsn_; }
+
+  class Lease {
+   public:
+    Lease(Pool& pool, PgConnection connection) : pool_(&pool), connection_(std::move(connection)) {}
+    Lease(Lease&& other) noexcept
+        : pool_(std::exchange(other.pool_, nullptr)), connection_(std::move(other.connection_)) {}
+    Lease& operator=(Lease&&) = delete;
+    ~Lease() {
+      if (pool_) pool_->release(std::move(connection_));
+    }
+    PgConnection& operator*() { return connection_; }
+
+   private:
+    Pool* pool_;
+    PgConnection connection_;
+  };
+  Result<Lease> acquire(std::chrono::milliseconds reconnect_for = kReconnectFor);
+
+  // Runs `work(connection)`, once more on a new connection when the old one broke: for reads.
+  template <class Work>
+  auto read(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
+    for (bool again = true;; again = false) {
+      auto lease = acquire();
+      if (!lease) return tl::unexpected(lease.error());
+      auto result = work(**lease);
+      if (result || !again || (**lease).alive() || result.error().status != 503) return result;
+    }
+  }
+
+  // Runs `work(connection)` in one transaction, committed when it succeeds.
+  template <class Work>
+  auto write(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
+    using Outcome = std::invoke_result_t<Work, PgConnection&>;
+    auto lease = acquire();
+    if (!lease) return tl::unexpected(lease.error());
+    auto transaction = Transaction::begin(**lease);
+    if (!transaction) return tl::unexpected(transaction.error());
+    Outcome result = work(**lease);
+    if (!result) return result;
+    if (auto committed = transaction->commit(); !committed) return tl::unexpected(committed.error());
+    return result;
+  }
+
+ private:
+  void release(PgConnection connection);
+
+  const std::string dsn_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int free_slots_;
+  std::vector<PgConnection> idle_;
+};
+
+}  // namespace strata::store

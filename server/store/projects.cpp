@@ -1,0 +1,88 @@
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+Project read_project(const PgResult& rows, int i) {
+  return {rows.integer(i, 0), rows.text(i, 1), rows.text(i, 2), rows.text(i, 3), rows.integer(i, 4)};
+}
+
+Result<void> check(const Project& project) {
+  if (auto good = check_name(project.name); !good) return good;
+  return check_texts({{&project.slug, "slug"}, {&project.description, "description"}});
+}
+
+}  // namespace
+
+Result<std::vector<Project>> Store::projects() {
+  return impl_->pool.read([](PgConnection& connection) -> Result<std::vector<Project>> {
+    auto rows = connection.query("SELECT id, name, slug::text, description, version FROM projects ORDER BY id");
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<Project> projects;
+    for (int i = 0; i < rows->rows(); ++i) projects.push_back(read_project(*rows, i));
+    return projects;
+  });
+}
+
+Result<Project> Store::project(const std::string& ref) {
+  if (!check_text(ref, "project")) return not_found("project", ref);
+  return impl_->pool.read([&](PgConnection& connection) -> Result<Project> {
+    const auto id = id_of(ref);
+    auto rows = id ? connection.query("SELECT id, name, slug::text, description, version FROM projects WHERE id = $1",
+                                      Params().integer(*id))
+                   : connection.query("SELECT id, name, slug::text, description, version FROM projects WHERE slug = $1",
+                                      Params().text(ref));
+    if (!rows) return tl::unexpected(rows.error());
+    if (rows->rows() == 0) return not_found("project", ref);
+    return read_project(*rows, 0);
+  });
+}
+
+Result<Project> Store::create_project(Project project) {
+  if (auto good = check(project); !good) return tl::unexpected(good.error());
+  return impl_->pool.write([&](PgConnection& connection) -> Result<Project> {
+    auto row = insert_with_slug(
+        connection, "SELECT slug::text FROM projects WHERE slug LIKE $1", {},
+        project.slug.empty() ? project.name : project.slug, [&](const std::string& slug) {
+          return connection.query("INSERT INTO projects (name, slug, description) VALUES ($1, $2, $3) "
+                                  "ON CONFLICT (slug) DO NOTHING RETURNING id, name, slug::text, description, version",
+                                  Params().text(project.name).text(slug).text(project.description));
+        });
+    if (!row) return tl::unexpected(row.error());
+    return read_project(*row, 0);
+  });
+}
+
+Result<Project> Store::update_project(Project project) {
+  if (auto good = check(project); !good) return tl::unexpected(good.error());
+  return impl_->pool.write([&](PgConnection& connection) -> Result<Project> {
+    auto row = connection.query(
+        "UPDATE projects SET name = $3, slug = $4, description = $5, version = version + 1 "
+        "WHERE id = $1 AND version = $2 RETURNING id, name, slug::text, description, version",
+        Params().integer(project.id).integer(project.version).text(project.name).text(project.slug).text(project.description));
+    if (!row) return tl::unexpected(row.error());
+    if (row->rows() > 0) return read_project(*row, 0);
+    auto known = connection.query("SELECT 1 FROM projects WHERE id = $1", Params().integer(project.id));
+    if (!known) return tl::unexpected(known.error());
+    if (known->rows() == 0) return not_found("project", std::to_string(project.id));
+    return stale("project");
+  });
+}
+
+Result<void> Store::delete_project(std::int64_t id) {
+  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+    auto row = connection.query("SELECT slug::text, (SELECT count(*) FROM models WHERE project_id = p.id) "
+                                "FROM projects p WHERE id = $1 FOR UPDATE", Params().integer(id));
+    if (!row) return tl::unexpected(row.error());
+    if (row->rows() == 0) return not_found("project", std::to_string(id));
+    if (row->text(0, 0) == "default")
+      return fail(409, "Conflict", "The project `default` stays: models without a project belong to it.");
+    if (row->integer(0, 1) > 0)
+      return fail(409, "Conflict", "The project still has " + std::to_string(row->integer(0, 1)) +
+                                       " models. Delete them or move them to another project first.");
+    auto done = connection.query("DELETE FROM projects WHERE id = $1", Params().integer(id));
+    return done ? Result<void>{} : tl::unexpected(done.error());
+  });
+}
+
+}  // namespace strata::store

@@ -1,0 +1,96 @@
+#include "store/store.h"
+
+#include <set>
+
+#include "store/migrations.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+
+Store::Store() = default;
+Store::~Store() = default;
+
+Result<std::unique_ptr<Store>> Store::open(StoreOptions options, const std::filesystem::path& migrations_dir) {
+  auto migrations = read_migrations(migrations_dir);
+  if (!migrations) return tl::unexpected(migrations.error());
+  std::unique_ptr<Store> store(new Store);
+  store->impl_ = std::make_unique<Impl>(std::move(options));
+  auto lease = store->impl_->pool.acquire();
+  if (!lease) return tl::unexpected(lease.error());
+  auto encoding = (**lease).query("SELECT current_setting('server_encoding')");
+  if (!encoding) return tl::unexpected(encoding.error());
+  if (encoding->text(0, 0) != "UTF8")
+    return fail(500, "Database not usable",
+                "The database's encoding is " + encoding->text(0, 0) + "; Strata needs one made with ENCODING 'UTF8'.");
+  auto version = migrate(**lease, *migrations);
+  if (!version) return tl::unexpected(version.error());
+  store->impl_->schema_version = *version;
+  return store;
+}
+
+Result<StoreInfo> Store::info() {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {
+    auto row = connection.query("SELECT current_setting('server_version'), pg_database_size(current_database())");
+    if (!row) return tl::unexpected(row.error());
+    return StoreInfo{row->text(0, 0), impl_->schema_version, static_cast<std::uint64_t>(row->integer(0, 1))};
+  });
+}
+
+bool Store::ready() {
+  auto lease = impl_->pool.acquire(std::chrono::milliseconds(0));
+  return lease && (**lease).query("SELECT 1").has_value();
+}
+
+Result<void> check_name(const std::string& name) {
+  if (name.empty() || name.size() > kLongestName)
+    return fail(400, "Bad name", "`name` must have 1 to " + std::to_string(kLongestName) + " bytes of UTF-8.", "name");
+  return check_text(name, "name");
+}
+
+Result<void> check_texts(std::initializer_list<std::pair<const std::string*, const char*>> texts) {
+  for (const auto& [text, field] : texts)
+    if (auto good = check_text(*text, field); !good) return good;
+  return {};
+}
+
+Result<void> check_json(const nlohmann::json& json, const std::string& field) {
+  if (json.is_string()) return check_text(json.get_ref<const std::string&>(), field);
+  if (!json.is_structured()) return {};
+  for (const auto& [key, value] : json.items()) {
+    if (json.is_object())
+      if (auto good = check_text(key, field); !good) return good;
+    if (value.is_structured() || value.is_string())
+      if (auto good = check_json(value, field + "/" + key); !good) return good;
+  }
+  return {};
+}
+
+std::optional<std::int64_t> id_of(const std::string& ref) {
+  if (!is_all_digits(ref)) return std::nullopt;
+  return ref.size() > 18 ? 0 : std::stoll(ref);
+}
+
+std::string free_slug(const std::string& wished, const PgResult& taken) {
+  std::set<std::string> used;
+  for (int i = 0; i < taken.rows(); ++i) used.insert(taken.text(i, 0));
+  std::string slug = wished;
+  for (int n = 2; used.contains(slug); ++n) slug = wished + "-" + std::to_string(n);
+  return slug;
+}
+
+Result<PgResult> insert_with_slug(PgConnection& connection, const char* taken_sql, std::optional<std::int64_t> parent,
+                                  const std::string& wished,
+                                  const std::function<Result<PgResult>(const std::string&)>& insert) {
+  const std::string base = make_slug(wished);
+  for (;;) {
+    Params params;
+    params.text(base + "%");
+    if (parent) params.integer(*parent);
+    auto taken = connection.query(taken_sql, params);
+    if (!taken) return taken;
+    auto row = insert(free_slug(base, *taken));
+    if (!row || row->rows() > 0) return row;
+  }
+}
+
+}  // namespace strata::store

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "core/slug.h"
+#include "store/pool.h"
+#include "store/store.h"
+
+namespace strata::store {
+
+struct Store::Impl {
+  Impl(StoreOptions given) : options(std::move(given)), pool(options.dsn, options.connections) {}
+  StoreOptions options;
+  Pool pool;
+  std::int64_t schema_version = 0;
+};
+
+inline constexpr std::size_t kLongestName = 255;
+
+inline tl::unexpected<Problem> not_found(std::string_view kind, const std::string& ref) {
+  return fail(404, "Not found", "There is no " + std::string(kind) + " `" + ref.substr(0, 100) + "`.");
+}
+inline tl::unexpected<Problem> stale(std::string_view kind) {
+  return fail(412, "Changed meanwhile",
+              "The " + std::string(kind) + " was changed since you read it. Read it again and repeat your change.", "version");
+}
+
+// 1…255 bytes of storable text.
+Result<void> check_name(const std::string& name);
+Result<void> check_texts(std::initializer_list<std::pair<const std::string*, const char*>> texts);
+// Refuses JSON whose strings PostgreSQL cannot keep.
+Result<void> check_json(const nlohmann::json& json, const std::string& field);
+
+// An id for a reference in digits; nothing for a slug, and 0 (no row has it) for digits beyond 64 bits.
+std::optional<std::int64_t> id_of(const std::string& ref);
+
+// `wished`, or `wished-2`, `wished-3`… that `taken` (one text column) does not list.
+std::string free_slug(const std::string& wished, const PgResult& taken);
+
+// Inserts with a free slug. `taken_sql` lists the slugs in use that start with the wished one ($1 = like pattern, $2 = parent
+// if any); `insert` runs an INSERT … ON CONFLICT DO NOTHING RETURNING …: no row means that another one took the slug
+// meanwhile, and the next is tried.
+Result<PgResult> insert_with_slug(PgConnection& connection, const char* taken_sql, std::optional<std::int64_t> parent,
+                                  const std::string& wished, const std::function<Result<PgResult>(const std::string&)>& insert);
+
+}  // namespace strata::store

@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <future>
+#include <limits>
+#include <thread>
+
+#include "core/revision.h"
+#include "store/store_impl.h"
+
+namespace strata::store {
+namespace {
+
+// One tile as read: its last key tile, if any, and the differences after it, in order.
+struct StoredTile {
+  TileAddress address;
+  std::vector<std::uint8_t> key;
+  std::vector<std::vector<std::uint8_t>> differences;
+};
+
+using Decoded = std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>>;
+
+Result<Decoded> decode(std::vector<StoredTile> tiles, ValueType type) {
+  Decoded decoded;
+  for (const StoredTile& stored : tiles) {
+    TileData tile(type);
+    if (!stored.key.empty()) {
+      auto key = decode_tile(type, stored.key);
+      if (!key) return tl::unexpected(key.error());
+      tile = std::move(*key);
+    }
+    for (const auto& bytes : stored.differences) {
+      auto revision = decode_revision(stored.address, type, bytes);
+      if (!revision) return tl::unexpected(revision.error());
+      apply(*revision, tile);
+    }
+    if (tile.valid.any()) decoded.emplace_back(stored.address, std::make_shared<const TileData>(std::move(tile)));
+  }
+  return decoded;
+}
+
+// Collects rows into tiles and decodes batches of them on other threads, a bounded number at a time.
+class TileLoader {
+ public:
+  explicit TileLoader(ValueType type) : type_(type) {}
+
+  Result<void> add(TileAddress address, bool key, Bytes bytes) {
+    if (batch_.empty() || batch_.back().address != address) {
+      if (batch_bytes_ >= kBatchBytes)
+        if (auto sent = flush(); !sent) return sent;
+      batch_.push_back({address, {}, {}});
+    }
+    if (key)
+      batch_.back().key.assign(bytes.begin(), bytes.end());
+    else
+      batch_.back().differences.emplace_back(bytes.begin(), bytes.end());
+    batch_bytes_ += bytes.size() + kDecodedBytes;
+    return {};
+  }
+
+  Result<TileMap> finish() {
+    auto sent = flush();
+    while (sent && !running_.empty()) sent = collect();
+    if (!sent) return tl::unexpected(sent.error());
+    return std::move(tiles_);
+  }
+
+ private:
+  static constexpr std::size_t kBatchBytes = 4u << 20;
+  static constexpr std::size_t kDecodedBytes = kTexelsPerTile;  // about what decoding one row costs, in bytes
+
+  Result<void> flush() {
+    if (batch_.empty()) return {};
+    running_.push_back(std::async(std::launch::async, decode, std::exchange(batch_, {}), type_));
+    batch_bytes_ = 0;
+    const std::size_t most = std::clamp(std::thread::hardware_concurrency(), 2u, 8u);
+    return running_.size() >= most ? collect() : Result<void>{};
+  }
+  Result<void> collect() {
+    auto decoded = running_.front().get();
+    running_.pop_front();
+    if (!decoded) return tl::unexpected(decoded.error());
+    tiles_.insert(std::make_move_iterator(decoded->begin()), std::make_move_iterator(decoded->end()));
+    return {};
+  }
+
+  const ValueType type_;
+  std::vector<StoredTile> batch_;
+  std::size_t batch_bytes_ = 0;
+  std::deque<std::future<Result<Decoded>>> running_;
+  TileMap tiles_;
+};
+
+TileAddress read_address(const PgResult& rows, int i) {
+  return {static_cast<std::uint16_t>(rows.integer(i, 1)), static_cast<std::uint16_t>(rows.integer(i, 0))};
+}
+
+// Reads every row in the order of the primary key once: a tile's rows before its last key tile are dropped by the server.
+constexpr const char* kLoadTiles =
+    "SELECT tile_y, tile_x, sequence = key, CASE WHEN sequence = key THEN key_tile ELSE difference END "
+    "FROM (SELECT tile_y, tile_x, sequence, difference, key_tile, "
+    "max(sequence) FILTER (WHERE key_tile IS NOT NULL) OVER (PARTITION BY tile_y, tile_x) AS key "
+    "FROM tile_revisions WHERE layer_id = $1 AND sequence <= $2) r "
+    "WHERE key IS NULL OR sequence >= key ORDER BY tile_y, tile_x, sequence";
+
+}  // namespace
+
+Result<TileMirror::Snapshot> Store::load_tiles(const Layer& layer, std::optional<std::int64_t> at_sequence) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<TileMirror::Snapshot> {
+    auto last = connection.query(
+        "SELECT (SELECT coalesce(max(sequence), 0) FROM edits WHERE layer_id = l.id AND sequence <= $2) "
+        "FROM layers l WHERE id = $1",
+        Params().integer(layer.id).integer(at_sequence.value_or(std::numeric_limits<std::int64_t>::max())));
+    if (!last) return tl::unexpected(last.error());
+    if (last->rows() == 0) return not_found("layer", std::to_string(layer.id));
+    // The journal only grows, so everything up to this sequence is one consistent state.
+    const std::int64_t sequence = last->integer(0, 0);
+    TileLoader loader(layer.type);
+    auto read = connection.each_row(kLoadTiles, Params().integer(layer.id).integer(sequence), [&](const PgResult& row) {
+      return loader.add(read_address(row, 0), !row.null(0, 2) && row.boolean(0, 2), row.bytes(0, 3));
+    });
+    if (!read) return tl::unexpected(read.error());
+    auto tiles = loader.finish();
+    if (!tiles) return tl::unexpected(tiles.error());
+    return TileMirror::Snapshot{std::move(*tiles), sequence};
+  });
+}
+
+Result<std::vector<Store::TileHistory>> Store::load_history(const Layer& layer, std::span<const TileAddress> tiles) {
+  PgArray xs(oid::kInt2), ys(oid::kInt2);
+  for (const TileAddress& tile : tiles) {
+    xs.add_int2(static_cast<std::int16_t>(tile.x));
+    ys.add_int2(static_cast<std::int16_t>(tile.y));
+  }
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<TileHistory>> {
+    std::vector<TileHistory> histories;
+    auto read = connection.each_row(
+        "SELECT r.tile_y, r.tile_x, r.sequence, e.writer, e.in_force, r.difference "
+        "FROM (SELECT DISTINCT x, y FROM unnest($3::smallint[], $4::smallint[]) AS t (x, y)) t "
+        "JOIN tile_revisions r ON r.layer_id = $1 AND r.tile_x = t.x AND r.tile_y = t.y "
+        "JOIN edits e ON e.model_id = $2 AND e.sequence = r.sequence "
+        "ORDER BY r.tile_y, r.tile_x, r.sequence DESC",
+        Params().integer(layer.id).integer(layer.model_id).array(xs).array(ys), [&](const PgResult& row) -> Result<void> {
+          const TileAddress address = read_address(row, 0);
+          auto revision = decode_revision(address, layer.type, row.bytes(0, 5));
+          if (!revision) return tl::unexpected(revision.error());
+          if (histories.empty() || histories.back().tile != address) histories.push_back({address, {}});
+          histories.back().newest_first.push_back(
+              {row.integer(0, 2), row.boolean(0, 3), row.boolean(0, 4), std::move(*revision)});
+          return {};
+        });
+    if (!read) return tl::unexpected(read.error());
+    return histories;
+  });
+}
+
+Result<std::vector<Store::WrittenTiles>> Store::written_by(const Layer& layer, std::span<const std::int64_t> sequences) {
+  PgArray list(oid::kInt8);
+  for (const std::int64_t sequence : sequences) list.add(sequence);
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<WrittenTiles>> {
+    std::vector<WrittenTiles> written;
+    auto read = connection.each_row(
+        "SELECT tile_y, tile_x, difference FROM tile_revisions WHERE layer_id = $1 AND sequence = any($2) "
+        "ORDER BY tile_y, tile_x",
+        Params().integer(layer.id).array(list), [&](const PgResult& row) -> Result<void> {
+          const TileAddress address = read_address(row, 0);
+          auto revision = decode_revision(address, layer.type, row.bytes(0, 2));
+          if (!revision) return tl::unexpected(revision.error());
+          if (written.empty() || written.back().tile != address) written.push_back({address, {}});
+          for (int w = 0; w < kMaskWords; ++w) written.back().written.words[w] |= revision->written.words[w];
+          return {};
+        });
+    if (!read) return tl::unexpected(read.error());
+    return written;
+  });
+}
+
+Result<std::uint64_t> Store::revision_bytes(std::int64_t model_id) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::uint64_t> {
+    auto row = connection.query(
+        "SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0)::bigint "
+        "FROM layers l JOIN tile_revisions r ON r.layer_id = l.id WHERE l.model_id = $1", Params().integer(model_id));
+    if (!row) return tl::unexpected(row.error());
+    return static_cast<std::uint64_t>(row->integer(0, 0));
+  });
+}
+
+}  // namespace strata::store

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "store/cluster.h"
+#include "store/store.h"
+
+namespace strata::test {
+
+// One private PostgreSQL for the test binary, started at first use in a temporary folder and removed at the end.
+// Compile tests/support/test_cluster.cpp into the test.
+store::Cluster& shared_cluster();
+
+// A fresh, empty database of the shared cluster: its connection string.
+std::string fresh_database();
+
+// A store on a fresh database, migrated.
+std::unique_ptr<store::Store> fresh_store(int connections = 4);
+std::unique_ptr<store::Store> open_store(const std::string& dsn, int connections = 4);
+
+// A temporary folder that the database user can reach; removed with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace strata::test
