@@ -61,7 +61,7 @@ def write(protocol: Protocol) -> str:
     out.append('export const SUBPROTOCOL = "strata.v1";\n\n')
     out.append(f'const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([\n{words}]);\n\n')
     out.append("/** A text message of the server; throws on anything whose `op` is not of this protocol. */\n"
-               "export function parseServerMessage(text: string): ServerMessage {\n"
+               "export function parse_server_message(text: string): ServerMessage {\n"
                "  const message: unknown = JSON.parse(text);\n"
                '  const op = typeof message === "object" && message !== null && "op" in message ? message.op : undefined;\n'
                '  if (typeof op !== "string" || !SERVER_OPS.has(op)) throw new Error(`unknown message from the server: ${String(op)}`);\n'

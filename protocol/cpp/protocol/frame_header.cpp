@@ -26,7 +26,7 @@ tl::unexpected<Problem> broken(const char* field, std::string detail) {
   return fail(400, "Frame not usable", std::move(detail), field);
 }
 
-// Rules 5 to 9 of frame.md: what must hold between the members.
+// Rules 5 to 10 of frame.md: what must hold between the members.
 Result<void> check(const FrameHeader& h) {
   if (h.view_id > 15) return broken("view_id", "A view is 0 to 15.");
   if (h.camera_seq > kMaxSafeInteger) return broken("camera_seq", "It is at most 2^53 - 1.");

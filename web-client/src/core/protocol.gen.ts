@@ -759,7 +759,7 @@ const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([
 ]);
 
 /** A text message of the server; throws on anything whose `op` is not of this protocol. */
-export function parseServerMessage(text: string): ServerMessage {
+export function parse_server_message(text: string): ServerMessage {
   const message: unknown = JSON.parse(text);
   const op = typeof message === "object" && message !== null && "op" in message ? message.op : undefined;
   if (typeof op !== "string" || !SERVER_OPS.has(op)) throw new Error(`unknown message from the server: ${String(op)}`);
