@@ -1,0 +1,112 @@
+# Sourced by ./run and ./test: installs what is missing on Debian 12 and leaves everything else alone.
+# Sets STRATA_CMAKE_ARGS. Quick when nothing is missing.
+
+say() { printf '\033[1m%s\033[0m\n' "$*" >&2; }
+die() { printf '\033[31m%s\033[0m\n' "$*" >&2; exit 1; }
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then "$@"
+  elif command -v sudo >/dev/null; then sudo "$@"
+  else die "This step needs root: $* — run as root, or install sudo."; fi
+}
+
+# A package is there when dpkg says so; asking for all at once takes a few milliseconds.
+missing_packages() {
+  local installed package
+  installed=$(dpkg-query -W -f='${Package} ${Status}\n' "$@" 2>/dev/null | awk '/install ok installed/ {print $1}')
+  for package in "$@"; do grep -qx -- "$package" <<<"$installed" || echo "$package"; done
+}
+
+apt_updated=
+apt_get() {
+  export DEBIAN_FRONTEND=noninteractive
+  [ -n "$apt_updated" ] || { as_root apt-get update -qq; apt_updated=1; }
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 "$@"
+}
+
+# --no-remove: a package of the user's is never taken away to make room for one of ours.
+install_packages() {
+  local missing
+  missing=$(missing_packages "$@")
+  [ -n "$missing" ] || return 0
+  say "Installing: $(echo $missing)"
+  # Without this, Debian's PostgreSQL starts a cluster of its own that nobody asked for.
+  if grep -q '^postgresql' <<<"$missing" && [ ! -e /etc/postgresql-common/createcluster.conf ]; then
+    as_root mkdir -p /etc/postgresql-common
+    echo 'create_main_cluster = false' | as_root tee /etc/postgresql-common/createcluster.conf >/dev/null
+  fi
+  apt_get install -y --no-install-recommends --no-remove $missing >&2 ||
+    die "Could not install: $(echo $missing). The lines above say why."
+}
+
+build_packages="g++ cmake ninja-build pkg-config ccache mold git python3 python3-yaml ca-certificates
+  libegl-dev libgl-dev libepoxy-dev libglm-dev libpq-dev nlohmann-json3-dev libvalijson-dev
+  libturbojpeg0-dev libjpeg62-turbo-dev libsodium-dev libssl-dev libspdlog-dev libcli11-dev libzstd-dev libpng-dev libtiff-dev
+  libexpected-dev libembree-dev libcurl4-openssl-dev"
+run_packages="libegl1 libegl-mesa0 libgl1-mesa-dri postgresql-15 curl"
+test_packages="libgtest-dev libgmock-dev libbenchmark-dev chromium fonts-dejavu-core"
+fuzz_packages="clang-14 libclang-rt-14-dev llvm-14"
+
+# Boost 1.81 conflicts with Debian's 1.74: where that is installed, 1.81's headers are unpacked beside the build instead.
+setup_boost() {
+  STRATA_CMAKE_ARGS=()
+  if [ -z "$(missing_packages libboost1.81-dev)" ]; then return 0; fi
+  if [ -n "$(missing_packages libboost1.74-dev)" ]; then install_packages libboost1.81-dev; return 0; fi
+  local deps=$PWD/build/deps
+  if [ ! -f "$deps/usr/include/boost/version.hpp" ]; then
+    say "Boost 1.74 is installed and stays; unpacking the headers of 1.81 into build/deps"
+    mkdir -p "$deps"
+    [ -n "$apt_updated" ] || { as_root apt-get update -qq; apt_updated=1; }
+    (cd "$deps" && apt-get -qq download libboost1.81-dev && dpkg -x libboost1.81-dev_*.deb . && rm -f libboost1.81-dev_*.deb) ||
+      die "Could not download libboost1.81-dev."
+  fi
+  STRATA_CMAKE_ARGS=(-DSTRATA_BOOST_INCLUDE="$deps/usr/include")
+}
+
+# Any Node from 18 on will do; Debian's is installed only where there is none.
+setup_node() {
+  if ! command -v node >/dev/null || ! command -v npm >/dev/null; then install_packages nodejs npm; fi
+  local major
+  major=$(node -p 'process.versions.node.split(".")[0]')
+  [ "$major" -ge 18 ] || die "Node $major is too old: 18 or newer is needed."
+}
+
+# Rebuilds something only when its inputs changed: stamp FILE COMMAND… with the input paths on standard input.
+when_changed() {
+  local stamp=$1 sum
+  shift
+  sum=$(xargs -d '\n' sha256sum | sha256sum)
+  [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$sum" ] && return 0
+  "$@" || return 1
+  mkdir -p "$(dirname "$stamp")"
+  echo "$sum" > "$stamp"
+}
+
+install_web_modules() {
+  (cd web-client && npm ci --no-audit --no-fund --loglevel=error) >&2 || die "npm ci failed in web-client."
+}
+setup_web_modules() {
+  setup_node
+  [ -d web-client/node_modules ] || rm -f build/stamps/web-modules
+  printf '%s\n' web-client/package.json web-client/package-lock.json | when_changed build/stamps/web-modules install_web_modules
+}
+build_web_client() {
+  say "Building the page"
+  (cd web-client && npm run --silent build) >&2 || die "The page did not build."
+}
+setup_web_client() {
+  setup_web_modules
+  [ -f web-client/dist/index.html ] || rm -f build/stamps/web-client
+  find web-client/src web-client/public web-client/index.html web-client/*.json web-client/*.ts -type f 2>/dev/null | sort |
+    when_changed build/stamps/web-client build_web_client
+}
+
+# configure_and_build PRESET [TARGET…]
+configure_and_build() {
+  local preset=$1
+  shift
+  if [ ! -f "build/$preset/build.ninja" ]; then
+    cmake --preset "$preset" "${STRATA_CMAKE_ARGS[@]}" >&2 || die "cmake failed."
+  fi
+  cmake --build "build/$preset" -j "${STRATA_BUILD_JOBS:-$(nproc)}" ${*:+--target "$@"} >&2 || die "The build failed."
+}

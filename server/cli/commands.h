@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace strata::cli {
+
+// Each adds its subcommand; the returned function runs it after parsing and gives the exit code:
+// 0 done, 1 failed (reason on stderr). Wrong usage is CLI11's affair (exit 2 by main).
+using Command = std::function<int()>;
+Command add_serve(CLI::App& app);
+Command add_import(CLI::App& app);
+Command add_demo(CLI::App& app);
+Command add_migrate(CLI::App& app);
+Command add_doctor(CLI::App& app);
+
+}  // namespace strata::cli

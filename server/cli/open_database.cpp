@@ -1,0 +1,43 @@
+#include "cli/open_database.h"
+
+#include <iostream>
+
+#include "cli/install_dirs.h"
+
+namespace strata::cli {
+
+void add_data_options(CLI::App& command, DataOptions& options) {
+  command.add_option("--data", options.data, "Folder of the private database and of uploads under way")
+      ->envname("STRATA_DATA")
+      ->capture_default_str();
+  command.add_option("--database", options.database, "Use this PostgreSQL (libpq connection string) instead of a private one")
+      ->envname("STRATA_DATABASE");
+}
+
+Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) {
+  auto open = std::make_unique<OpenDatabase>();
+  std::error_code error;
+  std::filesystem::create_directories(options.data, error);
+  if (error)
+    return fail(500, "Data folder cannot be made", options.data.string() + ": " + error.message() + ". Name another with --data.");
+  store::StoreOptions store_options;
+  store_options.dsn = options.database;
+  if (options.database.empty()) {
+    auto cluster = store::Cluster::start(std::filesystem::absolute(options.data));
+    if (!cluster) return tl::unexpected(cluster.error());
+    open->cluster = std::move(*cluster);
+    store_options.dsn = open->cluster->dsn();
+  }
+  auto store = store::Store::open(store_options, install_dirs().migrations);
+  if (!store) return tl::unexpected(store.error());
+  open->store = std::move(*store);
+  return open;
+}
+
+int report(const Problem& problem) {
+  std::cerr << "strata: " << problem.title << ": " << problem.detail << (problem.field.empty() ? "" : " (" + problem.field + ")")
+            << std::endl;
+  return 1;
+}
+
+}  // namespace strata::cli

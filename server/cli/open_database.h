@@ -1,0 +1,30 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "store/cluster.h"
+#include "store/store.h"
+
+namespace strata::cli {
+
+// The options that name where data lives, and the database they lead to.
+struct DataOptions {
+  std::filesystem::path data = "data";
+  std::string database;
+};
+void add_data_options(CLI::App& command, DataOptions& options);
+
+struct OpenDatabase {
+  std::unique_ptr<store::Cluster> cluster;  // null with --database
+  std::unique_ptr<store::Store> store;      // goes before its cluster
+  ~OpenDatabase() { store.reset(); }
+};
+Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options);
+
+// "title: detail" on stderr; returns 1.
+int report(const Problem& problem);
+
+}  // namespace strata::cli

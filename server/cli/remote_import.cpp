@@ -1,0 +1,135 @@
+#include "cli/remote_import.h"
+
+#include <curl/curl.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+namespace strata::cli {
+namespace {
+
+struct Reply {
+  long status = 0;
+  std::string body;
+};
+
+size_t collect(char* data, size_t size, size_t count, void* body) {
+  static_cast<std::string*>(body)->append(data, size * count);
+  return size * count;
+}
+
+class Client {
+ public:
+  Client(std::string base, const std::string& token) : base_(std::move(base)) {
+    curl_.reset(curl_easy_init());
+    while (!base_.empty() && base_.back() == '/') base_.pop_back();
+    headers_.reset(curl_slist_append(nullptr, ("Authorization: Bearer " + token).c_str()));
+    curl_slist_append(headers_.get(), "Content-Type: application/octet-stream");
+    curl_slist_append(headers_.get(), "Expect:");
+  }
+
+  Result<Reply> get(const std::string& path) {
+    curl_easy_reset(curl_.get());
+    return perform(path);
+  }
+
+  // Streams a file as the body; progress is the share uploaded.
+  Result<Reply> post_file(const std::string& path, const std::filesystem::path& file, Progress& progress) {
+    curl_easy_reset(curl_.get());
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
+    if (!in) return fail(400, "File cannot be read", file.string());
+    curl_easy_setopt(curl_.get(), CURLOPT_POST, 1L);
+    curl_easy_setopt(curl_.get(), CURLOPT_READDATA, in.get());
+    curl_easy_setopt(curl_.get(), CURLOPT_POSTFIELDSIZE_LARGE, static_cast<curl_off_t>(std::filesystem::file_size(file)));
+    curl_easy_setopt(curl_.get(), CURLOPT_NOPROGRESS, 0L);
+    curl_easy_setopt(curl_.get(), CURLOPT_XFERINFODATA, &progress);
+    curl_easy_setopt(curl_.get(), CURLOPT_XFERINFOFUNCTION,
+                     +[](void* p, curl_off_t, curl_off_t, curl_off_t total, curl_off_t now) {
+                       auto& watched = *static_cast<Progress*>(p);
+                       if (total > 0) watched.report(double(now) / double(total), "Sending the file");
+                       return watched.cancelled() ? 1 : 0;
+                     });
+    return perform(path);
+  }
+
+  std::string escape(const std::string& text) {
+    std::unique_ptr<char, void (*)(void*)> out(curl_easy_escape(curl_.get(), text.c_str(), static_cast<int>(text.size())),
+                                               &curl_free);
+    return out.get();
+  }
+
+ private:
+  Result<Reply> perform(const std::string& path) {
+    Reply reply;
+    curl_easy_setopt(curl_.get(), CURLOPT_URL, (base_ + path).c_str());
+    curl_easy_setopt(curl_.get(), CURLOPT_HTTPHEADER, headers_.get());
+    curl_easy_setopt(curl_.get(), CURLOPT_WRITEFUNCTION, &collect);
+    curl_easy_setopt(curl_.get(), CURLOPT_WRITEDATA, &reply.body);
+    const CURLcode code = curl_easy_perform(curl_.get());
+    if (code != CURLE_OK) return fail(503, "Server not reached", base_ + ": " + curl_easy_strerror(code));
+    curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &reply.status);
+    if (reply.status >= 400) {
+      const auto json = nlohmann::json::parse(reply.body, nullptr, false);
+      if (json.is_object())
+        return fail(static_cast<int>(reply.status), json.value("title", "Refused"), json.value("detail", reply.body),
+                    json.value("field", ""));
+      return fail(static_cast<int>(reply.status), "Refused", "The server answered " + std::to_string(reply.status) + ".");
+    }
+    return reply;
+  }
+
+  std::string base_;
+  std::unique_ptr<CURL, void (*)(CURL*)> curl_{nullptr, &curl_easy_cleanup};
+  std::unique_ptr<curl_slist, void (*)(curl_slist*)> headers_{nullptr, &curl_slist_free_all};
+};
+
+std::string import_path(Client& client, const jobs::ImportRequest& request) {
+  std::string path = "/api/v1/models?filename=" + client.escape(request.filename);
+  auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) path += std::string("&") + name + "=" + client.escape(value);
+  };
+  add("name", request.name);
+  add("project", request.project);
+  if (request.unit) add("unit", std::string(name(*request.unit)));
+  add("up", request.up);
+  add("crs", request.crs);
+  if (request.resolution) add("resolution", std::to_string(request.resolution));
+  if (request.strict) add("strict", "true");
+  return path;
+}
+
+}  // namespace
+
+Result<std::string> import_remotely(const std::string& server_url, const std::string& token,
+                                    const jobs::ImportRequest& request, Progress& progress) {
+  Client client(server_url, token);
+  auto posted = client.post_file(import_path(client, request), request.file, progress);
+  if (!posted) return tl::unexpected(posted.error());
+  const auto accepted = nlohmann::json::parse(posted->body, nullptr, false);
+  if (!accepted.is_object() || !accepted.contains("id"))
+    return fail(502, "Not a Strata server", "The answer to the upload names no job.");
+  const std::string job_path = "/api/v1/jobs/" + accepted["id"].dump();
+  while (true) {
+    auto polled = client.get(job_path);
+    if (!polled) return tl::unexpected(polled.error());
+    const auto job = nlohmann::json::parse(polled->body, nullptr, false);
+    const std::string state = job.value("state", "");
+    if (state == "done") {
+      auto model = client.get("/api/v1/models/" + job["model"].dump());
+      if (!model) return tl::unexpected(model.error());
+      return nlohmann::json::parse(model->body, nullptr, false).dump(2);
+    }
+    if (state == "failed" || state == "cancelled") {
+      const auto problem = job.value("problem", nlohmann::json::object());
+      return fail(problem.value("status", 400), problem.value("title", "Import " + state), problem.value("detail", state),
+                  problem.value("field", ""));
+    }
+    progress.report(job.value("progress", 0.0), job.value("message", ""));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
+
+}  // namespace strata::cli

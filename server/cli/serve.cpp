@@ -1,0 +1,148 @@
+#include <signal.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#include <iostream>
+#include <thread>
+
+#include "cli/commands.h"
+#include "cli/install_dirs.h"
+#include "cli/open_database.h"
+#include "core/log.h"
+#include "jobs/job_queue.h"
+#include "net/server.h"
+#include "render/renderer.h"
+#include "room/room.h"
+#include "stream/jpeg_pool.h"
+
+namespace strata::cli {
+namespace {
+
+struct ServeOptions {
+  DataOptions data;
+  std::string listen = "127.0.0.1:8080";
+  std::vector<std::string> origins;
+  std::uint64_t gpu_memory = 0;
+  bool debug = false;
+};
+
+struct Address {
+  std::string host;
+  std::uint16_t port = 0;
+};
+
+Result<Address> parse_listen(const std::string& text) {
+  const auto colon = text.rfind(':');
+  if (colon == std::string::npos) return fail(400, "Listen address", "Give HOST:PORT, for example 127.0.0.1:8080.", "--listen");
+  Address address{text.substr(0, colon), 0};
+  if (address.host.size() > 2 && address.host.front() == '[') address.host = address.host.substr(1, address.host.size() - 2);
+  const std::string port = text.substr(colon + 1);
+  char* end = nullptr;
+  const long number = std::strtol(port.c_str(), &end, 10);
+  if (port.empty() || *end != '\0' || number < 0 || number > 65535)
+    return fail(400, "Listen address", "The port is a number from 0 (any free one) to 65535.", "--listen");
+  address.port = static_cast<std::uint16_t>(number);
+  // Accounts are what would protect a server that others can reach.
+  if (address.host != "127.0.0.1" && address.host != "::1" && address.host != "localhost")
+    return fail(403, "Listen address not allowed",
+                "This server has no accounts, so it listens on loopback only (127.0.0.1). Reach it from elsewhere through an SSH "
+                "tunnel or a proxy that signs people in.",
+                "--listen");
+  return address;
+}
+
+Result<std::string> owner_token() {
+  const char* token = std::getenv("STRATA_OWNER_TOKEN");
+  if (!token || !*token) return std::string();
+  if (std::string_view(token).size() < 32)
+    return fail(400, "Owner token too short", "STRATA_OWNER_TOKEN has at least 32 characters.", "STRATA_OWNER_TOKEN");
+  return std::string(token);
+}
+
+// Signals are taken by `wait_for_end`, not by handlers: blocked before any thread starts, they are inherited blocked.
+sigset_t block_signals() {
+  sigset_t ending;
+  sigemptyset(&ending);
+  sigaddset(&ending, SIGTERM);
+  sigaddset(&ending, SIGINT);
+  sigaddset(&ending, SIGHUP);
+  pthread_sigmask(SIG_BLOCK, &ending, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+  return ending;
+}
+
+// Until asked to end; meanwhile a private database that died is started again (from this thread: its life hangs on it).
+void wait_for_end(const sigset_t& ending, store::Cluster* cluster) {
+  const timespec second{1, 0};
+  while (sigtimedwait(&ending, nullptr, &second) < 0) {
+    if (!cluster) continue;
+    if (auto running = cluster->ensure_running(); !running)
+      log::error(running.error().title + ": " + running.error().detail);
+  }
+}
+
+int run(const ServeOptions& options) {
+  auto address = parse_listen(options.listen);
+  if (!address) return report(address.error());
+  auto token = owner_token();
+  if (!token) return report(token.error());
+  const sigset_t ending = block_signals();
+
+  const InstallDirs dirs = install_dirs();
+  auto database = open_database(options.data);
+  if (!database) return report(database.error());
+  store::Store& store = *(*database)->store;
+
+  render::RendererOptions render_options;
+  render_options.shader_dir = dirs.shaders.string();
+  render_options.gpu_memory_bytes = options.gpu_memory;
+  render_options.debug = options.debug;
+  auto renderer = render::Renderer::start(render_options);
+  if (!renderer) return report(renderer.error());
+  const auto gpu = (*renderer)->info();
+  log::info("drawing with " + gpu.renderer + (gpu.software ? " (software)" : ""));
+
+  stream::JpegPool encoder(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1));
+  room::Rooms rooms(store, **renderer, {renderer->get(), &encoder}, {});
+  jobs::JobQueue jobs;
+
+  net::ServerOptions server_options;
+  server_options.host = address->host;
+  server_options.port = address->port;
+  server_options.allowed_origins = options.origins;
+  server_options.static_dir = dirs.web_client;
+  server_options.protocol_dir = dirs.protocol;
+  server_options.upload_dir = options.data.data / "uploads";
+  server_options.owner_token = *token;
+  auto server = net::Server::start(server_options, store, rooms, jobs, **renderer);
+  if (!server) return report(server.error());
+
+  const std::string url = "http://" + (address->host == "::1" ? "[::1]" : address->host) + ":" + std::to_string((*server)->port());
+  std::cout << "listening on " << url << std::endl;
+  auto link = store.create_token(store::Store::TokenKind::owner_link, "owner", "owner", std::chrono::hours(24));
+  if (!link) return report(link.error());
+  std::cout << "owner link: " << url << "/login?link=" << *link << std::endl;
+
+  wait_for_end(ending, (*database)->cluster.get());
+  log::info("stopping: no new edits, saving what is under way");
+  (*server)->stop();
+  rooms.drain();
+  return 0;
+}
+
+}  // namespace
+
+Command add_serve(CLI::App& app) {
+  auto* command = app.add_subcommand("serve", "Run the server");
+  auto options = std::make_shared<ServeOptions>();
+  add_data_options(*command, options->data);
+  command->add_option("--listen", options->listen, "HOST:PORT; port 0 takes a free one")->envname("STRATA_LISTEN")->capture_default_str();
+  command->add_option("--origin", options->origins, "Further web origins that may connect (repeat)")->envname("STRATA_ORIGIN");
+  command->add_option("--gpu-memory", options->gpu_memory, "Budget of GPU memory, e.g. 4GiB (default: what the driver has)")
+      ->envname("STRATA_GPU_MEMORY")
+      ->transform(CLI::AsSizeValue(false));
+  command->add_flag("--gl-debug", options->debug, "Ask the driver for debug messages (slow)");
+  return [options] { return run(*options); };
+}
+
+}  // namespace strata::cli

@@ -1,0 +1,24 @@
+#include <CLI/CLI.hpp>
+#include <map>
+
+#include "cli/commands.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Strata: GIS layers on the surface of 3D heritage models"};
+  app.set_version_flag("--version", "strata " STRATA_VERSION);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+
+  const std::map<std::string, strata::cli::Command> commands{
+      {"serve", strata::cli::add_serve(app)},   {"import", strata::cli::add_import(app)},
+      {"demo", strata::cli::add_demo(app)},     {"migrate", strata::cli::add_migrate(app)},
+      {"doctor", strata::cli::add_doctor(app)},
+  };
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : 2;
+  }
+  return commands.at(app.get_subcommands().front()->get_name())();
+}

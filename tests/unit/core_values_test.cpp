@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/camera.h"
+#include "core/palette.h"
+#include "core/slug.h"
+#include "core/uuid.h"
+#include "core/value_type.h"
+
+namespace strata {
+namespace {
+
+constexpr ValueType kAll[] = {ValueType::u8, ValueType::u16, ValueType::u32, ValueType::i8,
+                              ValueType::i16, ValueType::i32, ValueType::f16, ValueType::f32};
+
+TEST(ValueType, every_type_keeps_its_extremes) {
+  for (ValueType type : kAll)
+    for (double value : {lowest_value(type), highest_value(type), 0.0, 1.0}) {
+      auto bits = encode_value(type, value);
+      ASSERT_TRUE(bits) << name(type) << " " << value;
+      EXPECT_EQ(decode_value(type, *bits), value) << name(type);
+      EXPECT_EQ(parse_value_type(name(type)), type);
+    }
+}
+
+TEST(ValueType, refuses_what_the_type_cannot_hold) {
+  for (ValueType type : kAll) {
+    EXPECT_FALSE(encode_value(type, std::nan("")));
+    EXPECT_FALSE(encode_value(type, std::numeric_limits<double>::infinity()));
+    EXPECT_FALSE(encode_value(type, highest_value(type) * 1.01 + 1));
+    if (lowest_value(type) < 0) {
+      EXPECT_FALSE(encode_value(type, lowest_value(type) * 1.01 - 1));
+    } else {
+      EXPECT_FALSE(encode_value(type, -1));
+    }
+    EXPECT_EQ(encode_value(type, 0.5).has_value(), is_float(type));
+  }
+  EXPECT_EQ(encode_value(ValueType::u8, 256).error().field, "value");
+}
+
+TEST(Palette, survives_json) {
+  for (ValueType type : kAll)
+    for (bool categorical : {false, true}) {
+      const Palette palette = default_palette(type, categorical);
+      auto back = palette_from_json(to_json(palette));
+      ASSERT_TRUE(back);
+      EXPECT_EQ(to_json(*back), to_json(palette));
+    }
+}
+
+TEST(Palette, refuses_bad_points_with_the_field_named) {
+  auto bad = [](const char* text) { return palette_from_json(nlohmann::json::parse(text)).error().field; };
+  EXPECT_EQ(bad(R"({"mode":"rainbow"})"), "palette.mode");
+  EXPECT_EQ(bad(R"({"mode":"linear","points":[]})"), "palette.points");
+  EXPECT_EQ(bad(R"({"points":[{"at":1,"color":"#12345g"}]})"), "palette.points[0].color");
+  EXPECT_EQ(bad(R"({"points":[{"at":1,"color":"#123456"},{"at":1,"color":"#123456"}]})"), "palette.points[1]");
+  EXPECT_EQ(bad(R"({"points":[{"at":1,"color":"#123456"}],"min":3,"max":2})"), "palette.max");
+}
+
+TEST(Palette, linear_mixes_step_holds_categorical_names) {
+  Palette palette{PaletteMode::linear, 0, 10, {{0, {0, 0, 0, 255}, ""}, {10, {200, 100, 0, 255}, ""}}, ""};
+  EXPECT_EQ(color_of(palette, 5), (Rgba{100, 50, 0, 255}));
+  EXPECT_EQ(color_of(palette, -3), (Rgba{0, 0, 0, 255}));
+  EXPECT_EQ(color_of(palette, 99), (Rgba{200, 100, 0, 255}));
+  palette.mode = PaletteMode::step;
+  EXPECT_EQ(color_of(palette, 9.9), (Rgba{0, 0, 0, 255}));
+  EXPECT_EQ(color_of(palette, 10), (Rgba{200, 100, 0, 255}));
+  palette.mode = PaletteMode::categorical;
+  EXPECT_EQ(color_of(palette, 10), (Rgba{200, 100, 0, 255}));
+  EXPECT_EQ(color_of(palette, 7), generated_color(7));
+}
+
+TEST(Camera, refuses_singular_and_endless_matrices) {
+  Camera camera{glm::dmat4(1), glm::dmat4(1), 100, 100};
+  EXPECT_TRUE(validate(camera));
+  camera.view[0][0] = std::nan("");
+  EXPECT_EQ(validate(camera).error().field, "camera.view");
+  camera.view = glm::dmat4(1);
+  camera.projection = glm::dmat4(0);
+  EXPECT_EQ(validate(camera).error().field, "camera.projection");
+  camera.projection = glm::dmat4(1);
+  camera.width = 0;
+  EXPECT_EQ(validate(camera).error().field, "camera.width");
+  camera.width = kMaxViewSize + 1;
+  EXPECT_FALSE(validate(camera));
+}
+
+TEST(Camera, the_ray_through_a_pixel_hits_what_projects_there) {
+  const glm::dvec3 eye{500012.5, 4000003.0, 130.0}, target{500010.0, 4000000.0, 128.0};  // site coordinates
+  for (bool orthographic : {false, true}) {
+    const Camera camera{glm::lookAt(eye, target, glm::dvec3(0, 0, 1)),
+                        orthographic ? glm::ortho(-4.0, 4.0, -3.0, 3.0, 0.1, 50.0)
+                                     : glm::perspective(0.8, 4.0 / 3.0, 0.1, 50.0),
+                        800, 600};
+    EXPECT_EQ(is_orthographic(camera), orthographic);
+    const Ray ray = ray_through_pixel(camera, 300.5, 200.5);
+    const glm::dvec3 point = ray.origin + ray.direction * 3.0;
+    const glm::dvec4 clip = camera.projection * camera.view * glm::dvec4(point, 1);
+    EXPECT_NEAR((clip.x / clip.w * 0.5 + 0.5) * 800, 300.5, 1e-4);
+    EXPECT_NEAR((0.5 - clip.y / clip.w * 0.5) * 600, 200.5, 1e-4);
+    // In floats about the model's origin the same point lands on the same pixel.
+    const glm::vec4 near_origin = clip_from_model(camera, target) * glm::vec4(glm::vec3(point - target), 1);
+    EXPECT_NEAR((near_origin.x / near_origin.w * 0.5 + 0.5) * 800, 300.5, 1e-2);
+  }
+}
+
+TEST(Slug, is_never_all_digits_nor_empty) {
+  EXPECT_EQ(make_slug("Muro 3 (norte)"), "muro-3-norte");
+  EXPECT_EQ(make_slug("12"), "n-12");
+  EXPECT_EQ(make_slug("  ---  "), "n");
+  EXPECT_EQ(make_slug("κρήνη"), "n");
+  EXPECT_LE(make_slug(std::string(500, 'a')).size(), 48u);
+}
+
+TEST(Uuid, reads_what_it_writes_and_nothing_else) {
+  const Uuid uuid = random_uuid();
+  EXPECT_EQ(parse_uuid(to_string(uuid)), uuid);
+  EXPECT_NE(random_uuid(), uuid);
+  for (const char* bad : {"", "123", "00000000-0000-0000-0000-00000000000g", "000000000000-0000-0000-0000-00000000"})
+    EXPECT_FALSE(parse_uuid(bad)) << bad;
+}
+
+}  // namespace
+}  // namespace strata
