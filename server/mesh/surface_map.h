@@ -53,7 +53,8 @@ struct SurfaceMap {
   std::size_t bytes() const;
 };
 
-// Refused when cancelled only. Uses two threads; memory ≤ 40 bytes per covered texel while it runs.
-Result<SurfaceMap> bake_surface_map(const Geometry& geometry, int resolution, Progress& progress);
+// Refused when cancelled, and for a resolution that is no multiple of 128 in 128…16384. The result does not depend on
+// the number of threads; memory ≤ 40 bytes per covered texel while it runs.
+Result<SurfaceMap> bake_surface_map(const Geometry& geometry, int resolution, Progress& progress, int threads = 2);
 
 }  // namespace strata::mesh

@@ -1,0 +1,263 @@
+#include "mesh/charts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <queue>
+
+#include "mesh/adjacency.h"
+#include "mesh/occupancy.h"
+#include "mesh/smooth.h"
+
+namespace strata::mesh {
+namespace {
+
+constexpr std::uint32_t kNoChart = 0xffffffffu;
+constexpr float kSmallestFootprint = 0.15f;   // a face's area in the plane, relative to its area in space
+constexpr std::size_t kWorthRegrowing = 16;   // faces
+constexpr std::size_t kTinyChart = 24;        // faces: smaller charts give their faces away where they can
+
+void set_axis(Chart& chart, glm::vec3 axis) {
+  chart.axis = axis;
+  const glm::vec3 across = std::abs(axis.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+  chart.u = glm::normalize(glm::cross(axis, across));
+  chart.v = glm::cross(axis, chart.u);
+}
+
+Chart single_face_chart(const ChartSurface& surface, std::uint32_t face) {
+  Chart chart;
+  chart.uses_smoothed = false;
+  chart.origin = surface.mesh.corner(face, 0);
+  const glm::vec3 normal = surface.original_frames.normals[face];
+  set_axis(chart, glm::dot(normal, normal) > 0.5f ? normal : glm::vec3(0, 0, 1));
+  chart.faces = {face};
+  return chart;
+}
+
+class Grower {
+ public:
+  Grower(const ChartSurface& surface, const ChartOptions& options)
+      : surface_(surface),
+        options_(options),
+        density_(static_cast<float>(options.texels_per_unit)),
+        smallest_cosine_(std::cos(glm::radians(options.cone_degrees))),
+        occupancy_(2 * options.largest_half_side),
+        chart_of_face_(surface.mesh.triangle_count(), kNoChart),
+        queued_at_(surface.mesh.triangle_count(), 0) {}
+
+  bool grow_all(Progress& progress);
+  void absorb_tiny();
+  std::vector<Chart> take() { return std::move(charts_); }
+
+ private:
+  bool can_project(std::uint32_t face, glm::vec3 axis) const {
+    const float cosine = glm::dot(surface_.smoothed_frames.normals[face], axis);
+    return cosine >= kSmallestFootprint &&
+           surface_.smoothed_frames.areas[face] * cosine >= kSmallestFootprint * surface_.original_frames.areas[face];
+  }
+  bool claim(const Chart& chart, std::uint32_t face, Occupancy::Overlap overlap) {
+    glm::vec2 p[3];
+    for (int k = 0; k < 3; ++k) p[k] = chart.project(surface_.corner(chart, face, k)) * density_;
+    return occupancy_.claim(p[0], p[1], p[2], overlap);
+  }
+  void grow(std::uint32_t seed, glm::vec3 axis, std::uint32_t id, Chart& chart);
+  void add_chart(std::uint32_t seed);
+  std::uint32_t next_seed();
+  std::uint32_t best_host(std::uint32_t face) const;
+
+  const ChartSurface& surface_;
+  const ChartOptions& options_;
+  const float density_;
+  const float smallest_cosine_;
+  Occupancy occupancy_;
+  std::vector<std::uint32_t> chart_of_face_;
+  std::vector<std::uint32_t> queued_at_;  // number of the growth that last queued the face
+  std::uint32_t growth_ = 0;
+  std::vector<Chart> charts_;
+  std::vector<std::uint32_t> front_;  // faces beside finished charts: the next seeds
+  std::size_t front_cursor_ = 0, scan_cursor_ = 0;
+};
+
+void Grower::grow(std::uint32_t seed, glm::vec3 axis, std::uint32_t id, Chart& chart) {
+  set_axis(chart, axis);
+  chart.origin = surface_.smoothed[surface_.mesh.triangles[3 * seed]];
+  chart.faces.clear();
+  occupancy_.clear();
+  ++growth_;
+  const float reach = 1.f / static_cast<float>(options_.largest_half_side);
+  using Candidate = std::pair<float, std::uint32_t>;
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue;
+  queue.push({0.f, seed});
+  queued_at_[seed] = growth_;
+  while (!queue.empty()) {
+    const std::uint32_t face = queue.top().second;
+    queue.pop();
+    const bool is_seed = face == seed;
+    if (!is_seed && (glm::dot(surface_.trend_normals[face], axis) < smallest_cosine_ || !can_project(face, axis)))
+      continue;
+    if (!claim(chart, face, is_seed ? Occupancy::Overlap::allow : Occupancy::Overlap::refuse)) continue;
+    chart_of_face_[face] = id;
+    chart.faces.push_back(face);
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t next = surface_.neighbours[3 * face + k];
+      if (next == kNoTriangle || chart_of_face_[next] != kNoChart || queued_at_[next] == growth_) continue;
+      queued_at_[next] = growth_;
+      const float tilt = 1 - glm::dot(surface_.trend_normals[next], axis);
+      const float texels = glm::length(surface_.corner(chart, next, 0) - chart.origin) * density_;
+      queue.push({2 * tilt + 0.5f * texels * reach, next});
+    }
+  }
+}
+
+void Grower::add_chart(std::uint32_t seed) {
+  const auto id = static_cast<std::uint32_t>(charts_.size());
+  const glm::vec3 trend = surface_.trend_normals[seed], own = surface_.smoothed_frames.normals[seed];
+  Chart chart;
+  if (glm::vec3 axis = glm::dot(trend, own) > 0.3f ? trend : own; can_project(seed, axis)) {
+    grow(seed, axis, id, chart);
+    if (chart.faces.size() > kWorthRegrowing) {
+      glm::vec3 mean(0);
+      for (const auto face : chart.faces) mean += surface_.trend_normals[face] * surface_.smoothed_frames.areas[face];
+      mean = glm::normalize(mean);
+      if (glm::dot(trend, mean) > smallest_cosine_ && can_project(seed, mean)) {
+        for (const auto face : chart.faces) chart_of_face_[face] = kNoChart;
+        grow(seed, mean, id, chart);
+      }
+    }
+  }
+  if (chart.faces.size() <= 1) chart = single_face_chart(surface_, seed);
+  chart_of_face_[seed] = id;
+  for (const auto face : chart.faces)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t next = surface_.neighbours[3 * face + k];
+      if (next != kNoTriangle && chart_of_face_[next] == kNoChart) front_.push_back(next);
+    }
+  charts_.push_back(std::move(chart));
+}
+
+std::uint32_t Grower::next_seed() {
+  for (; front_cursor_ < front_.size(); ++front_cursor_)
+    if (chart_of_face_[front_[front_cursor_]] == kNoChart) return front_[front_cursor_];
+  front_.clear();
+  front_cursor_ = 0;
+  for (; scan_cursor_ < chart_of_face_.size(); ++scan_cursor_)
+    if (chart_of_face_[scan_cursor_] == kNoChart) return static_cast<std::uint32_t>(scan_cursor_);
+  return kNoTriangle;
+}
+
+bool Grower::grow_all(Progress& progress) {
+  std::size_t done = 0;
+  for (std::uint32_t seed = next_seed(); seed != kNoTriangle; seed = next_seed()) {
+    if (progress.cancelled()) return false;
+    add_chart(seed);
+    done += charts_.back().faces.size();
+    if (charts_.size() % 16 == 0)
+      progress.report(0.1 + 0.6 * static_cast<double>(done) / static_cast<double>(chart_of_face_.size()),
+                      "Cutting the surface into charts");
+  }
+  return true;
+}
+
+// The large neighbouring chart on whose plane the face has the largest footprint.
+std::uint32_t Grower::best_host(std::uint32_t face) const {
+  std::uint32_t best = kNoChart;
+  float best_cosine = kSmallestFootprint;
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t next = surface_.neighbours[3 * face + k];
+    if (next == kNoTriangle) continue;
+    const std::uint32_t host = chart_of_face_[next];
+    if (host == chart_of_face_[face] || charts_[host].faces.size() < kTinyChart) continue;
+    const glm::vec3 axis = charts_[host].axis;
+    const float cosine = glm::dot(surface_.smoothed_frames.normals[face], axis);
+    if (cosine > best_cosine && can_project(face, axis)) best = host, best_cosine = cosine;
+  }
+  return best;
+}
+
+void Grower::absorb_tiny() {
+  for (int pass = 0; pass < 4; ++pass) {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> guests_of_host;
+    for (const Chart& chart : charts_)
+      if (chart.faces.size() < kTinyChart)
+        for (const auto face : chart.faces)
+          if (const auto host = best_host(face); host != kNoChart) guests_of_host[host].push_back(face);
+    std::size_t moved = 0;
+    for (const auto& [host, guests] : guests_of_host) {
+      occupancy_.clear();
+      for (const auto face : charts_[host].faces) claim(charts_[host], face, Occupancy::Overlap::allow);
+      for (const auto face : guests) {
+        if (!claim(charts_[host], face, Occupancy::Overlap::refuse)) continue;
+        std::erase(charts_[chart_of_face_[face]].faces, face);
+        charts_[host].faces.push_back(face);
+        chart_of_face_[face] = host;
+        ++moved;
+      }
+    }
+    if (moved == 0) break;
+  }
+}
+
+// Appends the connected parts of `chart` to `charts`; scratch is per face and left as found.
+void append_connected_parts(const ChartSurface& surface, Chart chart, std::vector<std::uint8_t>& pending,
+                            std::vector<Chart>& charts) {
+  for (const auto face : chart.faces) pending[face] = 1;
+  std::vector<std::uint32_t> part;
+  for (const auto first : chart.faces) {
+    if (!pending[first]) continue;
+    part.assign(1, first);
+    pending[first] = 0;
+    for (std::size_t i = 0; i < part.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t next = surface.neighbours[3 * part[i] + k];
+        if (next == kNoTriangle || !pending[next]) continue;
+        pending[next] = 0;
+        part.push_back(next);
+      }
+    if (part.size() == 1) {
+      charts.push_back(single_face_chart(surface, part.front()));
+    } else {
+      Chart whole = chart;
+      whole.faces = part;
+      charts.push_back(std::move(whole));
+    }
+  }
+}
+
+}  // namespace
+
+ChartSurface make_chart_surface(const UnitMesh& mesh, int smoothing) {
+  ChartSurface surface{mesh, edge_neighbours(mesh.triangles, mesh.positions.size()), {}, {}, {}, {}};
+  surface.smoothed = laplacian_smoothed(mesh.triangles, surface.neighbours, mesh.positions, smoothing);
+  surface.original_frames = face_frames(mesh.triangles, mesh.positions);
+  surface.smoothed_frames = face_frames(mesh.triangles, surface.smoothed);
+  surface.trend_normals = averaged_normals(mesh.triangles, mesh.positions.size(), surface.smoothed_frames, 3);
+  return surface;
+}
+
+std::optional<std::vector<Chart>> grow_charts(const ChartSurface& surface, const ChartOptions& options,
+                                              Progress& progress) {
+  Grower grower(surface, options);
+  if (!grower.grow_all(progress)) return std::nullopt;
+  grower.absorb_tiny();
+  std::vector<Chart> connected;
+  std::vector<std::uint8_t> pending(surface.mesh.triangle_count(), 0);
+  for (Chart& chart : grower.take()) append_connected_parts(surface, std::move(chart), pending, connected);
+  return connected;
+}
+
+void split_off(const ChartSurface& surface, std::span<const std::uint32_t> faces, std::vector<Chart>& charts) {
+  std::vector<std::uint8_t> leaves(surface.mesh.triangle_count(), 0);
+  std::vector<std::uint8_t> pending(surface.mesh.triangle_count(), 0);
+  for (const auto face : faces) leaves[face] = 1;
+  std::vector<Chart> result;
+  for (Chart& chart : charts) {
+    if (std::erase_if(chart.faces, [&](std::uint32_t face) { return leaves[face] != 0; }) == 0)
+      result.push_back(std::move(chart));
+    else if (!chart.faces.empty())
+      append_connected_parts(surface, std::move(chart), pending, result);
+  }
+  for (const auto face : faces) result.push_back(single_face_chart(surface, face));
+  charts = std::move(result);
+}
+
+}  // namespace strata::mesh

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/progress.h"
+#include "mesh/unit_mesh.h"
+
+namespace strata::mesh {
+
+// A connected piece of surface that is laid flat by looking along `axis`.
+struct Chart {
+  glm::vec3 origin{0}, axis{0, 0, 1}, u{1, 0, 0}, v{0, 1, 0};
+  bool uses_smoothed = true;  // projects the smoothed copy; single faces project the surface itself
+  std::vector<std::uint32_t> faces;
+
+  glm::vec2 project(glm::vec3 p) const { return {glm::dot(p - origin, u), glm::dot(p - origin, v)}; }
+};
+
+struct ChartOptions {
+  float cone_degrees = 55;        // largest angle between a face's averaged normal and the chart's axis
+  int smoothing = 2;              // Laplacian rounds
+  double texels_per_unit = 1000;  // density at which no two faces of a chart may share a texel
+  int largest_half_side = 800;    // texels from a chart's seed to its farthest point
+};
+
+// Everything that growing and laying out charts needs to know of a mesh.
+struct ChartSurface {
+  const UnitMesh& mesh;
+  std::vector<std::uint32_t> neighbours;
+  std::vector<glm::vec3> smoothed;
+  FaceFrames original_frames, smoothed_frames;
+  std::vector<glm::vec3> trend_normals;
+
+  glm::vec3 corner(const Chart& chart, std::uint32_t face, int k) const {
+    const std::uint32_t vertex = mesh.triangles[3 * face + k];
+    return chart.uses_smoothed ? smoothed[vertex] : mesh.positions[vertex];
+  }
+};
+ChartSurface make_chart_surface(const UnitMesh& mesh, int smoothing);
+
+// Cuts the surface into charts: each grows from a seed by priority (faces that look along its axis and lie near first),
+// takes a face only if that keeps it injective at texel level, and is grown again along its mean normal. Then faces of
+// tiny charts join neighbours that can take them. Every face ends in exactly one chart, every chart is connected.
+// Empty when cancelled.
+std::optional<std::vector<Chart>> grow_charts(const ChartSurface& surface, const ChartOptions& options,
+                                              Progress& progress);
+
+// Takes the given faces out of their charts and makes each a chart of its own; what a chart loses its connection by
+// becomes several charts.
+void split_off(const ChartSurface& surface, std::span<const std::uint32_t> faces, std::vector<Chart>& charts);
+
+}  // namespace strata::mesh

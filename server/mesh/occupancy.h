@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "mesh/texel_raster.h"
+
+namespace strata::mesh {
+
+// The texels that the faces of one growing chart cover, so that no two faces of it share a texel. Chart coordinates are
+// texels relative to the centre of a square window of `side` texels; faces that leave the window are refused.
+class Occupancy {
+ public:
+  explicit Occupancy(int side) : side_(side), stamps_(static_cast<std::size_t>(side) * side, 0) {}
+
+  // Forgets all texels, at no cost.
+  void clear() { ++stamp_; }
+
+  enum class Overlap { refuse, allow };
+
+  // Takes the texels whose centres the triangle covers; with Overlap::refuse only if all of them are free.
+  bool claim(glm::vec2 a, glm::vec2 b, glm::vec2 c, Overlap overlap = Overlap::refuse);
+
+ private:
+  struct Span {
+    std::uint32_t begin, end;
+  };
+  const int side_;
+  std::uint32_t stamp_ = 1;
+  std::vector<std::uint32_t> stamps_;
+  std::vector<Span> spans_;
+};
+
+}  // namespace strata::mesh

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <vector>
+
+namespace strata::mesh {
+
+// Runs work(0) … work(count - 1) on up to `threads` threads (this one among them), each index once, in any order.
+template <class Work>
+void parallel_for(int threads, int count, Work&& work) {
+  std::atomic<int> next{0};
+  const auto run = [&] {
+    for (int i = next++; i < count; i = next++) work(i);
+  };
+  std::vector<std::jthread> others;
+  for (int t = 1; t < std::min(threads, count); ++t) others.emplace_back(run);
+  run();
+}
+
+}  // namespace strata::mesh

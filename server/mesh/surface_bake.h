@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "mesh/geometry.h"
+#include "mesh/surface_map.h"
+#include "mesh/texel_raster.h"
+#include "mesh/uv_islands.h"
+
+namespace strata::mesh {
+
+// The steps of a surface map's baking. Work is cut into horizontal bands of the atlas, always the same ones, so that
+// the result does not depend on which thread does which. Within a band triangles come in ascending order.
+class SurfaceBake {
+ public:
+  SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map);
+
+  int band_count() const { return static_cast<int>(band_first_.size()) - 1; }
+
+  void mark_surface(int band);          // which texels are surface, into masks of all blocks
+  void mark_gutter(int band);           // after mark_surface of all bands
+  void assign_slots(int threads);       // after mark_gutter of all bands
+  void place_surface(int band);         // owners and positions of surface texels
+  void place_gutter(int band);          // after place_surface of all bands
+  void credit_areas(int band);          // after place_surface of all bands
+  void credit_leftovers();              // after credit_areas of all bands
+  void bound_slots(int band);           // after place_gutter of all bands
+  void bound_tiles();                   // after bound_slots of all bands
+
+ private:
+  static constexpr std::uint32_t kNobody = 0xffffffffu;
+
+  struct Claim {  // of a triangle that covers no texel centre on the texel that holds its centroid
+    std::uint32_t texel, triangle;
+  };
+  struct Leftover {  // area that lies on a texel which its own island does not own
+    std::uint32_t texel, triangle;
+    float area;
+  };
+
+  std::uint32_t vertex(std::uint32_t triangle, int k) const { return geometry_.indices[3 * std::size_t{triangle} + k]; }
+  glm::dvec2 texels_at(std::uint32_t triangle, int k) const;
+  CoverageRaster raster_of(std::uint32_t triangle) const;
+  std::uint32_t centroid_texel(std::uint32_t triangle) const;  // y * resolution + x
+  int first_block_row(int band) const { return band * map_.blocks_per_side / band_count(); }
+  int first_row(int band) const { return first_block_row(band) * kBlockSize; }
+  void bin_triangles();
+
+  std::uint64_t block_mask(const std::vector<std::uint64_t>& masks, int block_x, int block_y) const;
+  bool is_surface(int x, int y) const;
+  std::size_t texel_index(int x, int y) const;  // into the per-slot arrays; the block must have a slot
+  std::uint32_t owner(int x, int y) const;      // kNobody where no surface
+  bool nearest_surface(int x, int y, std::uint32_t island, glm::ivec2& found) const;
+  glm::ivec2 heir_of(const Leftover& leftover) const;
+
+  const Geometry& geometry_;
+  SurfaceMap& map_;
+  const int resolution_;
+  std::vector<SnappedPoint> snapped_;
+  std::vector<float> triangle_area_;
+  UvIslands islands_;
+  std::vector<std::uint32_t> band_first_, band_triangles_;
+  std::vector<std::uint64_t> surface_of_block_, gutter_of_block_;
+  std::vector<std::vector<Claim>> claims_;
+  std::vector<std::vector<Leftover>> leftovers_;
+  std::vector<std::uint64_t> overlaps_of_band_;
+  std::unique_ptr<std::uint32_t[]> owner_;  // 64 a slot
+  struct Box {
+    glm::uvec3 low{0xffffffffu}, high{0};
+  };
+  std::vector<Box> box_of_slot_;  // quantised
+};
+
+}  // namespace strata::mesh

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+namespace strata::mesh {
+
+// Pieces of a parametrisation: triangles are of one island when a chain of corners that share position and UV joins them.
+struct UvIslands {
+  std::vector<std::uint32_t> of_triangle;  // numbered from 0 in the order of their first triangle
+  std::uint32_t count = 0;
+};
+
+// `indices`: 3 a triangle, equal exactly where position and UV are equal.
+UvIslands find_islands(std::span<const std::uint32_t> indices, std::size_t vertex_count);
+
+// Such indices for corners given by position index and UV. Returns the number of distinct ones.
+std::size_t weld_corners(std::span<const std::uint32_t> position_of_corner, std::span<const glm::vec2> uv_of_corner,
+                         std::size_t position_count, std::vector<std::uint32_t>& indices);
+
+}  // namespace strata::mesh
