@@ -21,6 +21,7 @@ struct LoadedMesh {
 Result<LoadedMesh> load_mesh(const std::filesystem::path& file, const std::string& filename, Progress& progress);
 
 // The same for a file that is already in memory.
-Result<LoadedMesh> load_mesh_bytes(std::span<const std::uint8_t> bytes, const std::string& filename, Progress& progress);
+Result<LoadedMesh> load_mesh_bytes(std::span<const std::uint8_t> bytes, const std::string& filename,
+                                   Progress& progress);
 
 }  // namespace strata::mesh

@@ -8,8 +8,8 @@
 
 namespace strata::mesh {
 
-// The steps behind `load_mesh`, for its own files only. The parsers give triangles whose indices are in range, in file order,
-// unwelded, with notes of what they ignored; `repair` brings them into the form that `load_mesh` promises.
+// The steps behind `load_mesh`, for its own files only. The parsers give triangles whose indices are in range, in file
+// order, unwelded, with notes of what they ignored; `repair` brings them into the form that `load_mesh` promises.
 Result<LoadedMesh> parse_ply(std::span<const std::uint8_t> bytes, Progress& progress);
 Result<LoadedMesh> parse_obj(std::span<const std::uint8_t> bytes, Progress& progress);
 Result<void> repair(LoadedMesh& loaded, Progress& progress);

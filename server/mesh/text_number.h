@@ -8,8 +8,8 @@
 
 namespace strata::mesh {
 
-// Numbers of text formats. The whole of `token` must be the number; a leading '+' is allowed; "nan" and "inf" are numbers
-// here, because only the vertices that a triangle uses must be finite.
+// Numbers of text formats. The whole of `token` must be the number; a leading '+' is allowed; "nan" and "inf" are
+// numbers here, because only the vertices that a triangle uses must be finite.
 inline bool parse_number(std::string_view token, double& value) {
   if (!token.empty() && token.front() == '+') token.remove_prefix(1);
   const char* end = token.data() + token.size();
@@ -27,6 +27,8 @@ inline bool parse_integer(std::string_view token, std::int64_t& value) {
   return !token.empty() && stop == end && error == std::errc{};
 }
 
-inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
+inline bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+}
 
 }  // namespace strata::mesh

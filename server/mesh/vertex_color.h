@@ -19,21 +19,21 @@ inline std::uint32_t pack_color(double red, double green, double blue, double al
 // 0…1 until a channel exceeds 1; then those stored so far are rescaled (each was 0 or about 1 of 255).
 class RealColorScale {
  public:
-  std::uint32_t pack(double red, double green, double blue, double alpha, std::vector<std::uint32_t>& stored) {
-    if (!bytes_ && std::max({red, green, blue, alpha}) > 1.0) {
+  // `stored` holds the colours that this packed before; without alpha a colour is opaque.
+  std::uint32_t pack(const double (&rgba)[4], bool has_alpha, std::vector<std::uint32_t>& stored) {
+    const int channels = has_alpha ? 4 : 3;
+    if (!bytes_ && *std::max_element(rgba, rgba + channels) > 1.0) {
       bytes_ = true;
       for (std::uint32_t& color : stored) {
-        for (int shift = 0; shift < 32; shift += 8) {
+        for (int shift = 0; shift < 8 * channels; shift += 8) {
           const std::uint32_t channel = (color >> shift) & 0xffu;
           color = (color & ~(0xffu << shift)) | (channel >= 128 ? 1u : 0u) << shift;
         }
       }
     }
     const double scale = bytes_ ? 1.0 : 255.0;
-    return pack_color(red * scale, green * scale, blue * scale, alpha * scale);
+    return pack_color(rgba[0] * scale, rgba[1] * scale, rgba[2] * scale, has_alpha ? rgba[3] * scale : 255.0);
   }
-  // Alpha where the file has none, in the scale of the colours seen so far.
-  double opaque() const { return bytes_ ? 255.0 : 1.0; }
 
  private:
   bool bytes_ = false;

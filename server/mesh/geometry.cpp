@@ -1,0 +1,149 @@
+#include "mesh/geometry.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+namespace strata::mesh {
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kStoneGrey = 0xffcfd3d6u;
+constexpr double kRoundOriginAbove = 16;
+
+// Spreads the low 21 bits of `value` so that two zero bits stand between them.
+std::uint64_t spread_bits(std::uint64_t value) {
+  value &= 0x1fffff;
+  value = (value | value << 32) & 0x1f00000000ffffULL;
+  value = (value | value << 16) & 0x1f0000ff0000ffULL;
+  value = (value | value << 8) & 0x100f00f00f00f00fULL;
+  value = (value | value << 4) & 0x10c30c30c30c30c3ULL;
+  return (value | value << 2) & 0x1249249249249249ULL;
+}
+
+// Triangle numbers along a Morton curve through their centroids: neighbours on the surface end up near each other,
+// which serves the caches of the GPU, clusters for culling, compression and the search tree at once.
+std::vector<std::uint32_t> spatial_order(const TriangleMesh& mesh, const glm::dvec3& low, const glm::dvec3& extent) {
+  struct Entry {
+    std::uint64_t code;
+    std::uint32_t triangle;
+  };
+  const double scale = 2097151.0 / std::max({extent.x, extent.y, extent.z, 1e-300});
+  std::vector<Entry> entries(mesh.triangle_count());
+  for (std::uint32_t t = 0; t < entries.size(); ++t) {
+    const std::uint32_t* corners = &mesh.triangles[3 * std::size_t{t}];
+    const glm::dvec3 centroid =
+        (mesh.positions[corners[0]] + mesh.positions[corners[1]] + mesh.positions[corners[2]]) / 3.0;
+    const glm::dvec3 cell = glm::clamp((centroid - low) * scale, 0.0, 2097151.0);
+    entries[t] = {spread_bits(static_cast<std::uint64_t>(cell.x)) |
+                      spread_bits(static_cast<std::uint64_t>(cell.y)) << 1 |
+                      spread_bits(static_cast<std::uint64_t>(cell.z)) << 2,
+                  t};
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.code != b.code ? a.code < b.code : a.triangle < b.triangle;
+  });
+  std::vector<std::uint32_t> order(entries.size());
+  std::transform(entries.begin(), entries.end(), order.begin(), [](const Entry& e) { return e.triangle; });
+  return order;
+}
+
+std::uint32_t snorm10(float value) {
+  return static_cast<std::uint32_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * 511.0f)) & 0x3ffu;
+}
+
+std::uint32_t pack_normal(const glm::dvec3& sum) {
+  const double length = glm::length(sum);
+  const glm::vec3 normal = length > 0 ? glm::vec3(sum / length) : glm::vec3(0, 0, 1);
+  return snorm10(normal.x) | snorm10(normal.y) << 10 | snorm10(normal.z) << 20;
+}
+
+// Area-weighted normals of the mesh's positions: the cross product is twice the area long.
+std::vector<std::uint32_t> position_normals(const TriangleMesh& mesh) {
+  std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0));
+  for (std::size_t i = 0; i + 2 < mesh.triangles.size(); i += 3) {
+    const std::uint32_t a = mesh.triangles[i], b = mesh.triangles[i + 1], c = mesh.triangles[i + 2];
+    const glm::dvec3 cross = glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
+    sums[a] += cross;
+    sums[b] += cross;
+    sums[c] += cross;
+  }
+  std::vector<std::uint32_t> normals(sums.size());
+  std::transform(sums.begin(), sums.end(), normals.begin(), pack_normal);
+  return normals;
+}
+
+// Numbers vertices and positions by first use.
+class VertexSplitter {
+ public:
+  VertexSplitter(const TriangleMesh& mesh, const Atlas& atlas, Geometry& geometry)
+      : mesh_(mesh),
+        atlas_(atlas),
+        geometry_(geometry),
+        normals_(position_normals(mesh)),
+        position_of_(mesh.positions.size(), kNone),
+        first_of_(mesh.positions.size(), kNone) {
+    geometry_.positions.reserve(mesh.positions.size());
+    geometry_.vertices.reserve(mesh.positions.size() + mesh.positions.size() / 4);
+    next_.reserve(geometry_.vertices.capacity());
+  }
+
+  std::uint32_t vertex_for(std::size_t corner) {
+    const std::uint32_t source = mesh_.triangles[corner];
+    const glm::vec2 uv = corner < atlas_.corner_uvs.size() ? atlas_.corner_uvs[corner] : glm::vec2(0);
+    for (std::uint32_t v = first_of_[source]; v != kNone; v = next_[v]) {
+      if (geometry_.vertices[v].uv == uv) return v;
+    }
+    if (position_of_[source] == kNone) {
+      position_of_[source] = static_cast<std::uint32_t>(geometry_.positions.size());
+      geometry_.positions.push_back(mesh_.positions[source]);
+    }
+    const auto index = static_cast<std::uint32_t>(geometry_.vertices.size());
+    geometry_.vertices.push_back({glm::vec3(mesh_.positions[source] - geometry_.origin), normals_[source], uv,
+                                  mesh_.vertex_colors.empty() ? kStoneGrey : mesh_.vertex_colors[source],
+                                  position_of_[source]});
+    next_.push_back(first_of_[source]);
+    first_of_[source] = index;
+    return index;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  const Atlas& atlas_;
+  Geometry& geometry_;
+  std::vector<std::uint32_t> normals_;
+  std::vector<std::uint32_t> position_of_;  // new number of a mesh position
+  std::vector<std::uint32_t> first_of_;     // of a mesh position: head of the list of its vertices
+  std::vector<std::uint32_t> next_;         // of a vertex: the next at its position
+};
+
+}  // namespace
+
+Geometry build_geometry(const TriangleMesh& mesh, const Atlas& atlas) {
+  Geometry geometry;
+  if (mesh.triangles.empty()) return geometry;
+  glm::dvec3 low = mesh.positions[mesh.triangles[0]], high = low;
+  for (std::uint32_t index : mesh.triangles) {
+    low = glm::min(low, mesh.positions[index]);
+    high = glm::max(high, mesh.positions[index]);
+  }
+  const glm::dvec3 extent = high - low;
+  geometry.origin = low + extent / 2.0;
+  if (std::max({extent.x, extent.y, extent.z}) > kRoundOriginAbove) geometry.origin = glm::round(geometry.origin);
+
+  const std::vector<std::uint32_t> order = spatial_order(mesh, low, extent);
+  VertexSplitter splitter(mesh, atlas, geometry);
+  geometry.indices.reserve(mesh.triangles.size());
+  for (std::uint32_t triangle : order) {
+    for (std::size_t k = 0; k < 3; ++k) geometry.indices.push_back(splitter.vertex_for(3 * std::size_t{triangle} + k));
+  }
+  geometry.box_min = geometry.box_max = geometry.vertices[0].position;
+  for (const Vertex& vertex : geometry.vertices) {
+    geometry.box_min = glm::min(geometry.box_min, vertex.position);
+    geometry.box_max = glm::max(geometry.box_max, vertex.position);
+  }
+  return geometry;
+}
+
+}  // namespace strata::mesh

@@ -1,0 +1,211 @@
+#include <optional>
+#include <set>
+
+#include "mesh/face_builder.h"
+#include "mesh/load_formats.h"
+#include "mesh/obj_lines.h"
+#include "mesh/vertex_color.h"
+
+namespace strata::mesh {
+namespace {
+
+constexpr std::uint64_t kLinesBetweenReports = 65536;
+constexpr std::size_t kMaxNumbers = 8;
+
+// Two passes: points first, then faces, so that a face may name points that follow it and polygons can be split at
+// once.
+class ObjReader {
+ public:
+  ObjReader(std::span<const std::uint8_t> bytes, Progress& progress)
+      : bytes_(bytes), progress_(progress), faces_(loaded_.mesh) {}
+
+  Result<LoadedMesh> read() {
+    if (auto counted = count_lines(); !counted) return tl::unexpected(counted.error());
+    if (auto points = read_points(); !points) return tl::unexpected(points.error());
+    if (auto faces = read_faces(); !faces) return tl::unexpected(faces.error());
+    if (colored_ > 0) note(loaded_.repairs, "vertices without colour", loaded_.mesh.positions.size() - colored_);
+    faces_.report(loaded_.repairs);
+    note(loaded_.repairs, "ignored materials", materials_.size());
+    note(loaded_.repairs, "ignored lines, points, curves and free-form surfaces", ignored_);
+    return std::move(loaded_);
+  }
+
+ private:
+  // Sizes the arrays, so that they do not double their way over the memory limit.
+  Result<void> count_lines() {
+    ObjLines lines(bytes_);
+    std::string_view line;
+    std::uint64_t positions = 0, uvs = 0, faces = 0;
+    for (std::uint64_t n = 0; lines.next(line); ++n) {
+      if (n % kLinesBetweenReports == 0 && !report(0, 0.1 * lines.fraction())) return cancelled_problem();
+      const std::string_view keyword = next_word(line);
+      positions += keyword == "v";
+      uvs += keyword == "vt";
+      faces += keyword == "f";
+    }
+    if (positions >= 0xffffffffu || uvs >= 0xffffffffu)
+      return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
+    if (faces == 0)
+      return refuse_file(positions > 0 ? "The OBJ has vertices but no faces: a point cloud cannot carry layers."
+                                       : "The OBJ has no faces; is this an OBJ file?");
+    loaded_.mesh.positions.reserve(positions);
+    uvs_.reserve(uvs);
+    loaded_.mesh.triangles.reserve(3 * faces);
+    return {};
+  }
+
+  Result<void> read_points() {
+    ObjLines lines(bytes_);
+    std::string_view line;
+    for (std::uint64_t n = 0; lines.next(line); ++n) {
+      if (n % kLinesBetweenReports == 0 && !report(0.1, 0.5 * lines.fraction())) return cancelled_problem();
+      const std::string_view keyword = next_word(line);
+      if (keyword != "v" && keyword != "vt") continue;
+      if (!read_numbers(line))
+        return fault(lines, "\"" + std::string(keyword) + "\" is followed by something that is not a number");
+      if (keyword == "vt") {
+        if (count_ < 1) return fault(lines, "\"vt\" needs a number");
+        uvs_.emplace_back(numbers_[0], count_ > 1 ? numbers_[1] : 0.0);
+        continue;
+      }
+      if (count_ < 3) return fault(lines, "\"v\" needs three numbers");
+      loaded_.mesh.positions.emplace_back(numbers_[0], numbers_[1], numbers_[2]);
+      add_color();
+    }
+    return {};
+  }
+
+  // x y z | x y z w | x y z r g b | x y z r g b a
+  void add_color() {
+    std::vector<std::uint32_t>& colors = loaded_.mesh.vertex_colors;
+    const std::size_t index = loaded_.mesh.positions.size() - 1;
+    if (count_ < 6) {
+      if (!colors.empty()) colors.push_back(0xffffffffu);
+      return;
+    }
+    if (colors.empty()) {
+      colors.reserve(loaded_.mesh.positions.capacity());
+      colors.resize(index, 0xffffffffu);
+    }
+    const double rgba[4] = {numbers_[3], numbers_[4], numbers_[5], 1.0};
+    colors.push_back(color_scale_.pack(rgba, false, colors));
+    ++colored_;
+  }
+
+  Result<void> read_faces() {
+    ObjLines lines(bytes_);
+    std::string_view line;
+    std::vector<FaceBuilder::Corner> corners;
+    for (std::uint64_t n = 0; lines.next(line); ++n) {
+      if (n % kLinesBetweenReports == 0 && !report(0.6, 0.4 * lines.fraction())) return cancelled_problem();
+      const std::string_view keyword = next_word(line);
+      if (keyword == "v") {
+        ++positions_so_far_;
+      } else if (keyword == "vt") {
+        ++uvs_so_far_;
+      } else if (keyword == "f") {
+        corners.clear();
+        bool has_uv = true;
+        for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+          if (auto corner = read_corner(lines, word, has_uv); corner) {
+            corners.push_back(*corner);
+          } else {
+            return tl::unexpected(corner.error());
+          }
+        }
+        auto added = faces_.add(corners, has_uv, [&] { return "line " + std::to_string(lines.line_number()); });
+        if (!added) return added;
+      } else if (keyword == "usemtl") {
+        if (materials_.size() < 10000) materials_.emplace(next_word(line));
+      } else if (keyword == "l" || keyword == "p" || keyword == "curv" || keyword == "curv2" || keyword == "surf") {
+        ++ignored_;
+      }
+    }
+    return {};
+  }
+
+  // v, v/vt, v//vn or v/vt/vn; counted from 1, or backwards from the last that stands above the face.
+  Result<FaceBuilder::Corner> read_corner(const ObjLines& lines, std::string_view word, bool& has_uv) const {
+    const std::size_t slash = word.find('/');
+    FaceBuilder::Corner corner;
+    std::int64_t index = 0;
+    if (!parse_integer(word.substr(0, slash), index))
+      return fault(lines, "\"" + printable(word) + "\" is no face corner");
+    const auto position = resolve(index, positions_so_far_, loaded_.mesh.positions.size());
+    if (!position) {
+      return fault(lines, "the face names vertex " + std::to_string(index) + ", but the file has " +
+                              std::to_string(loaded_.mesh.positions.size()) + " vertices" +
+                              (index < 0 ? " (" + std::to_string(positions_so_far_) + " above this line)" : ""));
+    }
+    corner.position = static_cast<std::uint32_t>(*position);
+    std::string_view uv_word;
+    if (slash != std::string_view::npos) {
+      uv_word = word.substr(slash + 1);
+      uv_word = uv_word.substr(0, uv_word.find('/'));
+    }
+    if (uv_word.empty()) {
+      has_uv = false;
+      return corner;
+    }
+    if (!parse_integer(uv_word, index)) return fault(lines, "\"" + printable(word) + "\" is no face corner");
+    const auto uv = resolve(index, uvs_so_far_, uvs_.size());
+    if (!uv) {
+      return fault(lines, "the face names texture coordinate " + std::to_string(index) + ", but the file has " +
+                              std::to_string(uvs_.size()));
+    }
+    corner.uv = uvs_[*uv];
+    return corner;
+  }
+
+  static std::optional<std::uint64_t> resolve(std::int64_t index, std::uint64_t so_far, std::size_t count) {
+    if (index > 0 && static_cast<std::uint64_t>(index) <= count) return static_cast<std::uint64_t>(index) - 1;
+    if (index < 0 && index >= -static_cast<std::int64_t>(so_far)) return so_far - static_cast<std::uint64_t>(-index);
+    return std::nullopt;
+  }
+
+  bool read_numbers(std::string_view line) {
+    count_ = 0;
+    for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+      double value = 0;
+      if (!parse_number(word, value)) return false;
+      if (count_ < kMaxNumbers) numbers_[count_++] = value;
+    }
+    return true;
+  }
+
+  static std::string printable(std::string_view word) {
+    std::string result;
+    for (char c : word.substr(0, 40)) result += c >= ' ' && c < 127 ? c : '?';
+    return result;
+  }
+  static tl::unexpected<Problem> fault(const ObjLines& lines, const std::string& what) {
+    return refuse_file("Line " + std::to_string(lines.line_number()) + ": " + what + ".");
+  }
+
+  bool report(double done, double share) {
+    progress_.report(kParsedShare * (done + share), done < 0.6 ? "Reading vertices" : "Reading faces");
+    return !progress_.cancelled();
+  }
+
+  std::span<const std::uint8_t> bytes_;
+  Progress& progress_;
+  LoadedMesh loaded_;
+  FaceBuilder faces_;
+  std::vector<glm::vec2> uvs_;
+  RealColorScale color_scale_;
+  double numbers_[kMaxNumbers] = {};
+  std::size_t count_ = 0;
+  std::uint64_t positions_so_far_ = 0;
+  std::uint64_t uvs_so_far_ = 0;
+  std::uint64_t colored_ = 0;
+  std::uint64_t ignored_ = 0;
+  std::set<std::string, std::less<>> materials_;
+};
+
+}  // namespace
+
+Result<LoadedMesh> parse_obj(std::span<const std::uint8_t> bytes, Progress& progress) {
+  return ObjReader(bytes, progress).read();
+}
+
+}  // namespace strata::mesh

@@ -1,0 +1,335 @@
+#include <algorithm>
+#include <array>
+
+#include "mesh/face_builder.h"
+#include "mesh/load_formats.h"
+#include "mesh/ply_source.h"
+#include "mesh/vertex_color.h"
+
+namespace strata::mesh {
+namespace {
+
+constexpr std::uint64_t kElementsBetweenReports = 65536;
+
+// Where the properties of an element go; -1: the file does not have it.
+struct ColorProperties {
+  std::array<int, 4> rgba{-1, -1, -1, -1};
+  bool present() const { return rgba[0] >= 0; }
+  bool alpha() const { return rgba[3] >= 0; }
+};
+
+ColorProperties find_colors(const PlyElement& element) {
+  const auto red = element.find({"red", "diffuse_red", "r"}), green = element.find({"green", "diffuse_green", "g"}),
+             blue = element.find({"blue", "diffuse_blue", "b"}), alpha = element.find({"alpha", "a"});
+  ColorProperties colors;
+  if (!red || !green || !blue) return colors;
+  colors.rgba = {*red, *green, *blue, alpha.value_or(-1)};
+  for (int at : colors.rgba) {
+    if (at >= 0 && element.properties[at].count_type) return {};
+  }
+  return colors;
+}
+
+// Whole-number colours as 0…255; real ones stay as they are.
+double to_byte_scale(PlyType type, double value) {
+  return type == PlyType::u16 ? value / 257.0 : value;
+}
+bool is_real(PlyType type) {
+  return type == PlyType::f32 || type == PlyType::f64;
+}
+
+template <class Source>
+class PlyReader {
+ public:
+  PlyReader(Source source, const PlyHeader& header, std::size_t file_bytes, Progress& progress)
+      : source_(source), header_(header), file_bytes_(file_bytes), progress_(progress), faces_(loaded_.mesh) {}
+
+  Result<LoadedMesh> read() {
+    for (const PlyElement& element : header_.elements) {
+      const Result<void> done = element.name == "vertex"      ? read_vertices(element)
+                                : element.name == "face"      ? read_faces(element)
+                                : element.name == "tristrips" ? read_strips(element)
+                                                              : skip_element(element);
+      if (!done) return tl::unexpected(done.error());
+    }
+    if (!has_vertices_) return refuse_file("The PLY has no element \"vertex\".");
+    spread_face_colors();
+    faces_.report(loaded_.repairs);
+    note(loaded_.repairs, "ignored texture images", header_.texture_files);
+    note(loaded_.repairs, "ignored bytes after the last element", source_.bytes_left_over());
+    return std::move(loaded_);
+  }
+
+ private:
+  Result<void> read_vertices(const PlyElement& element) {
+    const auto x = element.find({"x"}), y = element.find({"y"}), z = element.find({"z"});
+    if (!x || !y || !z || element.properties[*x].count_type || element.properties[*y].count_type ||
+        element.properties[*z].count_type) {
+      return refuse_file("The element \"vertex\" has no properties x, y and z.");
+    }
+    if (element.count >= 0xffffffffu) return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
+    const ColorProperties colors = find_colors(element);
+    const PlyType color_type = colors.present() ? element.properties[colors.rgba[0]].type : PlyType::u8;
+    const auto [u, v] = find_uv(element);
+    has_vertices_ = true;
+    TriangleMesh& mesh = loaded_.mesh;
+    mesh.positions.reserve(element.count);
+    if (colors.present()) mesh.vertex_colors.reserve(element.count);
+    if (u >= 0) vertex_uvs_.reserve(element.count);
+    RealColorScale real_scale;
+    std::vector<double> values(element.properties.size());
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      if (i % kElementsBetweenReports == 0 && !report("Reading vertices")) return cancelled_problem();
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        const PlyProperty& property = element.properties[k];
+        const bool read = property.count_type ? skip_list(property) : source_.value(property.type, values[k]);
+        if (!read) return broken("vertex", i, element.count);
+      }
+      mesh.positions.emplace_back(values[*x], values[*y], values[*z]);
+      if (u >= 0) vertex_uvs_.emplace_back(values[u], values[v]);
+      if (!colors.present()) continue;
+      double rgba[4] = {0, 0, 0, 255};
+      for (int k = 0; k < (colors.alpha() ? 4 : 3); ++k) rgba[k] = to_byte_scale(color_type, values[colors.rgba[k]]);
+      mesh.vertex_colors.push_back(is_real(color_type) ? real_scale.pack(rgba, colors.alpha(), mesh.vertex_colors)
+                                                       : pack_color(rgba[0], rgba[1], rgba[2], rgba[3]));
+    }
+    return {};
+  }
+
+  static std::pair<int, int> find_uv(const PlyElement& element) {
+    static constexpr std::array<std::array<std::string_view, 2>, 4> kNames{
+        {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}};
+    for (const auto& [first, second] : kNames) {
+      const auto u = element.find({first}), v = element.find({second});
+      if (u && v && !element.properties[*u].count_type && !element.properties[*v].count_type) return {*u, *v};
+    }
+    return {-1, -1};
+  }
+
+  Result<void> read_faces(const PlyElement& element) {
+    const auto indices = element.find({"vertex_indices", "vertex_index"});
+    if (!indices || !element.properties[*indices].count_type) {
+      if (element.count == 0) return {};
+      return refuse_file("The element \"face\" has no list \"vertex_indices\".");
+    }
+    if (!has_vertices_)
+      return refuse_file("The element \"face\" comes before the element \"vertex\"; write vertices first.");
+    const PlyProperty& index_list = element.properties[*indices];
+    // No triangle takes fewer bytes than its list of three.
+    const std::uint64_t least =
+        source_.rest() / (1 + 3 * (header_.encoding == PlyEncoding::ascii ? 2 : bytes_of(index_list.type)));
+    loaded_.mesh.triangles.reserve(3 * std::min(element.count, least));
+    const auto texcoords = element.find({"texcoord", "texcoords"});
+    const ColorProperties colors = loaded_.mesh.vertex_colors.empty() ? find_colors(element) : ColorProperties{};
+    if (colors.present()) face_colors_.resize(loaded_.mesh.positions.size());
+
+    std::vector<FaceBuilder::Corner> corners;
+    std::vector<double> values(element.properties.size());
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      if (i % kElementsBetweenReports == 0 && !report("Reading faces")) return cancelled_problem();
+      const std::size_t start = source_.offset();
+      bool has_uv = !vertex_uvs_.empty();
+      uv_list_.clear();
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        const PlyProperty& property = element.properties[k];
+        if (static_cast<int>(k) == *indices) {
+          if (auto read = read_indices(property, i, element.count, corners); !read) return read;
+        } else if (texcoords && static_cast<int>(k) == *texcoords && property.count_type) {
+          if (!read_uv_list(property)) return broken("face", i, element.count);
+        } else if (!(property.count_type ? skip_list(property) : source_.value(property.type, values[k]))) {
+          return broken("face", i, element.count);
+        }
+      }
+      if (!uv_list_.empty() && uv_list_.size() == 2 * corners.size()) {
+        has_uv = true;
+        for (std::size_t k = 0; k < corners.size(); ++k) corners[k].uv = {uv_list_[2 * k], uv_list_[2 * k + 1]};
+      }
+      if (colors.present()) collect_face_color(element, colors, values, corners);
+      auto added =
+          faces_.add(corners, has_uv, [&] { return "face " + std::to_string(i) + ", byte " + std::to_string(start); });
+      if (!added) return added;
+    }
+    return {};
+  }
+
+  Result<void> read_indices(const PlyProperty& list, std::uint64_t face, std::uint64_t faces,
+                            std::vector<FaceBuilder::Corner>& corners) {
+    corners.clear();
+    std::int64_t count = 0, index = 0;
+    if (!read_count(list, count)) return broken("face", face, faces);
+    for (std::int64_t k = 0; k < count; ++k) {
+      if (!source_.integer(list.type, index)) return broken("face", face, faces);
+      if (auto checked = check_index("Face " + std::to_string(face), index); !checked) return checked;
+      FaceBuilder::Corner corner{static_cast<std::uint32_t>(index)};
+      if (!vertex_uvs_.empty()) corner.uv = vertex_uvs_[corner.position];
+      corners.push_back(corner);
+    }
+    return {};
+  }
+
+  bool read_uv_list(const PlyProperty& list) {
+    std::int64_t count = 0;
+    if (!read_count(list, count)) return false;
+    for (std::int64_t k = 0; k < count; ++k) {
+      double value = 0;
+      if (!source_.value(list.type, value)) return false;
+      uv_list_.push_back(static_cast<float>(value));
+    }
+    return true;
+  }
+
+  // Strips end at a negative index; every second triangle of a strip turns the other way. Triangles with a repeated
+  // corner only join strips and are no fault.
+  Result<void> read_strips(const PlyElement& element) {
+    const auto indices = element.find({"vertex_indices", "vertex_index"});
+    if (!indices || !element.properties[*indices].count_type) {
+      return refuse_file("The element \"tristrips\" has no list \"vertex_indices\".");
+    }
+    if (!has_vertices_)
+      return refuse_file("The element \"tristrips\" comes before the element \"vertex\"; write vertices first.");
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      for (std::size_t k = 0; k < element.properties.size(); ++k) {
+        const PlyProperty& property = element.properties[k];
+        double ignored = 0;
+        if (static_cast<int>(k) == *indices) {
+          if (auto read = read_strip_list(property, i, element.count); !read) return read;
+        } else if (!(property.count_type ? skip_list(property) : source_.value(property.type, ignored))) {
+          return broken("tristrips", i, element.count);
+        }
+      }
+    }
+    return {};
+  }
+
+  Result<void> read_strip_list(const PlyProperty& list, std::uint64_t strip, std::uint64_t strips) {
+    std::int64_t count = 0, index = 0;
+    if (!read_count(list, count)) return broken("tristrips", strip, strips);
+    std::array<FaceBuilder::Corner, 3> last;
+    std::uint64_t length = 0;
+    for (std::int64_t k = 0; k < count; ++k) {
+      if (k % std::int64_t{kElementsBetweenReports} == 0 && !report("Reading triangle strips"))
+        return cancelled_problem();
+      if (!source_.integer(list.type, index)) return broken("tristrips", strip, strips);
+      if (index < 0) {
+        length = 0;
+        continue;
+      }
+      if (auto checked = check_index("Triangle strip " + std::to_string(strip), index); !checked) return checked;
+      FaceBuilder::Corner corner{static_cast<std::uint32_t>(index)};
+      if (!vertex_uvs_.empty()) corner.uv = vertex_uvs_[corner.position];
+      last = {last[1], last[2], corner};
+      if (++length < 3) continue;
+      const bool odd = length % 2 == 0;
+      if (last[0].position == last[1].position || last[1].position == last[2].position ||
+          last[0].position == last[2].position)
+        continue;
+      faces_.add_triangle(last[odd ? 1 : 0], last[odd ? 0 : 1], last[2], !vertex_uvs_.empty());
+    }
+    return {};
+  }
+
+  Result<void> skip_element(const PlyElement& element) {
+    if (element.properties.empty()) return {};
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      if (i % kElementsBetweenReports == 0 && !report("Reading " + element.name)) return cancelled_problem();
+      for (const PlyProperty& property : element.properties) {
+        if (!(property.count_type ? skip_list(property) : source_.skip(property.type, 1))) {
+          return broken(element.name, i, element.count);
+        }
+      }
+    }
+    return {};
+  }
+
+  bool read_count(const PlyProperty& list, std::int64_t& count) {
+    if (!source_.integer(*list.count_type, count)) return false;
+    list_too_long_ = count < 0 || !source_.holds(list.type, static_cast<std::uint64_t>(count));
+    return !list_too_long_;
+  }
+
+  bool skip_list(const PlyProperty& list) {
+    std::int64_t count = 0;
+    return read_count(list, count) && source_.skip(list.type, static_cast<std::uint64_t>(count));
+  }
+
+  // A vertex without colours of its own shows the mean of the faces around it.
+  struct ColorSum {
+    std::array<float, 4> rgba{};
+    float faces = 0;
+  };
+
+  void collect_face_color(const PlyElement& element, const ColorProperties& colors, const std::vector<double>& values,
+                          const std::vector<FaceBuilder::Corner>& corners) {
+    const PlyType type = element.properties[colors.rgba[0]].type;
+    const double scale = is_real(type) ? 255.0 : 1.0;
+    for (const FaceBuilder::Corner& corner : corners) {
+      ColorSum& sum = face_colors_[corner.position];
+      for (int k = 0; k < 4; ++k) {
+        const double value = k == 3 && !colors.alpha() ? 255.0 : to_byte_scale(type, values[colors.rgba[k]]) * scale;
+        sum.rgba[k] += static_cast<float>(std::clamp(std::isfinite(value) ? value : 0.0, 0.0, 255.0));
+      }
+      sum.faces += 1;
+    }
+  }
+
+  void spread_face_colors() {
+    if (face_colors_.empty()) return;
+    for (const ColorSum& sum : face_colors_) {
+      const float share = sum.faces > 0 ? 1 / sum.faces : 0;
+      loaded_.mesh.vertex_colors.push_back(
+          pack_color(sum.rgba[0] * share, sum.rgba[1] * share, sum.rgba[2] * share, sum.rgba[3] * share));
+    }
+    note(loaded_.repairs, "face colours spread to vertices", face_colors_.size());
+    face_colors_ = {};
+  }
+
+  Result<void> check_index(const std::string& what, std::int64_t index) const {
+    const std::size_t vertices = loaded_.mesh.positions.size();
+    if (index >= 0 && static_cast<std::uint64_t>(index) < vertices) return {};
+    return refuse_file(what + " (" + source_.place() + ") names vertex " + std::to_string(index) +
+                       ", but the file has " + std::to_string(vertices) + " vertices (0 … " +
+                       std::to_string(static_cast<std::int64_t>(vertices) - 1) + ").");
+  }
+
+  tl::unexpected<Problem> broken(const std::string& element, std::uint64_t index, std::uint64_t count) {
+    const std::string where =
+        element + " " + std::to_string(index) + " of " + std::to_string(count) + " (" + source_.place() + ")";
+    if (list_too_long_) return refuse_file("The list of " + where + " has a length that the file cannot hold.");
+    if (source_.fault() == PlyFault::not_a_number)
+      return refuse_file("In " + where + " stands something that is not the number expected there.");
+    return refuse_file("The file ends in " + where + ": it is cut short. Export or upload it again.");
+  }
+
+  bool report(const std::string& message) {
+    progress_.report(kParsedShare * static_cast<double>(source_.offset()) /
+                         static_cast<double>(std::max<std::size_t>(file_bytes_, 1)),
+                     message);
+    return !progress_.cancelled();
+  }
+
+  Source source_;
+  const PlyHeader& header_;
+  std::size_t file_bytes_;
+  Progress& progress_;
+  LoadedMesh loaded_;
+  FaceBuilder faces_;
+  bool has_vertices_ = false;
+  bool list_too_long_ = false;
+  std::vector<glm::vec2> vertex_uvs_;
+  std::vector<float> uv_list_;
+  std::vector<ColorSum> face_colors_;
+};
+
+}  // namespace
+
+Result<LoadedMesh> parse_ply(std::span<const std::uint8_t> bytes, Progress& progress) {
+  const Result<PlyHeader> header = parse_ply_header(bytes);
+  if (!header) return tl::unexpected(header.error());
+  if (header->encoding == PlyEncoding::ascii) {
+    return PlyReader(PlyAsciiSource(bytes, header->data_offset), *header, bytes.size(), progress).read();
+  }
+  const PlyBinarySource source(bytes, header->data_offset, header->encoding == PlyEncoding::big_endian);
+  return PlyReader(source, *header, bytes.size(), progress).read();
+}
+
+}  // namespace strata::mesh

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/problem.h"
+
+namespace strata::mesh {
+
+enum class PlyType : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
+int bytes_of(PlyType type);
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::f32;        // of the value, or of a list's items
+  std::optional<PlyType> count_type;  // lists only
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+
+  std::optional<int> find(std::initializer_list<std::string_view> names) const;  // index of the first that is there
+  bool has_list() const;
+  // Least bytes that one such element takes (a list may be empty; ascii needs a digit and a blank a value).
+  std::uint64_t least_bytes(bool ascii) const;
+};
+
+enum class PlyEncoding { ascii, little_endian, big_endian };
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::ascii;
+  std::vector<PlyElement> elements;
+  std::uint64_t texture_files = 0;  // images named in comments
+  std::size_t data_offset = 0;      // first byte after the header
+};
+
+// Refuses what is no PLY, and counts that the rest of the file cannot hold. Line ends are LF, CRLF or CR.
+Result<PlyHeader> parse_ply_header(std::span<const std::uint8_t> bytes);
+
+}  // namespace strata::mesh

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+
+#include "mesh/load.h"
+
+namespace strata::test {
+
+// What every mesh that was read must satisfy; a fuzzer counts the trap as a finding.
+inline void check_loaded(const mesh::LoadedMesh& loaded) {
+  const mesh::TriangleMesh& mesh = loaded.mesh;
+  const auto demand = [](bool condition) {
+    if (!condition) std::abort();
+  };
+  demand(!mesh.triangles.empty() && mesh.triangles.size() % 3 == 0);
+  demand(mesh.corner_uvs.empty() || mesh.corner_uvs.size() == mesh.triangles.size());
+  demand(mesh.vertex_colors.empty() || mesh.vertex_colors.size() == mesh.positions.size());
+  for (std::uint32_t index : mesh.triangles) demand(index < mesh.positions.size());
+  for (const glm::dvec3& p : mesh.positions) demand(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+  for (const glm::vec2& uv : mesh.corner_uvs) demand(std::isfinite(uv.x) && std::isfinite(uv.y));
+}
+
+}  // namespace strata::test

@@ -1,0 +1,130 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mesh/polygon.h"
+#include "support/mesh_files.h"
+
+namespace {
+
+using namespace strata;
+using test::count_of;
+using test::load_text;
+using testing::HasSubstr;
+
+TEST(MeshObj, all_corner_forms_negative_indices_continuations_and_crlf_are_read) {
+  const auto loaded = load_text(
+      "# comment\r\nmtllib none.mtl\r\no first\r\nv 0 0 0\r\nv 1 0 0 1.0\r\nv 0 1 0\r\nvt 0 0\r\nvt 1 0 0\r\nvt "
+      ".5\r\nvn 0 0 1\r\n"
+      "usemtl stone\r\nf 1/1 2/2 3/3 # trailing\r\no second\r\ng a b\r\nv 0 0 2\r\nv 1 0 2\r\nv 0 1 2\r\n"
+      "f -3/-3/1 \\\r\n  -2/-2/1 \\\r\n -1/-1/-1\r\nf 1//1 2//1 6//1\r\nf 4 5 2\r\n",
+      "a.OBJ");
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  EXPECT_EQ(loaded->mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 0, 1, 5, 3, 4, 1}));
+  EXPECT_EQ(loaded->mesh.corner_uvs[2], glm::vec2(0.5f, 0));
+  EXPECT_EQ(loaded->mesh.corner_uvs[4], glm::vec2(1, 0));
+  EXPECT_EQ(loaded->mesh.corner_uvs[6], glm::vec2(0, 0));
+  EXPECT_EQ(count_of(loaded->repairs, "triangles without texture coordinates"), 2u);
+  EXPECT_EQ(count_of(loaded->repairs, "ignored materials"), 1u);
+}
+
+TEST(MeshObj, a_face_may_name_vertices_that_follow_it) {
+  const auto loaded = load_text("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n", "a.obj");
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->mesh.triangle_count(), 1u);
+}
+
+TEST(MeshObj, colours_may_be_shares_or_bytes) {
+  const auto shares = load_text("v 0 0 0 1 0 .2\nv 1 0 0 0 1 0\nv 0 1 0 0 0 0\nf 1 2 3\n", "a.obj");
+  const auto bytes = load_text("v 0 0 0 1 0 0\nv 1 0 0 0 255 0\nv 0 1 0 51 0 7\nf 1 2 3\n", "a.obj");
+  const auto partly = load_text("v 0 0 0\nv 1 0 0 0 1 0\nv 0 1 0\nf 1 2 3\n", "a.obj");
+  ASSERT_TRUE(shares && bytes && partly);
+  EXPECT_EQ(shares->mesh.vertex_colors, (std::vector<std::uint32_t>{0xff3300ffu, 0xff00ff00u, 0xff000000u}));
+  EXPECT_EQ(bytes->mesh.vertex_colors, (std::vector<std::uint32_t>{0xff000001u, 0xff00ff00u, 0xff070033u}));
+  EXPECT_EQ(partly->mesh.vertex_colors, (std::vector<std::uint32_t>{0xffffffffu, 0xff00ff00u, 0xffffffffu}));
+  EXPECT_EQ(count_of(partly->repairs, "vertices without colour"), 2u);
+}
+
+TEST(MeshObj, numbers_may_carry_a_plus_and_an_exponent_and_stay_double) {
+  const auto loaded = load_text("v +433210.123456789 -1E+1 1e-400\nv 1 0 0\nv 0 1 0\nf +1 2 3\n", "a.obj");
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  EXPECT_EQ(loaded->mesh.positions[0], glm::dvec3(433210.123456789, -10, 0));
+}
+
+TEST(MeshObj, a_concave_polygon_keeps_its_area_and_winding) {
+  // An L, seen from above and from below; and a comb whose convex corners are not all ears.
+  for (const std::string face : {"f 1 2 3 4 5 6\n", "f 6 5 4 3 2 1\n", "f 3 4 5 6 1 2\n"}) {
+    const auto loaded = load_text("v 0 0 5\nv 3 0 5\nv 3 1 5\nv 1 1 5\nv 1 3 5\nv 0 3 5\n" + face, "a.obj");
+    ASSERT_TRUE(loaded);
+    EXPECT_EQ(loaded->mesh.triangle_count(), 4u);
+    EXPECT_NEAR(mesh::surface_area(loaded->mesh), 5, 1e-12);
+    for (std::size_t i = 0; i < 12; i += 3) {
+      const auto at = [&](std::size_t k) { return loaded->mesh.positions[loaded->mesh.triangles[i + k]]; };
+      EXPECT_EQ(glm::cross(at(1) - at(0), at(2) - at(0)).z > 0, face[2] != '6');
+    }
+  }
+  const auto comb =
+      load_text("v 0 0 0\nv 9 0 1\nv 9 5 1\nv 7 1 .7\nv 5 5 .5\nv 3 1 .3\nv 1 5 .1\nf 1 2 3 4 5 6 7\n", "a.obj");
+  ASSERT_TRUE(comb);
+  const double flat_area = 26.5;  // shoelace of the comb in xy
+  EXPECT_NEAR(mesh::surface_area(comb->mesh), flat_area, flat_area * 0.02);
+}
+
+TEST(MeshObj, an_outline_that_crosses_itself_still_gives_its_triangles) {
+  std::vector<glm::dvec3> star;
+  for (int i = 0; i < 5; ++i) star.emplace_back(std::cos(i * 4 * M_PI / 5), std::sin(i * 4 * M_PI / 5), 0);
+  std::vector<std::uint32_t> triangles;
+  mesh::triangulate_polygon(star, triangles);
+  EXPECT_EQ(triangles.size(), 9u);
+  for (std::uint32_t corner : triangles) EXPECT_LT(corner, 5u);
+  const std::vector<glm::dvec3> spot(6, glm::dvec3(1));
+  mesh::triangulate_polygon(spot, triangles);
+  EXPECT_EQ(triangles.size(), 12u);
+}
+
+TEST(MeshObj, lines_and_two_cornered_faces_are_dropped_and_counted) {
+  const auto loaded = load_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\nl 1 2 3\np 1\nf 1 2 3\n", "a.obj");
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(count_of(loaded->repairs, "dropped faces with fewer than three corners"), 1u);
+  EXPECT_EQ(count_of(loaded->repairs, "ignored lines, points, curves and free-form surfaces"), 2u);
+}
+
+struct BadObj {
+  std::string name, bytes, says;
+  friend std::ostream& operator<<(std::ostream& out, const BadObj& bad) { return out << bad.name; }
+};
+class MalformedObj : public testing::TestWithParam<BadObj> {};
+
+TEST_P(MalformedObj, is_refused_with_its_line) {
+  const auto loaded = load_text(GetParam().bytes, "a.obj");
+  ASSERT_FALSE(loaded);
+  EXPECT_EQ(loaded.error().status, 422);
+  EXPECT_THAT(loaded.error().detail, HasSubstr(GetParam().says));
+}
+
+std::string huge_polygon() {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
+  for (int i = 0; i < 5000; ++i) text += " " + std::to_string(i % 3 + 1);
+  return text + "\n";
+}
+
+const std::string kThree = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+INSTANTIATE_TEST_SUITE_P(
+    all, MalformedObj,
+    testing::Values(BadObj{"empty", "", "empty"}, BadObj{"other", "hello\n", "no faces"},
+                    BadObj{"points", kThree, "point cloud"},
+                    BadObj{"index", kThree + "\nf 1 2 4\n", "Line 5: the face names vertex 4, but the file has 3"},
+                    BadObj{"zero", kThree + "f 0 1 2\n", "vertex 0"},
+                    BadObj{"relative", "v 0 0 0\nf -1 -2 -3\nv 0 0 1\nv 1 1 1\n", "(1 above this line)"},
+                    BadObj{"lowest", kThree + "f -9223372036854775808 1 2\n", "Line 4"},
+                    BadObj{"beyond", kThree + "f 99999999999999999999 1 2\n", "Line 4"},
+                    BadObj{"word", kThree + "f a b c\n", "\"a\" is no face corner"},
+                    BadObj{"uv", kThree + "vt 0 0\nf 1/1 2/2 3/1\n", "texture coordinate 2"},
+                    BadObj{"number", "v 0 0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n", "Line 2"},
+                    BadObj{"after_continuation", "v 0 \\\n0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n", "Line 3"},
+                    BadObj{"two_numbers", "v 0 0\nf 1 1 1\n", "needs three numbers"},
+                    BadObj{"nan", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "1 vertices"},
+                    BadObj{"corners", huge_polygon(), "5000 corners"},
+                    BadObj{"last_backslash", kThree + "f 1 2 \\", "no triangle"}),
+    [](const auto& bad) { return bad.param.name; });
+
+}  // namespace
