@@ -12,9 +12,15 @@ namespace strata {
 // `cancelled()` turns true by returning `cancelled_problem()`. Thread-safe.
 class Progress {
  public:
+  // What is reported from now on is a share of [from, to] of the whole: steps need not know where they stand in it.
+  void begin_stage(double from, double to) {
+    std::lock_guard lock(mutex_);
+    from_ = from;
+    to_ = to;
+  }
   void report(double fraction, std::string message) {
     std::lock_guard lock(mutex_);
-    fraction_ = fraction;
+    fraction_ = from_ + (to_ - from_) * fraction;
     message_ = std::move(message);
   }
   double fraction() const {
@@ -30,6 +36,7 @@ class Progress {
 
  private:
   mutable std::mutex mutex_;
+  double from_ = 0, to_ = 1;
   double fraction_ = 0;
   std::string message_;
   std::atomic<bool> cancelled_{false};

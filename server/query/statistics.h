@@ -20,8 +20,12 @@ struct Statistics {
   std::uint64_t texels = 0;
   double area_m2 = 0;
   double min = 0, max = 0, mean = 0, std = 0;
-  struct Bin { double from, to, area_m2; };
-  std::vector<Bin> histogram;                 // 64 equal bins from min to max; empty where nothing is valid
+  struct Bin {
+    double from = 0, to = 0;                  // the last one includes `to`
+    std::uint64_t texels = 0;
+    double area_m2 = 0;
+  };
+  std::vector<Bin> histogram;                 // 64 equal bins from min to max; one where all values are equal; empty where nothing is valid
   std::map<double, KeyStatistics> keys;       // integer layers with ≤ 4096 distinct values; otherwise empty
 };
 

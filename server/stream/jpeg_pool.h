@@ -13,7 +13,7 @@ struct JpegSettings {
   bool full_color = false; // 4:4:4 instead of 4:2:0
 };
 
-// RGBA8 rows, top first → JPEG. Thread-safe.
+// RGBA8 rows, top first → JPEG, which leaves alpha out. Thread-safe. Throws where `rgba` is not width × height × 4 bytes.
 std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int width, int height, JpegSettings settings);
 std::vector<std::uint8_t> encode_png(std::span<const std::uint8_t> rgba, int width, int height);
 
@@ -22,7 +22,8 @@ class JpegPool {
  public:
   explicit JpegPool(int threads);
   ~JpegPool();
-  // `done` runs on a pool thread with the bytes and the milliseconds it took.
+  // `done` runs on a pool thread with the bytes and the milliseconds it took; no bytes where encoding failed (logged).
+  // Not called for pictures that still wait when the pool is destroyed.
   void encode(std::vector<std::uint8_t> rgba, int width, int height, JpegSettings settings,
               std::function<void(std::vector<std::uint8_t>, double)> done);
 

@@ -7,6 +7,7 @@
 
 #include "core/camera.h"
 #include "render/renderer.h"
+#include "stream/flow_control.h"
 #include "stream/jpeg_pool.h"
 
 namespace strata::stream {
@@ -31,6 +32,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     std::uint32_t view_id = 0;
     int window = 2;                 // frames on their way
     int max_width = 3840, max_height = 2160;
+    std::int64_t sequence = 0;      // of the scene at the start
   };
   using Send = std::function<void(FrameBytes)>;
 
@@ -55,6 +57,16 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
 
  private:
   Viewer();
+  void add_view();
+  bool on_view(std::uint64_t generation, const Result<render::ViewHandle>& view);  // false: the view is not wanted any more
+  void step();
+  void on_drawn(const FlowControl::Draw& draw, render::Frame frame);
+  void on_failed(std::uint64_t ticket, const Problem& problem);
+  void encode_next();
+  void on_encoded(const std::vector<std::uint8_t>& jpeg, double encode_ms);
+  void wait_for_quiet();
+  void retry_later(std::function<void(Viewer&)> action);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -1,0 +1,215 @@
+#include <algorithm>
+#include <chrono>
+#include <future>
+#include <utility>
+
+#include "core/slug.h"
+#include "jobs/demo_rules.h"
+#include "jobs/import_job.h"
+#include "mesh/atlas.h"
+#include "mesh/demo_pot.h"
+#include "mesh/geometry.h"
+#include "mesh/surface_map.h"
+#include "store/journal_writer.h"
+
+namespace strata::jobs {
+namespace {
+
+constexpr int kResolution = 2048;
+constexpr const char* kProject = "demo";
+constexpr const char* kModel = "Demo pot";
+constexpr const char* kAuthor = "Strata";
+
+Layer sherds_layer() {
+  // Light and dark tones alternate, so that neighbours differ with every colour vision.
+  static constexpr Rgba kColors[DemoRules::kSherds] = {
+      {230, 159, 0, 255},   {86, 180, 233, 255}, {0, 114, 178, 255},  {240, 228, 66, 255}, {213, 94, 0, 255},
+      {204, 121, 167, 255}, {120, 94, 240, 255}, {255, 176, 124, 255}, {51, 34, 136, 255},  {170, 221, 221, 255},
+      {136, 34, 85, 255},   {221, 204, 119, 255}, {153, 153, 153, 255}, {170, 68, 153, 255}};
+  Layer layer;
+  layer.name = layer.slug = "pieces";
+  layer.description = "The sherds that the pot was put together from, numbered.";
+  layer.palette = {PaletteMode::categorical, 1, DemoRules::kSherds, {}, {}};
+  for (int i = 0; i < DemoRules::kSherds; ++i)
+    layer.palette.points.push_back({double(i + 1), kColors[i], "Sherd " + std::to_string(i + 1)});
+  layer.opacity = 0.55;  // relief and colour of the clay stay visible
+  layer.order = 0;
+  return layer;
+}
+
+Layer cracks_layer() {
+  Layer layer;
+  layer.name = layer.slug = "cracks";
+  layer.description = "Cracks, by how far they have opened.";
+  layer.palette = {PaletteMode::categorical, DemoRules::hairline, DemoRules::open_crack, {}, {}};
+  layer.palette.points = {{DemoRules::hairline, {156, 230, 120, 255}, "Hairline"},
+                          {DemoRules::crack, {34, 160, 70, 255}, "Crack"},
+                          {DemoRules::open_crack, {0, 84, 48, 255}, "Open crack"}};
+  layer.opacity = 0.95;
+  layer.order = 1;
+  return layer;
+}
+
+Result<Project> demo_project(store::Store& store) {
+  auto project = store.project(kProject);
+  if (project || project.error().status != 404) return project;
+  Project fresh;
+  fresh.name = "Demo";
+  fresh.slug = kProject;
+  fresh.description = "A made-up pot to try things on.";
+  return store.create_project(fresh);
+}
+
+Result<Model> create_pot(store::Store& store, const Project& project, double detail, Progress& progress) {
+  progress.begin_stage(0, 0.05);
+  progress.report(0, "Making the pot");
+  const mesh::TriangleMesh pot = mesh::make_demo_pot(detail);
+  progress.begin_stage(0.05, 0.5);
+  auto atlas = mesh::make_atlas(pot, kResolution, progress);
+  if (!atlas) return tl::unexpected(atlas.error());
+  const mesh::Geometry geometry = mesh::build_geometry(pot, *atlas);
+
+  store::Store::NewModel fresh;
+  Model& model = fresh.model;
+  model.project_id = project.id;
+  model.name = kModel;
+  model.slug = make_slug(kModel);
+  model.unit = Unit::mm;
+  model.unit_assumed = false;
+  model.scale_verified = true;
+  model.origin = geometry.origin;
+  model.triangles = geometry.triangle_count();
+  model.vertices = geometry.positions.size();
+  model.area = mesh::surface_area(pot);
+  model.bounds_min = model.bounds_max = geometry.positions.front();
+  for (const auto& position : geometry.positions) {
+    model.bounds_min = glm::min(model.bounds_min, position);
+    model.bounds_max = glm::max(model.bounds_max, position);
+  }
+  model.atlas = atlas->report;
+  model.default_resolution = kResolution;
+  model.creator = kAuthor;
+  model.method = "Made by formula, not scanned";
+  progress.begin_stage(0.5, 0.6);
+  progress.report(0, "Saving the pot");
+  fresh.geometry = mesh::encode_geometry(geometry);
+  return store.create_model(fresh, [&progress] { return progress.cancelled(); });
+}
+
+Result<Model> find_or_create_pot(store::Store& store, double detail, Progress& progress) {
+  const auto project = demo_project(store);
+  if (!project) return tl::unexpected(project.error());
+  const auto models = store.models(project->id);
+  if (!models) return tl::unexpected(models.error());
+  const auto pot = std::find_if(models->begin(), models->end(), [](const Model& model) { return model.name == kModel; });
+  return pot != models->end() ? *pot : create_pot(store, *project, detail, progress);
+}
+
+Result<Layer> find_or_create_layer(store::Store& store, const Model& model, Layer wanted) {
+  auto layer = store.layer(model.id, wanted.slug);
+  if (layer || layer.error().status != 404) return layer;
+  wanted.model_id = model.id;
+  wanted.type = ValueType::u8;
+  wanted.resolution = kResolution;
+  return store.create_layer(wanted);
+}
+
+// One fill: every texel that the rule gives a value gets it. Tiles come in the order of their addresses.
+template <class Rule>
+store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer, double metres_per_unit, const Rule& rule) {
+  store::JournalEntry entry;
+  const int tiles = map.resolution / kTileSize, blocks = kTileSize / kBlockSize;
+  std::uint64_t texels = 0;
+  double area = 0;
+  for (int ty = 0; ty < tiles; ++ty)
+    for (int tx = 0; tx < tiles; ++tx) {
+      const TileAddress address{static_cast<std::uint16_t>(tx), static_cast<std::uint16_t>(ty)};
+      TileData tile(layer.type);
+      TileMask written;
+      for (int block = 0; block < blocks * blocks; ++block) {
+        const int bx = block % blocks, by = block / blocks;
+        const auto slot = map.slot_of_block[std::size_t(ty * blocks + by) * map.blocks_per_side + tx * blocks + bx];
+        if (slot == mesh::kNoSlot) continue;
+        for (int i = 0; i < kBlockSize * kBlockSize; ++i) {
+          const std::size_t at = std::size_t(slot) * 64 + i;
+          if (map.packed_position[at] == mesh::kNoPosition) continue;
+          const std::uint8_t value = rule(map.position(slot, i));
+          if (value == 0) continue;
+          const int texel = (by * kBlockSize + i / kBlockSize) * kTileSize + bx * kBlockSize + i % kBlockSize;
+          tile.write(texel, value);
+          written.set(texel);
+          texels += map.surface_mask[slot] >> i & 1u;
+          area += map.area[at];
+        }
+      }
+      if (!written.any()) continue;
+      entry.revisions.push_back({address, encode_revision(make_revision(address, TileData(layer.type), tile, written)), {}});
+    }
+  entry.answer = {{"texels_changed", texels}, {"area_m2", area * metres_per_unit * metres_per_unit}};
+  return entry;
+}
+
+Result<void> write_entry(store::Store& store, const Model& model, const Layer& layer, const char* rule, store::JournalEntry entry) {
+  const auto last = store.last_sequence(model.id);
+  if (!last) return tl::unexpected(last.error());
+  entry.model_id = model.id;
+  entry.layer_id = layer.id;
+  entry.sequence = *last + 1;
+  entry.id = entry.stroke = random_uuid();
+  entry.user = kAuthor;
+  entry.op = "fill";
+  entry.record = {{"op", "fill"}, {"mode", "rule"}, {"rule", rule}};
+  entry.answer["sequence"] = entry.sequence;
+  entry.time = std::chrono::system_clock::now();
+  std::promise<Result<void>> saved;
+  store::JournalWriter writer(store, {});
+  if (!writer.submit(std::move(entry), [&saved](Result<void> result) { saved.set_value(std::move(result)); }))
+    return fail(503, "Database unavailable", "The demo's layers were not saved. Try again.");
+  return saved.get_future().get();
+}
+
+}  // namespace
+
+Result<Model> make_demo(store::Store& store, Progress& progress, double detail) {
+  const auto pot = find_or_create_pot(store, detail, progress);
+  if (!pot) return pot;
+  const auto pieces = find_or_create_layer(store, *pot, sherds_layer());
+  if (!pieces) return tl::unexpected(pieces.error());
+  const auto cracks = find_or_create_layer(store, *pot, cracks_layer());
+  if (!cracks) return tl::unexpected(cracks.error());
+  // A layer that someone has painted on, or emptied, stays as it is.
+  if (pieces->sequence == 0 || cracks->sequence == 0) {
+    const auto stored = store.geometry(pot->id);
+    if (!stored) return tl::unexpected(stored.error());
+    const auto geometry = mesh::decode_geometry(*stored);
+    if (!geometry) return tl::unexpected(geometry.error());
+    progress.begin_stage(0.6, 0.75);
+    progress.report(0, "Mapping the surface");
+    const auto map = mesh::bake_surface_map(*geometry, kResolution, progress);
+    if (!map) return tl::unexpected(map.error());
+
+    std::vector<glm::vec3> surface;
+    for (const auto& vertex : geometry->vertices) surface.push_back(vertex.position);
+    const DemoRules rules(surface);
+    progress.begin_stage(0.75, 1);
+    progress.report(0, "Painting the demo's layers");
+    if (pieces->sequence == 0) {
+      auto entry = fill_by_rule(*map, *pieces, pot->metres(), [&](const glm::vec3& p) { return rules.at(p).sherd; });
+      if (progress.cancelled()) return cancelled_problem();
+      if (auto saved = write_entry(store, *pot, *pieces, "sherds of the demo pot", std::move(entry)); !saved)
+        return tl::unexpected(saved.error());
+    }
+    progress.report(0.5, "Painting the demo's layers");
+    if (cracks->sequence == 0) {
+      auto entry = fill_by_rule(*map, *cracks, pot->metres(), [&](const glm::vec3& p) { return std::uint8_t(rules.at(p).crack); });
+      if (progress.cancelled()) return cancelled_problem();
+      if (auto saved = write_entry(store, *pot, *cracks, "cracks of the demo pot", std::move(entry)); !saved)
+        return tl::unexpected(saved.error());
+    }
+  }
+  progress.begin_stage(0, 1);
+  progress.report(1, "Done");
+  return store.model(std::to_string(pot->id));
+}
+
+}  // namespace strata::jobs

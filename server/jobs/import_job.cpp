@@ -1,0 +1,133 @@
+#include "jobs/import_job.h"
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <utility>
+
+#include "core/slug.h"
+#include "mesh/geometry.h"
+#include "mesh/load.h"
+
+namespace strata::jobs {
+namespace {
+
+// Layers of any size from here on fit the atlas: its gaps are made for the coarsest.
+constexpr int kLowestResolution = 2048;
+constexpr int kHighestResolution = 16384;
+
+// Shares of the whole import, as measured on scans of 100 000 to 1 000 000 triangles.
+constexpr double kRead = 0.15, kUnfolded = 0.8, kBuilt = 0.85;
+
+// The last part of a user's path, which may come from any system.
+std::string base_name(const std::string& filename) {
+  const auto slash = filename.find_last_of("/\\");
+  return slash == std::string::npos ? filename : filename.substr(slash + 1);
+}
+
+std::string stem(const std::string& filename) {
+  const std::string base = base_name(filename);
+  const auto dot = base.find_last_of('.');
+  return dot == std::string::npos || dot == 0 ? base : base.substr(0, dot);
+}
+
+bool is_crs(const std::string& crs) {
+  constexpr std::string_view kPrefix = "EPSG:";
+  const std::size_t digits = crs.size() - std::min(crs.size(), kPrefix.size());
+  return crs.starts_with(kPrefix) && digits >= 1 && digits <= 7 && is_all_digits(crs.substr(kPrefix.size()));
+}
+
+Result<void> check(const ImportRequest& request) {
+  if (base_name(request.filename).empty())
+    return fail(422, "File name missing", "Give the file's name; its ending (.ply, .obj) tells the format.", "filename");
+  if (!request.up.empty() && request.up != "x" && request.up != "y" && request.up != "z")
+    return fail(422, "Unknown direction", "`up` is x, y or z.", "up");
+  if (!request.crs.empty() && !is_crs(request.crs))
+    return fail(422, "Unknown coordinate system", "A coordinate system is given as EPSG:n, for example EPSG:25830.", "crs");
+  const int resolution = request.resolution;
+  if (resolution != 0 && (resolution < kLowestResolution || resolution > kHighestResolution || !std::has_single_bit(unsigned(resolution))))
+    return fail(422, "Resolution not usable", "The resolution of layers is 2048, 4096, 8192 or 16384.", "resolution");
+  return {};
+}
+
+Result<void> refuse_repairs(const std::vector<Repair>& repairs) {
+  std::string list;
+  for (const auto& repair : repairs) list += (list.empty() ? "" : ", ") + repair.what + " (" + std::to_string(repair.count) + ")";
+  return fail(422, "File needs repair", "It would be imported only after this: " + list + ". Mend the file, or import it without `strict`.",
+              "strict");
+}
+
+// The file's own texture coordinates where they can carry layers; otherwise an unfolding of our own, and a note why.
+Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair>& repairs, Progress& progress) {
+  if (!mesh.corner_uvs.empty()) {
+    progress.report(0, "Checking the texture coordinates");
+    auto kept = mesh::keep_uvs(mesh, kLowestResolution, progress);
+    if (kept || kept.error().status == 499) return kept;
+    repairs.push_back({"texture coordinates not kept: " + kept.error().detail, mesh.triangle_count()});
+  }
+  progress.report(0, "Unfolding the surface");
+  return mesh::make_atlas(mesh, kLowestResolution, progress);
+}
+
+void describe_form(Model& model, const mesh::TriangleMesh& mesh, const mesh::Geometry& geometry) {
+  model.origin = geometry.origin;
+  model.triangles = geometry.triangle_count();
+  model.vertices = geometry.positions.size();
+  model.area = mesh::surface_area(mesh);
+  model.bounds_min = model.bounds_max = geometry.positions.front();
+  for (const auto& position : geometry.positions) {
+    model.bounds_min = glm::min(model.bounds_min, position);
+    model.bounds_max = glm::max(model.bounds_max, position);
+  }
+}
+
+}  // namespace
+
+Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress) {
+  if (auto good = check(request); !good) return tl::unexpected(good.error());
+  const auto project = store.project(request.project);
+  if (!project) return tl::unexpected(project.error());
+
+  progress.begin_stage(0, kRead);
+  progress.report(0, "Reading the file");
+  auto loaded = mesh::load_mesh(request.file, request.filename, progress);
+  if (!loaded) return tl::unexpected(loaded.error());
+  if (request.strict && !loaded->repairs.empty())
+    if (auto refused = refuse_repairs(loaded->repairs); !refused) return tl::unexpected(refused.error());
+
+  progress.begin_stage(kRead, kUnfolded);
+  auto atlas = atlas_for(loaded->mesh, loaded->repairs, progress);
+  if (!atlas) return tl::unexpected(atlas.error());
+
+  progress.begin_stage(kUnfolded, kBuilt);
+  progress.report(0, "Building the model");
+  if (progress.cancelled()) return cancelled_problem();
+  const mesh::Geometry geometry = mesh::build_geometry(loaded->mesh, *atlas);
+
+  store::Store::NewModel fresh;
+  Model& model = fresh.model;
+  model.project_id = project->id;
+  model.name = request.name.empty() ? stem(request.filename) : request.name;
+  model.slug = make_slug(model.name);
+  model.unit = request.unit.value_or(Unit::m);
+  model.unit_assumed = !request.unit.has_value();
+  if (!request.up.empty()) model.up = request.up;
+  model.crs = request.crs;
+  model.default_resolution = request.resolution == 0 ? kLowestResolution : request.resolution;
+  model.atlas = atlas->report;
+  model.repairs = loaded->repairs;
+  describe_form(model, loaded->mesh, geometry);
+
+  progress.begin_stage(kBuilt, 1);
+  progress.report(0, "Saving");
+  *loaded = {};  // the mesh is in the geometry now; large scans need the memory
+  *atlas = {};
+  fresh.geometry = mesh::encode_geometry(geometry);
+  fresh.sources.push_back({base_name(request.filename), request.file});
+  progress.report(0.5, "Saving");
+  auto created = store.create_model(fresh, [&progress] { return progress.cancelled(); });
+  if (created) progress.report(1, "Done");
+  return created;
+}
+
+}  // namespace strata::jobs

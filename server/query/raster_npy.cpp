@@ -1,0 +1,127 @@
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "query/raster.h"
+#include "query/raster_rows.h"
+
+namespace strata::query {
+namespace {
+
+constexpr std::string_view kMagic = "\x93NUMPY";
+constexpr std::size_t kMaxHeader = 4096;  // ours have about 120 bytes; NumPy pads to 64
+
+std::string dtype_of(ValueType type) {
+  static constexpr const char* kNames[] = {"|u1", "<u2", "<u4", "|i1", "<i2", "<i4", "<f2", "<f4"};
+  return kNames[static_cast<std::size_t>(type)];
+}
+
+std::string descr_of(ValueType type) { return "[('value','" + dtype_of(type) + "'),('valid','|b1')]"; }
+
+struct Header {
+  std::string descr;      // without blanks, with single quotes
+  bool fortran_order = false;
+  std::string shape;      // "(2048,2048)"
+  std::size_t data_at = 0;
+};
+
+// The text of a key's value in a Python dictionary without blanks: up to the comma or brace that ends it.
+std::optional<std::string> value_of(const std::string& dictionary, const std::string& key) {
+  const auto at = dictionary.find("'" + key + "':");
+  if (at == std::string::npos) return std::nullopt;
+  const std::size_t begin = at + key.size() + 3;
+  int depth = 0;
+  for (std::size_t i = begin; i < dictionary.size(); ++i) {
+    const char c = dictionary[i];
+    if (depth == 0 && (c == ',' || c == '}')) return dictionary.substr(begin, i - begin);
+    if (c == '(' || c == '[' || c == '{') ++depth;
+    if (c == ')' || c == ']' || c == '}') --depth;
+  }
+  return std::nullopt;
+}
+
+Result<Header> read_header(std::span<const std::uint8_t> bytes) {
+  auto damaged = [] { return refuse_raster("This is not a NumPy file, or its header is damaged."); };
+  if (bytes.size() < 12 || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) return damaged();
+  const int version = bytes[6];
+  if (version < 1 || version > 3) return refuse_raster("NumPy format version " + std::to_string(version) + " is not known.");
+  const std::size_t start = version == 1 ? 10 : 12;
+  std::size_t length = bytes[8] | bytes[9] << 8;
+  if (version > 1) length |= std::size_t(bytes[10]) << 16 | std::size_t(bytes[11]) << 24;
+  if (length > kMaxHeader || start + length > bytes.size()) return damaged();
+
+  std::string text;
+  for (const std::uint8_t byte : bytes.subspan(start, length)) {
+    const char c = static_cast<char>(byte);
+    if (c == ' ' || c == '\n' || c == '\t') continue;
+    text += c == '"' ? '\'' : c;
+  }
+  const auto descr = value_of(text, "descr"), order = value_of(text, "fortran_order"), shape = value_of(text, "shape");
+  if (!descr || !order || !shape || (*order != "True" && *order != "False")) return damaged();
+  return Header{*descr, *order == "True", *shape, start + length};
+}
+
+Result<void> check_shape(const Layer& layer, const Header& header) {
+  const std::string side = std::to_string(layer.resolution);
+  if (header.shape == "(" + side + "," + side + ")") return {};
+  return refuse_raster("The array's shape is " + header.shape.substr(0, 100) + ", but the layer needs " + raster_needs(layer) + ".");
+}
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> encode_npy(const Layer& layer, const TileMap& tiles) {
+  const std::string side = std::to_string(layer.resolution);
+  std::string header = "{'descr': [('value', '" + dtype_of(layer.type) +
+                       "'), ('valid', '|b1')], 'fortran_order': False, 'shape': (" + side + ", " + side + "), }";
+  constexpr std::size_t kBefore = 10;
+  header.append(63 - (kBefore + header.size()) % 64, ' ');  // data begins at a multiple of 64
+  header += '\n';
+
+  const int width = bytes_per_texel(layer.type);
+  const std::size_t row_bytes = std::size_t(layer.resolution) * (width + 1);
+  std::vector<std::uint8_t> out(kMagic.begin(), kMagic.end());
+  out.reserve(kBefore + header.size() + row_bytes * layer.resolution);
+  out.insert(out.end(), {1, 0, static_cast<std::uint8_t>(header.size()), static_cast<std::uint8_t>(header.size() >> 8)});
+  out.insert(out.end(), header.begin(), header.end());
+
+  const TileRows rows(layer, tiles);
+  std::vector<std::uint32_t> bits(layer.resolution);
+  std::vector<std::uint8_t> valid(layer.resolution);
+  for (int row = 0; row < layer.resolution; ++row) {
+    rows.read(row, bits, valid);
+    std::size_t at = out.size();
+    out.resize(at + row_bytes);
+    for (int x = 0; x < layer.resolution; ++x, at += width + 1) {
+      std::memcpy(out.data() + at, &bits[x], width);
+      out[at + width] = valid[x];
+    }
+  }
+  return out;
+}
+
+Result<TileMap> decode_npy(const Layer& layer, std::span<const std::uint8_t> bytes) {
+  auto header = read_header(bytes);
+  if (!header) return tl::unexpected(header.error());
+  if (header->descr != descr_of(layer.type))
+    return refuse_raster("The array's type is " + header->descr.substr(0, 200) + ", but the layer needs " +
+                         descr_of(layer.type) + ": the value and whether it is valid.");
+  if (header->fortran_order) return refuse_raster("The array is stored by columns; save it with order='C'.");
+  if (auto shape = check_shape(layer, *header); !shape) return tl::unexpected(shape.error());
+
+  const int width = bytes_per_texel(layer.type);
+  const auto side = static_cast<std::size_t>(layer.resolution);
+  const std::span<const std::uint8_t> data = bytes.subspan(header->data_at);
+  if (data.size() != side * side * (width + 1))
+    return refuse_raster("The file holds " + std::to_string(data.size()) + " bytes of texels, but its header promises " +
+                         std::to_string(side * side * (width + 1)) + ". It was cut or is damaged.");
+  TileMapBuilder builder(layer);
+  const std::uint8_t* texel = data.data();
+  for (int row = 0; row < layer.resolution; ++row)
+    for (int x = 0; x < layer.resolution; ++x, texel += width + 1)
+      if (texel[width] != 0)
+        if (auto put = builder.put(x, row, texel); !put) return tl::unexpected(put.error());
+  return builder.finish();
+}
+
+}  // namespace strata::query

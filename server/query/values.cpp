@@ -1,0 +1,63 @@
+#include "query/values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace strata::query {
+namespace {
+
+SurfacePoint surface_point(const mesh::SearchTree::Hit& hit, const glm::dvec3& origin, const std::vector<LayerView>& layers) {
+  SurfacePoint point{true, glm::dvec3(hit.position) + origin, hit.normal, hit.distance, hit.uv, {}};
+  point.values.reserve(layers.size());
+  for (const auto& layer : layers) point.values.push_back(value_at(layer, hit.uv));
+  return point;
+}
+
+SurfacePoint off_the_model(const std::vector<LayerView>& layers) {
+  SurfacePoint point;
+  for (const auto& layer : layers) point.values.push_back({layer.layer.slug, false, 0});
+  return point;
+}
+
+bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+}  // namespace
+
+LayerValue value_at(const LayerView& view, glm::vec2 uv) {
+  const int resolution = view.layer.resolution;
+  auto texel = [resolution](float coordinate) {
+    const float scaled = std::floor(coordinate * static_cast<float>(resolution));
+    return std::isfinite(scaled) ? static_cast<int>(std::clamp(scaled, 0.0f, static_cast<float>(resolution - 1))) : 0;
+  };
+  const int x = texel(uv.x), y = texel(uv.y);
+  LayerValue value{view.layer.slug, false, 0};
+  const TileAddress address{static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)};
+  const auto found = view.snapshot.tiles.find(address);
+  if (found == view.snapshot.tiles.end() || !found->second) return value;
+  const int in_tile = (y % kTileSize) * kTileSize + x % kTileSize;
+  if (!found->second->valid.test(in_tile)) return value;
+  value.valid = true;
+  value.value = decode_value(view.layer.type, found->second->bits(in_tile));
+  return value;
+}
+
+SurfacePoint nearest_point(const mesh::SearchTree& tree, const glm::dvec3& origin, const glm::dvec3& world_point,
+                           const std::vector<LayerView>& layers) {
+  const glm::vec3 in_model(world_point - origin);
+  if (!is_finite(in_model)) return off_the_model(layers);
+  const auto hit = tree.nearest(in_model, std::numeric_limits<float>::max());
+  return hit ? surface_point(*hit, origin, layers) : off_the_model(layers);
+}
+
+SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const Camera& camera, double x, double y,
+                  const std::vector<LayerView>& layers) {
+  if (!(x >= 0 && y >= 0 && x <= camera.width && y <= camera.height)) return off_the_model(layers);
+  const Ray ray = ray_through_pixel(camera, x, y);
+  const glm::vec3 start(ray.origin - origin), direction(ray.direction);
+  if (!is_finite(start) || !is_finite(direction)) return off_the_model(layers);
+  const auto hit = tree.first_hit(start, direction);
+  return hit ? surface_point(*hit, origin, layers) : off_the_model(layers);
+}
+
+}  // namespace strata::query

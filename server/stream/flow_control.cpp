@@ -1,0 +1,90 @@
+#include "stream/flow_control.h"
+
+#include <algorithm>
+
+namespace strata::stream {
+
+void FlowControl::on_ready() { ready_ = true; }
+
+void FlowControl::on_reset() {
+  ready_ = false;
+  out_.reset();
+  boxes_.clear();
+  everything_waits_ = true;
+  refine_waits_ = false;
+}
+
+void FlowControl::on_camera(std::uint64_t camera_seq, const Camera& camera, bool moving) {
+  camera_seq_ = camera_seq;
+  moving_ = moving;
+  if (camera_ == camera) return;
+  if (camera_waits_) ++dropped_;
+  camera_ = camera;
+  camera_waits_ = true;
+  everything_waits_ = true;
+}
+
+void FlowControl::add_box(const Box& box) {
+  boxes_.push_back(box);
+  if (boxes_.size() <= kMaxBoxes) return;
+  Box all = boxes_.front();
+  for (const Box& one : boxes_) all = {glm::min(all.min, one.min), glm::max(all.max, one.max)};
+  boxes_.assign(1, all);
+}
+
+void FlowControl::on_change(const Box& box, std::int64_t sequence) {
+  sequence_ = std::max(sequence_, sequence);
+  add_box(box);
+}
+
+void FlowControl::on_change_everywhere(std::int64_t sequence) {
+  sequence_ = std::max(sequence_, sequence);
+  everything_waits_ = true;
+}
+
+void FlowControl::on_style() { everything_waits_ = true; }
+
+void FlowControl::on_ack(std::uint64_t frame) { acked_ = std::max(acked_, std::min(frame, last_frame_)); }
+
+void FlowControl::on_quiet() { moving_ = false; }
+
+std::optional<FlowControl::Draw> FlowControl::next() {
+  if (!ready_ || !camera_ || out_) return std::nullopt;
+  if (last_frame_ - acked_ >= static_cast<std::uint64_t>(window_)) return std::nullopt;
+  const bool refine = refine_waits_ && !moving_;
+  if (!everything_waits_ && !refine && boxes_.empty()) return std::nullopt;
+
+  Draw draw{++tickets_, camera_seq_, sequence_, *camera_, std::nullopt, Quality::still};
+  if (everything_waits_ || refine) {
+    draw.quality = moving_ ? Quality::moving : Quality::still;
+    everything_waits_ = false;
+  } else {
+    draw.changed = boxes_;
+  }
+  boxes_.clear();
+  camera_waits_ = false;
+  out_ = draw;
+  return draw;
+}
+
+std::optional<FlowControl::Numbered> FlowControl::on_drawn(std::uint64_t ticket, bool sent) {
+  if (!out_ || out_->ticket != ticket) return std::nullopt;
+  const bool everything = !out_->changed;
+  // An empty full picture leaves nothing to refine, either.
+  if (everything) refine_waits_ = sent && out_->quality == Quality::moving;
+  out_.reset();
+  if (!sent) return std::nullopt;
+  return Numbered{++last_frame_, !refine_waits_};
+}
+
+bool FlowControl::on_failed(std::uint64_t ticket) {
+  if (!out_ || out_->ticket != ticket) return false;
+  if (out_->changed)
+    for (const Box& box : *out_->changed) add_box(box);
+  else
+    everything_waits_ = true;
+  out_.reset();
+  return true;
+}
+
+}  // namespace strata::stream

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <thread>
+
+namespace strata::stream {
+
+// One thread that calls functions later. They must be quick. Shared by every viewer of the process.
+class TimerThread {
+ public:
+  static TimerThread& shared();
+  TimerThread();
+  ~TimerThread();  // drops what waits, joins
+
+  void after(std::chrono::milliseconds delay, std::function<void()> call);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void run();
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::multimap<Clock::time_point, std::function<void()>> calls_;
+  bool stopping_ = false;
+  std::thread thread_;  // last: it uses the others
+};
+
+}  // namespace strata::stream

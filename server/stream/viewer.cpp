@@ -1,0 +1,361 @@
+#include "stream/viewer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <tuple>
+#include <utility>
+
+#include "core/log.h"
+#include "protocol/frame_header.h"
+#include "stream/timer_thread.h"
+
+namespace strata::stream {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kQuietAfter = 200ms;  // the full-quality picture follows within 250 ms of the last input
+constexpr auto kFirstRetry = 50ms;
+constexpr auto kLastRetry = 5000ms;
+
+// Full colour at full quality: thin coloured lines of a layer smear in 4:2:0, and parts drawn anew would show as patches.
+constexpr JpegSettings kMovingPicture{75, false};
+constexpr JpegSettings kStillPicture{90, true};
+
+bool is_superseded(const Problem& problem) { return problem.status == 409; }
+
+}  // namespace
+
+struct Viewer::Impl {
+  Impl(StreamContext stream, Options o, Send s) : context(stream), options(o), send(std::move(s)), flow(o.window, o.sequence) {}
+
+  // A drawn picture on its way to the encoder.
+  struct Picture {
+    FlowControl::Draw draw;
+    FlowControl::Numbered number;
+    render::Frame frame;
+  };
+
+  const StreamContext context;
+  const Options options;
+
+  std::recursive_mutex send_mutex;  // held while `send` runs, so that `close` waits for it; taken before `mutex`
+  Send send;
+
+  mutable std::mutex mutex;
+  FlowControl flow;
+  std::vector<render::LayerStyle> layers;
+  render::ModelHandle model = 0;
+  render::ViewHandle view = 0;
+  std::uint64_t generation = 0;     // of `view`: answers about older ones are void
+  std::deque<Picture> drawn;        // in frame order, at most `window`; the first is being encoded when `encoding`
+  bool encoding = false;
+  bool closed = false;
+  Clock::time_point last_camera{};  // when the newest moving camera came
+  bool quiet_timer_runs = false;
+  std::chrono::milliseconds retry_in = kFirstRetry;
+  Stats stats;
+};
+
+namespace {
+
+// The largest size of the window's shape within the limits.
+std::pair<int, int> picture_size(const Camera& camera, const Viewer::Options& options) {
+  const double scale = std::min({1.0, double(options.max_width) / camera.width, double(options.max_height) / camera.height});
+  return {std::max(1, int(std::lround(camera.width * scale))), std::max(1, int(std::lround(camera.height * scale)))};
+}
+
+std::uint32_t microseconds(double ms) { return static_cast<std::uint32_t>(std::clamp(ms * 1000.0, 0.0, 4e9)); }
+
+FrameBytes frame_message(const FlowControl::Draw& draw, const FlowControl::Numbered& number, const render::Frame& frame,
+                         std::uint32_t view_id, const std::vector<std::uint8_t>& jpeg, double encode_ms) {
+  protocol::FrameHeader header;
+  header.keyframe = frame.rect == render::PixelRect{0, 0, frame.width, frame.height};
+  header.still = number.still;
+  header.last = true;  // one rectangle a frame
+  header.view_id = view_id;
+  header.frame = static_cast<std::uint32_t>(number.frame);
+  header.camera_seq = draw.camera_seq;
+  header.scene_sequence = static_cast<std::uint64_t>(draw.sequence);
+  header.x = static_cast<std::uint32_t>(frame.rect.x);
+  header.y = static_cast<std::uint32_t>(frame.rect.y);
+  header.width = static_cast<std::uint32_t>(frame.rect.width);
+  header.height = static_cast<std::uint32_t>(frame.rect.height);
+  header.full_width = static_cast<std::uint32_t>(frame.width);
+  header.full_height = static_cast<std::uint32_t>(frame.height);
+  header.render_us = microseconds(frame.render_ms);
+  header.encode_us = microseconds(encode_ms);
+  header.payload_bytes = static_cast<std::uint32_t>(jpeg.size());
+  const auto head = protocol::encode_frame_header(header);
+  auto message = std::make_shared<std::vector<std::uint8_t>>();
+  message->reserve(head.size() + jpeg.size());
+  message->insert(message->end(), head.begin(), head.end());
+  message->insert(message->end(), jpeg.begin(), jpeg.end());
+  return message;
+}
+
+}  // namespace
+
+Viewer::Viewer() = default;
+
+std::shared_ptr<Viewer> Viewer::create(StreamContext context, render::ModelHandle model, Options options, Send send) {
+  std::shared_ptr<Viewer> viewer(new Viewer());
+  viewer->impl_ = std::make_unique<Impl>(context, options, std::move(send));
+  viewer->impl_->model = model;
+  viewer->add_view();
+  return viewer;
+}
+
+Viewer::~Viewer() { close(); }
+
+void Viewer::close() {
+  std::lock_guard sending(impl_->send_mutex);
+  std::lock_guard lock(impl_->mutex);
+  if (impl_->closed) return;
+  impl_->closed = true;
+  impl_->drawn.clear();
+  if (impl_->view != 0) impl_->context.renderer->remove_view(impl_->view);
+}
+
+void Viewer::add_view() {
+  render::ModelHandle model;
+  std::uint64_t generation;
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->closed) return;
+    model = impl_->model;
+    generation = ++impl_->generation;
+  }
+  auto* renderer = impl_->context.renderer;
+  renderer->add_view(model, [self = weak_from_this(), renderer, generation](Result<render::ViewHandle> view) {
+    auto viewer = self.lock();
+    const bool wanted = viewer && viewer->on_view(generation, view);
+    if (!wanted && view) renderer->remove_view(*view);
+  });
+}
+
+bool Viewer::on_view(std::uint64_t generation, const Result<render::ViewHandle>& view) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->closed || generation != impl_->generation) return false;
+    if (view) {
+      impl_->view = *view;
+      impl_->retry_in = kFirstRetry;
+      impl_->flow.on_ready();
+    }
+  }
+  if (view)
+    step();
+  else
+    retry_later([generation](Viewer& viewer) {
+      {
+        std::lock_guard lock(viewer.impl_->mutex);
+        if (generation != viewer.impl_->generation) return;
+      }
+      viewer.add_view();
+    });
+  return true;
+}
+
+// Calls `action` after a pause that doubles each time, until something succeeds.
+void Viewer::retry_later(std::function<void(Viewer&)> action) {
+  std::chrono::milliseconds pause;
+  {
+    std::lock_guard lock(impl_->mutex);
+    pause = impl_->retry_in;
+    impl_->retry_in = std::min<std::chrono::milliseconds>(2 * pause, kLastRetry);
+  }
+  TimerThread::shared().after(pause, [self = weak_from_this(), action = std::move(action)] {
+    if (auto viewer = self.lock()) action(*viewer);
+  });
+}
+
+void Viewer::set_camera(std::uint64_t camera_seq, const Camera& camera, bool moving) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->closed) return;
+    impl_->flow.on_camera(camera_seq, camera, moving);
+    impl_->last_camera = Clock::now();
+  }
+  if (moving) wait_for_quiet();
+  step();
+}
+
+// One timer a viewer: when it rings too early, because cameras came meanwhile, it is set again for the rest.
+void Viewer::wait_for_quiet() {
+  std::chrono::milliseconds left;
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->quiet_timer_runs || impl_->closed || !impl_->flow.wants_quiet_timer()) return;
+    left = std::chrono::ceil<std::chrono::milliseconds>(impl_->last_camera + kQuietAfter - Clock::now());
+    impl_->quiet_timer_runs = left > 0ms;
+    if (left <= 0ms) impl_->flow.on_quiet();
+  }
+  if (left <= 0ms) return step();
+  TimerThread::shared().after(left, [self = weak_from_this()] {
+    auto viewer = self.lock();
+    if (!viewer) return;
+    {
+      std::lock_guard lock(viewer->impl_->mutex);
+      viewer->impl_->quiet_timer_runs = false;
+    }
+    viewer->wait_for_quiet();
+  });
+}
+
+void Viewer::set_layers(std::vector<render::LayerStyle> layers) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->layers = std::move(layers);
+    impl_->flow.on_style();
+  }
+  step();
+}
+
+void Viewer::changed(const render::FrameRequest::Box& box, std::int64_t sequence) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->flow.on_change(box, sequence);
+  }
+  step();
+}
+
+void Viewer::changed_everywhere(std::int64_t sequence) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->flow.on_change_everywhere(sequence);
+  }
+  step();
+}
+
+void Viewer::ack(std::uint64_t frame) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->flow.on_ack(frame);
+  }
+  step();
+}
+
+void Viewer::reset_model(render::ModelHandle model, std::vector<render::LayerStyle> layers) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->closed) return;
+    // After a lost context the old handle means nothing and removing it is refused; after another reload it frees the view.
+    if (impl_->view != 0) impl_->context.renderer->remove_view(impl_->view);
+    impl_->model = model;
+    impl_->view = 0;
+    impl_->layers = std::move(layers);
+    impl_->retry_in = kFirstRetry;
+    impl_->flow.on_reset();
+  }
+  add_view();
+}
+
+Viewer::Stats Viewer::stats() const {
+  std::lock_guard lock(impl_->mutex);
+  Stats stats = impl_->stats;
+  stats.dropped = impl_->flow.dropped();
+  return stats;
+}
+
+// Starts the draw that the flow asks for. The renderer may answer at once, so it is called without the lock.
+void Viewer::step() {
+  FlowControl::Draw draw;
+  render::FrameRequest request;
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->closed) return;
+    auto next = impl_->flow.next();
+    if (!next) return;
+    draw = std::move(*next);
+    request.view = impl_->view;
+    request.layers = impl_->layers;
+  }
+  request.camera = draw.camera;
+  request.changed = draw.changed;
+  std::tie(request.width, request.height) = picture_size(draw.camera, impl_->options);
+  impl_->context.renderer->draw(std::move(request), [self = weak_from_this(), draw](Result<render::Frame> frame) {
+    auto viewer = self.lock();
+    if (!viewer) return;
+    if (frame)
+      viewer->on_drawn(draw, std::move(*frame));
+    else
+      viewer->on_failed(draw.ticket, frame.error());
+  });
+}
+
+void Viewer::on_drawn(const FlowControl::Draw& draw, render::Frame frame) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->closed) return;
+    const bool sent = frame.rect.width > 0 && frame.rect.height > 0;
+    impl_->retry_in = kFirstRetry;
+    impl_->stats.last_render_ms = frame.render_ms;
+    if (const auto number = impl_->flow.on_drawn(draw.ticket, sent))
+      impl_->drawn.push_back({draw, *number, std::move(frame)});
+  }
+  encode_next();
+  step();
+}
+
+void Viewer::on_failed(std::uint64_t ticket, const Problem& problem) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->closed || !impl_->flow.on_failed(ticket)) return;
+  }
+  if (is_superseded(problem)) return step();
+  log::debug("A frame was not drawn and will be tried again: " + problem.title);
+  retry_later([](Viewer& viewer) { viewer.step(); });
+}
+
+// One picture of a viewer is encoded at a time: that keeps frames in order and `send` from running twice at once.
+void Viewer::encode_next() {
+  std::vector<std::uint8_t> pixels;
+  render::PixelRect rect;
+  JpegSettings settings;
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->closed || impl_->encoding || impl_->drawn.empty()) return;
+    impl_->encoding = true;
+    auto& picture = impl_->drawn.front();
+    pixels = std::move(picture.frame.pixels);
+    rect = picture.frame.rect;
+    settings = picture.draw.quality == FlowControl::Quality::moving ? kMovingPicture : kStillPicture;
+  }
+  impl_->context.encoder->encode(std::move(pixels), rect.width, rect.height, settings,
+                                 [self = weak_from_this()](std::vector<std::uint8_t> jpeg, double encode_ms) {
+                                   if (auto viewer = self.lock()) viewer->on_encoded(jpeg, encode_ms);
+                                 });
+}
+
+void Viewer::on_encoded(const std::vector<std::uint8_t>& jpeg, double encode_ms) {
+  {
+    std::lock_guard sending(impl_->send_mutex);
+    FrameBytes message;
+    {
+      std::lock_guard lock(impl_->mutex);
+      impl_->encoding = false;
+      if (impl_->closed) return;
+      const Impl::Picture picture = std::move(impl_->drawn.front());
+      impl_->drawn.pop_front();
+      if (jpeg.empty()) {
+        impl_->flow.on_ack(picture.number.frame);  // it never leaves, so no client can give its credit back
+      } else {
+        message = frame_message(picture.draw, picture.number, picture.frame, impl_->options.view_id, jpeg, encode_ms);
+        ++impl_->stats.frames;
+        impl_->stats.bytes += message->size();
+        impl_->stats.last_encode_ms = encode_ms;
+      }
+    }
+    if (message) impl_->send(std::move(message));
+  }
+  encode_next();
+  step();
+}
+
+}  // namespace strata::stream

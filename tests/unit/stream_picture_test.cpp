@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+#include <turbojpeg.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdlib>
+#include <mutex>
+#include <png.h>
+#include <set>
+
+#include "stream/jpeg_pool.h"
+#include "stream/timer_thread.h"
+
+namespace strata::stream {
+namespace {
+
+std::vector<std::uint8_t> gradient(int width, int height) {
+  std::vector<std::uint8_t> rgba(std::size_t(width) * height * 4);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      auto* p = &rgba[(std::size_t(y) * width + x) * 4];
+      p[0] = static_cast<std::uint8_t>(x * 255 / width);
+      p[1] = static_cast<std::uint8_t>(y * 255 / height);
+      p[2] = 90;
+      p[3] = 255;
+    }
+  return rgba;
+}
+
+struct Decoded {
+  int width = 0, height = 0, sampling = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+Decoded decode(const std::vector<std::uint8_t>& jpeg) {
+  Decoded out;
+  tjhandle handle = tjInitDecompress();
+  int colorspace = 0;
+  EXPECT_EQ(tjDecompressHeader3(handle, jpeg.data(), jpeg.size(), &out.width, &out.height, &out.sampling, &colorspace), 0);
+  out.rgba.resize(std::size_t(out.width) * out.height * 4);
+  EXPECT_EQ(tjDecompress2(handle, jpeg.data(), jpeg.size(), out.rgba.data(), out.width, 0, out.height, TJPF_RGBA, 0), 0);
+  tjDestroy(handle);
+  return out;
+}
+
+TEST(StreamPicture, a_jpeg_shows_what_was_drawn_top_row_first) {
+  const auto rgba = gradient(200, 120);
+  for (const bool full_color : {false, true}) {
+    const Decoded back = decode(encode_jpeg(rgba, 200, 120, {90, full_color}));
+    ASSERT_EQ(back.width, 200);
+    ASSERT_EQ(back.height, 120);
+    EXPECT_EQ(back.sampling, full_color ? TJSAMP_444 : TJSAMP_420);
+    int worst = 0;
+    for (std::size_t i = 0; i < rgba.size(); ++i) worst = std::max(worst, std::abs(int(rgba[i]) - int(back.rgba[i])));
+    EXPECT_LE(worst, 12);
+  }
+}
+
+TEST(StreamPicture, higher_quality_costs_more_bytes) {
+  const auto rgba = gradient(256, 256);
+  EXPECT_LT(encode_jpeg(rgba, 256, 256, {40, false}).size(), encode_jpeg(rgba, 256, 256, {95, true}).size());
+}
+
+TEST(StreamPicture, a_picture_of_one_pixel_is_encoded) {
+  const std::vector<std::uint8_t> red{255, 0, 0, 255};
+  EXPECT_EQ(decode(encode_jpeg(red, 1, 1, {90, true})).width, 1);
+  EXPECT_FALSE(encode_png(red, 1, 1).empty());
+}
+
+TEST(StreamPicture, pixels_that_do_not_have_the_size_are_refused) {
+  const std::vector<std::uint8_t> few(16);
+  EXPECT_THROW(encode_jpeg(few, 4, 4, {}), std::invalid_argument);
+  EXPECT_THROW(encode_png(few, 0, 4), std::invalid_argument);
+}
+
+TEST(StreamPicture, a_png_keeps_every_pixel) {
+  auto rgba = gradient(61, 33);
+  rgba[3] = 128;
+  const auto png = encode_png(rgba, 61, 33);
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  ASSERT_TRUE(png_image_begin_read_from_memory(&image, png.data(), png.size()));
+  image.format = PNG_FORMAT_RGBA;
+  std::vector<std::uint8_t> back(PNG_IMAGE_SIZE(image));
+  ASSERT_TRUE(png_image_finish_read(&image, nullptr, back.data(), 0, nullptr));
+  EXPECT_EQ(back, rgba);
+}
+
+TEST(StreamPicture, the_pool_encodes_every_picture_it_is_given) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::multiset<int> widths;
+  JpegPool pool(3);
+  for (int i = 1; i <= 40; ++i)
+    pool.encode(gradient(i * 8, 16), i * 8, 16, {}, [&](std::vector<std::uint8_t> jpeg, double elapsed_ms) {
+      EXPECT_GE(elapsed_ms, 0);
+      const int width = decode(jpeg).width;
+      std::lock_guard lock(mutex);
+      widths.insert(width);
+      changed.notify_all();
+    });
+  std::unique_lock lock(mutex);
+  ASSERT_TRUE(changed.wait_for(lock, std::chrono::seconds(60), [&] { return widths.size() == 40; }));
+  for (int i = 1; i <= 40; ++i) EXPECT_EQ(widths.count(i * 8), 1u);
+}
+
+TEST(StreamPicture, a_picture_that_cannot_be_encoded_is_answered_without_bytes) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool answered = false;
+  JpegPool pool(1);
+  pool.encode(std::vector<std::uint8_t>(4), 100, 100, {}, [&](std::vector<std::uint8_t> jpeg, double) {
+    std::lock_guard lock(mutex);
+    EXPECT_TRUE(jpeg.empty());
+    answered = true;
+    changed.notify_all();
+  });
+  std::unique_lock lock(mutex);
+  EXPECT_TRUE(changed.wait_for(lock, std::chrono::seconds(60), [&] { return answered; }));
+}
+
+TEST(StreamTimer, calls_come_in_the_order_of_their_times_and_not_before_them) {
+  TimerThread timer;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<int> order;
+  const auto start = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::duration last{};
+  auto call = [&](int number) {
+    return [&, number] {
+      std::lock_guard lock(mutex);
+      order.push_back(number);
+      last = std::chrono::steady_clock::now() - start;
+      changed.notify_all();
+    };
+  };
+  timer.after(std::chrono::milliseconds(120), call(3));
+  timer.after(std::chrono::milliseconds(0), call(1));
+  timer.after(std::chrono::milliseconds(60), call(2));
+  std::unique_lock lock(mutex);
+  ASSERT_TRUE(changed.wait_for(lock, std::chrono::seconds(60), [&] { return order.size() == 3; }));
+  EXPECT_EQ(order, (std::vector<int>{1, 2, 3}));
+  EXPECT_GE(last, std::chrono::milliseconds(120));
+}
+
+TEST(StreamTimer, what_waits_when_it_ends_is_not_called) {
+  std::atomic<bool> called{false};
+  { TimerThread timer; timer.after(std::chrono::hours(1), [&] { called = true; }); }
+  EXPECT_FALSE(called);
+}
+
+}  // namespace
+}  // namespace strata::stream
