@@ -19,7 +19,9 @@ struct Fixture {
   std::string name;
   std::string schema;  // a definition's name, or ClientMessage
   json content;
-  std::string text() const { return content.contains("text") ? content["text"].get<std::string>() : content["json"].dump(); }
+  std::string text() const {
+    return content.contains("text") ? content["text"].get<std::string>() : content["json"].dump();
+  }
 };
 
 std::vector<Fixture> fixtures(const std::string& folder) {
@@ -110,7 +112,8 @@ TEST(ProtocolMessages, every_invalid_fixture_is_refused_with_the_field_it_names)
       ASSERT_FALSE(ok) << f.name;
       problem = ok.error();
     }
-    EXPECT_EQ(problem.field, f.content["field"].get<std::string>()) << f.name << ": " << problem.title << ": " << problem.detail;
+    EXPECT_EQ(problem.field, f.content["field"].get<std::string>())
+        << f.name << ": " << problem.title << ": " << problem.detail;
     EXPECT_EQ(problem.status, f.content["status"].get<int>()) << f.name;
     EXPECT_FALSE(problem.title.empty()) << f.name;
     EXPECT_GT(problem.detail.size(), 10u) << f.name;
@@ -139,8 +142,8 @@ TEST(ProtocolMessages, a_refused_message_still_tells_its_id) {
 }
 
 TEST(ProtocolMessages, a_stroke_arrives_as_it_was_sent) {
-  const auto message = parse_client_message(R"({"op":"stroke.begin","id":")" + std::string(kId) +
-                                            R"(","stroke":")" + kId + R"(","layer":"cracks","value":7,"radius_mm":2.5,"shape":"square",
+  const auto message = parse_client_message(R"({"op":"stroke.begin","id":")" + std::string(kId) + R"(","stroke":")" +
+                                            kId + R"(","layer":"cracks","value":7,"radius_mm":2.5,"shape":"square",
       "camera":{"view":[1,0,0,0,0,1,0,0,0,0,1,0,4,5,6,1],"projection":[1,0,0,0,0,1,0,0,0,0,-1,0,0,0,0,1],"width":800,"height":600}})");
   ASSERT_TRUE(message) << message.error().field << message.error().detail;
   const auto& begin = std::get<StrokeBegin>(*message);
@@ -158,13 +161,16 @@ TEST(ProtocolMessages, a_stroke_arrives_as_it_was_sent) {
 TEST(ProtocolMessages, a_text_is_refused_by_its_size_before_it_is_read) {
   JsonLimits limits;
   limits.max_bytes = 100;
-  const auto message = parse_client_message("{\"op\":\"hello\",\"client\":\"" + std::string(100, 'x') + "\"}", nullptr, limits);
+  const auto message =
+      parse_client_message("{\"op\":\"hello\",\"client\":\"" + std::string(100, 'x') + "\"}", nullptr, limits);
   ASSERT_FALSE(message);
   EXPECT_EQ(message.error().status, 413);
 }
 
 TEST(ProtocolMessages, nesting_is_taken_up_to_the_limit_and_not_beyond) {
-  auto nested = [](int depth) { return std::string(static_cast<std::size_t>(depth), '[') + std::string(static_cast<std::size_t>(depth), ']'); };
+  auto nested = [](int depth) {
+    return std::string(static_cast<std::size_t>(depth), '[') + std::string(static_cast<std::size_t>(depth), ']');
+  };
   EXPECT_TRUE(parse_json(nested(32)));
   const auto deep = parse_json(nested(33));
   ASSERT_FALSE(deep);

@@ -31,8 +31,10 @@ Result<void> check(const FrameHeader& h) {
   if (h.view_id > 15) return broken("view_id", "A view is 0 to 15.");
   if (h.camera_seq > kMaxSafeInteger) return broken("camera_seq", "It is at most 2^53 - 1.");
   if (h.scene_sequence > kMaxSafeInteger) return broken("scene_sequence", "It is at most 2^53 - 1.");
-  if (h.full_width < 1 || h.full_width > kMaxFrameSize) return broken("full_width", "A picture is 1 to 8192 pixels wide.");
-  if (h.full_height < 1 || h.full_height > kMaxFrameSize) return broken("full_height", "A picture is 1 to 8192 pixels high.");
+  if (h.full_width < 1 || h.full_width > kMaxFrameSize)
+    return broken("full_width", "A picture is 1 to 8192 pixels wide.");
+  if (h.full_height < 1 || h.full_height > kMaxFrameSize)
+    return broken("full_height", "A picture is 1 to 8192 pixels high.");
   if (h.width < 1 || h.x + h.width > h.full_width) return broken("width", "The rectangle lies within the picture.");
   if (h.height < 1 || h.y + h.height > h.full_height) return broken("height", "The rectangle lies within the picture.");
   if (h.keyframe && (h.width != h.full_width || h.height != h.full_height))
@@ -47,7 +49,8 @@ std::array<std::uint8_t, kFrameHeaderBytes> encode_frame_header(const FrameHeade
   assert(check(h));
   std::array<std::uint8_t, kFrameHeaderBytes> bytes{};
   std::copy(kMagic.begin(), kMagic.end(), bytes.begin());
-  const std::uint16_t flags = static_cast<std::uint16_t>((h.keyframe ? kKeyframe : 0) | (h.still ? kStill : 0) | (h.last ? kLast : 0));
+  const std::uint16_t flags =
+      static_cast<std::uint16_t>((h.keyframe ? kKeyframe : 0) | (h.still ? kStill : 0) | (h.last ? kLast : 0));
   put<std::uint8_t>(bytes, 4, kFrameVersion);
   put<std::uint8_t>(bytes, 5, static_cast<std::uint8_t>(h.codec));
   put<std::uint16_t>(bytes, 6, flags);

@@ -70,8 +70,10 @@ void read_value(const nlohmann::json& json, T& value) {
   } else if constexpr (is_string_map<T>::value) {
     for (const auto& [key, item] : json.items()) read_value(item, value[key]);
   } else if constexpr (is_optional<T>::value) {
-    if (json.is_null()) value.reset();
-    else read_value(json, value.emplace());
+    if (json.is_null())
+      value.reset();
+    else
+      read_value(json, value.emplace());
   } else if constexpr (requires { read_core(json, value); }) {
     read_core(json, value);
   } else {
@@ -110,8 +112,10 @@ void read_optional_member(const nlohmann::json& json, const char* name, T& value
   const auto member = json.find(name);
   if (member == json.end()) return;
   if constexpr (is_optional<T>::value) {
-    if (member->is_null()) value.reset();
-    else read_value(*member, value.emplace());
+    if (member->is_null())
+      value.reset();
+    else
+      read_value(*member, value.emplace());
   } else {
     read_value(*member, value);
   }
@@ -139,8 +143,10 @@ template <class Variant>
 Result<void> check_alternative(const Variant& variant, const std::string& field) {
   return std::visit(
       [&](const auto& value) -> Result<void> {
-        if constexpr (requires { check(value, field); }) return check(value, field);
-        else return {};
+        if constexpr (requires { check(value, field); })
+          return check(value, field);
+        else
+          return {};
       },
       variant);
 }

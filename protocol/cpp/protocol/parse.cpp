@@ -15,7 +15,8 @@ std::string dump(const nlohmann::json& json) {
 }
 
 template <class Message, class SchemaOf>
-Result<Message> parse_message(std::string_view text, std::string* ref, const JsonLimits& limits, SchemaOf&& schema_of_op) {
+Result<Message> parse_message(std::string_view text, std::string* ref, const JsonLimits& limits,
+                              SchemaOf&& schema_of_op) {
   auto json = parse_json(text, limits);
   if (!json) return tl::unexpected<Problem>(json.error());
   if (!json->is_object()) return fail(422, "Not a message", "A message is an object with the member \"op\".");
@@ -44,8 +45,12 @@ Result<ServerMessage> parse_server_message(std::string_view text, const JsonLimi
   return parse_message<ServerMessage>(text, nullptr, limits, server_message_schema);
 }
 
-std::string to_text(const ClientMessage& message) { return dump(to_json(message)); }
-std::string to_text(const ServerMessage& message) { return dump(to_json(message)); }
+std::string to_text(const ClientMessage& message) {
+  return dump(to_json(message));
+}
+std::string to_text(const ServerMessage& message) {
+  return dump(to_json(message));
+}
 
 ProblemMessage problem_message(const Problem& problem, const std::optional<std::string>& ref) {
   ProblemMessage message;
@@ -58,7 +63,8 @@ ProblemMessage problem_message(const Problem& problem, const std::optional<std::
 }
 
 nlohmann::json problem_body(const Problem& problem) {
-  nlohmann::json json{{"type", "about:blank"}, {"title", problem.title}, {"status", problem.status}, {"detail", problem.detail}};
+  nlohmann::json json{
+      {"type", "about:blank"}, {"title", problem.title}, {"status", problem.status}, {"detail", problem.detail}};
   if (!problem.field.empty()) json["field"] = problem.field;
   return json;
 }

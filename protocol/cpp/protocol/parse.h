@@ -30,9 +30,10 @@ Result<T> parse(std::string_view text, const JsonLimits& limits = {}) {
   return from_json<T>(*json);
 }
 
-// A text message of the WebSocket. `ref`, when given, becomes the message's `id` as far as it can be read, also when the
-// message is refused, so that the `problem` can name it.
-Result<ClientMessage> parse_client_message(std::string_view text, std::string* ref = nullptr, const JsonLimits& limits = {});
+// A text message of the WebSocket. `ref`, when given, becomes the message's `id` as far as it can be read, also when
+// the message is refused, so that the `problem` can name it.
+Result<ClientMessage> parse_client_message(std::string_view text, std::string* ref = nullptr,
+                                           const JsonLimits& limits = {});
 Result<ServerMessage> parse_server_message(std::string_view text, const JsonLimits& limits = {16 * 1024 * 1024, 32});
 
 // One line of JSON, ready to send.

@@ -23,7 +23,8 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   bool number_integer(number_integer_t value) override { return put(value); }
   bool number_unsigned(number_unsigned_t value) override { return put(value); }
   bool number_float(number_float_t value, const string_t& text) override {
-    if (!std::isfinite(value)) return refuse(422, "Number not usable", "The number " + text.substr(0, 40) + " is too large.");
+    if (!std::isfinite(value))
+      return refuse(422, "Number not usable", "The number " + text.substr(0, 40) + " is too large.");
     return put(value);
   }
   bool string(string_t& text) override {
@@ -36,7 +37,8 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   bool key(string_t& name) override {
     if (has_nul(name)) return false;
     if (open_.back()->contains(name))
-      return refuse(422, "Member given twice", "The member \"" + name.substr(0, 100) + "\" stands twice in one object.");
+      return refuse(422, "Member given twice",
+                    "The member \"" + name.substr(0, 100) + "\" stands twice in one object.");
     key_ = std::move(name);
     return true;
   }
@@ -45,7 +47,8 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   bool end_array() override { return close(); }
 
   bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
-    if (error.id == 406) return refuse(422, "Number not usable", "A number near byte " + std::to_string(position) + " is too large.");
+    if (error.id == 406)
+      return refuse(422, "Number not usable", "A number near byte " + std::to_string(position) + " is too large.");
     return refuse(400, "Malformed JSON", "The text stops being JSON near byte " + std::to_string(position) + ".");
   }
 
@@ -66,7 +69,8 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   // A pointer to an open value stays good: while it is open, only its own children grow.
   bool open(json&& container) {
     if (static_cast<int>(open_.size()) >= max_depth_)
-      return refuse(422, "Nested too deeply", "At most " + std::to_string(max_depth_) + " objects and lists may lie in each other.");
+      return refuse(422, "Nested too deeply",
+                    "At most " + std::to_string(max_depth_) + " objects and lists may lie in each other.");
     open_.push_back(add(std::move(container)));
     return true;
   }
@@ -95,8 +99,9 @@ class StrictBuilder : public nlohmann::json_sax<json> {
 
 Result<json> parse_json(std::string_view text, const JsonLimits& limits) {
   if (text.size() > limits.max_bytes)
-    return fail(413, "Too much at once", "At most " + std::to_string(limits.max_bytes) + " bytes of JSON are taken; these are " +
-                                             std::to_string(text.size()) + ".");
+    return fail(413, "Too much at once",
+                "At most " + std::to_string(limits.max_bytes) + " bytes of JSON are taken; these are " +
+                    std::to_string(text.size()) + ".");
   StrictBuilder builder(limits.max_depth);
   if (!json::sax_parse(text.begin(), text.end(), &builder)) return tl::unexpected<Problem>(builder.take_problem());
   return builder.take();

@@ -46,7 +46,8 @@ const json& resolve(const json& schema) {
 const json* child_schema(const json& schema, const json& value, const std::string& step) {
   const json& node = resolve(schema);
   if (value.is_array()) return node.contains("items") ? &node["items"] : nullptr;
-  if (auto properties = node.find("properties"); properties != node.end() && properties->contains(step) && !node.contains("allOf"))
+  if (auto properties = node.find("properties");
+      properties != node.end() && properties->contains(step) && !node.contains("allOf"))
     return &properties->at(step);
   if (node.contains("allOf") && value.contains("op"))
     for (const auto& branch : node["allOf"])
@@ -61,7 +62,9 @@ std::string listed(const json& values) {
   return text;
 }
 
-std::string number(const json& value) { return value.dump(); }
+std::string number(const json& value) {
+  return value.dump();
+}
 
 // In words, what a schema lets through.
 std::string expectation(const json& schema) {
@@ -82,8 +85,10 @@ std::string expectation(const json& schema) {
     return text;
   }
   if (type == "string") {
-    if (node.value("minLength", 0) == 36 && node.contains("pattern")) return "a UUID such as 123e4567-e89b-42d3-a456-426614174000";
-    std::string text = "a text of " + std::to_string(node.value("minLength", 0)) + " to " + number(node["maxLength"]) + " characters";
+    if (node.value("minLength", 0) == 36 && node.contains("pattern"))
+      return "a UUID such as 123e4567-e89b-42d3-a456-426614174000";
+    std::string text =
+        "a text of " + std::to_string(node.value("minLength", 0)) + " to " + number(node["maxLength"]) + " characters";
     if (node.contains("pattern")) text += " like " + node["pattern"].get<std::string>();
     return text;
   }
@@ -99,7 +104,9 @@ std::string expectation(const json& schema) {
 
 std::string quoted_at_end(const std::string& text) {
   const auto end = text.rfind('\'');
-  const auto begin = end == std::string::npos || end == 0 ? std::string::npos : text.find('\'', text.find(": '") == std::string::npos ? 0 : text.find(": '"));
+  const auto begin = end == std::string::npos || end == 0
+                         ? std::string::npos
+                         : text.find('\'', text.find(": '") == std::string::npos ? 0 : text.find(": '"));
   return begin == std::string::npos || begin >= end ? std::string() : text.substr(begin + 1, end - begin - 1);
 }
 
@@ -148,7 +155,8 @@ tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::str
     }
     const json* missing = rule == nullptr ? nullptr : child_schema(*rule, *value, member);
     enter(member);
-    return fail(422, "Member missing", "It must be given" + (missing ? ": " + expectation(*missing) : std::string()) + ".", path);
+    return fail(422, "Member missing",
+                "It must be given" + (missing ? ": " + expectation(*missing) : std::string()) + ".", path);
   }
   if (said.starts_with("Failed to validate against exactly one")) {
     const auto exclusive = exclusive_members(rule);
@@ -159,9 +167,11 @@ tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::str
     enter(quoted_at_end(said));
     return fail(422, "Unknown member", "This object has no such member; check its spelling or leave it out.", path);
   }
-  if (said.starts_with("Object should have no fewer")) return fail(422, "Nothing given", "Give at least one member.", path);
+  if (said.starts_with("Object should have no fewer"))
+    return fail(422, "Nothing given", "Give at least one member.", path);
   if (said.starts_with("Value type"))
-    return fail(422, "Wrong type", "It must be " + (rule ? expectation(*rule) : std::string("of another type")) + ".", path);
+    return fail(422, "Wrong type", "It must be " + (rule ? expectation(*rule) : std::string("of another type")) + ".",
+                path);
   return fail(422, "Value not allowed", rule ? "It must be " + expectation(*rule) + "." : said, path);
 }
 

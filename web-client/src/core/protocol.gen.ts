@@ -195,7 +195,7 @@ export interface Model {
 /** What a layer holds at a point. */
 export interface SurfaceValue {
   valid: boolean;
-  /** 0 where the texel is not valid. */
+  /** Absent where the texel is not valid. */
   value?: number;
 }
 
@@ -318,8 +318,10 @@ export interface Ack {
 /** Where this viewer's pointer is. */
 export interface PresenceUpdate {
   op: "presence";
-  /** World position under it, as `picked` tells; null or absent: it is off the model. */
-  pointer?: Point3 | null;
+  /** Default: 0. */
+  view_id?: number;
+  /** Pixel of the view's newest camera; null or absent: the pointer is elsewhere. */
+  pointer?: Point2 | null;
 }
 
 /** What is at a pixel. */
@@ -425,13 +427,18 @@ export interface RecordEvent {
   user?: string;
 }
 
+/** Where a pointer touches the surface. World coordinates. */
+export interface PresencePointer {
+  position: Point3;
+  normal?: Point3;
+}
+
 /** One viewer. */
 export interface PresenceUser {
   session: string;
   name: string;
   color: string;
-  /** World position; absent: off the model. */
-  pointer?: Point3;
+  pointer?: PresencePointer;
 }
 
 /** Who is here. Everyone on the model, the receiver too; not stored. */
@@ -440,7 +447,7 @@ export interface Presence {
   users: PresenceUser[];
 }
 
-/** What is at the pixel. Off the model there is no position, and no value is valid. */
+/** What is at the pixel. Off the model only `hit` and `id` are there. */
 export interface Picked {
   op: "picked";
   id?: string;
@@ -479,10 +486,9 @@ export interface Problem {
   instance?: string;
 }
 
-/** User name and password. */
+/** Sign-in by a token or by the secret of an owner link. */
 export interface Login {
-  user: string;
-  password: string;
+  token: string;
 }
 
 /** Who is signed in. */
@@ -549,7 +555,7 @@ export interface ModelPatch {
 
 /** Long work. */
 export interface Job {
-  id: string;
+  id: number;
   state: "queued" | "running" | "done" | "failed" | "cancelled";
   progress: number;
   /** The step at work, in plain words. */
@@ -557,6 +563,12 @@ export interface Job {
   problem?: Problem;
   /** Id of the model, once it is done. */
   model?: number;
+}
+
+/** Jobs, newest first. */
+export interface JobList {
+  jobs: Job[];
+  total: number;
 }
 
 /** Layers of a model, by order. */
@@ -639,7 +651,7 @@ export interface Restore {
   sequence: number;
 }
 
-/** Point on the surface and the values there. Off the model there is no position, and no value is valid. */
+/** Point on the surface and the values there. Off the model only `hit` is there. */
 export interface SurfacePoint {
   hit: boolean;
   position?: Point3;
@@ -698,14 +710,14 @@ export interface KeyStatistics {
   bounds: Bounds;
 }
 
-/** Statistics of a layer, weighted by surface area. Of valid texels on the surface. `min`, `max`, `mean` and `std` are null while the layer is empty; `keys` is empty for fractions and for more than 4096 different values. */
+/** Statistics of a layer, weighted by surface area. Of valid texels on the surface. `min`, `max`, `mean` and `std` are absent while the layer is empty; `keys` is empty for fractions and for more than 4096 different values. */
 export interface Statistics {
   texels: number;
   area_m2: number;
-  min: number | null;
-  max: number | null;
-  mean: number | null;
-  std: number | null;
+  min?: number;
+  max?: number;
+  mean?: number;
+  std?: number;
   histogram: HistogramBin[];
   keys: KeyStatistics[];
 }

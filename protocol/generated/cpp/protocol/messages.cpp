@@ -548,12 +548,14 @@ nlohmann::json to_json(const Ack& value) {
 }
 
 void read(const nlohmann::json& json, PresenceUpdate& value) {
+  read_optional_member(json, "view_id", value.view_id);
   read_optional_member(json, "pointer", value.pointer);
 }
 
 nlohmann::json to_json(const PresenceUpdate& value) {
   nlohmann::json json = nlohmann::json::object();
   json["op"] = "presence";
+  write_member(json, "view_id", value.view_id);
   write_optional_member(json, "pointer", value.pointer);
   return json;
 }
@@ -741,6 +743,18 @@ nlohmann::json to_json(const RecordEvent& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, PresencePointer& value) {
+  read_member(json, "position", value.position);
+  read_optional_member(json, "normal", value.normal);
+}
+
+nlohmann::json to_json(const PresencePointer& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "position", value.position);
+  write_optional_member(json, "normal", value.normal);
+  return json;
+}
+
 void read(const nlohmann::json& json, PresenceUser& value) {
   read_member(json, "session", value.session);
   read_member(json, "name", value.name);
@@ -813,14 +827,12 @@ nlohmann::json to_json(const ProblemMessage& value) {
 }
 
 void read(const nlohmann::json& json, Login& value) {
-  read_member(json, "user", value.user);
-  read_member(json, "password", value.password);
+  read_member(json, "token", value.token);
 }
 
 nlohmann::json to_json(const Login& value) {
   nlohmann::json json = nlohmann::json::object();
-  write_member(json, "user", value.user);
-  write_member(json, "password", value.password);
+  write_member(json, "token", value.token);
   return json;
 }
 
@@ -919,6 +931,18 @@ nlohmann::json to_json(const Job& value) {
   write_member(json, "message", value.message);
   write_optional_member(json, "problem", value.problem);
   write_optional_member(json, "model", value.model);
+  return json;
+}
+
+void read(const nlohmann::json& json, JobList& value) {
+  read_member(json, "jobs", value.jobs);
+  read_member(json, "total", value.total);
+}
+
+nlohmann::json to_json(const JobList& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "jobs", value.jobs);
+  write_member(json, "total", value.total);
   return json;
 }
 
@@ -1165,10 +1189,10 @@ nlohmann::json to_json(const KeyStatistics& value) {
 void read(const nlohmann::json& json, Statistics& value) {
   read_member(json, "texels", value.texels);
   read_member(json, "area_m2", value.area_m2);
-  read_member(json, "min", value.min);
-  read_member(json, "max", value.max);
-  read_member(json, "mean", value.mean);
-  read_member(json, "std", value.std);
+  read_optional_member(json, "min", value.min);
+  read_optional_member(json, "max", value.max);
+  read_optional_member(json, "mean", value.mean);
+  read_optional_member(json, "std", value.std);
   read_member(json, "histogram", value.histogram);
   read_member(json, "keys", value.keys);
 }
@@ -1177,10 +1201,10 @@ nlohmann::json to_json(const Statistics& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "texels", value.texels);
   write_member(json, "area_m2", value.area_m2);
-  write_member(json, "min", value.min);
-  write_member(json, "max", value.max);
-  write_member(json, "mean", value.mean);
-  write_member(json, "std", value.std);
+  write_optional_member(json, "min", value.min);
+  write_optional_member(json, "max", value.max);
+  write_optional_member(json, "mean", value.mean);
+  write_optional_member(json, "std", value.std);
   write_member(json, "histogram", value.histogram);
   write_member(json, "keys", value.keys);
   return json;

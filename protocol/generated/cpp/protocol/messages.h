@@ -74,6 +74,7 @@ enum class Schema {
   LayerEvent,
   ModelEvent,
   RecordEvent,
+  PresencePointer,
   PresenceUser,
   Presence,
   Picked,
@@ -88,6 +89,7 @@ enum class Schema {
   ModelList,
   ModelPatch,
   Job,
+  JobList,
   LayerList,
   LayerCreate,
   LayerPatch,
@@ -106,7 +108,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 80;
+constexpr int kSchemaCount = 82;
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
 
@@ -242,7 +244,7 @@ inline constexpr Schema schema_of<SourceFile> = Schema::SourceFile;
 // What a layer holds at a point.
 struct SurfaceValue {
   bool valid = false;
-  std::optional<double> value;  // 0 where the texel is not valid.
+  std::optional<double> value;  // Absent where the texel is not valid.
   bool operator==(const SurfaceValue&) const = default;
 };
 void read(const nlohmann::json& json, SurfaceValue& value);
@@ -416,7 +418,8 @@ inline constexpr Schema schema_of<Ack> = Schema::Ack;
 // Where this viewer's pointer is.
 struct PresenceUpdate {
   static constexpr std::string_view kOp = "presence";
-  std::optional<glm::dvec3> pointer;  // World position under it, as `picked` tells; null or absent: it is off the model.
+  int view_id = 0;
+  std::optional<glm::dvec2> pointer;  // Pixel of the view's newest camera; null or absent: the pointer is elsewhere.
   bool operator==(const PresenceUpdate&) const = default;
 };
 void read(const nlohmann::json& json, PresenceUpdate& value);
@@ -583,12 +586,23 @@ nlohmann::json to_json(const RecordEvent& value);
 template <>
 inline constexpr Schema schema_of<RecordEvent> = Schema::RecordEvent;
 
+// Where a pointer touches the surface. World coordinates.
+struct PresencePointer {
+  glm::dvec3 position{0};
+  std::optional<glm::dvec3> normal;
+  bool operator==(const PresencePointer&) const = default;
+};
+void read(const nlohmann::json& json, PresencePointer& value);
+nlohmann::json to_json(const PresencePointer& value);
+template <>
+inline constexpr Schema schema_of<PresencePointer> = Schema::PresencePointer;
+
 // One viewer.
 struct PresenceUser {
   Uuid session;
   std::string name;
   std::string color;
-  std::optional<glm::dvec3> pointer;  // World position; absent: off the model.
+  std::optional<PresencePointer> pointer;
   bool operator==(const PresenceUser&) const = default;
 };
 void read(const nlohmann::json& json, PresenceUser& value);
@@ -607,7 +621,7 @@ nlohmann::json to_json(const Presence& value);
 template <>
 inline constexpr Schema schema_of<Presence> = Schema::Presence;
 
-// What is at the pixel. Off the model there is no position, and no value is valid.
+// What is at the pixel. Off the model only `hit` and `id` are there.
 struct Picked {
   static constexpr std::string_view kOp = "picked";
   std::optional<std::string> id;
@@ -640,10 +654,9 @@ nlohmann::json to_json(const ProblemMessage& value);
 template <>
 inline constexpr Schema schema_of<ProblemMessage> = Schema::ProblemMessage;
 
-// User name and password.
+// Sign-in by a token or by the secret of an owner link.
 struct Login {
-  std::string user;
-  std::string password;
+  std::string token;
   bool operator==(const Login&) const = default;
 };
 void read(const nlohmann::json& json, Login& value);
@@ -717,7 +730,7 @@ nlohmann::json to_json(const JobState& value);
 
 // Long work.
 struct Job {
-  Uuid id;
+  std::int64_t id = 0;
   JobState state{};
   double progress = 0;
   std::string message;  // The step at work, in plain words.
@@ -729,6 +742,17 @@ void read(const nlohmann::json& json, Job& value);
 nlohmann::json to_json(const Job& value);
 template <>
 inline constexpr Schema schema_of<Job> = Schema::Job;
+
+// Jobs, newest first.
+struct JobList {
+  std::vector<Job> jobs;
+  std::int64_t total = 0;
+  bool operator==(const JobList&) const = default;
+};
+void read(const nlohmann::json& json, JobList& value);
+nlohmann::json to_json(const JobList& value);
+template <>
+inline constexpr Schema schema_of<JobList> = Schema::JobList;
 
 // New layer.
 struct LayerCreate {
@@ -832,7 +856,7 @@ nlohmann::json to_json(const Restore& value);
 template <>
 inline constexpr Schema schema_of<Restore> = Schema::Restore;
 
-// Point on the surface and the values there. Off the model there is no position, and no value is valid.
+// Point on the surface and the values there. Off the model only `hit` is there.
 struct SurfacePoint {
   bool hit = false;
   std::optional<glm::dvec3> position;
@@ -927,7 +951,7 @@ nlohmann::json to_json(const KeyStatistics& value);
 template <>
 inline constexpr Schema schema_of<KeyStatistics> = Schema::KeyStatistics;
 
-// Statistics of a layer, weighted by surface area. Of valid texels on the surface. `min`, `max`, `mean` and `std` are null while the layer is empty; `keys` is empty for fractions and for more than 4096 different values.
+// Statistics of a layer, weighted by surface area. Of valid texels on the surface. `min`, `max`, `mean` and `std` are absent while the layer is empty; `keys` is empty for fractions and for more than 4096 different values.
 struct Statistics {
   std::int64_t texels = 0;
   double area_m2 = 0;
