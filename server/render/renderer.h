@@ -29,6 +29,7 @@ struct RendererOptions {
   std::uint64_t gpu_memory_bytes = 0;     // budget; 0: 70 % of what the driver reports, or 4 GiB
   bool debug = false;                     // KHR_debug context; errors are counted (see `debug_errors`)
   std::size_t queue_capacity = 4096;
+  bool paper_depth_bias = false;          // the paper's fixed depth bias instead of the slope-aware one
 };
 
 struct GpuInfo {
@@ -46,7 +47,9 @@ struct WrittenTile {
 struct StrokeOutcome {
   std::vector<WrittenTile> tiles;
   glm::vec3 written_min{0}, written_max{0};  // model-space box of the written blocks; for changed screen rectangles
-  double gpu_ms = 0;
+  double gpu_ms = 0;       // of the dispatch, by timer query
+  double cull_ms = 0;      // choosing the blocks, on the CPU
+  double dispatch_ms = 0;  // from the start of culling until the commands were given
 };
 
 struct TileUpload {
@@ -88,6 +91,7 @@ struct Frame {
 // thread-safe and return at once; callbacks run on the GPU thread and must be quick. Order: edits and layer changes in
 // the order given, before frames, before background work (uploads of models and surface maps, in slices). A full queue or
 // a stopped renderer answers with a Problem 503; a lost context answers pending work with a Problem 503 titled "GPU lost".
+// (Only a stopped renderer calls back on the caller's thread: there is no other left.)
 class Renderer {
  public:
   // Starts the thread and waits for the context. The error says what was tried and how to mend it.
@@ -122,6 +126,8 @@ class Renderer {
   // Called on the GPU thread after a lost context was replaced: every handle given before is void.
   void on_context_lost(std::function<void()> callback);
   void lose_context_for_test();  // destroys the context, as a driver reset would
+  // Runs `work` with the context current, in order with edits, and returns after it.
+  void run_on_gpu_thread_for_test(std::function<void()> work);
 
  private:
   Renderer();

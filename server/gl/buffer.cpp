@@ -1,0 +1,41 @@
+#include "gl/buffer.h"
+
+#include <cassert>
+
+#include "gl/debug_messages.h"
+
+namespace strata::gl {
+
+Result<Buffer> Buffer::create(std::size_t bytes, Use use, std::string_view label) {
+  assert(bytes > 0);
+  GLuint id = 0;
+  glCreateBuffers(1, &id);
+  Buffer buffer;
+  buffer.object_ = Object<Traits>(id);
+  constexpr GLbitfield kMapping = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+  const GLbitfield flags = use == Use::read_back ? kMapping | GL_CLIENT_STORAGE_BIT : GL_DYNAMIC_STORAGE_BIT;
+  glNamedBufferStorage(id, static_cast<GLsizeiptr>(bytes), nullptr, flags);
+  if (auto fits = check_memory(label, bytes); !fits) return tl::unexpected(fits.error());
+  buffer.object_.label(label);
+  buffer.size_ = bytes;
+  if (use == Use::read_back) {
+    buffer.mapped_ = static_cast<const std::byte*>(
+        glMapNamedBufferRange(id, 0, static_cast<GLsizeiptr>(bytes), kMapping));
+    if (!buffer.mapped_) {
+      return fail(503, "GPU out of memory", "The driver could not map the buffer '" + std::string(label) + "'.");
+    }
+  }
+  return buffer;
+}
+
+void Buffer::upload(std::size_t offset, std::span<const std::byte> data) {
+  assert(offset + data.size() <= size_);
+  if (data.empty()) return;
+  glNamedBufferSubData(id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(data.size()), data.data());
+}
+
+void Buffer::bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id()); }
+
+void Buffer::bind_uniform(GLuint binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, binding, id()); }
+
+}  // namespace strata::gl

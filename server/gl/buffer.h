@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "core/problem.h"
+#include "gl/object.h"
+
+namespace strata::gl {
+
+// Immutable-storage buffer. Empty when default-constructed or moved from.
+class Buffer {
+ public:
+  enum class Use {
+    fixed,      // filled at creation or by `upload`, read by the GPU
+    read_back,  // mapped for its whole life; the GPU writes, the CPU reads behind a fence
+  };
+
+  Buffer() = default;
+  // A Problem 503 when the driver has no memory for it.
+  static Result<Buffer> create(std::size_t bytes, Use use, std::string_view label);
+
+  GLuint id() const { return object_.id(); }
+  std::size_t size() const { return size_; }
+  explicit operator bool() const { return static_cast<bool>(object_); }
+
+  // `offset + data.size()` must lie inside the buffer.
+  void upload(std::size_t offset, std::span<const std::byte> data);
+  template <class T>
+  void upload_values(std::size_t offset, std::span<const T> values) {
+    upload(offset, std::as_bytes(values));
+  }
+  void bind_storage(GLuint binding) const;
+  void bind_uniform(GLuint binding) const;
+
+  // `read_back` only.
+  std::span<const std::byte> mapped() const { return {mapped_, mapped_ ? size_ : 0}; }
+
+ private:
+  struct Traits {
+    static constexpr GLenum kIdentifier = GL_BUFFER;
+    static void destroy(GLuint id) { glDeleteBuffers(1, &id); }
+  };
+  Object<Traits> object_;
+  std::size_t size_ = 0;
+  const std::byte* mapped_ = nullptr;
+};
+
+}  // namespace strata::gl

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <string_view>
+
+#include "core/problem.h"
+
+namespace strata::gl {
+
+// Counts and logs KHR_debug errors of the current context from `install` on. Must outlive the context.
+class DebugMessages {
+ public:
+  void install();
+  int errors() const { return errors_; }
+  void count_error() { ++errors_; }
+
+ private:
+  std::atomic<int> errors_{0};
+};
+
+// After an allocation: a Problem 503 that names `what` when the driver had no memory for `bytes`.
+Result<void> check_memory(std::string_view what, std::size_t bytes);
+
+}  // namespace strata::gl

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <initializer_list>
+#include <string_view>
+
+#include "gl/object.h"
+#include "gl/texture.h"
+
+namespace strata::gl {
+
+// Draws into textures that must outlive it. Empty when default-constructed or moved from.
+class Framebuffer {
+ public:
+  Framebuffer() = default;
+  // `depth` may be null. The attachments must make a complete framebuffer (an error of ours otherwise).
+  Framebuffer(std::initializer_list<const Texture*> colors, const Texture* depth, std::string_view label);
+
+  GLuint id() const { return object_.id(); }
+  explicit operator bool() const { return static_cast<bool>(object_); }
+  bool complete() const;
+
+ private:
+  struct Traits {
+    static constexpr GLenum kIdentifier = GL_FRAMEBUFFER;
+    static void destroy(GLuint id) { glDeleteFramebuffers(1, &id); }
+  };
+  Object<Traits> object_;
+};
+
+}  // namespace strata::gl

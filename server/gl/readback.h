@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "gl/fence.h"
+
+namespace strata::gl {
+
+class ReadbackPool;
+
+// One transfer from the GPU: fill `buffer()` by GL commands, `submit()`, wait until `ready()`, read `data()`. Returns its
+// memory to the pool when destroyed; the pool must outlive it.
+class Readback {
+ public:
+  Readback() = default;
+  Readback(Readback&& other) noexcept;
+  Readback& operator=(Readback&& other) noexcept;
+  ~Readback();
+
+  explicit operator bool() const { return pool_ != nullptr; }
+  const Buffer& buffer() const { return buffer_; }
+  std::size_t size() const { return size_; }
+  void submit();
+  bool ready(std::uint64_t timeout_ns = 0) { return fence_.passed(timeout_ns); }
+  void wait();
+  std::span<const std::byte> data() const { return buffer_.mapped().first(size_); }
+
+ private:
+  friend class ReadbackPool;
+  void release();
+
+  ReadbackPool* pool_ = nullptr;
+  Buffer buffer_;
+  Fence fence_;
+  std::size_t size_ = 0;
+};
+
+// Persistent-mapped buffers that transfers reuse in turn; sizes are powers of two. At most `kept_bytes` stay unused.
+class ReadbackPool {
+ public:
+  explicit ReadbackPool(std::size_t kept_bytes = std::size_t{64} << 20) : kept_bytes_(kept_bytes) {}
+  ReadbackPool(const ReadbackPool&) = delete;
+  ReadbackPool& operator=(const ReadbackPool&) = delete;
+
+  Result<Readback> begin(std::size_t bytes);
+  void clear() { free_.clear(); }
+
+ private:
+  friend class Readback;
+  void give_back(Buffer buffer);
+
+  const std::size_t kept_bytes_;
+  std::vector<Buffer> free_;
+};
+
+}  // namespace strata::gl

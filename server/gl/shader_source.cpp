@@ -1,0 +1,55 @@
+#include "gl/shader_source.h"
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace strata::gl {
+namespace {
+
+constexpr const char* kTitle = "Shader cannot be built";
+
+// Appends the text of `file` with its includes in place; `line` numbers stay those of the file.
+Result<void> append(const std::filesystem::path& directory, const std::string& file, std::set<std::string>& seen,
+                    std::string& text) {
+  if (file.find("..") != std::string::npos) return fail(500, kTitle, "'" + file + "' leaves the shader folder.");
+  std::ifstream stream(directory / file);
+  if (!stream) {
+    return fail(500, kTitle, "'" + (directory / file).string() + "' cannot be read. Is the shader folder right?");
+  }
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    constexpr std::string_view kInclude = "#include \"";
+    if (!line.starts_with(kInclude)) {
+      // Includes guard themselves; the pragma only means something to C++.
+      text += line.starts_with("#pragma once") ? "\n" : line + "\n";
+      continue;
+    }
+    const auto end = line.find('"', kInclude.size());
+    if (end == std::string::npos) return fail(500, kTitle, file + ": unfinished #include in line " + std::to_string(number));
+    const std::string name = line.substr(kInclude.size(), end - kInclude.size());
+    if (seen.insert(name).second) {
+      text += "#line 1 " + std::to_string(seen.size()) + "\n";
+      if (auto included = append(directory, name, seen, text); !included) return included;
+    }
+    text += "#line " + std::to_string(number + 1) + " 0\n";
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::string> load_shader(const std::filesystem::path& directory, const std::string& file,
+                                const std::vector<std::string>& defines) {
+  std::string text;
+  std::set<std::string> seen;
+  if (auto loaded = append(directory, file, seen, text); !loaded) return tl::unexpected(loaded.error());
+  if (!text.starts_with("#version")) return fail(500, kTitle, file + ": the first line must be #version.");
+  std::string head;
+  for (const std::string& define : defines) head += "#define " + define + "\n";
+  const auto after_version = text.find('\n') + 1;
+  text.insert(after_version, head + "#line 2 0\n");
+  return text;
+}
+
+}  // namespace strata::gl

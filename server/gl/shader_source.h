@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/problem.h"
+
+namespace strata::gl {
+
+// Text of `file` in the folder `directory`, ready for the compiler: `#include "shared/…"` lines are replaced by those files
+// (each once), and `defines` ("NAME value") follow the #version line, which must be the first. Fails when a file is missing
+// or an include leaves the folder.
+Result<std::string> load_shader(const std::filesystem::path& directory, const std::string& file,
+                                const std::vector<std::string>& defines = {});
+
+}  // namespace strata::gl

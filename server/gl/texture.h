@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "core/problem.h"
+#include "gl/object.h"
+
+namespace strata::gl {
+
+// Immutable-storage 2D texture or 2D texture array with one level, nearest filter, clamped. Integer formats too.
+class Texture {
+ public:
+  Texture() = default;
+  // A Problem 503 when the driver has no memory for it.
+  static Result<Texture> create_2d(GLenum format, int width, int height, std::string_view label);
+  static Result<Texture> create_array(GLenum format, int width, int height, int layers, std::string_view label);
+
+  GLuint id() const { return object_.id(); }
+  explicit operator bool() const { return static_cast<bool>(object_); }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int layers() const { return layers_; }
+  GLenum format() const { return format_; }
+  std::size_t bytes() const;
+
+  void bind(GLuint unit) const { glBindTextureUnit(unit, id()); }
+  // All layers of an array at once.
+  void bind_image(GLuint unit, GLenum access) const;
+
+ private:
+  struct Traits {
+    static constexpr GLenum kIdentifier = GL_TEXTURE;
+    static void destroy(GLuint id) { glDeleteTextures(1, &id); }
+  };
+  static Result<Texture> finish(Texture texture, std::string_view label);
+
+  Object<Traits> object_;
+  GLenum format_ = GL_NONE;
+  int width_ = 0, height_ = 0, layers_ = 0;
+};
+
+// Bytes a texel of the sized formats used here.
+std::size_t bytes_per_texel(GLenum format);
+
+}  // namespace strata::gl

@@ -1,0 +1,206 @@
+#include "render/block_culler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "shared/depth_probe.h"
+
+namespace strata::render {
+namespace {
+
+// Float arithmetic of the shader and the rounding of packed positions move a texel by far less than this.
+constexpr double kMargin_px = 0.05;
+constexpr double kMarginDepth = 1e-6;
+constexpr double kMarginRadius = 1e-5;  // of a sphere, relative
+
+// Bounds of (row_i · p) / (row_w · p) over a sphere: the planes row_i - k row_w that touch it.
+std::pair<double, double> ratio_bounds(double a, double b, double radius, double aa, double ab, double bb) {
+  const double r2 = radius * radius;
+  const double qa = b * b - r2 * bb, qb = a * b - r2 * ab, qc = a * a - r2 * aa;
+  const double root = std::sqrt(std::max(0.0, qb * qb - qa * qc));
+  return {(qb - root) / qa, (qb + root) / qa};
+}
+
+class Culler {
+ public:
+  Culler(const mesh::SurfaceMap& map, const glm::dmat4& clip, int width, int height, const ToolPath& path,
+         const DepthBias& bias, const DepthGrid& grid)
+      : map_(map), clip_(clip), width_(width), height_(height), path_(path), bias_(bias), grid_(grid) {}
+
+  Candidates run() {
+    const int tiles = map_.resolution / kTileSize;
+    std::vector<std::uint32_t> under_tile, under_32, under_block;
+    for (int y = 0; y < tiles; ++y) {
+      for (int x = 0; x < tiles; ++x) {
+        const auto& bounds = map_.bounds_128[static_cast<std::size_t>(y * tiles + x)];
+        if (bounds.radius < 0) continue;
+        const auto box = project(bounds);
+        if (!box) continue;
+        segments_under(*box, under_tile);
+        if (under_tile.empty() || is_hidden(*box)) continue;
+        visit_tile(x, y, under_tile, under_32, under_block);
+      }
+    }
+    return std::move(found_);
+  }
+
+ private:
+  void visit_tile(int tile_x, int tile_y, const std::vector<std::uint32_t>& under_tile, std::vector<std::uint32_t>& under_32,
+                  std::vector<std::uint32_t>& under_block) {
+    const int per_side_32 = map_.resolution / 32;
+    for (int i = 0; i < 16; ++i) {
+      const int x = tile_x * 4 + i % 4, y = tile_y * 4 + i / 4;
+      if (!passes(map_.bounds_32[static_cast<std::size_t>(y * per_side_32 + x)], under_tile, under_32)) continue;
+      for (int k = 0; k < 16; ++k) {
+        const int block_x = x * 4 + k % 4, block_y = y * 4 + k / 4;
+        const auto slot = map_.slot_of_block[static_cast<std::size_t>(block_y * map_.blocks_per_side + block_x)];
+        if (slot == mesh::kNoSlot || !passes(map_.bounds_8[slot], under_32, under_block)) continue;
+        const auto place = static_cast<std::uint32_t>((block_x & 15) | (block_y & 15) << 4);
+        const TileAddress tile{static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y)};
+        found_.blocks.push_back({slot, tile, place, list_of(under_block), static_cast<std::uint32_t>(under_block.size())});
+      }
+    }
+  }
+
+  bool passes(const mesh::SurfaceMap::Bounds& bounds, const std::vector<std::uint32_t>& parent,
+              std::vector<std::uint32_t>& mine) const {
+    if (bounds.radius < 0) return false;
+    const auto box = project(bounds);
+    if (!box) return false;
+    mine.clear();
+    for (const auto segment : parent) {
+      if (lies_under(*box, segment)) mine.push_back(segment);
+    }
+    if (mine.empty() || is_hidden(*box)) return false;
+    keep_covering(*box, mine);
+    return true;
+  }
+
+  std::optional<WindowBox> project(const mesh::SurfaceMap::Bounds& bounds) const {
+    const double radius = bounds.radius * (1 + kMarginRadius);
+    auto found = project_sphere(clip_, width_, height_, glm::dvec3(bounds.center), radius);
+    if (!found) return found;
+    auto& box = found->box;
+    box = {box.x0 - kMargin_px, box.y0 - kMargin_px, box.x1 + kMargin_px, box.y1 + kMargin_px};
+    if (box.x1 < 0 || box.y1 < 0 || box.x0 > width_ || box.y0 > height_ || !box.overlaps(path_.box)) return std::nullopt;
+    return found;
+  }
+
+  void segments_under(const WindowBox& box, std::vector<std::uint32_t>& list) const {
+    list.clear();
+    for (std::size_t group = 0; group < path_.group_boxes.size(); ++group) {
+      if (!path_.group_boxes[group].overlaps(box.box)) continue;
+      const std::size_t first = group * ToolPath::kSegmentsPerGroup;
+      const std::size_t last = std::min(first + ToolPath::kSegmentsPerGroup, path_.segments.size());
+      for (std::size_t i = first; i < last; ++i) {
+        if (lies_under(box, static_cast<std::uint32_t>(i))) list.push_back(static_cast<std::uint32_t>(i));
+      }
+    }
+  }
+
+  // The circle around the box against the segment's axis: long slanted segments have boxes much larger than they are.
+  bool lies_under(const WindowBox& window, std::uint32_t segment) const {
+    const PixelBox& box = window.box;
+    if (!path_.boxes[segment].overlaps(box)) return false;
+    const auto& s = path_.segments[segment];
+    const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};
+    const double around = std::hypot(box.x1 - box.x0, box.y1 - box.y0) / 2;
+    const double reach = std::max(s.tool.x, s.tool.y) * std::sqrt(2.0) + around;  // √2: squares reach that far
+    return distance_to_axis(s, center) <= reach;
+  }
+
+  static double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
+    const glm::dvec2 a{s.ends.x, s.ends.y}, along = glm::dvec2(s.ends.z, s.ends.w) - a;
+    const double squared = glm::dot(along, along);
+    const double t = squared > 0 ? std::clamp(glm::dot(point - a, along) / squared, 0.0, 1.0) : 0.0;
+    return glm::length(point - (a + along * t));
+  }
+
+  // Where one segment covers the whole box the others do not matter.
+  void keep_covering(const WindowBox& window, std::vector<std::uint32_t>& list) const {
+    if (list.size() < 2) return;
+    const PixelBox& box = window.box;
+    const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};
+    const double around = std::hypot(box.x1 - box.x0, box.y1 - box.y0) / 2 + kMargin_px;
+    for (const auto segment : list) {
+      const auto& s = path_.segments[segment];
+      if (distance_to_axis(s, center) + around < std::min(s.tool.x, s.tool.y)) {
+        list.assign(1, segment);
+        return;
+      }
+    }
+  }
+
+  bool is_hidden(const WindowBox& window) const {
+    if (!grid_.cells || window.w0 <= 0) return false;
+    const double bias = bias_.is_fixed ? bias_.fixed : bias_.scale / (window.w0 * window.w0) * (1 + bias_.slope_limit);
+    const double nearest = window.z0 - bias - kMarginDepth;
+    const auto cell = [](double pixel, int count) {
+      return static_cast<int>(std::clamp(std::floor(pixel / shader::kDepthCell), 0.0, count - 1.0));
+    };
+    const PixelBox& box = window.box;
+    const int x0 = cell(std::max(box.x0, path_.box.x0), grid_.width), x1 = cell(std::min(box.x1, path_.box.x1), grid_.width);
+    const int y0 = cell(std::max(box.y0, path_.box.y0), grid_.height), y1 = cell(std::min(box.y1, path_.box.y1), grid_.height);
+    for (int y = y0; y <= y1; ++y) {
+      for (int x = x0; x <= x1; ++x) {
+        if (grid_.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width) + static_cast<std::size_t>(x)] >= nearest) return false;
+      }
+    }
+    return true;
+  }
+
+  // Neighbouring blocks mostly share their list.
+  std::uint32_t list_of(const std::vector<std::uint32_t>& segments) {
+    auto& lists = found_.segment_lists;
+    const std::span<const std::uint32_t> last(lists.data() + last_list_, lists.size() - last_list_);
+    if (lists.empty() || !std::equal(last.begin(), last.end(), segments.begin(), segments.end())) {
+      last_list_ = lists.size();
+      lists.insert(lists.end(), segments.begin(), segments.end());
+    }
+    return static_cast<std::uint32_t>(last_list_);
+  }
+
+  const mesh::SurfaceMap& map_;
+  const glm::dmat4& clip_;
+  const int width_, height_;
+  const ToolPath& path_;
+  const DepthBias& bias_;
+  const DepthGrid& grid_;
+  Candidates found_;
+  std::size_t last_list_ = 0;
+};
+
+}  // namespace
+
+std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int width, int height, const glm::dvec3& center,
+                                        double radius) {
+  const glm::dmat4 rows = glm::transpose(clip_from_model);
+  const glm::dvec4 point(center, 1);
+  const glm::dvec3 w_row(rows[3]);
+  const double w = glm::dot(rows[3], point);
+  const double w_reach = radius * glm::length(w_row);
+  if (w + w_reach <= 0) return std::nullopt;
+  if (w - w_reach <= std::numeric_limits<double>::epsilon()) {
+    return WindowBox{{0, 0, double(width), double(height)}, 0, 0};
+  }
+  const auto bounds = [&](int row) {
+    const glm::dvec3 r(rows[row]);
+    return ratio_bounds(glm::dot(rows[row], point), w, radius, glm::dot(r, r), glm::dot(r, w_row), glm::dot(w_row, w_row));
+  };
+  const auto [x0, x1] = bounds(0);
+  const auto [y0, y1] = bounds(1);
+  const auto [z0, z1] = bounds(2);
+  if (z1 < -1 || z0 > 1) return std::nullopt;
+  return WindowBox{{(x0 * 0.5 + 0.5) * width, (y0 * 0.5 + 0.5) * height, (x1 * 0.5 + 0.5) * width, (y1 * 0.5 + 0.5) * height},
+                   z0 * 0.5 + 0.5,
+                   w - w_reach};
+}
+
+Candidates cull_blocks(const mesh::SurfaceMap& map, const glm::dmat4& clip_from_model, int width, int height,
+                       const ToolPath& path, const DepthBias& bias, const DepthGrid& grid) {
+  return Culler(map, clip_from_model, width, height, path, bias, grid).run();
+}
+
+}  // namespace strata::render

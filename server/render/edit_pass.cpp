@@ -1,0 +1,167 @@
+#include "render/edit_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "shared/edit.h"
+#include "shared/pages.h"
+
+namespace strata::render {
+namespace {
+
+shader::EditUniforms make_uniforms(const StrokeBatch& stroke, const glm::mat4& clip_from_model, const DepthBias& bias,
+                                   const mesh::SurfaceMap& map) {
+  shader::EditUniforms uniforms{};
+  uniforms.clip_from_model = clip_from_model;
+  uniforms.box_min = glm::vec4(map.box_min, 0);
+  uniforms.box_scale = glm::vec4(glm::dvec3(map.box_extent) / glm::dvec3((1 << 21) - 2, (1 << 21) - 2, (1 << 22) - 2), 0);
+  uniforms.window = glm::vec4(stroke.camera.width, stroke.camera.height, 0, 0);
+  uniforms.bias = glm::vec4(bias.fixed, bias.scale, bias.slope_factor, bias.slope_limit);
+  uniforms.value = stroke.value_bits;
+  uniforms.flags = (stroke.erase ? shader::kEditErase : 0u) | (stroke.through ? shader::kEditThrough : 0u) |
+                   (stroke.shape == ToolShape::square ? shader::kEditSquare : 0u) |
+                   (bias.is_fixed ? shader::kEditFixedBias : 0u);
+  return uniforms;
+}
+
+std::size_t width_index(int texel_bytes) { return texel_bytes == 1 ? 0 : texel_bytes == 2 ? 1 : 2; }
+
+}  // namespace
+
+// Window depth changes with the distance t along the axis by |P22 P33 - P32 P23| / (2 w²) per unit; a view matrix that
+// scales makes its units of model units.
+DepthBias slope_aware_bias(const Camera& camera, double model_diagonal) {
+  const auto& p = camera.projection;
+  const double view_scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(camera.view))));
+  const double depth_per_unit = 0.5 * std::abs(p[2][2] * p[3][3] - p[3][2] * p[2][3]);
+  DepthBias bias;
+  bias.scale = kDepthBiasOfDiagonal * model_diagonal * view_scale * depth_per_unit;
+  bias.slope_factor = kDepthBiasSlopeFactor;
+  bias.slope_limit = kDepthBiasSlopeLimit;
+  return bias;
+}
+
+Result<EditPass> EditPass::create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback) {
+  EditPass pass;
+  pass.readback_ = &readback;
+  for (const int texel_bytes : {1, 2, 4}) {
+    auto program = gl::Program::load(shader_dir, {"edit_pass.comp"}, {image_format_define(texel_bytes)});
+    if (!program) return tl::unexpected(program.error());
+    pass.programs_[width_index(texel_bytes)] = std::move(*program);
+  }
+  pass.timer_ = gl::TimerQuery::create("edit");
+  return pass;
+}
+
+Result<std::vector<TileAddress>> EditPass::make_pages(const std::vector<CandidateBlock>& blocks, LayerTextures& layer) {
+  std::vector<TileAddress> fresh;
+  for (const CandidateBlock& block : blocks) {
+    if (layer.page(block.tile) != shader::kNoPage) continue;
+    if (auto page = layer.ensure_page(block.tile); !page) {
+      for (const TileAddress tile : fresh) layer.free_page(tile);
+      return tl::unexpected(page.error());
+    }
+    fresh.push_back(block.tile);
+  }
+  return fresh;
+}
+
+Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::mat4& clip_from_model, const ToolPath& path,
+                                          const DepthBias& bias, Candidates candidates, const SurfaceMapTextures& map,
+                                          const gl::Texture* depth, LayerTextures& layer, PageTables& tables) {
+  DispatchedEdit edit;
+  edit.blocks = std::move(candidates.blocks);
+  if (edit.blocks.empty()) return edit;
+  if (!stroke.erase) {
+    auto fresh = make_pages(edit.blocks, layer);
+    if (!fresh) return tl::unexpected(fresh.error());
+    edit.fresh_tiles = std::move(*fresh);
+  }
+  const auto give_up = [&](const Problem& problem) {
+    for (const TileAddress tile : edit.fresh_tiles) layer.free_page(tile);
+    return tl::unexpected(problem);
+  };
+  if (auto flushed = tables.flush(); !flushed) return give_up(flushed.error());
+
+  // One dispatch a chunk: only one pair of images is bound at a time. Blocks without a page (erasing) go with the first.
+  const auto chunk_of = [&](const CandidateBlock& block) {
+    const PageId page = layer.page(block.tile);
+    return page == shader::kNoPage ? 0u : page >> shader::kPageChunkShift;
+  };
+  if (layer.pool().chunk_count() > 1) {
+    std::stable_sort(edit.blocks.begin(), edit.blocks.end(),
+                     [&](const CandidateBlock& a, const CandidateBlock& b) { return chunk_of(a) < chunk_of(b); });
+  }
+  std::vector<shader::EditBlock> blocks;
+  blocks.reserve(edit.blocks.size());
+  for (const CandidateBlock& block : edit.blocks) {
+    blocks.push_back({block.slot, layer.page(block.tile), block.segments, block.block_in_tile | block.segment_count << 8});
+  }
+  const auto uniforms = make_uniforms(stroke, clip_from_model, bias, map.map());
+  auto rows = readback_->begin(blocks.size() * shader::kEditRowsPerBlock * sizeof(std::uint32_t));
+  if (!rows) return give_up(rows.error());
+  for (auto sent : {uniforms_.replace(std::span(&uniforms, 1)), blocks_.replace(std::span<const shader::EditBlock>(blocks)),
+                    segments_.replace(std::span<const shader::EditSegment>(path.segments)),
+                    lists_.replace(std::span<const std::uint32_t>(candidates.segment_lists))}) {
+    if (!sent) return give_up(sent.error());
+  }
+
+  const gl::Program& program = programs_[width_index(layer.pool().texel_bytes())];
+  program.use();
+  uniforms_.bind_uniform(0);
+  blocks_.bind_storage(0);
+  segments_.bind_storage(1);
+  lists_.bind_storage(2);
+  rows->buffer().bind_storage(3);
+  map.positions().bind(0);
+  if (depth) depth->bind(1);
+  timer_.begin();
+  for (std::size_t first = 0; first < edit.blocks.size();) {
+    const auto chunk = chunk_of(edit.blocks[first]);
+    std::size_t last = first;
+    while (last < edit.blocks.size() && chunk_of(edit.blocks[last]) == chunk) ++last;
+    if (static_cast<int>(chunk) < layer.pool().chunk_count()) {
+      layer.pool().values(static_cast<int>(chunk)).bind_image(0, GL_WRITE_ONLY);
+      layer.pool().valid(static_cast<int>(chunk)).bind_image(1, GL_WRITE_ONLY);
+    }
+    const auto count = static_cast<GLuint>(last - first);
+    program.set(0, static_cast<GLuint>(first));
+    program.set(1, count);
+    const GLuint groups = (count + shader::kEditBlocksPerGroup - 1) / shader::kEditBlocksPerGroup;
+    const GLuint columns = std::min(groups, shader::kEditGroupsPerRow);
+    glDispatchCompute(columns, (groups + columns - 1) / columns, 1);
+    first = last;
+  }
+  timer_.end();
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+  rows->submit();
+  edit.rows = std::move(*rows);
+  return edit;
+}
+
+std::map<TileAddress, TileMask> EditPass::written_masks(const DispatchedEdit& edit) {
+  std::map<TileAddress, TileMask> masks;
+  if (!edit.rows) return masks;
+  const auto data = edit.rows.data();
+  TileMask* mask = nullptr;
+  TileAddress mask_tile;
+  for (std::size_t i = 0; i < edit.blocks.size(); ++i) {
+    const CandidateBlock& block = edit.blocks[i];
+    std::array<std::uint32_t, shader::kEditRowsPerBlock> rows;
+    std::memcpy(rows.data(), data.data() + i * sizeof(rows), sizeof(rows));
+    if (std::all_of(rows.begin(), rows.end(), [](std::uint32_t row) { return row == 0; })) continue;
+    if (!mask || mask_tile != block.tile) {
+      mask = &masks[block.tile];
+      mask_tile = block.tile;
+    }
+    const std::uint32_t x = (block.block_in_tile & 15) * 8, y = (block.block_in_tile >> 4) * 8;
+    for (std::uint32_t row = 0; row < rows.size(); ++row) {
+      const std::uint32_t texel = (y + row) * kTileSize + x;
+      mask->words[texel / 64] |= std::uint64_t{rows[row]} << (texel % 64);
+    }
+  }
+  return masks;
+}
+
+}  // namespace strata::render

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "gl/program.h"
+#include "gl/readback.h"
+#include "gl/timer_query.h"
+#include "render/block_culler.h"
+#include "render/layer_textures.h"
+#include "render/stream_buffer.h"
+#include "render/surface_map_textures.h"
+
+namespace strata::render {
+
+// The slope-aware bias lets a texel pass that lies behind the depth buffer by this share of the model's diagonal (scan noise
+// within a pixel), plus the depth that the surface's own slope makes within half a pixel, up to so many times the first.
+constexpr double kDepthBiasOfDiagonal = 1e-4;
+constexpr double kDepthBiasSlopeFactor = 1.0;
+constexpr double kDepthBiasSlopeLimit = 24.0;
+// The paper's "small bias", in window depth; used where the options ask for it.
+constexpr double kPaperDepthBias = 2e-4;
+
+DepthBias slope_aware_bias(const Camera& camera, double model_diagonal);
+
+// Dispatched and not read back yet. `blocks` are in the order of the rows.
+struct DispatchedEdit {
+  gl::Readback rows;
+  std::vector<CandidateBlock> blocks;
+  std::vector<TileAddress> fresh_tiles;  // pages were made for these
+};
+
+// The texture editing and padding algorithms of the paper in one compute dispatch (shaders/edit_pass.comp).
+class EditPass {
+ public:
+  static Result<EditPass> create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback);
+
+  // Makes pages for the candidates' tiles (unless erasing) and dispatches. On a Problem nothing was changed. `depth` may
+  // be null when the stroke goes through.
+  Result<DispatchedEdit> dispatch(const StrokeBatch& stroke, const glm::mat4& clip_from_model, const ToolPath& path,
+                                  const DepthBias& bias, Candidates candidates, const SurfaceMapTextures& map,
+                                  const gl::Texture* depth, LayerTextures& layer, PageTables& tables);
+  // The written texels of each tile, once `edit.rows` is ready; tiles without any are left out.
+  static std::map<TileAddress, TileMask> written_masks(const DispatchedEdit& edit);
+  double gpu_ms() const { return timer_.elapsed_ms(); }  // of the last dispatch
+
+ private:
+  Result<std::vector<TileAddress>> make_pages(const std::vector<CandidateBlock>& blocks, LayerTextures& layer);
+
+  gl::ReadbackPool* readback_ = nullptr;
+  std::array<gl::Program, 3> programs_;  // of 1, 2 and 4 bytes a texel
+  gl::TimerQuery timer_;
+  StreamBuffer uniforms_{"edit uniforms"}, blocks_{"edit blocks"}, segments_{"edit segments"}, lists_{"edit segment lists"};
+};
+
+}  // namespace strata::render

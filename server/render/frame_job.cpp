@@ -1,0 +1,142 @@
+#include "render/frame_job.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "render/screen_rect.h"
+
+namespace strata::render {
+
+Step FrameJob::step(GpuScene& scene) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto view = scene.view(task_.request.view);
+  const auto refuse = [&](const Problem& problem) {
+    // A picture that was not finished is not to be added to.
+    if (view) {
+      (*view)->drawing = false;
+      (*view)->picture_complete = false;
+    }
+    abort(problem);
+    return Step::done;
+  };
+  if (!view) return refuse(view.error());
+  const auto advance = [&]() -> Result<Step> {
+    switch (stage_) {
+      case Stage::prepare:
+        if (auto prepared = prepare(scene, **view); !prepared) return tl::unexpected(prepared.error());
+        stage_ = (*view)->gbuffer_complete ? Stage::shade : Stage::gbuffer;
+        return Step::more;
+      case Stage::gbuffer: {
+        auto complete = draw_slice(scene, **view);
+        if (!complete) return tl::unexpected(complete.error());
+        if (*complete) stage_ = Stage::shade;
+        return Step::more;
+      }
+      case Stage::shade:
+        if (auto shaded = shade(scene, **view); !shaded) return tl::unexpected(shaded.error());
+        stage_ = Stage::readback;
+        return Step::more;
+      case Stage::readback: break;
+    }
+    return pixels_ && !pixels_.ready() ? Step::waiting : Step::done;
+  };
+  const auto step = advance();
+  if (!step) return refuse(step.error());
+  busy_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  if (*step == Step::done) {
+    (*view)->drawing = false;
+    if (scene.lost()) return refuse({503, "GPU lost", "The GPU context was lost and is being rebuilt. Ask for the frame again.", {}});
+    finish();
+  }
+  return *step;
+}
+
+Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
+  const FrameRequest& request = task_.request;
+  view.last_used = scene.next_use();
+  if (auto valid = validate(request.camera); !valid) return valid;
+  if (request.width < 1 || request.height < 1 || request.width > kMaxViewSize || request.height > kMaxViewSize) {
+    return fail(422, "Size out of range", "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", "width");
+  }
+  if (request.layers.size() > PaletteTextures::kMaxPalettes) {
+    return fail(422, "Too many layers", "A view shows at most 64 layers; hide some.", "layers");
+  }
+  for (const LayerStyle& style : request.layers) {
+    auto layer = scene.layer(style.layer);
+    if (!layer) return tl::unexpected(layer.error());
+    if ((*layer)->model != view.model) return fail(422, "Layer of another model", "A view shows layers of its own model.", "layers");
+    const bool has_colors = style.palette && (style.palette->mode == PaletteMode::categorical || !style.palette->points.empty());
+    if (!has_colors || !std::isfinite(style.opacity)) {
+      return fail(422, "Palette not usable", "A layer in a view needs a palette with points, and a finite opacity.", "layers");
+    }
+  }
+  const DepthKey key{view.model, request.camera.view, request.camera.projection, request.width, request.height};
+  view.drawing = true;
+  if (view.gbuffer_complete && view.key == key) return {};
+  return prepare_gbuffer(view, key, scene.depths(), scene.memory());
+}
+
+Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
+  auto model = scene.model(view.model);
+  if (!model) return tl::unexpected(model.error());
+  const MeshBuffers& mesh = *(*model)->mesh;
+  const auto uniforms = mesh_uniforms(task_.request.camera, mesh.geometry().origin);
+  const bool complete =
+      scene.gbuffer_pass().draw_slice(mesh, uniforms, view.gbuffer, view.key.width, view.key.height, progress_);
+  if (complete) view.gbuffer_complete = view.depth->complete = true;
+  return complete;
+}
+
+Result<void> FrameJob::shade(GpuScene& scene, View& view) {
+  const FrameRequest& request = task_.request;
+  frame_.width = request.width;
+  frame_.height = request.height;
+  frame_.rect = {0, 0, request.width, request.height};
+  if (request.changed && view.shows(request)) {
+    auto model = scene.model(view.model);
+    if (!model) return tl::unexpected(model.error());
+    const glm::dmat4 clip = request.camera.projection * request.camera.view *
+                            glm::translate(glm::dmat4(1.0), (*model)->mesh->geometry().origin);
+    frame_.rect = screen_rect(*request.changed, clip, request.width, request.height, request.align_to_16);
+    if (frame_.rect.width == 0) return {};
+  }
+  ShadeInput input{view.uv, view.light, view.picture, frame_.rect, request.background_top, request.background_bottom, {}};
+  for (const LayerStyle& style : request.layers) {
+    auto layer = scene.layer(style.layer);
+    if (!layer) return tl::unexpected(layer.error());
+    input.layers.push_back({(*layer)->textures.get(), style.palette, style.opacity});
+  }
+  if (auto flushed = scene.tables().flush(); !flushed) return flushed;
+  if (auto shaded = scene.shade_pass().shade(input, scene.tables()); !shaded) return shaded;
+
+  const PixelRect& rect = frame_.rect;
+  const std::size_t bytes = std::size_t{4} * static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
+  auto pixels = scene.readback().begin(bytes);
+  if (!pixels) return tl::unexpected(pixels.error());
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, pixels->buffer().id());
+  glGetTextureSubImage(view.picture.id(), 0, rect.x, rect.y, 0, rect.width, rect.height, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+                       static_cast<GLsizei>(bytes), nullptr);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  pixels->submit();
+  pixels_ = std::move(*pixels);
+  view.picture_complete = true;
+  view.layers = request.layers;
+  view.background_top = request.background_top;
+  view.background_bottom = request.background_bottom;
+  return {};
+}
+
+void FrameJob::finish() {
+  if (pixels_) {
+    const auto data = pixels_.data();
+    frame_.pixels.resize(data.size());
+    std::memcpy(frame_.pixels.data(), data.data(), data.size());
+    pixels_ = {};
+  }
+  frame_.render_ms = busy_ms_;
+  task_.done(std::move(frame_));
+}
+
+}  // namespace strata::render

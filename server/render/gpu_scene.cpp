@@ -1,0 +1,165 @@
+#include "render/gpu_scene.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace strata::render {
+namespace {
+
+// A slice of a long drawing takes about 4 ms: llvmpipe needs 27 to 59 ns a triangle.
+constexpr std::size_t kTrianglesPerSliceSoftware = 64 * 1024;
+constexpr std::size_t kTrianglesPerSliceHardware = 2 * 1024 * 1024;
+constexpr int kLowestResolution = kTileSize, kHighestResolution = 16384;
+constexpr std::uint64_t kDefaultBudget = std::uint64_t{4} << 30;
+
+std::string text(GLenum name) {
+  const auto* value = reinterpret_cast<const char*>(glGetString(name));
+  return value ? value : "";
+}
+
+int integer(GLenum name) {
+  GLint value = 0;
+  glGetIntegerv(name, &value);
+  return value;
+}
+
+GpuInfo read_info() {
+  GpuInfo info{text(GL_VENDOR), text(GL_RENDERER), text(GL_VERSION)};
+  for (const char* name : {"llvmpipe", "softpipe", "SWR"}) {
+    info.software = info.software || info.renderer.find(name) != std::string::npos;
+  }
+  info.max_texture_size = integer(GL_MAX_TEXTURE_SIZE);
+  info.max_array_layers = integer(GL_MAX_ARRAY_TEXTURE_LAYERS);
+  info.max_texture_units = integer(GL_MAX_TEXTURE_IMAGE_UNITS);
+  info.max_image_units = integer(GL_MAX_IMAGE_UNITS);
+  return info;
+}
+
+// 70 % of the dedicated memory where the driver tells it.
+std::uint64_t default_budget() {
+  if (epoxy_has_gl_extension("GL_NVX_gpu_memory_info")) {
+    const int total_kib = integer(GL_GPU_MEMORY_INFO_DEDICATED_VIDMEM_NVX);
+    if (total_kib > 0) return static_cast<std::uint64_t>(total_kib) * 1024 * 7 / 10;
+  }
+  return kDefaultBudget;
+}
+
+template <class Pass>
+Result<void> keep(std::optional<Pass>& place, Result<Pass> pass) {
+  if (!pass) return tl::unexpected(pass.error());
+  place.emplace(std::move(*pass));
+  return {};
+}
+
+}  // namespace
+
+GpuScene::GpuScene(const RendererOptions& options, std::uint64_t generation, GpuMemory& memory)
+    : options_(options),
+      generation_(generation),
+      memory_(memory),
+      pool_1_(1, memory),
+      pool_2_(2, memory),
+      pool_4_(4, memory),
+      tables_(memory) {}
+
+GpuScene::~GpuScene() { memory_.set_evictor(nullptr); }
+
+Result<std::unique_ptr<GpuScene>> GpuScene::create(const RendererOptions& options, std::uint64_t generation,
+                                                   GpuMemory& memory, gl::DebugMessages& messages) {
+  auto context = gl::EglContext::create({options.debug});
+  if (!context) return tl::unexpected(context.error());
+  std::unique_ptr<GpuScene> scene(new GpuScene(options, generation, memory));
+  scene->context_ = std::move(*context);
+  if (options.debug) messages.install();
+  if (auto loaded = scene->load(); !loaded) return tl::unexpected(loaded.error());
+  return scene;
+}
+
+Result<void> GpuScene::load() {
+  info_ = read_info();
+  memory_.set_budget(options_.gpu_memory_bytes > 0 ? options_.gpu_memory_bytes : default_budget());
+  memory_.set_evictor([this] { return evict_one(); });
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glDisable(GL_DITHER);
+  const auto slice = info_.software ? kTrianglesPerSliceSoftware : kTrianglesPerSliceHardware;
+  const std::string& dir = options_.shader_dir;
+  if (auto made = keep(depths_, DepthBuffers::create(dir, slice, memory_, readback_)); !made) return made;
+  if (auto made = keep(edit_pass_, EditPass::create(dir, readback_)); !made) return made;
+  if (auto made = keep(tile_reader_, TileReader::create(dir, readback_)); !made) return made;
+  if (auto made = keep(gbuffer_pass_, MeshPass::create(MeshPass::Kind::gbuffer, dir, slice)); !made) return made;
+  return keep(shade_pass_, ShadePass::create(dir));
+}
+
+// Depth buffers of cameras that no view has go first, then the buffers of the view that was not drawn for the longest time.
+bool GpuScene::evict_one() {
+  if (depths_ && depths_->evict_one()) return true;
+  View* oldest = nullptr;
+  for (auto& [handle, view] : views_) {
+    if (view.has_buffers() && !view.drawing && (!oldest || view.last_used < oldest->last_used)) oldest = &view;
+  }
+  if (!oldest) return false;
+  oldest->drop_buffers();
+  return true;
+}
+
+Problem GpuScene::unknown(const char* what, std::uint64_t handle) const {
+  const bool old = handle != 0 && handle >> 40 != generation_;
+  return {404, std::string("Unknown ") + what,
+          old ? std::string("The handle is of a GPU context that was lost. Add the ") + what + " again."
+              : std::string("There is no such ") + what + " on the GPU; it may have been removed.",
+          what};
+}
+
+ModelHandle GpuScene::add(Model model) {
+  const ModelHandle handle = next_handle();
+  models_.emplace(handle, std::move(model));
+  return handle;
+}
+
+Result<LayerHandle> GpuScene::add_layer(ModelHandle model_handle, ValueType type, int resolution) {
+  if (auto found = model(model_handle); !found) return tl::unexpected(found.error());
+  if (resolution < kLowestResolution || resolution > kHighestResolution || !std::has_single_bit(static_cast<unsigned>(resolution))) {
+    return fail(422, "Resolution out of range", "A layer's resolution is a power of two from 128 to 16384.", "resolution");
+  }
+  const int bytes = strata::bytes_per_texel(type);
+  auto textures = LayerTextures::create(type, resolution, tables_, bytes == 1 ? pool_1_ : bytes == 2 ? pool_2_ : pool_4_);
+  if (!textures) return tl::unexpected(textures.error());
+  const LayerHandle handle = next_handle();
+  layers_.emplace(handle, Layer{model_handle, std::move(*textures)});
+  return handle;
+}
+
+Result<ViewHandle> GpuScene::add_view(ModelHandle model_handle) {
+  if (auto found = model(model_handle); !found) return tl::unexpected(found.error());
+  const ViewHandle handle = next_handle();
+  views_[handle].model = model_handle;
+  return handle;
+}
+
+Result<GpuScene::Model*> GpuScene::model(ModelHandle handle) {
+  const auto found = models_.find(handle);
+  if (found == models_.end()) return tl::unexpected(unknown("model", handle));
+  return &found->second;
+}
+
+Result<GpuScene::Layer*> GpuScene::layer(LayerHandle handle) {
+  const auto found = layers_.find(handle);
+  if (found == layers_.end()) return tl::unexpected(unknown("layer", handle));
+  return &found->second;
+}
+
+Result<View*> GpuScene::view(ViewHandle handle) {
+  const auto found = views_.find(handle);
+  if (found == views_.end()) return tl::unexpected(unknown("view", handle));
+  return &found->second;
+}
+
+void GpuScene::remove_model(ModelHandle handle) {
+  std::erase_if(layers_, [&](const auto& entry) { return entry.second.model == handle; });
+  std::erase_if(views_, [&](const auto& entry) { return entry.second.model == handle; });
+  if (depths_) depths_->forget_model(handle);
+  models_.erase(handle);
+}
+
+}  // namespace strata::render

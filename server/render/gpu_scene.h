@@ -1,0 +1,86 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <unordered_map>
+
+#include "gl/debug_messages.h"
+#include "gl/egl_context.h"
+#include "render/edit_pass.h"
+#include "render/shade_pass.h"
+#include "render/tile_reader.h"
+#include "render/view_cache.h"
+
+namespace strata::render {
+
+// Everything that lives in one GL context: passes, pools, models, layers, views. Made and destroyed as a whole, so that
+// nothing of a lost context is left over. GPU thread only.
+class GpuScene {
+ public:
+  struct Model {
+    std::unique_ptr<MeshBuffers> mesh;
+    std::map<int, std::unique_ptr<SurfaceMapTextures>> maps;  // by resolution, complete ones only
+  };
+  struct Layer {
+    ModelHandle model = 0;
+    std::unique_ptr<LayerTextures> textures;
+  };
+
+  // `generation` goes into handles; `memory` and `messages` must outlive the scene.
+  static Result<std::unique_ptr<GpuScene>> create(const RendererOptions& options, std::uint64_t generation, GpuMemory& memory,
+                                                  gl::DebugMessages& messages);
+  GpuScene(const GpuScene&) = delete;
+  GpuScene& operator=(const GpuScene&) = delete;
+  ~GpuScene();
+
+  bool lost() const { return context_.lost(); }
+  const GpuInfo& info() const { return info_; }
+  const RendererOptions& options() const { return options_; }
+  GpuMemory& memory() { return memory_; }
+  gl::ReadbackPool& readback() { return readback_; }
+  PageTables& tables() { return tables_; }
+  DepthBuffers& depths() { return *depths_; }
+  EditPass& edit_pass() { return *edit_pass_; }
+  TileReader& tile_reader() { return *tile_reader_; }
+  MeshPass& gbuffer_pass() { return *gbuffer_pass_; }
+  ShadePass& shade_pass() { return *shade_pass_; }
+  std::uint64_t next_use() { return ++uses_; }
+
+  ModelHandle add(Model model);
+  Result<LayerHandle> add_layer(ModelHandle model, ValueType type, int resolution);
+  Result<ViewHandle> add_view(ModelHandle model);
+  // A Problem 404 for a handle that is unknown, removed, or of another generation.
+  Result<Model*> model(ModelHandle handle);
+  Result<Layer*> layer(LayerHandle handle);
+  Result<View*> view(ViewHandle handle);
+  void remove_model(ModelHandle handle);  // and its layers and views
+  void remove_layer(LayerHandle handle) { layers_.erase(handle); }
+  void remove_view(ViewHandle handle) { views_.erase(handle); }
+
+ private:
+  GpuScene(const RendererOptions& options, std::uint64_t generation, GpuMemory& memory);
+  Result<void> load();
+  bool evict_one();
+  std::uint64_t next_handle() { return generation_ << 40 | ++handles_; }
+  Problem unknown(const char* what, std::uint64_t handle) const;
+
+  gl::EglContext context_;  // first: destroyed after all that lives in it
+  const RendererOptions options_;
+  const std::uint64_t generation_;
+  GpuMemory& memory_;
+  GpuInfo info_;
+  std::uint64_t handles_ = 0, uses_ = 0;
+  gl::ReadbackPool readback_;
+  PagePool pool_1_, pool_2_, pool_4_;
+  PageTables tables_;
+  std::optional<DepthBuffers> depths_;
+  std::optional<EditPass> edit_pass_;
+  std::optional<TileReader> tile_reader_;
+  std::optional<MeshPass> gbuffer_pass_;
+  std::optional<ShadePass> shade_pass_;
+  std::unordered_map<ModelHandle, Model> models_;
+  std::unordered_map<LayerHandle, Layer> layers_;
+  std::unordered_map<ViewHandle, View> views_;
+};
+
+}  // namespace strata::render

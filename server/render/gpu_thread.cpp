@@ -1,0 +1,190 @@
+#include "render/gpu_thread.h"
+
+#include <pthread.h>
+
+#include <future>
+
+#include "core/log.h"
+
+namespace strata::render {
+namespace {
+
+// Polls this often without sleeping while the GPU works: a read-back is usually there within microseconds.
+constexpr int kBusyPolls = 64;
+constexpr auto kPollPause = std::chrono::microseconds(100);
+constexpr auto kRecoveryPause = std::chrono::seconds(1);
+// Frames that were drawn and wait for their read-back; more would only hold memory.
+constexpr std::size_t kMaxActiveFrames = 4;
+
+Problem lost_problem() {
+  return {503, "GPU lost", "The GPU context was lost and is being rebuilt. The work was not done; send it again.", {}};
+}
+
+}  // namespace
+
+Result<void> GpuThread::start(Hooks hooks) {
+  hooks_ = std::move(hooks);
+  std::promise<Result<void>> started;
+  auto answer = started.get_future();
+  thread_ = std::thread([this, &started] {
+    pthread_setname_np(pthread_self(), "strata-gpu");
+    auto result = hooks_.start();
+    const bool works = result.has_value();
+    if (works) {
+      std::lock_guard lock(mutex_);
+      stopped_ = false;
+    }
+    started.set_value(std::move(result));
+    if (works) run();
+  });
+  auto result = answer.get();
+  if (!result) thread_.join();
+  return result;
+}
+
+void GpuThread::stop() {
+  {
+    std::lock_guard lock(mutex_);
+    stopping_ = true;
+    changed_.notify_all();
+  }
+  if (thread_.joinable()) thread_.join();
+}
+
+bool GpuThread::post(Lane lane, Job job, bool always) {
+  std::lock_guard lock(mutex_);
+  if (stopping_ || stopped_) return false;
+  if (!always && queue(lane).size() >= capacity_) return false;
+  queue(lane).push_back(std::move(job));
+  changed_.notify_one();
+  return true;
+}
+
+void GpuThread::post_reply(std::function<void()> reply) {
+  {
+    std::lock_guard lock(mutex_);
+    if (!stopped_) {
+      replies_.push_back(std::move(reply));
+      changed_.notify_one();
+      return;
+    }
+  }
+  reply();
+}
+
+void GpuThread::wake() {
+  std::lock_guard lock(mutex_);
+  frame_queued_ = true;
+  changed_.notify_one();
+}
+
+void GpuThread::run() {
+  int idle_polls = 0;
+  for (;;) {
+    run_replies();
+    {
+      std::lock_guard lock(mutex_);
+      if (stopping_) break;
+    }
+    if (broken_ ? Clock::now() >= next_recovery_ : hooks_.lost()) recover();
+    if (!broken_ && run_some()) {
+      idle_polls = 0;
+      continue;
+    }
+    if (broken_) abort_all(lost_problem());
+    std::unique_lock lock(mutex_);
+    const auto has_news = [&] {
+      return stopping_ || !replies_.empty() || frame_queued_ || (!current_[0] && !ordered_.empty()) ||
+             (!current_[1] && !background_.empty());
+    };
+    if (current_[0] || current_[1] || !frames_.empty()) {
+      // Something waits for the GPU.
+      if (++idle_polls > kBusyPolls) changed_.wait_for(lock, kPollPause, has_news);
+    } else if (broken_) {
+      changed_.wait_for(lock, kRecoveryPause, has_news);
+    } else {
+      changed_.wait(lock, has_news);
+    }
+    frame_queued_ = false;
+  }
+  abort_all({503, "Renderer stopped", "The server is shutting down.", {}});
+  hooks_.stop();
+  {
+    std::lock_guard lock(mutex_);
+    stopped_ = true;
+  }
+  abort_all({503, "Renderer stopped", "The server is shutting down.", {}});
+  run_replies();
+}
+
+bool GpuThread::run_some() {
+  return step_lane(Lane::ordered) || step_frames() || step_lane(Lane::background);
+}
+
+bool GpuThread::step_lane(Lane lane) {
+  auto& current = current_[static_cast<int>(lane)];
+  if (!current) {
+    std::lock_guard lock(mutex_);
+    if (queue(lane).empty()) return false;
+    current = std::move(queue(lane).front());
+    queue(lane).pop_front();
+  }
+  const Step step = current->step();
+  if (step == Step::done) current.reset();
+  return step != Step::waiting;
+}
+
+// The oldest frame that can go on does; a new one starts when all others wait for the GPU.
+bool GpuThread::step_frames() {
+  for (auto frame = frames_.begin(); frame != frames_.end(); ++frame) {
+    const Step step = frame->step();
+    if (step == Step::waiting) continue;
+    if (step == Step::done) frames_.erase(frame);
+    return true;
+  }
+  if (frames_.size() >= kMaxActiveFrames) return false;
+  auto next = hooks_.next_frame();
+  if (!next) return false;
+  frames_.push_back(std::move(*next));
+  return true;
+}
+
+void GpuThread::run_replies() {
+  std::deque<std::function<void()>> replies;
+  {
+    std::lock_guard lock(mutex_);
+    replies.swap(replies_);
+  }
+  for (auto& reply : replies) reply();
+}
+
+void GpuThread::recover() {
+  abort_all(lost_problem());
+  auto recovered = hooks_.recover();
+  broken_ = !recovered;
+  if (broken_) {
+    log::error("The GPU context could not be rebuilt, trying again: " + recovered.error().detail);
+    next_recovery_ = Clock::now() + kRecoveryPause;
+  }
+}
+
+void GpuThread::abort_all(const Problem& problem) {
+  std::deque<Job> jobs;
+  for (auto& current : current_) {
+    if (current) jobs.push_back(std::move(*current));
+    current.reset();
+  }
+  for (auto& frame : frames_) jobs.push_back(std::move(frame));
+  frames_.clear();
+  {
+    std::lock_guard lock(mutex_);
+    for (auto* lane : {&ordered_, &background_}) {
+      for (auto& job : *lane) jobs.push_back(std::move(job));
+      lane->clear();
+    }
+  }
+  for (auto& job : jobs) job.abort(problem);
+  hooks_.abort_frames(problem);
+}
+
+}  // namespace strata::render

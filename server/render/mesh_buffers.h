@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include "gl/buffer.h"
+#include "gl/vertex_array.h"
+#include "mesh/geometry.h"
+#include "render/gpu_memory.h"
+
+namespace strata::render {
+
+// A model's vertices and indices on the GPU, filled in slices.
+class MeshBuffers {
+ public:
+  static Result<std::unique_ptr<MeshBuffers>> create(std::shared_ptr<const mesh::Geometry> geometry, GpuMemory& memory);
+
+  // Uploads the next few megabytes; true when everything is there.
+  bool upload_slice();
+  bool complete() const { return uploaded_ == vertex_bytes() + index_bytes(); }
+
+  const mesh::Geometry& geometry() const { return *geometry_; }
+  const gl::VertexArray& vertex_array() const { return vertex_array_; }
+  std::size_t triangle_count() const { return geometry_->triangle_count(); }
+
+ private:
+  std::size_t vertex_bytes() const { return geometry_->vertices.size() * sizeof(mesh::Vertex); }
+  std::size_t index_bytes() const { return geometry_->indices.size() * sizeof(std::uint32_t); }
+
+  std::shared_ptr<const mesh::Geometry> geometry_;
+  gl::Buffer vertices_, indices_;
+  gl::VertexArray vertex_array_;
+  GpuMemory::Share share_;
+  std::size_t uploaded_ = 0;
+};
+
+}  // namespace strata::render

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/camera.h"
+#include "gl/buffer.h"
+#include "gl/framebuffer.h"
+#include "gl/program.h"
+#include "render/mesh_buffers.h"
+#include "shared/mesh.h"
+
+namespace strata::render {
+
+// Position in a drawing of a mesh that is done in slices.
+struct MeshProgress {
+  std::size_t next_triangle = 0;
+  bool cleared = false;
+};
+
+// Draws the full mesh: depth alone, or the g-buffer. Both use one vertex stage, so their depths are equal. Each call sets
+// all state it needs: other passes may run between slices. Nothing is culled by facing, because scans are open.
+class MeshPass {
+ public:
+  enum class Kind { depth, gbuffer };
+  static Result<MeshPass> create(Kind kind, const std::filesystem::path& shader_dir, std::size_t triangles_per_slice);
+
+  // Draws the next slice into `target` (cleared before the first); true when the mesh is complete.
+  bool draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& uniforms, const gl::Framebuffer& target, int width,
+                  int height, MeshProgress& progress) const;
+
+ private:
+  Kind kind_ = Kind::depth;
+  gl::Program program_;
+  mutable gl::Buffer uniforms_;
+  std::size_t triangles_per_slice_ = 0;
+};
+
+// Matrices and lights of a camera for a model whose coordinates are relative to `origin`.
+shader::MeshUniforms mesh_uniforms(const Camera& camera, const glm::dvec3& origin);
+
+}  // namespace strata::render

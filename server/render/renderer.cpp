@@ -1,0 +1,229 @@
+#include "render/renderer.h"
+
+#include <atomic>
+#include <future>
+#include <mutex>
+#include <unordered_map>
+
+#include "core/log.h"
+#include "render/frame_job.h"
+#include "render/frame_queue.h"
+#include "render/gpu_scene.h"
+#include "render/gpu_thread.h"
+#include "render/paint_job.h"
+#include "render/upload_jobs.h"
+
+namespace strata::render {
+
+struct Renderer::Impl {
+  explicit Impl(RendererOptions given)
+      : options(std::move(given)), thread(options.queue_capacity), frames(options.queue_capacity), memory(0) {}
+
+  RendererOptions options;
+  gl::DebugMessages messages;
+  GpuThread thread;
+  FrameQueue frames;
+  GpuMemory memory;
+  std::unique_ptr<GpuScene> scene;  // GPU thread
+  std::uint64_t generation = 0;     // GPU thread
+  std::atomic<bool> lose_context{false};
+
+  mutable std::mutex mutex;  // guards what follows
+  GpuInfo info;
+  std::unordered_map<LayerHandle, std::shared_ptr<std::atomic<std::uint64_t>>> layer_bytes;
+  std::vector<std::function<void()>> lost_callbacks;
+
+  Result<void> make_scene() {
+    auto made = GpuScene::create(options, ++generation, memory, messages);
+    if (!made) return tl::unexpected(made.error());
+    scene = std::move(*made);
+    std::lock_guard lock(mutex);
+    info = scene->info();
+    return {};
+  }
+
+  Result<void> recover() {
+    scene.reset();
+    lose_context = false;
+    {
+      std::lock_guard lock(mutex);
+      layer_bytes.clear();
+    }
+    if (auto made = make_scene(); !made) return made;
+    log::warning("The GPU context was lost and made anew; models are uploaded again.");
+    std::vector<std::function<void()>> callbacks;
+    {
+      std::lock_guard lock(mutex);
+      callbacks = lost_callbacks;
+    }
+    for (const auto& callback : callbacks) callback();
+    return {};
+  }
+
+  std::optional<Job> next_frame() {
+    auto task = frames.take();
+    if (!task) return std::nullopt;
+    auto frame = std::make_shared<FrameJob>(std::move(*task));
+    return Job{[this, frame] {
+                 const Step step = frame->step(*scene);
+                 if (step == Step::done) frames.finished(frame->view());
+                 return step;
+               },
+               [frame](const Problem& problem) { frame->abort(problem); }};
+  }
+
+  // Posts a job object with `step(GpuScene&)` and `abort`; answers it when the queue is full.
+  template <class JobType>
+  void post(Lane lane, std::shared_ptr<JobType> job) {
+    Job posted{[this, job] { return job->step(*scene); }, [job](const Problem& problem) { job->abort(problem); }};
+    if (thread.post(lane, std::move(posted))) return;
+    thread.post_reply([job] {
+      job->abort({503, "GPU queue full", "More work waits for the GPU than its queue holds. Try again in a moment.", {}});
+    });
+  }
+
+  // A one-step job that makes a T.
+  template <class T>
+  void post_simple(Done<T> done, std::function<Result<T>(GpuScene&)> work) {
+    struct Simple {
+      Done<T> done;
+      std::function<Result<T>(GpuScene&)> work;
+      Step step(GpuScene& scene) {
+        done(work(scene));
+        return Step::done;
+      }
+      void abort(const Problem& problem) { done(tl::unexpected(problem)); }
+    };
+    post(Lane::ordered, std::make_shared<Simple>(Simple{std::move(done), std::move(work)}));
+  }
+
+  // Removals are never refused: a full queue must not keep memory. A lost context has removed all by itself.
+  void post_removal(std::function<void(GpuScene&)> work) {
+    Job job{[this, work = std::move(work)] {
+              work(*scene);
+              return Step::done;
+            },
+            [](const Problem&) {}};
+    thread.post(Lane::ordered, std::move(job), true);
+  }
+};
+
+Renderer::Renderer() = default;
+
+Renderer::~Renderer() {
+  if (impl_) impl_->thread.stop();
+}
+
+Result<std::unique_ptr<Renderer>> Renderer::start(RendererOptions options) {
+  std::unique_ptr<Renderer> renderer(new Renderer);
+  renderer->impl_ = std::make_unique<Impl>(std::move(options));
+  Impl* impl = renderer->impl_.get();
+  GpuThread::Hooks hooks;
+  hooks.start = [impl] { return impl->make_scene(); };
+  hooks.stop = [impl] { impl->scene.reset(); };
+  hooks.lost = [impl] { return impl->lose_context || impl->scene->lost(); };
+  hooks.recover = [impl] { return impl->recover(); };
+  hooks.next_frame = [impl] { return impl->next_frame(); };
+  hooks.abort_frames = [impl](const Problem& problem) {
+    for (FrameTask& task : impl->frames.take_all()) task.done(tl::unexpected(problem));
+  };
+  if (auto started = impl->thread.start(std::move(hooks)); !started) return tl::unexpected(started.error());
+  return renderer;
+}
+
+GpuInfo Renderer::info() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->info;
+}
+
+std::uint64_t Renderer::gpu_bytes_used() const { return impl_->memory.used(); }
+
+std::uint64_t Renderer::layer_bytes_used(LayerHandle layer) const {
+  std::lock_guard lock(impl_->mutex);
+  const auto found = impl_->layer_bytes.find(layer);
+  return found == impl_->layer_bytes.end() ? 0 : found->second->load();
+}
+
+int Renderer::debug_errors() const { return impl_->messages.errors(); }
+
+void Renderer::add_model(std::shared_ptr<const mesh::Geometry> geometry, Done<ModelHandle> done) {
+  impl_->post(Lane::background, std::make_shared<ModelUpload>(std::move(geometry), std::move(done)));
+}
+
+void Renderer::remove_model(ModelHandle model) {
+  impl_->post_removal([model](GpuScene& scene) { scene.remove_model(model); });
+}
+
+void Renderer::add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map, Done<void> done) {
+  impl_->post(Lane::background, std::make_shared<SurfaceMapUpload>(model, std::move(map), std::move(done)));
+}
+
+void Renderer::add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done) {
+  impl_->post_simple<LayerHandle>(std::move(done), [impl = impl_.get(), model, type, resolution](GpuScene& scene) {
+    auto handle = scene.add_layer(model, type, resolution);
+    if (handle) {
+      const auto layer = scene.layer(*handle);
+      std::lock_guard lock(impl->mutex);
+      impl->layer_bytes[*handle] = (*layer)->textures->bytes();
+    }
+    return handle;
+  });
+}
+
+void Renderer::remove_layer(LayerHandle layer) {
+  impl_->post_removal([impl = impl_.get(), layer](GpuScene& scene) {
+    scene.remove_layer(layer);
+    std::lock_guard lock(impl->mutex);
+    impl->layer_bytes.erase(layer);
+  });
+}
+
+void Renderer::write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done) {
+  impl_->post(Lane::ordered, std::make_shared<TilesUpload>(layer, std::move(tiles), std::move(done)));
+}
+
+void Renderer::paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done) {
+  impl_->post(Lane::ordered, std::make_shared<PaintJob>(layer, std::move(stroke), std::move(done)));
+}
+
+void Renderer::add_view(ModelHandle model, Done<ViewHandle> done) {
+  impl_->post_simple<ViewHandle>(std::move(done), [model](GpuScene& scene) { return scene.add_view(model); });
+}
+
+void Renderer::remove_view(ViewHandle view) {
+  impl_->post_removal([view](GpuScene& scene) { scene.remove_view(view); });
+}
+
+void Renderer::draw(FrameRequest request, Done<Frame> done) {
+  auto pushed = impl_->frames.push({std::move(request), std::move(done)});
+  if (pushed.displaced) {
+    const Problem problem = pushed.accepted
+                                ? Problem{409, "Superseded", "A newer request of the same view took its place.", {}}
+                                : Problem{503, "GPU queue full", "Too many views wait for a frame. Try again in a moment.", {}};
+    impl_->thread.post_reply(
+        [task = std::make_shared<FrameTask>(std::move(*pushed.displaced)), problem] { task->done(tl::unexpected(problem)); });
+  }
+  impl_->thread.wake();
+}
+
+void Renderer::on_context_lost(std::function<void()> callback) {
+  std::lock_guard lock(impl_->mutex);
+  impl_->lost_callbacks.push_back(std::move(callback));
+}
+
+void Renderer::lose_context_for_test() {
+  impl_->lose_context = true;
+  impl_->thread.wake();
+}
+
+void Renderer::run_on_gpu_thread_for_test(std::function<void()> work) {
+  std::promise<void> ran;
+  impl_->post_simple<void>([&](Result<void>) { ran.set_value(); },
+                           [&](GpuScene&) -> Result<void> {
+                             work();
+                             return {};
+                           });
+  ran.get_future().wait();
+}
+
+}  // namespace strata::render

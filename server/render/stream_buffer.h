@@ -1,0 +1,38 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <span>
+#include <string>
+
+#include "gl/buffer.h"
+
+namespace strata::render {
+
+// A buffer whose whole content is replaced for each dispatch. Grows by doubling.
+class StreamBuffer {
+ public:
+  explicit StreamBuffer(std::string label = {}) : label_(std::move(label)) {}
+
+  template <class T>
+  Result<void> replace(std::span<const T> values) {
+    const std::size_t needed = std::max<std::size_t>(values.size_bytes(), 4096);
+    if (buffer_.size() < needed) {
+      auto buffer = gl::Buffer::create(std::bit_ceil(needed), gl::Buffer::Use::fixed, label_);
+      if (!buffer) return tl::unexpected(buffer.error());
+      buffer_ = std::move(*buffer);
+    } else {
+      glInvalidateBufferData(buffer_.id());  // the driver need not wait for those who read the old content
+    }
+    buffer_.upload_values(0, values);
+    return {};
+  }
+  void bind_storage(GLuint binding) const { buffer_.bind_storage(binding); }
+  void bind_uniform(GLuint binding) const { buffer_.bind_uniform(binding); }
+
+ private:
+  std::string label_;
+  gl::Buffer buffer_;
+};
+
+}  // namespace strata::render

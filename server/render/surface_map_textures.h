@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+
+#include "gl/texture.h"
+#include "mesh/surface_map.h"
+#include "render/gpu_memory.h"
+
+namespace strata::render {
+
+// A surface map's packed positions on the GPU: 2048 x 2048 slices of RG32UI (a storage buffer would end at 128 MiB on some
+// drivers), filled in slices. The block table and the bounds stay on the CPU, where edits are culled.
+class SurfaceMapTextures {
+ public:
+  static Result<std::unique_ptr<SurfaceMapTextures>> create(std::shared_ptr<const mesh::SurfaceMap> map, GpuMemory& memory);
+
+  // Uploads the next few megabytes; true when everything is there.
+  bool upload_slice();
+  bool complete() const { return uploaded_rows_ == total_rows_; }
+  const mesh::SurfaceMap& map() const { return *map_; }
+  const gl::Texture& positions() const { return positions_; }
+
+ private:
+  std::shared_ptr<const mesh::SurfaceMap> map_;
+  gl::Texture positions_;
+  GpuMemory::Share share_;
+  std::size_t total_rows_ = 0;  // of 2048 texels
+  std::size_t uploaded_rows_ = 0;
+};
+
+}  // namespace strata::render

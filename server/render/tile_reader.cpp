@@ -1,0 +1,64 @@
+#include "render/tile_reader.h"
+
+#include <cstring>
+
+#include "shared/pages.h"
+
+namespace strata::render {
+namespace {
+
+constexpr GLuint kRunsPerTile = 512, kRunsPerGroup = 64;
+constexpr std::size_t kMaskBytes = kMaskWords * sizeof(std::uint64_t);
+
+std::size_t bytes_per_tile(const PagePool& pool) {
+  return kMaskBytes + static_cast<std::size_t>(kTexelsPerTile * pool.texel_bytes());
+}
+
+std::size_t width_index(int texel_bytes) { return texel_bytes == 1 ? 0 : texel_bytes == 2 ? 1 : 2; }
+
+}  // namespace
+
+Result<TileReader> TileReader::create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback) {
+  TileReader reader;
+  reader.readback_ = &readback;
+  for (const int texel_bytes : {1, 2, 4}) {
+    auto program = gl::Program::load(shader_dir, {"tile_read_pass.comp"}, {"TEXEL_BYTES " + std::to_string(texel_bytes)});
+    if (!program) return tl::unexpected(program.error());
+    reader.programs_[width_index(texel_bytes)] = std::move(*program);
+  }
+  return reader;
+}
+
+Result<gl::Readback> TileReader::begin(const PagePool& pool, std::span<const PageId> pages) {
+  auto readback = readback_->begin(pages.size() * bytes_per_tile(pool));
+  if (!readback) return readback;
+  if (auto sent = pages_.replace(pages); !sent) return tl::unexpected(sent.error());
+  const gl::Program& program = programs_[width_index(pool.texel_bytes())];
+  program.use();
+  pages_.bind_storage(0);
+  readback->buffer().bind_storage(1);
+  // Runs of pages in one chunk share a dispatch.
+  for (std::size_t first = 0; first < pages.size();) {
+    const auto chunk = pages[first] >> shader::kPageChunkShift;
+    std::size_t last = first;
+    while (last < pages.size() && pages[last] >> shader::kPageChunkShift == chunk) ++last;
+    pool.values(static_cast<int>(chunk)).bind(0);
+    pool.valid(static_cast<int>(chunk)).bind(1);
+    program.set(0, static_cast<GLuint>(first));
+    glDispatchCompute(kRunsPerTile / kRunsPerGroup, static_cast<GLuint>(last - first), 1);
+    first = last;
+  }
+  readback->submit();
+  return readback;
+}
+
+TileData TileReader::tile(const gl::Readback& readback, const PagePool& pool, std::size_t index) {
+  const std::byte* source = readback.data().data() + index * bytes_per_tile(pool);
+  TileData tile;
+  std::memcpy(tile.valid.words.data(), source, kMaskBytes);
+  tile.values.resize(static_cast<std::size_t>(kTexelsPerTile * pool.texel_bytes()));
+  std::memcpy(tile.values.data(), source + kMaskBytes, tile.values.size());
+  return tile;
+}
+
+}  // namespace strata::render

@@ -1,0 +1,55 @@
+#include "render/view_cache.h"
+
+#include <algorithm>
+
+namespace strata::render {
+
+void View::drop_buffers() {
+  gbuffer = {};
+  uv = {};
+  light = {};
+  picture = {};
+  depth.reset();
+  share.reset();
+  gbuffer_complete = picture_complete = false;
+}
+
+bool View::shows(const FrameRequest& request) const {
+  const auto same = [](const LayerStyle& a, const LayerStyle& b) {
+    return a.layer == b.layer && a.palette == b.palette && a.opacity == b.opacity;
+  };
+  return picture_complete && background_top == request.background_top && background_bottom == request.background_bottom &&
+         std::equal(layers.begin(), layers.end(), request.layers.begin(), request.layers.end(), same);
+}
+
+Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths, GpuMemory& memory) {
+  view.gbuffer_complete = view.picture_complete = false;
+  if (view.has_buffers() && (view.picture.width() != key.width || view.picture.height() != key.height)) view.drop_buffers();
+  if (!view.has_buffers()) {
+    const auto pixels = static_cast<std::uint64_t>(key.width) * static_cast<unsigned>(key.height);
+    auto share = memory.reserve(pixels * 12, "a view");
+    if (!share) return tl::unexpected(share.error());
+    auto uv = gl::Texture::create_2d(GL_R32UI, key.width, key.height, "view uv");
+    if (!uv) return tl::unexpected(uv.error());
+    auto light = gl::Texture::create_2d(GL_RGBA8, key.width, key.height, "view light");
+    if (!light) return tl::unexpected(light.error());
+    auto picture = gl::Texture::create_2d(GL_RGBA8, key.width, key.height, "view picture");
+    if (!picture) return tl::unexpected(picture.error());
+    view.uv = std::move(*uv);
+    view.light = std::move(*light);
+    view.picture = std::move(*picture);
+    view.share = std::move(*share);
+  }
+  if (!view.depth || view.depth.use_count() > 1) {
+    auto depth = depths.make(key);
+    if (!depth) return tl::unexpected(depth.error());
+    view.depth = std::move(*depth);
+    view.gbuffer = gl::Framebuffer({&view.uv, &view.light}, &view.depth->texture, "view g-buffer");
+  }
+  view.depth->start(key);
+  view.key = key;
+  depths.offer(view.depth);
+  return {};
+}
+
+}  // namespace strata::render

@@ -1,0 +1,119 @@
+#version 450 core
+#include "shared/edit.h"
+#include "shared/pages.h"
+// Texture editing and padding in one dispatch: every texel of every candidate block is projected to the window and tested as
+// the paper's texture editing algorithm does; gutter texels carry their owner's position, so they follow it without a second
+// pass. One thread takes a row of 8 texels: it needs no shared memory, and rows of 8 are what one vector of a CPU holds.
+// TEXEL_FORMAT is r8ui, r16ui or r32ui.
+layout(local_size_x = 64) in;
+layout(std140, binding = 0) uniform EditUniformBlock { EditUniforms edit; };
+layout(std430, binding = 0) readonly buffer Blocks { EditBlock blocks[]; };
+layout(std430, binding = 1) readonly buffer Segments { EditSegment segments[]; };
+layout(std430, binding = 2) readonly buffer SegmentLists { uint segment_lists[]; };
+layout(std430, binding = 3) writeonly buffer WrittenRows { uint written_rows[]; };
+layout(binding = 0) uniform usampler2DArray positions;
+layout(binding = 1) uniform sampler2D depth;
+layout(TEXEL_FORMAT, binding = 0) uniform writeonly uimage2DArray values;
+layout(r8ui, binding = 1) uniform writeonly uimage2DArray valid;
+layout(location = 0) uniform uint first_block;
+layout(location = 1) uniform uint block_count;
+
+bool in_disc(vec2 p, EditSegment s) {
+  vec2 a = s.ends.xy;
+  float along = 0.0;
+  vec2 axis = vec2(0.0);
+  if (s.tool.w > 0.0) {
+    axis = (s.ends.zw - a) / s.tool.w;
+    float x = dot(p - a, axis);
+    float y = abs(dot(p - a, vec2(-axis.y, axis.x)));
+    along = clamp(x + y * s.tool.z, 0.0, s.tool.w);
+  }
+  float radius = s.tool.w > 0.0 ? mix(s.tool.x, s.tool.y, along / s.tool.w) : max(s.tool.x, s.tool.y);
+  vec2 d = p - (a + axis * along);
+  return dot(d, d) < radius * radius;
+}
+
+// Some t in [0, 1] has the point inside the square around a + t (b - a): four linear conditions c + t g > 0.
+bool in_square(vec2 p, EditSegment s) {
+  vec2 a = p - s.ends.xy;
+  vec2 step = s.ends.zw - s.ends.xy;
+  float grow = s.tool.y - s.tool.x;
+  vec4 c = vec4(s.tool.x - a, s.tool.x + a);
+  vec4 g = vec4(grow + step, grow - step);
+  float low = 0.0, high = 1.0;
+  for (int i = 0; i < 4; ++i) {
+    if (g[i] == 0.0) {
+      if (c[i] <= 0.0) return false;
+    } else {
+      float t = -c[i] / g[i];
+      if (g[i] > 0.0) low = max(low, t);
+      else high = min(high, t);
+    }
+  }
+  return low < high || (low == high && s.tool.w == 0.0);
+}
+
+bool in_tool(vec2 p, uint first, uint count) {
+  bool square = (edit.flags & kEditSquare) != 0u;
+  for (uint i = first; i < first + count; ++i) {
+    EditSegment s = segments[segment_lists[i]];
+    if (square ? in_square(p, s) : in_disc(p, s)) return true;
+  }
+  return false;
+}
+
+// A surface seen at a slant has other depths at the texel than at the pixel's centre: up to half a pixel of its slope, which
+// the smaller of two one-sided differences tells without being fooled by silhouettes.
+float depth_bias(ivec2 pixel, float here, float w) {
+  if ((edit.flags & kEditFixedBias) != 0u) return edit.bias.x;
+  ivec2 last = textureSize(depth, 0) - 1;
+  float left = texelFetch(depth, ivec2(max(pixel.x - 1, 0), pixel.y), 0).r;
+  float right = texelFetch(depth, ivec2(min(pixel.x + 1, last.x), pixel.y), 0).r;
+  float below = texelFetch(depth, ivec2(pixel.x, max(pixel.y - 1, 0)), 0).r;
+  float above = texelFetch(depth, ivec2(pixel.x, min(pixel.y + 1, last.y)), 0).r;
+  float slope = min(abs(here - left), abs(right - here)) + min(abs(here - below), abs(above - here));
+  float base = edit.bias.y / (w * w);
+  return base + min(edit.bias.z * slope, edit.bias.w * base);
+}
+
+bool painted(uvec2 packed_position, uint first, uint count) {
+  vec3 q = vec3(packed_position.x & 0x1fffffu, (packed_position.x >> 21) | ((packed_position.y & 0x3ffu) << 11),
+                packed_position.y >> 10);
+  vec4 clip = edit.clip_from_model * vec4(edit.box_min.xyz + q * edit.box_scale.xyz, 1.0);
+  if (clip.w <= 0.0 || abs(clip.z) > clip.w) return false;
+  vec3 ndc = clip.xyz / clip.w;
+  vec2 window = (ndc.xy * 0.5 + 0.5) * edit.window.xy;
+  if (any(lessThan(window, vec2(0.0))) || any(greaterThanEqual(window, edit.window.xy))) return false;
+  if (!in_tool(window, first, count)) return false;
+  if ((edit.flags & kEditThrough) != 0u) return true;
+  ivec2 pixel = ivec2(window);
+  float here = texelFetch(depth, pixel, 0).r;
+  return ndc.z * 0.5 + 0.5 - depth_bias(pixel, here, clip.w) <= here;
+}
+
+void main() {
+  uint group = gl_WorkGroupID.y * kEditGroupsPerRow + gl_WorkGroupID.x;
+  uint number = group * kEditBlocksPerGroup + gl_LocalInvocationIndex / kEditRowsPerBlock;
+  if (number >= block_count) return;
+  uint row = gl_LocalInvocationIndex % kEditRowsPerBlock;
+  EditBlock block = blocks[first_block + number];
+
+  uint element = block.slot * 64u + row * 8u;
+  ivec3 source = ivec3(element & (kPositionRow - 1u), (element >> kPositionRowBits) & (kPositionRow - 1u),
+                       element >> kPositionSliceBits);
+  ivec3 target = page_origin(block.page) + ivec3((block.place & 15u) * 8u, ((block.place >> 4) & 15u) * 8u + row, 0);
+  uint value = (edit.flags & kEditErase) != 0u ? 0u : edit.value;
+  uint flag = (edit.flags & kEditErase) != 0u ? 0u : 1u;
+  uint written = 0u;
+  for (int x = 0; x < 8; ++x) {
+    uvec2 position = texelFetch(positions, source + ivec3(x, 0, 0), 0).rg;
+    if (position != uvec2(0xffffffffu) && painted(position, block.segments, block.place >> 8)) {
+      if (block.page != kNoPage) {  // erasing where nothing is stored only counts as written
+        imageStore(values, target + ivec3(x, 0, 0), uvec4(value));
+        imageStore(valid, target + ivec3(x, 0, 0), uvec4(flag));
+      }
+      written |= 1u << x;
+    }
+  }
+  written_rows[(first_block + number) * kEditRowsPerBlock + row] = written;
+}

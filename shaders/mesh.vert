@@ -1,0 +1,20 @@
+#version 450 core
+#include "shared/mesh.h"
+// The one vertex stage of the mesh, for g-buffers and for depth alone, so that their depths are the same bits.
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec4 normal;
+layout(location = 2) in vec2 uv;
+layout(location = 3) in vec4 color;
+layout(std140, binding = 0) uniform MeshBlock { MeshUniforms mesh; };
+
+invariant gl_Position;
+layout(location = 0) out vec2 surface_uv;
+layout(location = 1) out vec4 surface_normal;  // w: cosine to the eye, times distance
+layout(location = 2) out vec3 surface_color;
+
+void main() {
+  gl_Position = mesh.clip_from_model * vec4(position, 1.0);
+  surface_uv = uv;
+  surface_normal = vec4(normal.xyz, dot(normal.xyz, mesh.eye.xyz - position * mesh.eye.w));
+  surface_color = color.rgb;
+}
