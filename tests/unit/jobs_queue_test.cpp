@@ -1,0 +1,185 @@
+#include "jobs/job_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <stdexcept>
+#include <thread>
+
+namespace strata::jobs {
+namespace {
+
+JobStatus wait_until_over(const JobQueue& queue, std::int64_t id) {
+  for (int i = 0; i < 6000; ++i) {
+    const auto status = queue.status(id);
+    if (!status || (status->state != JobState::queued && status->state != JobState::running)) return status.value_or(JobStatus{});
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  ADD_FAILURE() << "the job did not end";
+  return {};
+}
+
+// Occupies the queue until it is opened.
+struct Gate {
+  std::promise<void> opened, entered;
+  std::shared_future<void> open = opened.get_future().share();
+  JobQueue::Work work() {
+    return [this](Progress& progress) -> Result<std::int64_t> {
+      progress.report(0.25, "Waiting at the gate");
+      entered.set_value();
+      open.wait();
+      return 1;
+    };
+  }
+};
+
+TEST(JobsQueue, a_job_that_ends_names_its_model) {
+  JobQueue queue;
+  const auto id = queue.add([](Progress&) -> Result<std::int64_t> { return 42; });
+  ASSERT_TRUE(id);
+  const auto status = wait_until_over(queue, *id);
+  EXPECT_EQ(status.state, JobState::done);
+  EXPECT_EQ(status.model, 42);
+  EXPECT_EQ(status.progress, 1);
+  EXPECT_FALSE(status.problem);
+}
+
+TEST(JobsQueue, a_job_that_fails_keeps_its_problem) {
+  JobQueue queue;
+  const auto id = queue.add([](Progress&) -> Result<std::int64_t> { return fail(422, "Mesh file refused", "No triangle.", "file"); });
+  const auto status = wait_until_over(queue, *id);
+  EXPECT_EQ(status.state, JobState::failed);
+  ASSERT_TRUE(status.problem);
+  EXPECT_EQ(status.problem->detail, "No triangle.");
+  EXPECT_FALSE(status.model);
+}
+
+TEST(JobsQueue, a_job_that_throws_fails_and_the_next_one_runs) {
+  JobQueue queue;
+  const auto bad = queue.add([](Progress&) -> Result<std::int64_t> { throw std::runtime_error("planted"); });
+  const auto huge = queue.add([](Progress&) -> Result<std::int64_t> { throw std::bad_alloc(); });
+  const auto good = queue.add([](Progress&) -> Result<std::int64_t> { return 7; });
+  EXPECT_EQ(wait_until_over(queue, *bad).problem->status, 500);
+  EXPECT_EQ(wait_until_over(queue, *huge).problem->status, 507);
+  EXPECT_EQ(wait_until_over(queue, *good).state, JobState::done);
+}
+
+TEST(JobsQueue, jobs_run_one_at_a_time_in_the_order_of_asking) {
+  JobQueue queue;
+  std::vector<int> order;
+  std::atomic<int> running{0};
+  std::int64_t last = 0;
+  for (int i = 0; i < 20; ++i)
+    last = *queue.add([&, i](Progress&) -> Result<std::int64_t> {
+      EXPECT_EQ(++running, 1);
+      order.push_back(i);
+      --running;
+      return i;
+    });
+  wait_until_over(queue, last);
+  ASSERT_EQ(order.size(), 20u);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(order[i], i);
+  EXPECT_EQ(queue.all().size(), 20u);
+}
+
+TEST(JobsQueue, progress_shows_while_a_job_runs) {
+  Gate gate;
+  JobQueue queue;
+  const auto id = queue.add(gate.work());
+  gate.entered.get_future().wait();
+  const auto status = queue.status(*id);
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->state, JobState::running);
+  EXPECT_EQ(status->progress, 0.25);
+  EXPECT_EQ(status->message, "Waiting at the gate");
+  gate.opened.set_value();
+}
+
+TEST(JobsQueue, more_than_64_waiting_jobs_are_refused) {
+  Gate gate;
+  JobQueue queue;
+  ASSERT_TRUE(queue.add(gate.work()));
+  gate.entered.get_future().wait();
+  for (int i = 0; i < 64; ++i) EXPECT_TRUE(queue.add([](Progress&) -> Result<std::int64_t> { return 1; }));
+  const auto refused = queue.add([](Progress&) -> Result<std::int64_t> { return 1; });
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().status, 503);
+  gate.opened.set_value();
+}
+
+TEST(JobsQueue, a_waiting_job_that_is_cancelled_never_runs) {
+  Gate gate;
+  JobQueue queue;
+  queue.add(gate.work());
+  gate.entered.get_future().wait();
+  std::atomic<bool> ran{false};
+  const auto id = queue.add([&](Progress&) -> Result<std::int64_t> { ran = true; return 1; });
+  EXPECT_TRUE(queue.cancel(*id));
+  EXPECT_EQ(queue.status(*id)->state, JobState::cancelled);
+  EXPECT_FALSE(queue.cancel(*id)) << "it is over";
+  gate.opened.set_value();
+  const auto after = queue.add([](Progress&) -> Result<std::int64_t> { return 1; });
+  wait_until_over(queue, *after);
+  EXPECT_FALSE(ran);
+}
+
+TEST(JobsQueue, a_running_job_that_is_cancelled_stops) {
+  JobQueue queue;
+  std::promise<void> entered;
+  const auto id = queue.add([&](Progress& progress) -> Result<std::int64_t> {
+    entered.set_value();
+    while (!progress.cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return cancelled_problem();
+  });
+  entered.get_future().wait();
+  EXPECT_TRUE(queue.cancel(*id));
+  EXPECT_EQ(wait_until_over(queue, *id).state, JobState::cancelled);
+}
+
+TEST(JobsQueue, ending_the_queue_cancels_what_runs) {
+  std::promise<void> entered;
+  bool stopped = false;
+  {
+    JobQueue queue;
+    queue.add([&](Progress& progress) -> Result<std::int64_t> {
+      entered.set_value();
+      while (!progress.cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      stopped = true;
+      return cancelled_problem();
+    });
+    entered.get_future().wait();
+  }
+  EXPECT_TRUE(stopped);
+}
+
+TEST(JobsQueue, the_newest_thousand_are_remembered) {
+  JobQueue queue;
+  std::int64_t last = 0;
+  for (int i = 0; i < 1200; ++i) {
+    const auto id = queue.add([](Progress&) -> Result<std::int64_t> { return 1; });
+    if (id) last = *id;
+    if (!id || i % 50 == 0) wait_until_over(queue, last);
+  }
+  wait_until_over(queue, last);
+  EXPECT_LE(queue.all().size(), 1064u);
+  EXPECT_GE(queue.all().size(), 1000u);
+  EXPECT_FALSE(queue.status(1));
+  EXPECT_TRUE(queue.status(last));
+  EXPECT_FALSE(queue.status(-1));
+  EXPECT_FALSE(queue.cancel(999'999));
+}
+
+TEST(JobsProgress, stages_map_their_reports_into_the_whole) {
+  Progress progress;
+  progress.begin_stage(0.2, 0.6);
+  progress.report(0.5, "half of the stage");
+  EXPECT_DOUBLE_EQ(progress.fraction(), 0.4);
+  progress.begin_stage(0.6, 1);
+  progress.report(1, "all");
+  EXPECT_DOUBLE_EQ(progress.fraction(), 1);
+}
+
+}  // namespace
+}  // namespace strata::jobs

@@ -1,0 +1,230 @@
+#include "query/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <random>
+
+#include "query/json.h"
+
+namespace strata::query {
+namespace {
+
+constexpr glm::dvec3 kOrigin{4'000'000.0, 500'000.0, 100.0};
+
+// A map by hand: `share` of the blocks are there, with surface, gutter and empty texels and random areas and places.
+mesh::SurfaceMap make_map(int resolution, double share, unsigned seed) {
+  std::mt19937 random(seed);
+  mesh::SurfaceMap map;
+  map.resolution = resolution;
+  map.blocks_per_side = resolution / kBlockSize;
+  map.box_min = {-1, -2, -3};
+  map.box_extent = {2, 4, 6};
+  const auto blocks = static_cast<std::uint32_t>(map.blocks_per_side * map.blocks_per_side);
+  map.slot_of_block.assign(blocks, mesh::kNoSlot);
+  for (std::uint32_t block = 0; block < blocks; ++block) {
+    if (random() % 1000 >= share * 1000) continue;
+    map.slot_of_block[block] = static_cast<std::uint32_t>(map.block_of_slot.size());
+    map.block_of_slot.push_back(block);
+    std::uint64_t surface = 0;
+    for (int i = 0; i < 64; ++i) {
+      const auto kind = random() % 8;  // 0: neither, 1: gutter, otherwise surface
+      if (kind >= 2) surface |= std::uint64_t{1} << i;
+      const std::uint64_t q = (std::uint64_t{random()} << 32 | random()) & ~(std::uint64_t{1} << 63);
+      map.packed_position.push_back(kind == 0 ? mesh::kNoPosition : q);
+      map.area.push_back(kind >= 2 ? 0.5f + static_cast<float>(random() % 1000) / 1000.0f : 0.0f);
+    }
+    map.surface_mask.push_back(surface);
+  }
+  return map;
+}
+
+LayerView make_layer(ValueType type, const mesh::SurfaceMap& map, int distinct, unsigned seed, bool everywhere = false) {
+  std::mt19937 random(seed);
+  LayerView view;
+  view.layer.slug = "salt";
+  view.layer.type = type;
+  view.layer.resolution = map.resolution;
+  for (int y = 0; y < map.resolution / kTileSize; ++y)
+    for (int x = 0; x < map.resolution / kTileSize; ++x) {
+      if (!everywhere && random() % 4 == 0) continue;
+      auto tile = std::make_shared<TileData>(type);
+      for (int i = 0; i < kTexelsPerTile; ++i) {
+        if (!everywhere && random() % 3 == 0) continue;
+        double value = double(random() % unsigned(distinct)) - (lowest_value(type) < 0 ? distinct / 2 : 0);
+        if (is_float(type)) value /= 8;
+        tile->write(i, *encode_value(type, value));
+      }
+      view.snapshot.tiles[{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}] = tile;
+    }
+  return view;
+}
+
+struct Sample {
+  double value, area;
+  glm::dvec3 position;
+};
+
+// The oracle: every texel one by one, through the map's and the tiles' own accessors.
+std::vector<Sample> samples(const LayerView& view, const mesh::SurfaceMap& map) {
+  std::vector<Sample> all;
+  for (const auto& [address, tile] : view.snapshot.tiles) {
+    const TileMask surface = map.surface_in_tile(address);
+    for (int i = 0; i < kTexelsPerTile; ++i) {
+      if (!surface.test(i) || !tile->valid.test(i)) continue;
+      const int bx = (address.x * kTileSize + i % kTileSize) / kBlockSize, by = (address.y * kTileSize + i / kTileSize) / kBlockSize;
+      const auto slot = map.slot_of_block[std::size_t(by) * map.blocks_per_side + bx];
+      const int in_block = i / kTileSize % kBlockSize * kBlockSize + i % kTileSize % kBlockSize;
+      all.push_back({decode_value(view.layer.type, tile->bits(i)), map.area_of(address, i),
+                     glm::dvec3(map.position(slot, in_block)) + kOrigin});
+    }
+  }
+  return all;
+}
+
+TEST(QueryStatistics, they_agree_with_a_plain_sum_over_every_texel) {
+  const mesh::SurfaceMap map = make_map(512, 0.6, 3);
+  for (const auto type : {ValueType::u8, ValueType::i8, ValueType::u16, ValueType::i16, ValueType::u32, ValueType::i32,
+                          ValueType::f16, ValueType::f32}) {
+    SCOPED_TRACE(name(type));
+    const LayerView view = make_layer(type, map, 100, 11);
+    const Statistics got = statistics(view, map, kOrigin, 0.01);
+    const auto all = samples(view, map);
+    double area = 0, mean = 0, squares = 0, low = 1e300, high = -1e300;
+    for (const auto& s : all) {
+      area += s.area;
+      mean += s.area * s.value;
+      low = std::min(low, s.value);
+      high = std::max(high, s.value);
+    }
+    mean /= area;
+    for (const auto& s : all) squares += s.area * (s.value - mean) * (s.value - mean);
+    EXPECT_EQ(got.texels, all.size());
+    EXPECT_NEAR(got.area_m2, area * 1e-4, area * 1e-13);
+    EXPECT_EQ(got.min, low);
+    EXPECT_EQ(got.max, high);
+    EXPECT_NEAR(got.mean, mean, 1e-9);
+    EXPECT_NEAR(got.std, std::sqrt(squares / area), 1e-9);
+
+    ASSERT_EQ(got.histogram.size(), 64u);
+    EXPECT_EQ(got.histogram.front().from, low);
+    EXPECT_EQ(got.histogram.back().to, high);
+    double bin_area = 0;
+    std::uint64_t bin_texels = 0;
+    for (const auto& bin : got.histogram) {
+      bin_area += bin.area_m2;
+      bin_texels += bin.texels;
+    }
+    EXPECT_NEAR(bin_area, got.area_m2, 1e-9 * got.area_m2);
+    EXPECT_EQ(bin_texels, got.texels);
+    std::uint64_t first_bin = 0;
+    for (const auto& s : all) first_bin += s.value < low + (high - low) / 64;
+    EXPECT_EQ(got.histogram.front().texels, first_bin);
+
+    if (is_float(type)) {
+      EXPECT_TRUE(got.keys.empty());
+      continue;
+    }
+    std::map<double, KeyStatistics> keys;
+    for (const auto& s : all) {
+      auto [it, fresh] = keys.try_emplace(s.value);
+      auto& key = it->second;
+      key.bounds_min = fresh ? s.position : glm::min(key.bounds_min, s.position);
+      key.bounds_max = fresh ? s.position : glm::max(key.bounds_max, s.position);
+      ++key.texels;
+      key.area_m2 += s.area * 1e-4;
+      key.centroid += s.area * 1e-4 * (s.position - kOrigin);
+    }
+    ASSERT_EQ(got.keys.size(), keys.size());
+    for (const auto& [value, key] : keys) {
+      ASSERT_TRUE(got.keys.contains(value));
+      const auto& mine = got.keys.at(value);
+      EXPECT_EQ(mine.texels, key.texels);
+      EXPECT_NEAR(mine.area_m2, key.area_m2, 1e-9 * key.area_m2);
+      EXPECT_LT(glm::distance(mine.centroid, key.centroid / key.area_m2 + kOrigin), 1e-6);
+      EXPECT_LT(glm::distance(mine.bounds_min, key.bounds_min), 1e-9);
+      EXPECT_LT(glm::distance(mine.bounds_max, key.bounds_max), 1e-9);
+    }
+  }
+}
+
+TEST(QueryStatistics, gutter_texels_do_not_count) {
+  mesh::SurfaceMap map = make_map(256, 1.0, 3);
+  const LayerView view = make_layer(ValueType::u8, map, 3, 1, true);
+  const auto before = statistics(view, map, kOrigin, 1);
+  for (auto& mask : map.surface_mask) mask &= 0xff;  // the other seven rows of each block become gutter
+  const auto after = statistics(view, map, kOrigin, 1);
+  EXPECT_LT(after.texels, before.texels / 7);
+  EXPECT_GT(after.texels, 0u);
+}
+
+TEST(QueryStatistics, an_empty_layer_has_none) {
+  const mesh::SurfaceMap map = make_map(256, 1.0, 3);
+  LayerView view;
+  view.layer.resolution = 256;
+  const auto got = statistics(view, map, kOrigin, 1);
+  EXPECT_EQ(got.texels, 0u);
+  EXPECT_EQ(got.area_m2, 0);
+  EXPECT_TRUE(got.histogram.empty());
+  const auto json = to_json(got);
+  EXPECT_FALSE(json.contains("mean"));
+  EXPECT_EQ(json["histogram"].size(), 0u);
+}
+
+TEST(QueryStatistics, a_constant_layer_has_one_bin_and_no_spread) {
+  const mesh::SurfaceMap map = make_map(256, 1.0, 3);
+  LayerView view = make_layer(ValueType::f32, map, 1, 1, true);
+  for (auto& [address, tile] : view.snapshot.tiles) {
+    auto same = std::make_shared<TileData>(ValueType::f32);
+    for (int i = 0; i < kTexelsPerTile; ++i) same->write(i, *encode_value(ValueType::f32, 0.1));
+    tile = same;
+  }
+  const auto got = statistics(view, map, kOrigin, 1);
+  EXPECT_EQ(got.min, got.max);
+  EXPECT_EQ(got.mean, got.min);
+  EXPECT_EQ(got.std, 0);
+  ASSERT_EQ(got.histogram.size(), 1u);
+  EXPECT_DOUBLE_EQ(got.histogram[0].area_m2, got.area_m2);
+}
+
+TEST(QueryStatistics, a_layer_of_very_many_values_lists_no_keys) {
+  const mesh::SurfaceMap map = make_map(512, 1.0, 3);
+  for (const auto type : {ValueType::u16, ValueType::u32}) {
+    EXPECT_EQ(statistics(make_layer(type, map, 4000, 2, true), map, kOrigin, 1).keys.size(), 4000u);
+    EXPECT_TRUE(statistics(make_layer(type, map, 60000, 2, true), map, kOrigin, 1).keys.empty());
+  }
+}
+
+TEST(QueryStatistics, a_map_of_another_resolution_is_a_mistake_of_the_program) {
+  const mesh::SurfaceMap map = make_map(256, 1.0, 3);
+  LayerView view;
+  view.layer.resolution = 512;
+  EXPECT_THROW(statistics(view, map, kOrigin, 1), std::invalid_argument);
+}
+
+TEST(QueryStatistics, as_json_they_have_the_names_of_the_interface) {
+  const mesh::SurfaceMap map = make_map(256, 0.5, 3);
+  const auto json = to_json(statistics(make_layer(ValueType::u8, map, 4, 1), map, kOrigin, 1));
+  for (const char* member : {"texels", "area_m2", "min", "max", "mean", "std", "histogram", "keys"}) EXPECT_TRUE(json.contains(member));
+  ASSERT_EQ(json["keys"].size(), 4u);
+  EXPECT_TRUE(json["keys"][1]["key"].is_number_integer());
+  EXPECT_EQ(json["keys"][1]["key"], 1);
+  EXPECT_EQ(json["keys"][1]["bounds"]["min"].size(), 3u);
+}
+
+// Prints what a full layer of 4096² costs; the limit is loose, because test machines are busy.
+TEST(QueryStatistics, a_full_layer_of_4096_takes_about_a_second_at_most) {
+  const mesh::SurfaceMap map = make_map(4096, 1.0, 3);
+  const LayerView view = make_layer(ValueType::u8, map, 30, 1, true);
+  const auto start = std::chrono::steady_clock::now();
+  const auto got = statistics(view, map, kOrigin, 1);
+  const std::chrono::duration<double, std::milli> elapsed_ms = std::chrono::steady_clock::now() - start;
+  std::cout << got.texels << " texels in " << elapsed_ms.count() << " ms\n";
+  EXPECT_GT(got.texels, 12'000'000u);
+  EXPECT_LT(elapsed_ms.count(), 30'000);
+}
+
+}  // namespace
+}  // namespace strata::query

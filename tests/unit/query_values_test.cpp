@@ -1,0 +1,110 @@
+#include "query/values.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+
+#include "query/json.h"
+
+namespace strata::query {
+namespace {
+
+constexpr glm::dvec3 kOrigin{4'000'000.0, 500'000.0, 100.0};
+
+// A square of 2 × 2 around the origin at z = 0, facing +z, whose uv run from (0,0) to (1,1).
+std::shared_ptr<const mesh::Geometry> square() {
+  auto geometry = std::make_shared<mesh::Geometry>();
+  geometry->origin = kOrigin;
+  for (int i = 0; i < 4; ++i) {
+    const float u = static_cast<float>(i & 1), v = static_cast<float>(i >> 1);
+    mesh::Vertex vertex{};
+    vertex.position = {2 * u - 1, 2 * v - 1, 0};
+    vertex.uv = {u, v};
+    vertex.position_index = static_cast<std::uint32_t>(i);
+    geometry->vertices.push_back(vertex);
+    geometry->positions.push_back(glm::dvec3(vertex.position) + kOrigin);
+  }
+  geometry->indices = {0, 1, 3, 0, 3, 2};
+  geometry->box_min = {-1, -1, 0};
+  geometry->box_max = {1, 1, 0};
+  return geometry;
+}
+
+LayerView layer_with(ValueType type, int resolution, int x, int y, double value) {
+  LayerView view;
+  view.layer.slug = "salt";
+  view.layer.type = type;
+  view.layer.resolution = resolution;
+  auto tile = std::make_shared<TileData>(type);
+  tile->write(y % kTileSize * kTileSize + x % kTileSize, *encode_value(type, value));
+  view.snapshot.tiles[{static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)}] = tile;
+  return view;
+}
+
+TEST(QueryValues, a_texture_coordinate_reads_the_texel_that_holds_it) {
+  const LayerView view = layer_with(ValueType::i16, 256, 130, 7, -12);
+  const float texel = 1.0f / 256;
+  EXPECT_TRUE(value_at(view, {130.01f * texel, 7.01f * texel}).valid);
+  const auto value = value_at(view, {130.99f * texel, 7.99f * texel});
+  EXPECT_TRUE(value.valid);
+  EXPECT_EQ(value.value, -12);
+  EXPECT_EQ(value.layer, "salt");
+  EXPECT_FALSE(value_at(view, {129.99f * texel, 7.5f * texel}).valid);
+  EXPECT_FALSE(value_at(view, {130.5f * texel, 8.01f * texel}).valid);
+  EXPECT_FALSE(value_at(view, {0.1f, 0.9f}).valid) << "no tile at all";
+}
+
+TEST(QueryValues, the_edges_of_the_texture_belong_to_its_outer_texels) {
+  EXPECT_TRUE(value_at(layer_with(ValueType::u8, 256, 255, 255, 1), {1, 1}).valid);
+  EXPECT_TRUE(value_at(layer_with(ValueType::u8, 256, 0, 255, 1), {-0.1f, 1.2f}).valid);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(value_at(layer_with(ValueType::u8, 256, 0, 0, 1), {nan, nan}).valid) << "no crash";
+}
+
+TEST(QueryValues, the_nearest_point_is_found_in_world_coordinates) {
+  const mesh::SearchTree tree(square());
+  const LayerView view = layer_with(ValueType::f32, 256, 192, 64, 0.5);  // uv (0.75, 0.25): position (0.5, -0.5)
+  const auto point = nearest_point(tree, kOrigin, kOrigin + glm::dvec3(0.504, -0.496, 3), {view});
+  ASSERT_TRUE(point.hit);
+  EXPECT_NEAR(point.distance, 3, 1e-5);
+  EXPECT_LT(glm::distance(point.position, kOrigin + glm::dvec3(0.504, -0.496, 0)), 1e-5);
+  EXPECT_NEAR(point.normal.z, 1, 1e-5);
+  ASSERT_EQ(point.values.size(), 1u);
+  EXPECT_TRUE(point.values[0].valid);
+  EXPECT_EQ(point.values[0].value, 0.5);
+}
+
+TEST(QueryValues, a_point_that_is_not_a_number_hits_nothing) {
+  const mesh::SearchTree tree(square());
+  const auto point = nearest_point(tree, kOrigin, glm::dvec3(std::numeric_limits<double>::quiet_NaN()), {layer_with(ValueType::u8, 256, 0, 0, 1)});
+  EXPECT_FALSE(point.hit);
+  EXPECT_EQ(to_json(point), nlohmann::json({{"hit", false}}));
+}
+
+TEST(QueryValues, a_pixel_picks_what_is_under_it) {
+  const mesh::SearchTree tree(square());
+  Camera camera;
+  camera.width = 400;
+  camera.height = 400;
+  camera.view = glm::lookAt(kOrigin + glm::dvec3(0, 0, 5), kOrigin, glm::dvec3(0, 1, 0));
+  camera.projection = glm::ortho(-2.0, 2.0, -2.0, 2.0, 0.1, 100.0);
+  const LayerView view = layer_with(ValueType::u8, 256, 192, 192, 9);  // position (0.5, 0.5)
+  const auto point = pick(tree, kOrigin, camera, 250.4, 149.6, {view});
+  ASSERT_TRUE(point.hit);
+  EXPECT_LT(glm::distance(point.position, kOrigin + glm::dvec3(0.504, 0.504, 0)), 1e-4);
+  EXPECT_NEAR(point.distance, 4.9, 1e-4) << "from the near plane";
+  EXPECT_EQ(point.values[0].value, 9);
+  EXPECT_FALSE(pick(tree, kOrigin, camera, 20, 20, {view}).hit) << "beside the square";
+  EXPECT_FALSE(pick(tree, kOrigin, camera, -5, 200, {view}).hit) << "outside the window";
+}
+
+TEST(QueryValues, as_json_a_point_has_the_names_of_the_interface) {
+  const mesh::SearchTree tree(square());
+  const auto json = to_json(nearest_point(tree, kOrigin, kOrigin, {layer_with(ValueType::u8, 256, 0, 0, 1)}));
+  for (const char* member : {"hit", "position", "normal", "distance", "uv", "values"}) EXPECT_TRUE(json.contains(member)) << member;
+  EXPECT_EQ(json["values"]["salt"], nlohmann::json({{"valid", false}, {"value", 0}}));
+}
+
+}  // namespace
+}  // namespace strata::query
