@@ -132,6 +132,15 @@ TEST(ProtocolMessages, a_problem_says_what_belongs_in_the_field) {
   EXPECT_EQ(ok.error().field, "messages[2].id");
 }
 
+TEST(ProtocolMessages, an_unknown_member_is_named_whatever_its_name) {
+  for (const char* member : {"colour", "it's", "'.", "a: 'b'", ""}) {
+    const auto ok = validate(Schema::Hello, json{{"op", "hello"}, {member, 1}});
+    ASSERT_FALSE(ok);
+    EXPECT_EQ(ok.error().field, member);
+    EXPECT_EQ(ok.error().title, "Unknown member");
+  }
+}
+
 TEST(ProtocolMessages, a_refused_message_still_tells_its_id) {
   std::string ref;
   EXPECT_FALSE(parse_client_message(R"({"op":"undo","id":"abc"})", &ref));

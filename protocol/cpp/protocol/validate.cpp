@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
@@ -102,12 +103,13 @@ std::string expectation(const json& schema) {
   return type;
 }
 
-std::string quoted_at_end(const std::string& text) {
-  const auto end = text.rfind('\'');
-  const auto begin = end == std::string::npos || end == 0
-                         ? std::string::npos
-                         : text.find('\'', text.find(": '") == std::string::npos ? 0 : text.find(": '"));
-  return begin == std::string::npos || begin >= end ? std::string() : text.substr(begin + 1, end - begin - 1);
+// The member that valijson names at the end of a description: everything after `before`, less the closing "'.".
+std::string member_named(const std::string& description, std::string_view before) {
+  const auto begin = description.find(before);
+  if (begin == std::string::npos) return {};
+  std::string member = description.substr(begin + before.size());
+  if (member.ends_with("'.")) member.resize(member.size() - 2);
+  return member;
 }
 
 // Names of the members of which a `oneOf` of an object demands exactly one.
@@ -147,7 +149,7 @@ tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::str
 
   const std::string& said = error.description;
   if (said.starts_with("Missing required")) {
-    const std::string member = quoted_at_end(said);
+    const std::string member = member_named(said, "property '");
     const auto exclusive = exclusive_members(rule);
     if (!exclusive.empty() && member == exclusive.front()) {
       enter(member);
@@ -164,7 +166,7 @@ tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::str
     return fail(422, "Members exclude each other", "Give exactly one of " + listed(json(exclusive)) + ".", path);
   }
   if (said.starts_with("Object contains a property")) {
-    enter(quoted_at_end(said));
+    enter(member_named(said, "constraints: '"));
     return fail(422, "Unknown member", "This object has no such member; check its spelling or leave it out.", path);
   }
   if (said.starts_with("Object should have no fewer"))
