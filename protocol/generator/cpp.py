@@ -104,6 +104,8 @@ class Writer:
         for definition in self.order:
             if self.is_named(definition):
                 out.append(self.declare(definition))
+            elif (definition.cpp_type or "").startswith("strata::"):
+                out.append(f"using {definition.name} = {definition.cpp_type};\n\n")
         for union, names in self.protocol.unions.items():
             out.append(f"using {union} = std::variant<{', '.join(names)}>;\n"
                        f"// The schema of the message with this `op`; nothing when the op is unknown.\n"

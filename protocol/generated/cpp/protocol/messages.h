@@ -121,6 +121,10 @@ using Path = std::vector<glm::dvec2>;
 // Layer by id or slug.
 using LayerRef = std::variant<std::int64_t, std::string>;
 
+using Camera = strata::Camera;
+
+using ToolShape = strata::ToolShape;
+
 // Stroke. Sweeps the brush along a path seen through a camera. Needs a value unless it erases.
 struct EditStroke {
   static constexpr std::string_view kOp = "stroke";
@@ -178,6 +182,12 @@ void read(const nlohmann::json& json, PalettePoint& value);
 nlohmann::json to_json(const PalettePoint& value);
 template <>
 inline constexpr Schema schema_of<PalettePoint> = Schema::PalettePoint;
+
+using ValueType = strata::ValueType;
+
+using LayerKind = strata::LayerKind;
+
+using Unit = strata::Unit;
 
 // Up direction.
 enum class Axis { x, y, z };
