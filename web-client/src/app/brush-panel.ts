@@ -1,0 +1,286 @@
+// <strata-brush-panel>: what the brush paints in the selected layer, and how wide.
+
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { format_length, format_number, metres_per } from "../core/measure";
+import { css_color, purpose_of } from "../core/palette";
+import type { Layer } from "../core/types";
+import { describe_value, kWidths, value_problem, type WidthUnit } from "./brush-settings";
+import { ask } from "./dialog";
+import { icon } from "./icons";
+import type { ModelSession } from "./model-session";
+import { styled } from "./styled";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+const kSliderSteps = 1000;
+
+@customElement("strata-brush-panel")
+export class StrataBrushPanel extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @state() private wrong_value_ = "";
+  private unsubscribe_: (() => void) | null = null;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: grid;
+        gap: 13px;
+      }
+      h2 {
+        font-size: 1.08rem;
+      }
+      .width {
+        display: grid;
+        grid-template-columns: 1fr 92px;
+        align-items: center;
+        gap: 8px 12px;
+      }
+      .number {
+        position: relative;
+      }
+      .number input {
+        padding-right: 34px;
+        text-align: right;
+      }
+      .number span {
+        position: absolute;
+        right: 10px;
+        top: 50%;
+        transform: translateY(-50%);
+        color: var(--ink-soft);
+        font-size: 0.85rem;
+        pointer-events: none;
+      }
+      .pair {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 10px;
+      }
+      .pair .segments {
+        flex: 1 1 auto;
+      }
+      .classes {
+        display: grid;
+        grid-template-columns: repeat(auto-fill, minmax(118px, 1fr));
+        gap: 6px;
+        max-height: 208px;
+        overflow: auto;
+        padding: 2px;
+        margin: -2px;
+      }
+      .classes button {
+        justify-content: flex-start;
+        min-width: 0;
+        padding: 0 10px;
+      }
+      .classes button[aria-checked="true"] {
+        border-color: var(--accent);
+        box-shadow: inset 0 0 0 1px var(--accent);
+        font-weight: 600;
+      }
+      .line {
+        display: flex;
+        align-items: center;
+        gap: 9px;
+        min-width: 0;
+      }
+      .value {
+        display: grid;
+        gap: 6px;
+      }
+    `,
+  ];
+
+  override willUpdate(changed: PropertyValues<this>): void {
+    if (!changed.has("session")) return;
+    this.unsubscribe_?.();
+    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
+  }
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.unsubscribe_?.();
+  }
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const layer = session.selected_layer;
+    const erases = session.tools.active === "eraser";
+    if (!layer) return html`<p class="hint">${texts.brush.no_layer}</p>`;
+    return html`<h2>${erases ? texts.brush.eraser_title : texts.brush.title}</h2>
+      ${erases ? html`<p class="hint">${texts.brush.erases(layer.name)}</p>` : this.value(layer)} ${this.width()}
+      ${erases
+        ? nothing
+        : html`<button class="quiet" @click=${() => void this.fill(layer)}>${icon("drop")}${texts.brush.fill}</button>`}`;
+  }
+
+  private value(layer: Layer): TemplateResult {
+    const value = this.session.brush.value_of(layer);
+    const purpose = purpose_of(layer);
+    const { points } = layer.palette;
+    if (purpose === "presence") {
+      return html`<div class="line">
+        <span class="swatch" ${styled({ background: css_color(points[0]!.color) })}></span>
+        <span class="ellipsis">${texts.brush.paints(describe_value(layer, value))}</span>
+      </div>`;
+    }
+    if (purpose === "classes" && points.length > 0) {
+      return html`<div class="classes" role="radiogroup" aria-label=${texts.brush.class} @keydown=${this.on_class_key}>
+        ${points.map(
+          (point) =>
+            html`<button
+              role="radio"
+              aria-checked=${point.at === value}
+              tabindex=${point.at === value ? 0 : -1}
+              title=${describe_value(layer, point.at)}
+              @click=${() => this.set_value(layer, point.at)}
+            >
+              <span class="swatch" ${styled({ background: css_color(point.color) })}></span>
+              <span class="ellipsis">${describe_value(layer, point.at)}</span>
+            </button>`,
+        )}
+      </div>`;
+    }
+    const steps = layer.type.startsWith("f") ? "any" : "1";
+    return html`<div class="value">
+      <label class="field">
+        <span>${texts.brush.value}</span>
+        <span class="number">
+          <input
+            type="number"
+            step=${steps}
+            .value=${String(value)}
+            aria-invalid=${this.wrong_value_ ? "true" : "false"}
+            @change=${(event: Event) => this.on_value(layer, event)}
+          />
+          <span>${layer.unit}</span>
+        </span>
+      </label>
+      ${purpose === "measurement"
+        ? html`<input
+            type="range"
+            min=${layer.palette.min}
+            max=${layer.palette.max}
+            step=${steps === "any" ? (layer.palette.max - layer.palette.min) / 200 : 1}
+            .value=${String(value)}
+            aria-label=${texts.brush.value}
+            @input=${(event: Event) => this.on_value(layer, event)}
+          />`
+        : nothing}
+      ${this.wrong_value_ ? html`<p class="error" role="alert">${this.wrong_value_}</p>` : nothing}
+    </div>`;
+  }
+
+  private width(): TemplateResult {
+    const { session } = this;
+    const { unit, width, shape } = session.brush;
+    const range = kWidths[unit];
+    const now = width[unit];
+    const slider = (kSliderSteps * Math.log(now / range.min)) / Math.log(range.max / range.min);
+    return html`<div class="width">
+        <span class="caption">${texts.brush.width}</span><span></span>
+        <input
+          type="range"
+          min="0"
+          max=${kSliderSteps}
+          .value=${String(Math.round(slider))}
+          aria-label=${texts.brush.width}
+          aria-valuetext="${format_number(now)} ${unit}"
+          @input=${(event: Event) => {
+            const share = Number((event.target as HTMLInputElement).value) / kSliderSteps;
+            const value = range.min * Math.pow(range.max / range.min, share);
+            this.set_width(unit, unit === "px" ? Math.round(value) : Number(value.toPrecision(2)));
+          }}
+        />
+        <span class="number">
+          <input
+            type="number"
+            min=${range.min}
+            max=${range.max}
+            step="any"
+            .value=${String(now)}
+            aria-label="${texts.brush.width}, ${unit}"
+            @change=${(event: Event) => this.set_width(unit, Number((event.target as HTMLInputElement).value))}
+          />
+          <span>${unit === "px" ? texts.brush.width_px : texts.brush.width_mm}</span>
+        </span>
+      </div>
+      <p class="hint numeric">${this.equivalent(unit)}</p>
+      <div class="pair">
+        <div class="segments" role="radiogroup" aria-label=${texts.brush.fixed_on}>
+          ${this.choice(unit === "px", texts.brush.on_screen, () => this.set_unit("px"))}
+          ${this.choice(unit === "mm", texts.brush.on_object, () => this.set_unit("mm"))}
+        </div>
+        <div class="segments" role="radiogroup" aria-label=${texts.brush.shape}>
+          ${this.choice(shape === "disc", texts.brush.disc, () => session.set_brush((brush) => (brush.shape = "disc")))}
+          ${this.choice(shape === "square", texts.brush.square, () =>
+            session.set_brush((brush) => (brush.shape = "square")),
+          )}
+        </div>
+      </div>`;
+  }
+
+  /** The width in the other unit, at the surface under the pointer. */
+  private equivalent(unit: WidthUnit): string {
+    const { session } = this;
+    if (!session.model) return "";
+    const radius_px = session.radius_window_px();
+    if (unit === "mm") return `≈ ${format_number((2 * radius_px) / session.scale, 2)} ${texts.brush.width_px} ${texts.brush.on_screen}`;
+    const metres = 2 * radius_px * session.camera.unit_per_pixel(session.surface_depth()) * metres_per(session.model.unit);
+    return `≈ ${format_length(metres)} ${texts.brush.on_object}`;
+  }
+
+  private choice(checked: boolean, label: string, choose: () => void): TemplateResult {
+    return html`<button role="radio" aria-checked=${checked} @click=${choose}>${label}</button>`;
+  }
+
+  /** Keeps the brush as wide as it looks now. */
+  private set_unit(unit: WidthUnit): void {
+    const { session } = this;
+    if (session.brush.unit === unit || !session.model) return;
+    const radius_px = session.radius_window_px();
+    const mm = 2 * radius_px * session.camera.unit_per_pixel(session.surface_depth()) * metres_per(session.model.unit) * 1000;
+    session.set_brush((brush) => {
+      brush.unit = unit;
+      if (unit === "mm") brush.set_width("mm", Number(mm.toPrecision(2)));
+      else brush.set_width("px", Math.round((2 * radius_px) / session.scale));
+    });
+  }
+
+  private set_width(unit: WidthUnit, width: number): void {
+    this.session.set_brush((brush) => brush.set_width(unit, width));
+  }
+
+  private set_value(layer: Layer, value: number): void {
+    this.session.set_brush((brush) => brush.set_value(layer, value));
+  }
+
+  private on_value(layer: Layer, event: Event): void {
+    const typed = (event.target as HTMLInputElement).value.trim();
+    const number = typed === "" ? Number.NaN : Number(typed);
+    const value = layer.type.startsWith("f") ? Number(number.toPrecision(6)) : number;
+    this.wrong_value_ = value_problem(layer, value) ?? "";
+    if (!this.wrong_value_) this.set_value(layer, value);
+  }
+
+  private on_class_key(event: KeyboardEvent): void {
+    const step = { ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const buttons = [...(event.currentTarget as HTMLElement).querySelectorAll("button")];
+    const at = buttons.findIndex((button) => button.getAttribute("aria-checked") === "true");
+    const next = buttons[(at + step + buttons.length) % buttons.length];
+    next?.click();
+    next?.focus();
+  }
+
+  private async fill(layer: Layer): Promise<void> {
+    const what = describe_value(layer, this.session.brush.value_of(layer));
+    const words = texts.brush;
+    if (await ask({ heading: words.fill_title(layer.name), lead: words.fill_lead(`“${what}”`), yes: words.fill })) {
+      this.session.fill(layer);
+    }
+  }
+}

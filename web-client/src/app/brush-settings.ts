@@ -1,0 +1,67 @@
+// What the brush paints with: width, shape, and one value per layer.
+
+import { purpose_of } from "../core/palette";
+import { holds_fractions, value_range, type Layer } from "../core/types";
+import { format_number } from "../core/measure";
+import { texts } from "./texts";
+
+export type WidthUnit = "px" | "mm";
+
+export const kWidths = { px: { min: 2, max: 400 }, mm: { min: 0.05, max: 5000 } } as const;
+
+export class BrushSettings {
+  unit: WidthUnit = "px";
+  width: Record<WidthUnit, number> = { px: 40, mm: 5 }; // diameters; px are CSS pixels
+  shape: "disc" | "square" = "disc";
+  private readonly values_ = new Map<number, number>();
+
+  set_width(unit: WidthUnit, width: number): void {
+    if (!Number.isFinite(width)) return;
+    this.width[unit] = Math.min(kWidths[unit].max, Math.max(kWidths[unit].min, width));
+  }
+
+  /** One step of the [ and ] keys. */
+  step_width(direction: 1 | -1): void {
+    const grown = this.width[this.unit] * (direction > 0 ? 1.15 : 1 / 1.15);
+    this.set_width(this.unit, this.unit === "px" ? Math.round(grown + direction * 0.5) : Number(grown.toPrecision(3)));
+  }
+
+  value_of(layer: Layer): number {
+    return this.values_.get(layer.id) ?? first_value(layer);
+  }
+
+  set_value(layer: Layer, value: number): void {
+    this.values_.set(layer.id, value);
+  }
+}
+
+function first_value(layer: Layer): number {
+  const { palette } = layer;
+  switch (purpose_of(layer)) {
+    case "presence":
+    case "classes":
+    case "records":
+      return palette.points[0]?.at ?? 1;
+    case "measurement": {
+      const middle = (palette.min + palette.max) / 2;
+      return holds_fractions(layer.type) ? Number(middle.toPrecision(3)) : Math.round(middle);
+    }
+  }
+}
+
+/** Why a value cannot be painted in the layer, in plain words; null when it can. */
+export function value_problem(layer: Layer, value: number): string | null {
+  if (!Number.isFinite(value)) return texts.brush.bad_value;
+  if (!holds_fractions(layer.type) && !Number.isInteger(value)) return texts.brush.whole_number;
+  const [low, high] = value_range(layer.type);
+  if (value < low || value > high) return texts.brush.out_of_range(format_number(low), format_number(high));
+  return null;
+}
+
+/** A value as people read it: the label of its class, or the number with its unit. */
+export function describe_value(layer: Layer, value: number): string {
+  const label = layer.palette.mode === "categorical" ? layer.palette.points.find((p) => p.at === value)?.label : "";
+  if (label) return label;
+  if (layer.palette.mode === "categorical") return texts.layers.class_number(value);
+  return `${format_number(value, 4)}${layer.unit ? ` ${layer.unit}` : ""}`;
+}

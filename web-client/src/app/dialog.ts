@@ -1,0 +1,171 @@
+// <strata-dialog>: a modal sheet with a heading, content and a row of buttons (slot "actions").
+
+import { css, html, LitElement, type TemplateResult } from "lit";
+import { customElement, property, query } from "lit/decorators.js";
+import { icon } from "./icons";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+@customElement("strata-dialog")
+export class StrataDialog extends LitElement {
+  @property() heading = "";
+  @property({ type: Boolean, reflect: true }) wide = false;
+  /** Leaves the picture behind it visible: for questions about what is seen. */
+  @property({ type: Boolean, reflect: true }) aside = false;
+
+  @query("dialog") private dialog_!: HTMLDialogElement;
+
+  static override styles = [
+    shared_styles,
+    css`
+      dialog {
+        width: min(460px, calc(100vw - 24px));
+        max-width: none;
+        max-height: calc(100dvh - 24px);
+        padding: 0;
+        border: 1px solid var(--line);
+        border-radius: 14px;
+        background: var(--surface);
+        color: var(--ink);
+        box-shadow: var(--shadow);
+      }
+      dialog[open] {
+        display: flex;
+        flex-direction: column;
+      }
+      :host([wide]) dialog {
+        width: min(640px, calc(100vw - 24px));
+      }
+      dialog::backdrop {
+        background: rgb(20 24 24 / 0.42);
+      }
+      :host([aside]) dialog {
+        margin: 66px 14px auto auto;
+      }
+      :host([aside]) dialog::backdrop {
+        background: rgb(20 24 24 / 0.12);
+      }
+      header {
+        display: flex;
+        align-items: flex-start;
+        gap: 12px;
+        padding: 20px 14px 0 24px;
+      }
+      h2 {
+        flex: 1;
+        padding-top: 3px;
+        font-size: 1.3rem;
+      }
+      .content {
+        display: grid;
+        gap: 16px;
+        padding: 14px 24px 20px;
+        overflow: auto;
+      }
+      footer {
+        display: flex;
+        flex-wrap: wrap;
+        justify-content: flex-end;
+        gap: 10px;
+        padding: 14px 24px 18px;
+        border-top: 1px solid var(--line);
+      }
+      footer.empty {
+        display: none;
+      }
+      @media (max-width: 560px) {
+        dialog {
+          width: 100vw;
+          margin: auto 0 0;
+          border-radius: 16px 16px 0 0;
+        }
+        :host([wide]) dialog {
+          width: 100vw;
+        }
+        :host([aside]) dialog {
+          margin: auto 0 0;
+        }
+      }
+    `,
+  ];
+
+  override firstUpdated(): void {
+    this.dialog_.showModal();
+  }
+
+  /** Closes and tells: the owner removes the element on "closed". */
+  close(): void {
+    this.dialog_.close();
+  }
+
+  override render(): TemplateResult {
+    return html`<dialog aria-labelledby="heading" @close=${this.on_close} @click=${this.on_click}>
+      <header>
+        <h2 id="heading">${this.heading}</h2>
+        <button class="icon quiet" aria-label=${texts.close} title=${texts.close} @click=${this.close}>
+          ${icon("close")}
+        </button>
+      </header>
+      <div class="content"><slot></slot></div>
+      <footer class="empty"><slot name="actions" @slotchange=${this.on_actions}></slot></footer>
+    </dialog>`;
+  }
+
+  private on_actions(event: Event): void {
+    const slot = event.target as HTMLSlotElement;
+    slot.parentElement?.classList.toggle("empty", slot.assignedElements().length === 0);
+  }
+
+  private on_close(): void {
+    this.dispatchEvent(new CustomEvent("closed"));
+  }
+
+  private on_click(event: MouseEvent): void {
+    if (event.target === this.dialog_) this.close(); // the backdrop
+  }
+}
+
+/** A question with two answers; asked by ask(). */
+@customElement("strata-question")
+class StrataQuestion extends LitElement {
+  @property() heading = "";
+  @property() lead = "";
+  @property() yes = "";
+  @property({ type: Boolean }) danger = false;
+  answer: (yes: boolean) => void = () => {};
+
+  static override styles = shared_styles;
+
+  @query("strata-dialog") private dialog_!: StrataDialog;
+  private answered_ = false;
+
+  override render(): TemplateResult {
+    return html`<strata-dialog heading=${this.heading} @closed=${() => this.finish()}>
+      <p>${this.lead}</p>
+      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
+      <button
+        slot="actions"
+        class=${this.danger ? "danger" : "primary"}
+        @click=${() => {
+          this.answered_ = true;
+          this.dialog_.close();
+        }}
+      >
+        ${this.yes}
+      </button>
+    </strata-dialog>`;
+  }
+
+  private finish(): void {
+    this.answer(this.answered_);
+    this.remove();
+  }
+}
+
+export function ask(question: { heading: string; lead: string; yes: string; danger?: boolean }): Promise<boolean> {
+  return new Promise((resolve) => {
+    const element = new StrataQuestion();
+    Object.assign(element, { danger: false, ...question, answer: resolve });
+    document.body.append(element);
+  });
+}

@@ -1,0 +1,242 @@
+// <strata-home-page>: the project's models, and import by button or drag and drop.
+
+import { html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { ApiError, type Api } from "../core/api";
+import { format_area, format_size, metres_per } from "../core/measure";
+import type { Me, Model } from "../core/types";
+import "./blank";
+import { ask } from "./dialog";
+import { icon, logo } from "./icons";
+import { Imports, type ImportEntry } from "./imports";
+import "./menu";
+import { notices } from "./notices";
+import { follow, navigate, path_of_model } from "./routes";
+import { styled } from "./styled";
+import { shared_styles } from "./styles";
+import { home_styles } from "./home-styles";
+import { texts } from "./texts";
+import "./thumbnail";
+
+let imports: Imports | null = null;
+
+@customElement("strata-home-page")
+export class StrataHomePage extends LitElement {
+  @property({ attribute: false }) api!: Api;
+  @property({ attribute: false }) me: Me | null = null;
+  @state() private models_: Model[] | null = null;
+  @state() private problem_ = "";
+  @state() private dropping_ = false;
+  @query("input[type=file]") private file_input_!: HTMLInputElement;
+  private imports_!: Imports;
+  private unsubscribe_: (() => void) | null = null;
+  private drag_depth_ = 0;
+
+  static override styles = [shared_styles, home_styles];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    document.title = texts.product;
+    this.imports_ = imports ??= new Imports(this.api);
+    this.unsubscribe_ = this.imports_.subscribe(() => this.requestUpdate());
+    addEventListener("dragenter", this.on_drag_enter);
+    addEventListener("dragover", this.on_drag_over);
+    addEventListener("dragleave", this.on_drag_leave);
+    addEventListener("drop", this.on_drop);
+    void this.load();
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.unsubscribe_?.();
+    removeEventListener("dragenter", this.on_drag_enter);
+    removeEventListener("dragover", this.on_drag_over);
+    removeEventListener("dragleave", this.on_drag_leave);
+    removeEventListener("drop", this.on_drop);
+  }
+
+  private async load(): Promise<void> {
+    try {
+      this.models_ = await this.api.models();
+      this.problem_ = "";
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
+      else this.problem_ = error.message;
+    }
+  }
+
+  override render(): TemplateResult {
+    return html`<header>
+        <a class="brand" href="/" @click=${follow}>${logo()}<b>${texts.product}</b></a>
+        <span class="grow tagline">${texts.tagline}</span>
+        ${this.me?.user ? html`<span class="who ellipsis">${this.me.user}</span>` : nothing}
+        <button class="quiet" @click=${this.sign_out}>${texts.home.sign_out}</button>
+      </header>
+      <main>
+        <div class="title">
+          <h1>${texts.home.title}</h1>
+          <span class="hint grow">${this.models_ ? texts.home.count(this.models_.length) : ""}</span>
+          <button class="primary" @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
+          <input type="file" accept=".ply,.obj" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />
+        </div>
+        ${this.imports_.entries.length > 0
+          ? html`<section class="imports" aria-live="polite">
+              ${repeat(
+                this.imports_.entries,
+                (entry) => entry.key,
+                (entry) => this.import_row(entry),
+              )}
+            </section>`
+          : nothing}
+        ${this.content()}
+      </main>
+      ${this.dropping_
+        ? html`<div class="drop-target">
+            <div>${icon("upload")}<b>${texts.home.drop_title}</b><span>${texts.home.drop_lead}</span></div>
+          </div>`
+        : nothing}`;
+  }
+
+  private content(): TemplateResult {
+    if (this.problem_) {
+      return html`<div class="empty">
+        <h2>${this.problem_}</h2>
+        <button @click=${() => void this.load()}>${texts.try_again}</button>
+      </div>`;
+    }
+    if (!this.models_) return html`<p class="hint" role="status">${texts.loading}</p>`;
+    if (this.models_.length === 0) {
+      return html`<div class="empty">
+        ${logo()}
+        <h2>${texts.home.empty_title}</h2>
+        <p>${texts.home.empty_lead}</p>
+        <button class="primary" @click=${() => this.file_input_.click()}>${texts.home.choose_file}</button>
+      </div>`;
+    }
+    return html`<ul class="gallery">
+      ${repeat(
+        this.models_,
+        (model) => model.id,
+        (model) => this.card(model),
+      )}
+    </ul>`;
+  }
+
+  private card(model: Model): TemplateResult {
+    const metres = metres_per(model.unit);
+    const sides = [0, 1, 2].map((axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres);
+    return html`<li>
+      <a href=${path_of_model(model.id)} aria-label=${texts.home.open(model.name)} @click=${follow}>
+        <strata-thumbnail .api=${this.api} .model=${model}></strata-thumbnail>
+        <div class="about">
+          <b class="ellipsis">${model.name || texts.unnamed}</b>
+          <span class="numeric">${format_size(sides)}</span>
+          <span class="numeric faint">${format_area(model.area_m2)} · ${texts.home.triangles(model.triangles)}</span>
+          ${model.scale_verified ? nothing : html`<span class="chip">${texts.home.scale_open}</span>`}
+        </div>
+      </a>
+      <strata-menu class="options" label=${texts.home.options(model.name)} .quiet=${false}>
+        <button class="quiet" role="menuitem" @click=${() => void this.delete_model(model)}>
+          ${icon("trash")}${texts.layers.delete}
+        </button>
+      </strata-menu>
+    </li>`;
+  }
+
+  private import_row(entry: ImportEntry): TemplateResult {
+    const words = texts.import;
+    const busy = entry.state === "uploading" || entry.state === "queued" || entry.state === "running";
+    const said =
+      entry.state === "uploading"
+        ? words.uploading(`${Math.round(entry.progress * 100)} %`)
+        : entry.state === "failed"
+          ? [entry.problem?.title ?? words.failed, entry.problem?.detail].filter(Boolean).join(". ")
+          : entry.message || words[entry.state];
+    return html`<div class="import ${entry.state}">
+      <div class="grow">
+        <b class="ellipsis">${entry.name}</b>
+        <span class="said">${said}</span>
+        ${busy
+          ? html`<div
+              class="bar ${entry.state === "queued" ? "waiting" : ""}"
+              role="progressbar"
+              aria-label=${entry.name}
+              aria-valuemin="0"
+              aria-valuemax="100"
+              aria-valuenow=${Math.round(entry.progress * 100)}
+            >
+              <i ${styled({ width: `${(entry.progress * 100).toFixed(1)}%` })}></i>
+            </div>`
+          : nothing}
+      </div>
+      ${busy
+        ? html`<button aria-label=${words.cancel(entry.name)} @click=${() => void this.cancel(entry)}>${texts.cancel}</button>`
+        : html`<button
+            class="icon quiet"
+            aria-label=${words.dismiss(entry.name)}
+            @click=${() => this.imports_.dismiss(entry.key)}
+          >
+            ${icon("close")}
+          </button>`}
+    </div>`;
+  }
+
+  private async cancel(entry: ImportEntry): Promise<void> {
+    await this.imports_.cancel(entry.key).catch((error: unknown) => notices.error(error));
+  }
+
+  private async import_files(files: File[]): Promise<void> {
+    const done = await Promise.all(files.map((file) => this.imports_.start(file)));
+    const models = done.filter((model): model is number => model !== null);
+    if (!this.isConnected) return;
+    if (files.length === 1 && models.length === 1) navigate(path_of_model(models[0]!));
+    else await this.load();
+  }
+
+  private on_files(): void {
+    const files = [...(this.file_input_.files ?? [])];
+    this.file_input_.value = "";
+    void this.import_files(files);
+  }
+
+  private readonly on_drag_enter = (event: DragEvent): void => {
+    if (!event.dataTransfer?.types.includes("Files")) return;
+    event.preventDefault();
+    this.drag_depth_ += 1;
+    this.dropping_ = true;
+  };
+  private readonly on_drag_over = (event: DragEvent): void => {
+    if (event.dataTransfer?.types.includes("Files")) event.preventDefault();
+  };
+  private readonly on_drag_leave = (): void => {
+    this.drag_depth_ = Math.max(0, this.drag_depth_ - 1);
+    if (this.drag_depth_ === 0) this.dropping_ = false;
+  };
+  private readonly on_drop = (event: DragEvent): void => {
+    this.drag_depth_ = 0;
+    this.dropping_ = false;
+    const files = [...(event.dataTransfer?.files ?? [])];
+    if (files.length === 0) return;
+    event.preventDefault();
+    void this.import_files(files);
+  };
+
+  private async delete_model(model: Model): Promise<void> {
+    const words = texts.home;
+    if (!(await ask({ heading: words.delete_title(model.name), lead: words.delete_lead, yes: texts.delete, danger: true }))) return;
+    try {
+      await this.api.delete_model(model.id);
+      notices.show("success", words.deleted(model.name));
+    } catch (error) {
+      notices.error(error);
+    }
+    await this.load();
+  }
+
+  private async sign_out(): Promise<void> {
+    await this.api.logout().catch((error: unknown) => notices.error(error));
+    this.dispatchEvent(new CustomEvent("signed-out"));
+  }
+}

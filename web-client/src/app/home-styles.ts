@@ -1,0 +1,211 @@
+import { css } from "lit";
+
+export const home_styles = css`
+  :host {
+    display: block;
+    min-height: 100dvh;
+  }
+  header {
+    display: flex;
+    align-items: center;
+    gap: 14px;
+    padding: 12px clamp(16px, 4vw, 56px);
+    border-bottom: 1px solid var(--line);
+    background: var(--surface);
+  }
+  a.brand {
+    display: flex;
+    align-items: center;
+    gap: 11px;
+    color: inherit;
+    text-decoration: none;
+    font: 600 1.25rem var(--serif);
+  }
+  .logo {
+    width: 34px;
+    height: 34px;
+  }
+  .tagline {
+    color: var(--ink-soft);
+    font-size: 0.9rem;
+  }
+  .who {
+    max-width: 200px;
+    color: var(--ink-soft);
+  }
+  main {
+    max-width: 1720px;
+    margin: 0 auto;
+    padding: clamp(20px, 4vw, 44px) clamp(16px, 4vw, 56px) 64px;
+  }
+  .title {
+    display: flex;
+    align-items: baseline;
+    flex-wrap: wrap;
+    gap: 14px;
+    margin-bottom: 24px;
+  }
+  h1 {
+    font-size: clamp(1.6rem, 3vw, 2.1rem);
+  }
+  .gallery {
+    display: grid;
+    grid-template-columns: repeat(auto-fill, minmax(min(270px, 100%), 1fr));
+    gap: 22px;
+    margin: 0;
+    padding: 0;
+    list-style: none;
+  }
+  li {
+    position: relative;
+  }
+  li > a {
+    display: block;
+    overflow: hidden;
+    border: 1px solid var(--line);
+    border-radius: 12px;
+    background: var(--surface);
+    color: inherit;
+    text-decoration: none;
+    transition:
+      box-shadow 160ms,
+      border-color 160ms;
+  }
+  li > a:hover {
+    border-color: var(--line-strong);
+    box-shadow: var(--shadow);
+  }
+  .about {
+    display: grid;
+    gap: 2px;
+    padding: 13px 16px 15px;
+  }
+  .about b {
+    font: 600 1.08rem/1.3 var(--serif);
+  }
+  .about .faint {
+    color: var(--ink-soft);
+    font-size: 0.86rem;
+  }
+  .chip {
+    justify-self: start;
+    margin-top: 6px;
+    padding: 2px 9px;
+    border-radius: 99px;
+    background: var(--warn-soft);
+    color: var(--warn);
+    font-size: 0.78rem;
+    font-weight: 600;
+  }
+  .options {
+    position: absolute;
+    top: 10px;
+    right: 10px;
+    opacity: 0;
+    transition: opacity 120ms;
+  }
+  li:hover .options,
+  li:focus-within .options {
+    opacity: 1;
+  }
+  @media (hover: none) {
+    .options {
+      opacity: 1;
+    }
+  }
+  .empty {
+    display: grid;
+    justify-items: center;
+    gap: 14px;
+    max-width: 460px;
+    margin: 8vh auto;
+    text-align: center;
+  }
+  .empty .logo {
+    width: 64px;
+    height: 64px;
+  }
+  .empty p {
+    color: var(--ink-soft);
+  }
+  .imports {
+    display: grid;
+    gap: 10px;
+    margin-bottom: 26px;
+  }
+  .import {
+    display: flex;
+    align-items: center;
+    gap: 16px;
+    padding: 13px 16px;
+    border: 1px solid var(--line);
+    border-radius: 12px;
+    background: var(--surface);
+  }
+  .import b {
+    display: block;
+  }
+  .import .said {
+    color: var(--ink-soft);
+    font-size: 0.9rem;
+    overflow-wrap: anywhere;
+  }
+  .import.failed {
+    border-color: var(--danger);
+    background: var(--danger-soft);
+  }
+  .import.failed .said {
+    color: var(--ink);
+  }
+  .bar {
+    height: 6px;
+    margin-top: 9px;
+    border-radius: 3px;
+    background: var(--line);
+    overflow: hidden;
+  }
+  .bar i {
+    display: block;
+    height: 100%;
+    border-radius: 3px;
+    background: var(--accent);
+    transition: width 200ms;
+  }
+  .drop-target {
+    position: fixed;
+    inset: 0;
+    z-index: 40;
+    display: grid;
+    padding: 20px;
+    background: color-mix(in srgb, var(--paper) 82%, transparent);
+    pointer-events: none;
+  }
+  .drop-target > div {
+    display: grid;
+    place-content: center;
+    justify-items: center;
+    gap: 6px;
+    border: 2px dashed var(--accent);
+    border-radius: 18px;
+    color: var(--accent);
+  }
+  .drop-target b {
+    font: 600 1.6rem var(--serif);
+  }
+  .drop-target svg.glyph {
+    width: 44px;
+    height: 44px;
+  }
+  @media (max-width: 620px) {
+    .tagline,
+    .who {
+      display: none;
+    }
+    header {
+      justify-content: space-between;
+    }
+    .title .hint {
+      flex-basis: auto;
+    }
+  }
+`;

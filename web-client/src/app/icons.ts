@@ -1,0 +1,50 @@
+// Line drawings on a 24 × 24 grid; sized and coloured by the style `svg.glyph`.
+
+import { html, svg, type SVGTemplateResult, type TemplateResult } from "lit";
+
+const shapes = {
+  orbit: svg`<ellipse cx="12" cy="12" rx="9" ry="3.6" /><path d="M12 3c-2.2 0-3.6 4-3.6 9s1.4 9 3.6 9 3.6-4 3.6-9" /><path d="M13.6 5.6 15.6 12l2.6-5" />`,
+  pan: svg`<path d="M12 3v18M3 12h18M9.5 5.5 12 3l2.5 2.5M9.5 18.5 12 21l2.5-2.5M5.5 9.5 3 12l2.5 2.5M18.5 9.5 21 12l-2.5 2.5" />`,
+  brush: svg`<path d="M20.5 3.5c-4 1.6-8 5-10.5 8.7l1.8 1.8C15.5 11.5 18.9 7.5 20.5 3.500Z" /><path d="M9.7 12.600c-2.5 0-3.9 1.4-4.2 3.4-.2 1.7-1 2.6-2.5 3.2 3.2 1.4 8.4.9 8.6-4.2" />`,
+  eraser: svg`<path d="m8.5 20-4.7-4.700a1.6 1.6 0 0 1 0-2.200l8.7-8.700a1.6 1.6 0 0 1 2.2 0l4.9 4.900a1.6 1.6 0 0 1 0 2.200L11 20Z" /><path d="m8.4 8.5 7.1 7.100M6.5 20H20" />`,
+  pick: svg`<path d="m13.5 6.5 4 4M4 20l1-4 8.3-8.3 3 3L8 19Z" /><path d="m15 5.5 1.2-1.200a2.1 2.1 0 0 1 3 0l.5.500a2.1 2.1 0 0 1 0 3L18.5 9" />`,
+  undo: svg`<path d="M8.5 5 4 9.5 8.5 14" /><path d="M4.5 9.500h9.200a5.3 5.3 0 0 1 0 10.500H9" />`,
+  redo: svg`<path d="m15.5 5 4.5 4.5-4.5 4.5" /><path d="M19.5 9.500h-9.200a5.3 5.3 0 0 0 0 10.500H15" />`,
+  cube: svg`<path d="m12 3 8 4.500v9L12 21l-8-4.500v-9Z" /><path d="m4 7.5 8 4.5 8-4.500M12 12v9" />`,
+  fit: svg`<path d="M4 9V5.500A1.5 1.5 0 0 1 5.5 4H9M15 4h3.500A1.5 1.5 0 0 1 20 5.500V9M20 15v3.500a1.5 1.5 0 0 1-1.5 1.500H15M9 20H5.500A1.5 1.5 0 0 1 4 18.500V15" /><circle cx="12" cy="12" r="3.2" />`,
+  help: svg`<circle cx="12" cy="12" r="9" /><path d="M9.3 9.300a2.8 2.8 0 1 1 4.1 2.500c-.9.5-1.4 1-1.4 2.2" /><path d="M12 17h.01" />`,
+  info: svg`<circle cx="12" cy="12" r="9" /><path d="M12 11v5.500M12 7.500h.01" />`,
+  back: svg`<path d="M19 12H5M11 6l-6 6 6 6" />`,
+  plus: svg`<path d="M12 5v14M5 12h14" />`,
+  close: svg`<path d="m6 6 12 12M18 6 6 18" />`,
+  eye: svg`<path d="M2.5 12S6 5.5 12 5.5 21.5 12 21.5 12 18 18.5 12 18.5 2.5 12 2.5 12Z" /><circle cx="12" cy="12" r="2.8" />`,
+  eye_off: svg`<path d="M9.9 5.800A8.7 8.7 0 0 1 12 5.500c6 0 9.5 6.5 9.5 6.500a16 16 0 0 1-2.9 3.600M6.3 7.300A15.5 15.5 0 0 0 2.5 12S6 18.5 12 18.500a8.9 8.9 0 0 0 4.6-1.300M10 10a2.8 2.8 0 0 0 4 4M3.5 3.500l17 17" />`,
+  more: svg`<path d="M5.5 12h.01M12 12h.01M18.5 12h.01" stroke-width="2.8" />`,
+  up: svg`<path d="M12 19V5M6 11l6-6 6 6" />`,
+  down: svg`<path d="M12 5v14M6 13l6 6 6-6" />`,
+  grip: svg`<path d="M9 6h.01M15 6h.01M9 12h.01M15 12h.01M9 18h.01M15 18h.01" stroke-width="2.4" />`,
+  edit: svg`<path d="M4 20h4L19 9a2.1 2.1 0 0 0-3-3L5 17ZM14.5 7.500l3 3" />`,
+  trash: svg`<path d="M4.5 6.500h15M9.5 6.500V4.500h5v2M6.5 6.500l.8 13h9.400l.8-13M10 10.500v5.500M14 10.500v5.5" />`,
+  chart: svg`<path d="M4 20h16M7 16.500V11M12 16.500V5M17 16.500V8.5" stroke-width="2.2" />`,
+  check: svg`<path d="m5 12.5 4.5 4.500L19 7.5" />`,
+  cloud: svg`<path d="M7 18.500a4.5 4.5 0 0 1-.5-9A6 6 0 0 1 18 10a4.3 4.3 0 0 1-.5 8.500Z" /><path d="M12 16v-4.500M9.8 13.2 12 11l2.2 2.2" />`,
+  warning: svg`<path d="M12 4 2.8 19.500h18.400ZM12 10v4.500M12 17h.01" />`,
+  upload: svg`<path d="M12 15.500V4.500M7.5 9 12 4.5 16.5 9M4.5 15.500v3a1.5 1.5 0 0 0 1.5 1.500h12a1.5 1.5 0 0 0 1.5-1.500v-3" />`,
+  people: svg`<circle cx="9" cy="8.5" r="3.2" /><path d="M3 19.500c.3-3.6 2.7-5.5 6-5.500s5.7 1.9 6 5.500M15.5 5.600a3.2 3.2 0 0 1 0 5.800M17.5 14.400c2.1.7 3.3 2.4 3.5 5.1" />`,
+  drop: svg`<path d="M12 3.500s6 6.6 6 11a6 6 0 0 1-12 0c0-4.4 6-11 6-11Z" />`,
+  panel: svg`<rect x="3.5" y="4.5" width="17" height="15" rx="2" /><path d="M14.5 4.500v15" />`,
+} satisfies Record<string, SVGTemplateResult>;
+
+export type IconName = keyof typeof shapes;
+
+export const icon = (name: IconName): TemplateResult =>
+  html`<svg class="glyph" viewBox="0 0 24 24" aria-hidden="true">${shapes[name]}</svg>`;
+
+export const logo = (): TemplateResult => html`<svg class="logo" viewBox="0 0 32 32" aria-hidden="true">
+  <rect width="32" height="32" rx="7" fill="#22302f" />
+  <g fill="none" stroke-width="2.6" stroke-linecap="round">
+    <path d="M5 11c4-3 7-3 11 0s7 3 11 0" stroke="#e8dfcf" />
+    <path d="M5 17c4-3 7-3 11 0s7 3 11 0" stroke="#d08b5b" />
+    <path d="M5 23c4-3 7-3 11 0s7 3 11 0" stroke="#6fa39b" />
+  </g>
+</svg>`;

@@ -1,0 +1,130 @@
+// Imports under way: upload, then the server's job. Kept outside the page's elements, so that going to another page
+// does not stop them.
+
+import { ApiError, name_of_file, type Api, type Upload } from "../core/api";
+import type { Job, ProblemBody } from "../core/types";
+import { notices } from "./notices";
+import { texts } from "./texts";
+
+export type ImportState = "uploading" | Job["state"];
+
+export interface ImportEntry {
+  key: number;
+  name: string;
+  state: ImportState;
+  progress: number; // 0…1 of the present step
+  message: string;
+  problem: ProblemBody | null;
+  model: number | null;
+}
+
+const kPoll_ms = 400;
+const kMostFailedPolls = 20;
+const kFileKinds = /\.(ply|obj)$/i;
+
+export class Imports {
+  entries: readonly ImportEntry[] = [];
+  private next_key_ = 1;
+  private readonly uploads_ = new Map<number, Upload>();
+  private readonly jobs_ = new Map<number, Job["id"]>();
+  private readonly listeners_ = new Set<() => void>();
+
+  constructor(private readonly api_: Api) {}
+
+  subscribe(listener: () => void): () => void {
+    this.listeners_.add(listener);
+    return () => this.listeners_.delete(listener);
+  }
+
+  /** Resolves with the model's id, or null when it failed or was cancelled. */
+  async start(file: File): Promise<number | null> {
+    const refusal = !kFileKinds.test(file.name)
+      ? texts.import.wrong_kind(file.name)
+      : file.size === 0
+        ? texts.import.empty_file(file.name)
+        : null;
+    if (refusal) {
+      notices.show("problem", refusal);
+      return null;
+    }
+    const key = this.next_key_++;
+    const entry: ImportEntry = {
+      key,
+      name: name_of_file(file.name),
+      state: "uploading",
+      progress: 0,
+      message: "",
+      problem: null,
+      model: null,
+    };
+    this.entries = [...this.entries, entry];
+    this.tell();
+    try {
+      const upload = this.api_.upload_model(file, (progress) => this.change(key, { progress }));
+      this.uploads_.set(key, upload);
+      const job = await upload.done;
+      this.uploads_.delete(key);
+      this.jobs_.set(key, job.id);
+      return await this.follow(key, job);
+    } catch (error) {
+      return this.fail(key, error);
+    }
+  }
+
+  async cancel(key: number): Promise<void> {
+    this.uploads_.get(key)?.cancel();
+    const job = this.jobs_.get(key);
+    if (job !== undefined) await this.api_.cancel_job(job);
+  }
+
+  dismiss(key: number): void {
+    this.entries = this.entries.filter((entry) => entry.key !== key);
+    this.tell();
+  }
+
+  private async follow(key: number, first: Job): Promise<number | null> {
+    let job = first;
+    let failed_polls = 0;
+    for (;;) {
+      this.change(key, { state: job.state, progress: job.progress, message: job.message, problem: job.problem ?? null });
+      if (job.state === "done") return this.finish(key, job);
+      if (job.state === "failed") return null;
+      if (job.state === "cancelled") {
+        this.dismiss(key);
+        return null;
+      }
+      await new Promise((resolve) => setTimeout(resolve, kPoll_ms));
+      try {
+        job = await this.api_.job(job.id);
+        failed_polls = 0;
+      } catch (error) {
+        const passing = error instanceof ApiError && (error.status === 0 || error.status >= 500 || error.status === 429);
+        if (!passing || ++failed_polls > kMostFailedPolls) throw error;
+      }
+    }
+  }
+
+  private finish(key: number, job: Job): number | null {
+    const name = this.entries.find((entry) => entry.key === key)?.name ?? "";
+    this.dismiss(key);
+    notices.show("success", texts.import.ready(name));
+    return job.model ?? null;
+  }
+
+  private fail(key: number, error: unknown): null {
+    if (!(error instanceof ApiError)) throw error;
+    this.uploads_.delete(key);
+    if (error.status === 499) this.dismiss(key);
+    else this.change(key, { state: "failed", problem: error.problem });
+    return null;
+  }
+
+  private change(key: number, change: Partial<ImportEntry>): void {
+    this.entries = this.entries.map((entry) => (entry.key === key ? { ...entry, ...change } : entry));
+    this.tell();
+  }
+
+  private tell(): void {
+    for (const listener of this.listeners_) listener();
+  }
+}

@@ -1,0 +1,82 @@
+// Keys of the model page. A key that someone types into a field, or that a dialog is open for, is not one of these.
+
+import type { StandardView } from "../core/camera";
+import type { ToolName } from "../tools/tool";
+import type { ModelSession } from "./model-session";
+
+const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
+const kTools: Record<string, ToolName> = { b: "brush", e: "eraser", i: "pick", v: "orbit", h: "pan" };
+const kArrows: Record<string, [number, number]> = {
+  ArrowLeft: [1, 0],
+  ArrowRight: [-1, 0],
+  ArrowUp: [0, 1],
+  ArrowDown: [0, -1],
+};
+const kArrowStep = 0.04; // share of the window per key press
+
+/** Whether the event's innermost target takes typed text or has its own use for keys. */
+export function is_for_field(event: KeyboardEvent): boolean {
+  const target = event.composedPath()[0];
+  if (!(target instanceof HTMLElement)) return false;
+  if (target.closest("dialog, [popover]")) return true;
+  if (target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement) return true;
+  if (target instanceof HTMLInputElement) return target.type !== "range" || event.key.startsWith("Arrow");
+  return target.getAttribute("role") === "separator" || target.isContentEditable;
+}
+
+/** Does what the key stands for; false when it stands for nothing here. */
+export function handle_key(event: KeyboardEvent, session: ModelSession, show_help: () => void): boolean {
+  const { key } = event;
+  if (event.ctrlKey || event.metaKey) {
+    if (event.altKey || key.toLowerCase() !== "z") return false;
+    if (event.shiftKey) session.redo();
+    else session.undo();
+    return true;
+  }
+  if (event.altKey) return false;
+  const tool = kTools[key.toLowerCase()];
+  if (tool) {
+    session.choose_tool(tool);
+    return true;
+  }
+  const arrow = kArrows[key];
+  if (arrow) {
+    const pixels = Math.min(session.camera.width, session.camera.height) * kArrowStep;
+    const move = event.shiftKey ? session.gestures.pan : session.gestures.orbit;
+    move(arrow[0] * pixels, arrow[1] * pixels);
+    return true;
+  }
+  const { width, height } = session.camera;
+  switch (key) {
+    case "+":
+    case "=":
+      session.gestures.zoom(1 / 1.15, width / 2, height / 2);
+      return true;
+    case "-":
+    case "_":
+      session.gestures.zoom(1.15, width / 2, height / 2);
+      return true;
+    case "Home":
+      session.fit();
+      return true;
+    case "p":
+    case "P":
+      session.set_perspective(true);
+      return true;
+    case "o":
+    case "O":
+      session.set_perspective(false);
+      return true;
+    case "[":
+    case "]":
+      session.set_brush((brush) => brush.step_width(key === "]" ? 1 : -1));
+      return true;
+    case "?":
+      show_help();
+      return true;
+  }
+  const view = /^[1-6]$/.test(key) ? kViews[Number(key) - 1] : undefined;
+  if (!view) return false;
+  session.standard_view(view);
+  return true;
+}

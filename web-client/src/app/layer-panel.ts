@@ -1,0 +1,355 @@
+// <strata-layer-panel>: the layers from top to bottom, as this person sees them. The selected one is painted on.
+
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import type { Layer } from "../core/types";
+import { ask } from "./dialog";
+import { icon } from "./icons";
+import { layer_chip, legend, legend_styles } from "./legend";
+import "./menu";
+import type { ModelSession } from "./model-session";
+import { notices } from "./notices";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+export type LayerPanelRequest = { dialog: "create" } | { dialog: "edit" | "statistics"; layer: Layer };
+
+@customElement("strata-layer-panel")
+export class StrataLayerPanel extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @state() private dragged_: number | null = null;
+  @state() private drop_before_: number | null = null; // index in the shown list
+  private unsubscribe_: (() => void) | null = null;
+
+  static override styles = [
+    shared_styles,
+    legend_styles,
+    css`
+      :host {
+        display: block;
+      }
+      .heading {
+        display: flex;
+        align-items: center;
+        gap: 8px;
+        margin-bottom: 8px;
+      }
+      h2 {
+        flex: 1;
+        font-size: 1.08rem;
+      }
+      .list {
+        display: grid;
+        gap: 6px;
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      li.layer {
+        position: relative;
+        border: 1px solid var(--line);
+        border-radius: var(--radius);
+        background: var(--raised);
+      }
+      li.layer.selected {
+        border-color: var(--accent);
+        box-shadow: inset 3px 0 0 var(--accent);
+      }
+      li.layer.dragged {
+        opacity: 0.4;
+      }
+      li.layer.drop-before::before {
+        content: "";
+        position: absolute;
+        left: 0;
+        right: 0;
+        top: -5px;
+        height: 3px;
+        border-radius: 2px;
+        background: var(--accent);
+      }
+      .line {
+        display: flex;
+        align-items: center;
+        gap: 2px;
+        padding: 3px 4px 3px 2px;
+      }
+      .grip {
+        display: grid;
+        place-items: center;
+        width: 22px;
+        height: 34px;
+        color: var(--line-strong);
+        cursor: grab;
+      }
+      .name {
+        flex: 1;
+        justify-content: flex-start;
+        min-width: 0;
+        padding: 0 8px;
+        gap: 10px;
+      }
+      .name.off {
+        color: var(--ink-soft);
+      }
+      .selected .name {
+        font-weight: 600;
+      }
+      .more {
+        display: grid;
+        gap: 12px;
+        padding: 6px 14px 14px;
+        border-top: 1px solid var(--line);
+      }
+      .more p.description {
+        color: var(--ink-soft);
+        font-size: 0.88rem;
+        overflow-wrap: anywhere;
+      }
+      .opacity {
+        display: grid;
+        grid-template-columns: auto 1fr 52px;
+        align-items: center;
+        gap: 10px;
+        font-size: 0.88rem;
+      }
+      .opacity output {
+        text-align: right;
+        white-space: nowrap;
+      }
+      .personal {
+        display: flex;
+        flex-wrap: wrap;
+        align-items: center;
+        gap: 4px 14px;
+        margin-top: 10px;
+        padding: 9px 12px;
+        border-radius: var(--radius-small);
+        background: var(--calm-soft);
+        font-size: 0.86rem;
+      }
+      .personal span {
+        flex-basis: 100%;
+      }
+      .personal button.link {
+        color: var(--calm);
+      }
+      .empty {
+        display: grid;
+        gap: 10px;
+        justify-items: start;
+        padding: 16px;
+        border: 1px dashed var(--line-strong);
+        border-radius: var(--radius);
+      }
+      .empty p {
+        color: var(--ink-soft);
+        font-size: 0.9rem;
+      }
+    `,
+  ];
+
+  override willUpdate(changed: PropertyValues<this>): void {
+    if (!changed.has("session")) return;
+    this.unsubscribe_?.();
+    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
+  }
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.unsubscribe_?.();
+  }
+
+  /** Top to bottom. */
+  private get shown(): Layer[] {
+    return [...this.session.layers].reverse();
+  }
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const words = texts.layers;
+    const shown = this.shown;
+    return html`<div class="heading">
+        <h2>${words.title}</h2>
+        ${session.can_edit
+          ? html`<button @click=${() => this.request({ dialog: "create" })}>${icon("plus")}${words.new}</button>`
+          : nothing}
+      </div>
+      ${shown.length === 0
+        ? html`<div class="empty">
+            <b>${words.empty_title}</b>
+            <p>${words.empty_lead}</p>
+          </div>`
+        : html`<ul class="list" @dragover=${this.on_list_over} @drop=${this.on_drop}>
+            ${repeat(
+              shown,
+              (layer) => layer.id,
+              (layer, index) => this.row(layer, index),
+            )}
+          </ul>`}
+      ${session.has_overrides && session.can_edit
+        ? html`<div class="personal">
+            <span>${words.personal}</span>
+            <button class="link" @click=${() => void this.save_default()}>${words.save_default}</button>
+            <button class="link" @click=${() => session.reset_overrides()}>${words.reset_default}</button>
+          </div>`
+        : nothing}`;
+  }
+
+  private row(layer: Layer, index: number): TemplateResult {
+    const { session } = this;
+    const words = texts.layers;
+    const selected = session.selected === layer.id;
+    const visible = session.visible(layer);
+    const count = session.layers.length;
+    return html`<li
+      class="layer ${selected ? "selected" : ""} ${this.dragged_ === layer.id ? "dragged" : ""} ${this.drop_before_ === index
+        ? "drop-before"
+        : ""}"
+      @dragover=${(event: DragEvent) => this.on_row_over(event, index)}
+    >
+      <div class="line">
+        ${session.can_edit && count > 1
+          ? html`<span
+              class="grip"
+              draggable="true"
+              title=${words.drag(layer.name)}
+              @dragstart=${(event: DragEvent) => this.on_drag_start(event, layer)}
+              @dragend=${this.on_drag_end}
+              >${icon("grip")}</span
+            >`
+          : nothing}
+        <button
+          class="icon quiet"
+          aria-pressed=${visible}
+          aria-label=${visible ? words.hide(layer.name) : words.show(layer.name)}
+          title=${visible ? words.hide(layer.name) : words.show(layer.name)}
+          @click=${() => session.set_visible(layer, !visible)}
+        >
+          ${icon(visible ? "eye" : "eye_off")}
+        </button>
+        <button
+          class="quiet name ${visible ? "" : "off"}"
+          aria-pressed=${selected}
+          aria-label=${words.select(layer.name)}
+          title=${layer.name}
+          @click=${() => session.select(layer)}
+        >
+          ${layer_chip(layer)}<span class="ellipsis">${layer.name}</span>
+        </button>
+        <strata-menu label=${words.options(layer.name)}>
+          ${session.can_edit
+            ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "edit", layer })}>
+                ${icon("edit")}${words.edit}
+              </button>`
+            : nothing}
+          <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "statistics", layer })}>
+            ${icon("chart")}${words.statistics}
+          </button>
+          ${session.can_edit
+            ? html`<button
+                  class="quiet"
+                  role="menuitem"
+                  ?disabled=${index === 0}
+                  @click=${() => this.move(layer, index - 1)}
+                >
+                  ${icon("up")}${words.up}
+                </button>
+                <button
+                  class="quiet"
+                  role="menuitem"
+                  ?disabled=${index === count - 1}
+                  @click=${() => this.move(layer, index + 1)}
+                >
+                  ${icon("down")}${words.down}
+                </button>
+                <hr />
+                <button class="quiet" role="menuitem" @click=${() => void this.delete_layer(layer)}>
+                  ${icon("trash")}${words.delete}
+                </button>`
+            : nothing}
+        </strata-menu>
+      </div>
+      ${selected ? this.details(layer) : nothing}
+    </li>`;
+  }
+
+  private details(layer: Layer): TemplateResult {
+    const { session } = this;
+    const opacity = session.opacity(layer);
+    return html`<div class="more">
+      ${layer.description ? html`<p class="description">${layer.description}</p>` : nothing} ${legend(layer)}
+      <div class="opacity">
+        <span class="caption">${texts.layers.opacity}</span>
+        <input
+          type="range"
+          min="0"
+          max="100"
+          .value=${String(Math.round(opacity * 100))}
+          aria-label=${texts.layers.opacity_of(layer.name)}
+          @input=${(event: Event) => session.set_opacity(layer, Number((event.target as HTMLInputElement).value) / 100)}
+        />
+        <output class="numeric">${Math.round(opacity * 100)} %</output>
+      </div>
+    </div>`;
+  }
+
+  private request(detail: LayerPanelRequest): void {
+    this.dispatchEvent(new CustomEvent<LayerPanelRequest>("request", { detail }));
+  }
+
+  /** `index` counts from the top of the shown list, without the layer itself. */
+  private move(layer: Layer, index: number): void {
+    const last = this.session.layers.length - 1;
+    this.session.move_layer(layer, last - index).catch((error: unknown) => notices.error(error));
+  }
+
+  private async save_default(): Promise<void> {
+    try {
+      await this.session.save_overrides_as_default();
+      notices.show("success", texts.layers.saved_default);
+    } catch (error) {
+      notices.error(error);
+    }
+  }
+
+  private async delete_layer(layer: Layer): Promise<void> {
+    const words = texts.layers;
+    if (!(await ask({ heading: words.delete_title(layer.name), lead: words.delete_lead, yes: texts.delete, danger: true }))) return;
+    await this.session.delete_layer(layer).catch((error: unknown) => notices.error(error));
+  }
+
+  private on_drag_start(event: DragEvent, layer: Layer): void {
+    this.dragged_ = layer.id;
+    event.dataTransfer?.setData("text/plain", layer.name);
+    const row = (event.target as HTMLElement).closest("li");
+    if (row) event.dataTransfer?.setDragImage(row, 12, 18);
+  }
+
+  private on_row_over(event: DragEvent, index: number): void {
+    if (this.dragged_ === null) return;
+    event.preventDefault();
+    const box = (event.currentTarget as HTMLElement).getBoundingClientRect();
+    this.drop_before_ = event.clientY < box.top + box.height / 2 ? index : index + 1;
+  }
+
+  private on_list_over(event: DragEvent): void {
+    if (this.dragged_ !== null) event.preventDefault();
+  }
+
+  private on_drop(event: DragEvent): void {
+    const layer = this.session.layers.find((each) => each.id === this.dragged_);
+    const before = this.drop_before_;
+    this.on_drag_end();
+    if (!layer || before === null) return;
+    event.preventDefault();
+    const from = this.shown.findIndex((each) => each.id === layer.id);
+    const to = before > from ? before - 1 : before;
+    if (to !== from) this.move(layer, to);
+  }
+
+  private readonly on_drag_end = (): void => {
+    this.dragged_ = null;
+    this.drop_before_ = null;
+  };
+}

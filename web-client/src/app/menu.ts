@@ -1,0 +1,99 @@
+// <strata-menu>: a button that opens a list of commands, given as slotted buttons.
+
+import { css, html, LitElement, type TemplateResult } from "lit";
+import { customElement, property, query } from "lit/decorators.js";
+import { icon, type IconName } from "./icons";
+import { shared_styles } from "./styles";
+
+@customElement("strata-menu")
+export class StrataMenu extends LitElement {
+  @property() label = "";
+  @property() glyph: IconName = "more";
+  @property({ type: Boolean }) quiet = true;
+  @property() side: "below" | "right" = "below";
+
+  @query("button") private button_!: HTMLButtonElement;
+  @query(".list") private list_!: HTMLElement;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: inline-block;
+      }
+      .list {
+        position: fixed;
+        inset: auto;
+        margin: 0;
+        padding: 5px;
+        min-width: 180px;
+        border: 1px solid var(--line);
+        border-radius: var(--radius);
+        background: var(--raised);
+        color: var(--ink);
+        box-shadow: var(--shadow);
+      }
+      ::slotted(button) {
+        display: flex !important;
+        width: 100%;
+        justify-content: flex-start !important;
+      }
+      ::slotted(hr) {
+        margin: 5px 0;
+        border: 0;
+        border-top: 1px solid var(--line);
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    return html`<button
+        class="icon ${this.quiet ? "quiet" : ""}"
+        aria-haspopup="menu"
+        aria-label=${this.label}
+        title=${this.label}
+        @click=${this.open}
+      >
+        ${icon(this.glyph)}
+      </button>
+      <div class="list" popover="auto" role="menu" @click=${this.close} @keydown=${this.on_key} @toggle=${this.on_toggle}>
+        <slot></slot>
+      </div>`;
+  }
+
+  private open(event: Event): void {
+    event.stopPropagation();
+    this.list_.showPopover();
+    const anchor = this.button_.getBoundingClientRect();
+    const box = this.list_.getBoundingClientRect();
+    const margin = 8;
+    const left = this.side === "right" ? anchor.right + 6 : anchor.right - box.width;
+    const top = this.side === "right" ? anchor.top : anchor.bottom + 4;
+    this.list_.style.left = `${Math.max(margin, Math.min(left, innerWidth - box.width - margin))}px`;
+    this.list_.style.top = `${Math.max(margin, Math.min(top, innerHeight - box.height - margin))}px`;
+  }
+
+  private close(event: Event): void {
+    event.stopPropagation();
+    this.list_.hidePopover();
+  }
+
+  private items(): HTMLButtonElement[] {
+    return [...this.querySelectorAll("button")].filter((button) => !button.disabled);
+  }
+
+  private on_toggle(event: ToggleEvent): void {
+    if (event.newState === "open") this.items()[0]?.focus();
+  }
+
+  private on_key(event: KeyboardEvent): void {
+    const items = this.items();
+    const at = items.indexOf(document.activeElement?.shadowRoot?.activeElement as HTMLButtonElement);
+    const focused = at >= 0 ? at : items.findIndex((item) => item.matches(":focus"));
+    const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
+    if (step === 0) return;
+    event.preventDefault();
+    event.stopPropagation();
+    items[(focused + step + items.length) % items.length]?.focus();
+  }
+}

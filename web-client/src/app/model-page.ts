@@ -1,0 +1,331 @@
+// <strata-model-page>: one model: the stage in the middle, tools at its left, layers and brush at its right (on a
+// phone: a sheet from below).
+
+import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { ApiError, type Api } from "../core/api";
+import type { Layer } from "../core/types";
+import "./blank";
+import "./brush-panel";
+import { icon, logo } from "./icons";
+import { handle_key, is_for_field } from "./keyboard";
+import "./layer-dialog";
+import type { LayerPanelRequest } from "./layer-panel";
+import "./layer-panel";
+import { model_styles } from "./model-styles";
+import { ModelSession } from "./model-session";
+import { notices } from "./notices";
+import { follow } from "./routes";
+import "./scale-dialog";
+import "./sheets";
+import "./stage";
+import type { StrataStage } from "./stage";
+import "./statistics-dialog";
+import { styled } from "./styled";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+import "./tool-rail";
+import "./value-readout";
+
+type OpenDialog = LayerPanelRequest | { dialog: "scale" | "help" | "about" } | null;
+
+const kPanelWidth = { least: 270, first: 330, most: 620 };
+const kPanelKey = "strata.panel_width";
+
+@customElement("strata-model-page")
+export class StrataModelPage extends LitElement {
+  @property({ attribute: false }) api!: Api;
+  @property() model_id = "";
+  @state() private dialog_: OpenDialog = null;
+  @state() private missing_: { heading: string; lead: string } | null = null;
+  @state() private panel_width_ = Number(localStorage.getItem(kPanelKey)) || kPanelWidth.first;
+  @state() private panel_shown_ = window.innerWidth > 820;
+  @query("strata-stage") private stage_!: StrataStage | null;
+  private session_: ModelSession | null = null;
+  private asked_scale_ = false;
+
+  static override styles = [shared_styles, model_styles];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    addEventListener("keydown", this.on_key_down);
+    addEventListener("keyup", this.on_key_up);
+    addEventListener("beforeunload", this.on_before_unload);
+    addEventListener("online", this.on_online);
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    removeEventListener("keydown", this.on_key_down);
+    removeEventListener("keyup", this.on_key_up);
+    removeEventListener("beforeunload", this.on_before_unload);
+    removeEventListener("online", this.on_online);
+    this.session_?.close();
+    this.session_ = null;
+  }
+
+  override willUpdate(changed: PropertyValues<this>): void {
+    if (!changed.has("model_id")) return;
+    this.session_?.close();
+    this.session_ = new ModelSession(this.api, this.model_id);
+    this.missing_ = null;
+    this.asked_scale_ = false;
+    void this.open(this.session_);
+  }
+
+  private async open(session: ModelSession): Promise<void> {
+    session.subscribe(() => this.on_session(session));
+    try {
+      await session.open();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
+      else if (error.status === 404) {
+        this.missing_ = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
+      } else {
+        this.missing_ = { heading: error.problem.title, lead: error.problem.detail ?? "" };
+      }
+    }
+  }
+
+  private last_state_ = "";
+  private on_session(session: ModelSession): void {
+    if (session !== this.session_) return;
+    if (session.deleted) this.missing_ = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
+    if (session.model) document.title = `${session.model.name} – ${texts.product}`;
+    if (session.model && !session.model.scale_verified && session.can_edit && session.frames_drawn > 0 && !this.asked_scale_) {
+      this.asked_scale_ = true;
+      this.dialog_ ??= { dialog: "scale" };
+    }
+    if (session.connection_state === "lost" && this.last_state_ !== "lost") void this.check_session();
+    this.last_state_ = session.connection_state;
+    this.requestUpdate();
+  }
+
+  /** A refused socket does not say why: an expired session does. */
+  private async check_session(): Promise<void> {
+    try {
+      await this.api.me();
+    } catch (error) {
+      if (error instanceof ApiError && error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
+    }
+  }
+
+  override render(): TemplateResult {
+    const session = this.session_;
+    if (this.missing_) {
+      return html`<strata-blank heading=${this.missing_.heading} lead=${this.missing_.lead}>
+        <a class="button" href="/" @click=${follow}>${icon("back")}${texts.model.back}</a>
+      </strata-blank>`;
+    }
+    if (!session) return html``;
+    return html`<div class="page ${this.panel_shown_ ? "" : "without-panel"}" ${styled({ "--panel": `${this.panel_width_}px` })}>
+        ${this.header(session)}
+        <strata-tool-rail .session=${session}></strata-tool-rail>
+        <main>
+          <strata-stage .session=${session}></strata-stage>
+          ${this.banner(session)}
+          <strata-value-readout .session=${session}></strata-value-readout>
+        </main>
+        ${this.panel_shown_ ? this.panel(session) : nothing}
+      </div>
+      ${this.dialog(session)}`;
+  }
+
+  private header(session: ModelSession): TemplateResult {
+    const { model } = session;
+    return html`<header>
+      <a class="home" href="/" title=${texts.model.back} aria-label=${texts.model.back} @click=${this.on_leave}>${logo()}</a>
+      <h1 class="ellipsis">${model?.name ?? ""}</h1>
+      <button
+        class="icon quiet"
+        aria-label=${texts.model.details}
+        title=${texts.model.details}
+        ?disabled=${!model}
+        @click=${() => (this.dialog_ = { dialog: "about" })}
+      >
+        ${icon("info")}
+      </button>
+      ${model && !model.scale_verified && session.can_edit
+        ? html`<button class="scale-chip" @click=${() => (this.dialog_ = { dialog: "scale" })}>${texts.model.check_size}</button>`
+        : nothing}
+      <span class="grow"></span>
+      ${this.people(session)} ${this.saving(session)}
+      <button
+        class="icon quiet"
+        aria-label=${texts.model.help}
+        title="${texts.model.help} (?)"
+        @click=${() => (this.dialog_ = { dialog: "help" })}
+      >
+        ${icon("help")}
+      </button>
+      <button
+        class="icon quiet"
+        aria-pressed=${this.panel_shown_}
+        aria-label=${this.panel_shown_ ? texts.model.hide_panel : texts.model.show_panel}
+        title=${this.panel_shown_ ? texts.model.hide_panel : texts.model.show_panel}
+        @click=${() => (this.panel_shown_ = !this.panel_shown_)}
+      >
+        ${icon("panel")}
+      </button>
+    </header>`;
+  }
+
+  private people(session: ModelSession): TemplateResult {
+    const users = [...session.users].sort((a, b) => Number(b.session === session.session) - Number(a.session === session.session));
+    if (users.length === 0) return html``;
+    const names = users.map((user) => (user.session === session.session ? `${user.name} (${texts.people.you})` : user.name));
+    return html`<div class="people" role="img" aria-label="${texts.people.here(users.length)}: ${names.join(", ")}" title=${names.join("\n")}>
+      ${users
+        .slice(0, 5)
+        .map((user) => html`<span ${styled({ background: user.color })}>${user.name.slice(0, 1).toUpperCase()}</span>`)}
+      ${users.length > 5 ? html`<span class="rest">+${users.length - 5}</span>` : nothing}
+    </div>`;
+  }
+
+  private saving(session: ModelSession): TemplateResult {
+    const { waiting, failing } = session.saving;
+    const lost = session.connection_state !== "open";
+    const state = waiting === 0 ? "saved" : failing || lost ? "not-saved" : "saving";
+    const words =
+      state === "saved" ? texts.saving.saved : state === "saving" ? texts.saving.saving : texts.saving.not_saved(waiting);
+    return html`<div
+      class="saving ${state}"
+      role="status"
+      data-state=${state}
+      title=${state === "not-saved" ? texts.saving.not_saved_hint : words}
+    >
+      ${icon(state === "saved" ? "check" : state === "saving" ? "cloud" : "warning")}<span>${words}</span>
+    </div>`;
+  }
+
+  private banner(session: ModelSession): TemplateResult {
+    if (session.connection_state !== "lost" && !(session.connection_state === "connecting" && session.frames_drawn > 0)) {
+      return html``;
+    }
+    const { waiting } = session.saving;
+    return html`<div class="banner" role="alert">
+      ${icon("warning")}
+      <span class="grow">${texts.connection.lost} ${waiting > 0 ? texts.connection.kept(waiting) : ""}</span>
+      <button @click=${() => session.retry_connection()}>${texts.connection.retry}</button>
+    </div>`;
+  }
+
+  private panel(session: ModelSession): TemplateResult {
+    const paints = session.tools.active === "brush" || session.tools.active === "eraser";
+    return html`<div
+        class="splitter"
+        role="separator"
+        aria-orientation="vertical"
+        aria-label=${texts.model.resize_panel}
+        aria-valuenow=${this.panel_width_}
+        aria-valuemin=${kPanelWidth.least}
+        aria-valuemax=${kPanelWidth.most}
+        tabindex="0"
+        @pointerdown=${this.on_splitter_down}
+        @keydown=${this.on_splitter_key}
+      ></div>
+      <aside aria-label=${texts.model.panel}>
+        ${paints ? html`<section><strata-brush-panel .session=${session}></strata-brush-panel></section>` : nothing}
+        <section>
+          <strata-layer-panel
+            .session=${session}
+            @request=${(event: CustomEvent<LayerPanelRequest>) => (this.dialog_ = event.detail)}
+          ></strata-layer-panel>
+        </section>
+      </aside>`;
+  }
+
+  private dialog(session: ModelSession): TemplateResult {
+    const closed = (): void => {
+      this.dialog_ = null;
+    };
+    const dialog = this.dialog_;
+    switch (dialog?.dialog) {
+      case undefined:
+        return html``;
+      case "create":
+        return html`<strata-layer-dialog .session=${session} @closed=${closed}></strata-layer-dialog>`;
+      case "edit":
+        return html`<strata-layer-dialog .session=${session} .layer=${newest(session, dialog.layer)} @closed=${closed}></strata-layer-dialog>`;
+      case "statistics":
+        return html`<strata-statistics-dialog
+          .session=${session}
+          .layer=${newest(session, dialog.layer)}
+          @closed=${closed}
+        ></strata-statistics-dialog>`;
+      case "scale":
+        return html`<strata-scale-dialog .session=${session} @closed=${closed}></strata-scale-dialog>`;
+      case "help":
+        return html`<strata-help-sheet @closed=${closed}></strata-help-sheet>`;
+      case "about":
+        return session.model
+          ? html`<strata-about-sheet .model=${session.model} @closed=${closed}></strata-about-sheet>`
+          : html``;
+    }
+  }
+
+  private readonly on_key_down = (event: KeyboardEvent): void => {
+    const session = this.session_;
+    if (!session || this.dialog_ || event.defaultPrevented || is_for_field(event)) return;
+    if (event.key === " ") {
+      const on_button = (event.composedPath()[0] as HTMLElement).tagName === "BUTTON";
+      if (on_button) return;
+      if (this.stage_) this.stage_.orbit_held = true;
+      event.preventDefault();
+      return;
+    }
+    if (handle_key(event, session, () => (this.dialog_ = { dialog: "help" }))) event.preventDefault();
+  };
+
+  private readonly on_key_up = (event: KeyboardEvent): void => {
+    if (event.key === " " && this.stage_) this.stage_.orbit_held = false;
+  };
+
+  private readonly on_before_unload = (event: BeforeUnloadEvent): void => {
+    if ((this.session_?.saving.waiting ?? 0) > 0) event.preventDefault();
+  };
+
+  private readonly on_online = (): void => this.session_?.retry_connection();
+
+  private on_leave(event: MouseEvent): void {
+    const waiting = this.session_?.saving.waiting ?? 0;
+    if (waiting > 0) {
+      event.preventDefault();
+      notices.show("problem", texts.saving.not_saved(waiting), texts.saving.not_saved_hint);
+      return;
+    }
+    follow(event);
+  }
+
+  private on_splitter_down(event: PointerEvent): void {
+    const splitter = event.currentTarget as HTMLElement;
+    splitter.setPointerCapture(event.pointerId);
+    const move = (moved: PointerEvent): void => this.set_panel_width(window.innerWidth - moved.clientX);
+    const up = (): void => {
+      splitter.removeEventListener("pointermove", move);
+      splitter.removeEventListener("pointerup", up);
+      splitter.removeEventListener("pointercancel", up);
+    };
+    splitter.addEventListener("pointermove", move);
+    splitter.addEventListener("pointerup", up);
+    splitter.addEventListener("pointercancel", up);
+  }
+
+  private on_splitter_key(event: KeyboardEvent): void {
+    const step = { ArrowLeft: 20, ArrowRight: -20 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    this.set_panel_width(this.panel_width_ + step);
+  }
+
+  private set_panel_width(width: number): void {
+    const most = Math.min(kPanelWidth.most, window.innerWidth * 0.6);
+    this.panel_width_ = Math.round(Math.min(most, Math.max(kPanelWidth.least, width)));
+    localStorage.setItem(kPanelKey, String(this.panel_width_));
+  }
+}
+
+/** The layer as it is now: the request may be older. */
+const newest = (session: ModelSession, layer: Layer): Layer =>
+  session.layers.find((each) => each.id === layer.id) ?? layer;

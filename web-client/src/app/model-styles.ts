@@ -1,0 +1,205 @@
+import { css } from "lit";
+
+export const model_styles = css`
+  :host {
+    display: block;
+  }
+  .page {
+    display: grid;
+    grid-template:
+      "header header header header" 54px
+      "rail stage splitter panel" minmax(0, 1fr)
+      / auto minmax(0, 1fr) 7px var(--panel);
+    height: 100dvh;
+    overflow: hidden;
+  }
+  .page.without-panel {
+    grid-template-columns: auto minmax(0, 1fr) 0 0;
+  }
+  header {
+    grid-area: header;
+    display: flex;
+    align-items: center;
+    gap: 8px;
+    padding: 0 12px;
+    border-bottom: 1px solid var(--line);
+    background: var(--surface);
+  }
+  .home {
+    display: grid;
+    place-items: center;
+    flex: none;
+    padding: 4px;
+    border-radius: 9px;
+  }
+  .logo {
+    width: 32px;
+    height: 32px;
+  }
+  h1 {
+    font-size: 1.15rem;
+    padding-left: 6px;
+  }
+  strata-tool-rail {
+    grid-area: rail;
+  }
+  main {
+    grid-area: stage;
+    position: relative;
+    min-width: 0;
+    min-height: 0;
+  }
+  strata-stage {
+    position: absolute;
+    inset: 0;
+  }
+  .scale-chip {
+    min-height: 28px;
+    padding: 0 12px;
+    border-color: transparent;
+    border-radius: 99px;
+    background: var(--warn-soft);
+    color: var(--warn);
+    font-size: 0.84rem;
+    font-weight: 600;
+  }
+  .people {
+    display: flex;
+    padding: 0 6px;
+  }
+  .people span {
+    display: grid;
+    place-items: center;
+    width: 28px;
+    height: 28px;
+    margin-left: -7px;
+    border: 2px solid var(--surface);
+    border-radius: 50%;
+    color: #fff;
+    font-size: 0.8rem;
+    font-weight: 700;
+  }
+  .people span.rest {
+    background: var(--line-strong);
+  }
+  .saving {
+    display: flex;
+    align-items: center;
+    gap: 6px;
+    padding: 4px 11px 4px 8px;
+    border-radius: 99px;
+    font-size: 0.86rem;
+    color: var(--ink-soft);
+    white-space: nowrap;
+  }
+  .saving svg.glyph {
+    width: 17px;
+    height: 17px;
+  }
+  .saving.saved svg {
+    color: var(--calm);
+  }
+  .saving.not-saved {
+    background: var(--danger-soft);
+    color: var(--danger);
+    font-weight: 600;
+  }
+  .banner {
+    position: absolute;
+    z-index: 5;
+    top: 14px;
+    left: 50%;
+    transform: translateX(-50%);
+    display: flex;
+    align-items: center;
+    gap: 12px;
+    width: max-content;
+    max-width: calc(100% - 28px);
+    padding: 8px 8px 8px 14px;
+    border: 1px solid var(--warn);
+    border-radius: var(--radius);
+    background: var(--warn-soft);
+    color: var(--warn);
+    box-shadow: var(--shadow);
+  }
+  .banner button {
+    color: var(--ink);
+  }
+  strata-value-readout {
+    position: absolute;
+    right: 14px;
+    bottom: 14px;
+    max-width: min(340px, calc(100% - 220px));
+  }
+  .splitter {
+    grid-area: splitter;
+    border-left: 1px solid var(--line);
+    background: var(--surface);
+    cursor: col-resize;
+    touch-action: none;
+  }
+  .splitter:hover {
+    background: var(--accent-soft);
+  }
+  aside {
+    grid-area: panel;
+    overflow: hidden auto;
+    padding: 0 14px 24px 8px;
+    background: var(--surface);
+  }
+  aside section {
+    padding: 15px 0 17px;
+  }
+  aside section + section {
+    border-top: 1px solid var(--line);
+  }
+
+  @media (max-width: 820px) {
+    .page,
+    .page.without-panel {
+      grid-template:
+        "header" 50px
+        "stage" minmax(0, 1fr)
+        "panel" auto
+        "rail" auto
+        / minmax(0, 1fr);
+    }
+    .splitter {
+      display: none;
+    }
+    aside {
+      max-height: 44dvh;
+      padding: 0 16px 10px;
+      border-top: 1px solid var(--line);
+      border-radius: 16px 16px 0 0;
+      box-shadow: 0 -6px 20px rgb(0 0 0 / 0.1);
+      z-index: 2;
+    }
+    strata-tool-rail {
+      padding-bottom: max(6px, env(safe-area-inset-bottom));
+      z-index: 3;
+    }
+    .saving span,
+    .scale-chip {
+      display: none;
+    }
+    .saving.not-saved span {
+      display: inline;
+    }
+    .saving {
+      padding: 4px 6px;
+    }
+    header {
+      gap: 2px;
+      padding: 0 6px;
+    }
+    h1 {
+      font-size: 1.02rem;
+    }
+    strata-value-readout {
+      right: 10px;
+      bottom: 10px;
+      max-width: calc(100% - 20px);
+    }
+  }
+`;

@@ -1,0 +1,107 @@
+// <strata-notices>: messages at the foot of the page.
+
+import { css, html, LitElement, type TemplateResult } from "lit";
+import { customElement, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { icon } from "./icons";
+import { notices, type Notice } from "./notices";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+@customElement("strata-notices")
+export class StrataNotices extends LitElement {
+  @state() private shown_: readonly Notice[] = [];
+  private unsubscribe_: (() => void) | null = null;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        position: fixed;
+        z-index: 50;
+        left: 50%;
+        bottom: max(20px, env(safe-area-inset-bottom));
+        transform: translateX(-50%);
+        display: grid;
+        gap: 8px;
+        width: min(480px, calc(100vw - 24px));
+        pointer-events: none;
+      }
+      .notice {
+        display: flex;
+        align-items: flex-start;
+        gap: 10px;
+        padding: 11px 8px 11px 14px;
+        border: 1px solid var(--line);
+        border-left: 4px solid var(--calm);
+        border-radius: var(--radius);
+        background: var(--raised);
+        box-shadow: var(--shadow);
+        pointer-events: auto;
+        animation: rise 160ms ease-out;
+      }
+      .notice.problem {
+        border-left-color: var(--danger);
+      }
+      .notice.info {
+        border-left-color: var(--line-strong);
+      }
+      .words {
+        flex: 1;
+        min-width: 0;
+        padding-top: 2px;
+        overflow-wrap: anywhere;
+      }
+      .words strong {
+        font-weight: 600;
+      }
+      .words p {
+        color: var(--ink-soft);
+        font-size: 0.9rem;
+      }
+      button.icon {
+        width: 28px;
+        min-height: 28px;
+      }
+      button svg.glyph {
+        width: 16px;
+        height: 16px;
+      }
+      @keyframes rise {
+        from {
+          opacity: 0;
+          transform: translateY(8px);
+        }
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.unsubscribe_ = notices.subscribe((shown) => (this.shown_ = shown));
+  }
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.unsubscribe_?.();
+  }
+
+  override render(): TemplateResult {
+    return html`${repeat(
+      this.shown_,
+      (notice) => notice.id,
+      (notice) => html`<div class="notice ${notice.kind}" role=${notice.kind === "problem" ? "alert" : "status"}>
+        <div class="words">
+          <strong>${notice.title}</strong>
+          ${notice.detail ? html`<p>${notice.detail}</p>` : ""}
+        </div>
+        <button
+          class="icon quiet"
+          aria-label=${texts.close}
+          @click=${() => notices.dismiss(notice.id)}
+        >
+          ${icon("close")}
+        </button>
+      </div>`,
+    )}`;
+  }
+}

@@ -1,0 +1,36 @@
+// The page's addresses: / and /models/{id}.
+
+export type Route = { page: "home" } | { page: "model"; model: string };
+
+export function route_of(path: string): Route {
+  const found = /^\/models\/([^/?#]+)\/?$/.exec(path);
+  if (!found) return { page: "home" };
+  try {
+    return { page: "model", model: decodeURIComponent(found[1]!) };
+  } catch {
+    return { page: "home" };
+  }
+}
+
+export const path_now = (): string => location.pathname;
+export const path_of_model = (id: number | string): string => `/models/${encodeURIComponent(id)}`;
+
+const listeners = new Set<() => void>();
+
+export function on_navigate(listener: () => void): void {
+  if (listeners.size === 0) addEventListener("popstate", () => listeners.forEach((each) => each()));
+  listeners.add(listener);
+}
+
+export function navigate(path: string): void {
+  history.pushState(null, "", path);
+  listeners.forEach((listener) => listener());
+}
+
+/** For links: goes there without loading the page anew, unless a new tab is asked for. */
+export function follow(event: MouseEvent): void {
+  if (event.defaultPrevented || event.button !== 0 || event.metaKey || event.ctrlKey || event.shiftKey) return;
+  const link = event.currentTarget as HTMLAnchorElement;
+  event.preventDefault();
+  navigate(link.getAttribute("href") ?? "/");
+}

@@ -1,0 +1,97 @@
+// Two sheets that only tell: help, and what is known about the model.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { detail_choices, format_area, format_bytes, format_length, format_size, metres_per } from "../core/measure";
+import type { Model } from "../core/types";
+import "./dialog";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+const sheet_styles = css`
+  h3 {
+    margin: 2px 0 -8px;
+    font: 600 1rem var(--serif);
+  }
+  dl {
+    display: grid;
+    grid-template-columns: minmax(150px, auto) 1fr;
+    gap: 7px 18px;
+    margin: 0;
+  }
+  dt {
+    color: var(--ink-soft);
+  }
+  dd {
+    margin: 0;
+    overflow-wrap: anywhere;
+  }
+  .keys dt {
+    color: var(--ink);
+    font-weight: 600;
+  }
+`;
+
+@customElement("strata-help-sheet")
+export class StrataHelpSheet extends LitElement {
+  static override styles = [shared_styles, sheet_styles];
+
+  override render(): TemplateResult {
+    const words = texts.help;
+    const part = (title: string, rows: readonly (readonly [string, string])[]): TemplateResult =>
+      html`<h3>${title}</h3>
+        <dl class="keys">${rows.map(([keys, does]) => html`<dt>${keys}</dt><dd>${does}</dd>`)}</dl>`;
+    return html`<strata-dialog wide heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+      ${part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
+    </strata-dialog>`;
+  }
+}
+
+@customElement("strata-about-sheet")
+export class StrataAboutSheet extends LitElement {
+  @property({ attribute: false }) model!: Model;
+
+  static override styles = [shared_styles, sheet_styles];
+
+  override render(): TemplateResult {
+    const { model } = this;
+    const words = texts.model.details_list;
+    const metres = metres_per(model.unit);
+    const sides = [0, 1, 2].map((axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres);
+    const detail = detail_choices(model.atlas).find((choice) => choice.resolution === model.default_resolution);
+    const rows: [string, string][] = [
+      [words.size, format_size(sides)],
+      [words.area, format_area(model.area_m2)],
+      [words.triangles, model.triangles.toLocaleString("en-GB")],
+      [words.up, model.up.toUpperCase()],
+      [words.smallest, detail ? format_length(detail.detail_m) : ""],
+      [words.crs, model.crs],
+      [words.inventory_number, model.inventory_number],
+      [words.owner, model.owner],
+      [words.creator, model.creator],
+      [words.captured, model.captured],
+      [words.rights, model.rights_uri],
+      [words.credit, model.credit],
+      [words.repairs, model.repairs.map((repair) => `${repair.what}: ${repair.count.toLocaleString("en-GB")}`).join("; ")],
+    ];
+    return html`<strata-dialog wide heading=${model.name} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+      <dl>
+        ${rows.map(([name, value]) => (value ? html`<dt>${name}</dt><dd class="numeric">${value}</dd>` : nothing))}
+        ${model.source_files.length > 0
+          ? html`<dt>${words.files}</dt>
+              <dd>
+                ${model.source_files.map(
+                  (file) =>
+                    html`<div>
+                      <a href="/api/v1/models/${model.id}/source/${encodeURIComponent(file.name)}" download=${file.name}
+                        >${file.name}</a
+                      >
+                      <span class="hint numeric">${format_bytes(file.bytes)}</span>
+                    </div>`,
+                )}
+              </dd>`
+          : nothing}
+      </dl>
+    </strata-dialog>`;
+  }
+}

@@ -1,0 +1,246 @@
+// <strata-stage>: the streamed picture, the pointer's gestures, and what is drawn over it: brush footprint, other
+// people's pointers, scale bar.
+
+import { css, html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property, query } from "lit/decorators.js";
+import { FrameCanvas } from "../core/frame-canvas";
+import { StageInput } from "../core/input";
+import { metres_per, scale_bar } from "../core/measure";
+import { color_of, css_color } from "../core/palette";
+import type { ModelSession } from "./model-session";
+import { notices } from "./notices";
+import { styled } from "./styled";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+const kMostWindowPixels = 1920 * 1200;
+const kMostScale = 2; // window pixels per CSS pixel
+const kScaleBar_px = 150;
+
+@customElement("strata-stage")
+export class StrataStage extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @query("canvas") private canvas_!: HTMLCanvasElement;
+  @query(".surface") private surface_!: HTMLElement;
+
+  private input_: StageInput | null = null;
+  private frames_: FrameCanvas | null = null;
+  private observer_: ResizeObserver | null = null;
+  private unsubscribe_: (() => void) | null = null;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+        position: relative;
+        overflow: hidden;
+        background: var(--stage);
+        user-select: none;
+        -webkit-user-select: none;
+      }
+      .surface {
+        position: absolute;
+        inset: 0;
+        touch-action: none;
+        outline-offset: -3px;
+      }
+      .surface.paint {
+        cursor: none;
+      }
+      .surface.orbit {
+        cursor: grab;
+      }
+      .surface.orbit:active {
+        cursor: grabbing;
+      }
+      .surface.pan {
+        cursor: move;
+      }
+      .surface.pick {
+        cursor: crosshair;
+      }
+      canvas,
+      svg.over {
+        position: absolute;
+        inset: 0;
+        width: 100%;
+        height: 100%;
+        pointer-events: none;
+      }
+      canvas {
+        object-fit: contain; /* while a picture of the new size is on its way after the stage was resized */
+      }
+      svg.over {
+        overflow: visible;
+      }
+      .waiting {
+        position: absolute;
+        inset: 0;
+        display: grid;
+        place-items: center;
+        color: var(--ink-soft);
+        pointer-events: none;
+      }
+      .person {
+        position: absolute;
+        left: 0;
+        top: 0;
+        display: flex;
+        align-items: flex-start;
+        gap: 4px;
+        pointer-events: none;
+        transition: transform 90ms linear;
+      }
+      .person svg {
+        width: 18px;
+        height: 18px;
+        filter: drop-shadow(0 1px 1px rgb(0 0 0 / 0.4));
+      }
+      .person b {
+        margin-top: 12px;
+        padding: 1px 8px;
+        border-radius: 99px;
+        color: #fff;
+        font-size: 0.76rem;
+        font-weight: 600;
+      }
+      .scale {
+        position: absolute;
+        left: 18px;
+        bottom: 16px;
+        color: #20292a;
+        font-size: 0.8rem;
+        font-weight: 600;
+        pointer-events: none;
+        padding: 3px 8px 5px;
+        border-radius: 5px;
+        background: rgb(255 255 255 / 0.72);
+      }
+      .scale i {
+        display: block;
+        height: 6px;
+        border: 2px solid #20292a;
+        border-top: 0;
+      }
+      @media (max-width: 820px) {
+        .scale {
+          top: 12px;
+          bottom: auto;
+          left: 12px;
+        }
+      }
+    `,
+  ];
+
+  override firstUpdated(): void {
+    this.frames_ = new FrameCanvas(this.canvas_, {
+      drawn: (part) => this.session.frame_drawn(part),
+      failed: (reason) => notices.show("problem", texts.problems.picture, reason),
+    });
+    this.session.on_frame = (part) => this.frames_?.push(part);
+    this.session.on_reset_frames = () => this.frames_?.reset();
+    this.input_ = new StageInput(this.surface_, this.session.gestures, () => this.session.scale);
+    this.observer_ = new ResizeObserver(() => this.measure());
+    this.observer_.observe(this);
+    this.measure();
+  }
+
+  override willUpdate(changed: PropertyValues<this>): void {
+    if (!changed.has("session")) return;
+    this.unsubscribe_?.();
+    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.unsubscribe_?.();
+    this.observer_?.disconnect();
+    this.input_?.detach();
+  }
+
+  set orbit_held(held: boolean) {
+    if (this.input_) this.input_.orbit_held = held;
+  }
+
+  private measure(): void {
+    const { clientWidth: width, clientHeight: height } = this;
+    if (width < 2 || height < 2) return;
+    const most = Math.sqrt(kMostWindowPixels / (width * height));
+    this.session.set_viewport(width, height, Math.min(window.devicePixelRatio || 1, kMostScale, most));
+  }
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const tool = session.tools.active;
+    const paints = tool === "brush" || tool === "eraser";
+    return html`<div
+        class="surface ${paints ? "paint" : tool}"
+        tabindex="0"
+        role="application"
+        aria-label=${texts.model.stage}
+      >
+        <canvas width="2" height="2" data-frames=${session.frames_drawn}></canvas>
+        ${paints ? this.brush_cursor() : nothing}
+      </div>
+      ${this.people()} ${this.scale_bar()}
+      ${session.frames_drawn === 0
+        ? html`<div class="waiting" role="status">${texts.model.waiting_for_picture}</div>`
+        : nothing}`;
+  }
+
+  /** The footprint in the picture: what the stroke covers, to the pixel. */
+  private brush_cursor(): TemplateResult {
+    const { session } = this;
+    const { pointer, scale } = session;
+    if (!pointer) return html``;
+    const [x, y] = [pointer.x / scale, pointer.y / scale];
+    const radius = session.radius_window_px() / scale;
+    const layer = session.selected_layer;
+    const erases = session.tools.active === "eraser";
+    const color = layer && !erases ? color_of(layer.palette, session.brush.value_of(layer)) : null;
+    const fill = color ? css_color(color) : "none";
+    const square = session.brush.shape === "square";
+    const outline = (width: number, stroke: string, dashes: string, filled: boolean): TemplateResult =>
+      square
+        ? svg`<rect x=${x - radius} y=${y - radius} width=${2 * radius} height=${2 * radius} fill=${filled ? fill : "none"}
+            fill-opacity="0.32" stroke=${stroke} stroke-width=${width} stroke-dasharray=${dashes} />`
+        : svg`<circle cx=${x} cy=${y} r=${radius} fill=${filled ? fill : "none"}
+            fill-opacity="0.32" stroke=${stroke} stroke-width=${width} stroke-dasharray=${dashes} />`;
+    const dashes = erases ? "5 4" : "none";
+    return html`<svg class="over" aria-hidden="true">
+      ${outline(3, "rgb(20 26 26 / 0.55)", "none", true)} ${outline(1.5, "#fff", dashes, false)}
+      ${radius < 4
+        ? svg`<path d="M${x - 10} ${y}h6M${x + 4} ${y}h6M${x} ${y - 10}v6M${x} ${y + 4}v6" stroke="#20292a" stroke-width="1.5" />`
+        : svg`<circle cx=${x} cy=${y} r="1.2" fill="#fff" />`}
+    </svg>`;
+  }
+
+  private people(): TemplateResult[] {
+    const { session } = this;
+    return session.users.flatMap((user) => {
+      if (user.session === session.session || !user.pointer) return [];
+      const at = session.camera.project(user.pointer.position);
+      if (!at) return [];
+      const [x, y] = [at.x / session.scale, at.y / session.scale];
+      if (x < 0 || y < 0 || x > this.clientWidth || y > this.clientHeight) return [];
+      return [
+        html`<div class="person" ${styled({ transform: `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)` })}>
+          <svg viewBox="0 0 18 18" aria-hidden="true">
+            <path d="M1 1l5.2 14.5 2.4-6.1 6.3-2.200z" fill=${user.color} stroke="#fff" stroke-width="1.3" />
+          </svg>
+          <b ${styled({ background: user.color })}>${user.name}</b>
+        </div>`,
+      ];
+    });
+  }
+
+  private scale_bar(): TemplateResult {
+    const { session } = this;
+    if (!session.model || session.frames_drawn === 0) return html``;
+    const depth = session.picked?.hit ? session.surface_depth() : session.camera.distance;
+    const metres_per_px = session.camera.unit_per_pixel(depth) * session.scale * metres_per(session.model.unit);
+    const bar = scale_bar(metres_per_px, kScaleBar_px);
+    return html`<div class="scale numeric"><i ${styled({ width: `${bar.px.toFixed(1)}px` })}></i>${bar.label}</div>`;
+  }
+}

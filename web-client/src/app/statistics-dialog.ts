@@ -1,0 +1,189 @@
+// <strata-statistics-dialog>: how much of the surface a layer's values cover.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { format_area, format_number } from "../core/measure";
+import { color_of, css_color } from "../core/palette";
+import type { Layer, Statistics } from "../core/types";
+import { describe_value } from "./brush-settings";
+import "./dialog";
+import type { ModelSession } from "./model-session";
+import { styled } from "./styled";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+const kMostRows = 60;
+
+@customElement("strata-statistics-dialog")
+export class StrataStatisticsDialog extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) layer!: Layer;
+  @state() private statistics_: Statistics | null = null;
+  @state() private problem_ = "";
+
+  static override styles = [
+    shared_styles,
+    css`
+      .total {
+        display: flex;
+        align-items: baseline;
+        gap: 10px;
+      }
+      .total b {
+        font: 600 1.7rem var(--serif);
+      }
+      .bars {
+        display: grid;
+        gap: 10px;
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      .bars .words {
+        display: flex;
+        gap: 9px;
+        align-items: center;
+        font-size: 0.92rem;
+      }
+      .bars .track {
+        height: 9px;
+        margin-top: 4px;
+        border-radius: 3px;
+        background: color-mix(in srgb, var(--ink) 8%, transparent);
+      }
+      .bars .track i {
+        display: block;
+        height: 100%;
+        min-width: 2px;
+        border-radius: 3px;
+        box-shadow: inset 0 0 0 1px rgb(0 0 0 / 0.16);
+      }
+      dl {
+        display: grid;
+        grid-template-columns: repeat(auto-fit, minmax(110px, 1fr));
+        gap: 12px;
+        margin: 0;
+      }
+      dt {
+        font-size: 0.8rem;
+        font-weight: 600;
+        color: var(--ink-soft);
+      }
+      dd {
+        margin: 0;
+        font-size: 1.05rem;
+      }
+      .histogram {
+        display: flex;
+        align-items: flex-end;
+        gap: 1px;
+        height: 120px;
+        border-bottom: 1px solid var(--line-strong);
+      }
+      .histogram i {
+        flex: 1;
+        border-radius: 2px 2px 0 0;
+      }
+      .ends {
+        display: flex;
+        justify-content: space-between;
+        margin-top: 3px;
+        font-size: 0.8rem;
+        color: var(--ink-soft);
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    void this.load();
+  }
+
+  private async load(): Promise<void> {
+    this.problem_ = "";
+    try {
+      this.statistics_ = await this.session.api.statistics(this.session.model_id, this.layer.id);
+    } catch (error) {
+      this.problem_ = error instanceof Error ? error.message : texts.problems.unexpected;
+    }
+  }
+
+  override render(): TemplateResult {
+    return html`<strata-dialog
+      heading=${texts.statistics.title(this.layer.name)}
+      @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
+    >
+      ${this.problem_
+        ? html`<p class="error" role="alert">${this.problem_}</p>`
+        : this.statistics_
+          ? this.content(this.statistics_)
+          : html`<p class="hint" role="status">${texts.loading}</p>`}
+      <button slot="actions" @click=${() => void this.load()}>${texts.statistics.refresh}</button>
+    </strata-dialog>`;
+  }
+
+  private content(statistics: Statistics): TemplateResult {
+    const words = texts.statistics;
+    if (statistics.texels === 0) return html`<p>${words.nothing}</p>`;
+    const whole = this.session.model?.area_m2 ?? 0;
+    const share = whole > 0 ? `${format_number((statistics.area_m2 / whole) * 100)} %` : "";
+    return html`<div class="total numeric">
+        <b>${format_area(statistics.area_m2)}</b>
+        ${share ? html`<span class="hint">${words.of_surface(share)}</span>` : nothing}
+      </div>
+      ${this.layer.palette.mode === "categorical" ? this.keys(statistics) : this.spread(statistics)}`;
+  }
+
+  private keys(statistics: Statistics): TemplateResult {
+    const keys = [...(statistics.keys ?? [])].sort((a, b) => b.area_m2 - a.area_m2);
+    const largest = keys[0]?.area_m2 ?? 1;
+    return html`<ul class="bars">
+      ${keys.slice(0, kMostRows).map((key) => {
+        const color = color_of(this.layer.palette, key.key);
+        const background = color ? css_color(color) : "var(--line-strong)";
+        return html`<li>
+          <div class="words">
+            <span class="swatch" ${styled({ background })}></span>
+            <span class="grow ellipsis">${describe_value(this.layer, key.key)}</span>
+            <span class="numeric">${format_area(key.area_m2)}</span>
+          </div>
+          <div class="track"><i ${styled({ width: `${(key.area_m2 / largest) * 100}%`, background })}></i></div>
+        </li>`;
+      })}
+    </ul>`;
+  }
+
+  private spread(statistics: Statistics): TemplateResult {
+    const words = texts.statistics;
+    const unit = this.layer.unit ? ` ${this.layer.unit}` : "";
+    const rows: [string, number | null | undefined][] = [
+      [words.mean, statistics.mean],
+      [words.min, statistics.min],
+      [words.max, statistics.max],
+      [words.std, statistics.std],
+    ];
+    const bins = statistics.histogram;
+    const largest = Math.max(...bins.map((bin) => bin.area_m2), Number.MIN_VALUE);
+    return html`<dl class="numeric">
+        ${rows.map(([name, value]) =>
+          value === null || value === undefined ? nothing : html`<div><dt>${name}</dt><dd>${format_number(value, 4)}${unit}</dd></div>`,
+        )}
+      </dl>
+      ${bins.length > 1
+        ? html`<div>
+            <p class="caption">${words.spread}</p>
+            <div class="histogram" role="img" aria-label=${words.spread}>
+              ${bins.map((bin) => {
+                const color = color_of(this.layer.palette, (bin.from + bin.to) / 2);
+                const height = `${((bin.area_m2 / largest) * 100).toFixed(1)}%`;
+                return html`<i ${styled({ height, background: color ? css_color(color) : "var(--calm)" })}></i>`;
+              })}
+            </div>
+            <div class="ends numeric">
+              <span>${format_number(bins[0]!.from, 4)}${unit}</span>
+              <span>${format_number(bins[bins.length - 1]!.to, 4)}${unit}</span>
+            </div>
+          </div>`
+        : nothing}`;
+  }
+}

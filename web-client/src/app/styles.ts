@@ -1,0 +1,250 @@
+// Styles that several elements share.
+
+import { css } from "lit";
+
+export const shared_styles = css`
+  :host {
+    box-sizing: border-box;
+  }
+  :host([hidden]),
+  [hidden] {
+    display: none !important;
+  }
+  *,
+  *::before,
+  *::after {
+    box-sizing: border-box;
+  }
+  h1,
+  h2,
+  h3,
+  p {
+    margin: 0;
+  }
+  h1,
+  h2 {
+    font-family: var(--serif);
+    font-weight: 600;
+    letter-spacing: -0.005em;
+    line-height: 1.2;
+  }
+  button,
+  input,
+  select,
+  textarea {
+    font: inherit;
+    color: inherit;
+  }
+  button,
+  .button {
+    display: inline-flex;
+    align-items: center;
+    justify-content: center;
+    gap: 0.5em;
+    min-height: 36px;
+    padding: 0 14px;
+    border: 1px solid var(--line);
+    border-radius: var(--radius-small);
+    background: var(--raised);
+    cursor: pointer;
+    text-decoration: none;
+    white-space: nowrap;
+    transition:
+      background 120ms,
+      border-color 120ms;
+  }
+  button:hover:not(:disabled),
+  .button:hover {
+    border-color: var(--line-strong);
+  }
+  button:disabled {
+    opacity: 0.45;
+    cursor: default;
+  }
+  button.primary {
+    border-color: var(--accent);
+    background: var(--accent);
+    color: var(--accent-ink);
+    font-weight: 600;
+  }
+  button.primary:hover:not(:disabled) {
+    filter: brightness(1.08);
+    border-color: var(--accent);
+  }
+  button.danger {
+    border-color: var(--danger);
+    background: var(--danger);
+    color: var(--surface);
+    font-weight: 600;
+  }
+  button.quiet {
+    border-color: transparent;
+    background: transparent;
+  }
+  button.quiet:hover:not(:disabled) {
+    background: color-mix(in srgb, var(--ink) 8%, transparent);
+  }
+  button.icon {
+    width: 36px;
+    padding: 0;
+    flex: none;
+  }
+  a:not(.button) {
+    color: var(--accent);
+  }
+  button.link {
+    min-height: 0;
+    padding: 2px 0;
+    border: 0;
+    background: none;
+    color: var(--accent);
+    text-decoration: underline;
+    text-underline-offset: 2px;
+  }
+  :focus-visible {
+    outline: 2px solid var(--accent);
+    outline-offset: 2px;
+  }
+  input[type="text"],
+  input[type="password"],
+  input[type="number"],
+  select,
+  textarea {
+    width: 100%;
+    min-height: 38px;
+    padding: 6px 10px;
+    border: 1px solid var(--line-strong);
+    border-radius: var(--radius-small);
+    background: var(--raised);
+  }
+  textarea {
+    resize: vertical;
+    min-height: 64px;
+  }
+  input:focus-visible,
+  select:focus-visible,
+  textarea:focus-visible {
+    outline-offset: 0;
+  }
+  input[aria-invalid="true"] {
+    border-color: var(--danger);
+  }
+  input[type="range"] {
+    width: 100%;
+    min-width: 0;
+    margin: 0;
+    height: 24px;
+    accent-color: var(--accent);
+  }
+  input[type="color"] {
+    width: 38px;
+    height: 38px;
+    flex: none;
+    padding: 3px;
+    border: 1px solid var(--line-strong);
+    border-radius: var(--radius-small);
+    background: var(--raised);
+    cursor: pointer;
+  }
+  label.field {
+    display: grid;
+    gap: 5px;
+    font-size: 0.93rem;
+  }
+  label.field > span:not(.number),
+  .caption {
+    font-size: 0.8rem;
+    font-weight: 600;
+    color: var(--ink-soft);
+  }
+  .hint {
+    font-size: 0.82rem;
+    color: var(--ink-soft);
+  }
+  .error {
+    font-size: 0.86rem;
+    color: var(--danger);
+  }
+  .numeric {
+    font-variant-numeric: tabular-nums;
+  }
+  .grow {
+    flex: 1;
+    min-width: 0;
+  }
+  .row {
+    display: flex;
+    align-items: center;
+    gap: 10px;
+  }
+  .ellipsis {
+    overflow: hidden;
+    text-overflow: ellipsis;
+    white-space: nowrap;
+  }
+  .swatch {
+    display: inline-block;
+    flex: none;
+    width: 16px;
+    height: 16px;
+    border-radius: 4px;
+    box-shadow: inset 0 0 0 1px rgb(0 0 0 / 0.18);
+  }
+  .segments {
+    display: inline-flex;
+    padding: 2px;
+    border: 1px solid var(--line);
+    border-radius: var(--radius-small);
+    background: var(--paper);
+  }
+  .segments button {
+    flex: 1;
+    min-height: 30px;
+    padding: 0 10px;
+    border: 0;
+    border-radius: 4px;
+    background: transparent;
+    font-size: 0.88rem;
+  }
+  .segments button[aria-checked="true"],
+  .segments button[aria-pressed="true"] {
+    background: var(--raised);
+    box-shadow: 0 0 0 1px var(--line-strong);
+    font-weight: 600;
+  }
+  .visually-hidden {
+    position: absolute;
+    width: 1px;
+    height: 1px;
+    overflow: hidden;
+    clip-path: inset(50%);
+    white-space: nowrap;
+  }
+  svg.glyph {
+    width: 20px;
+    height: 20px;
+    flex: none;
+    fill: none;
+    stroke: currentColor;
+    stroke-width: 1.7;
+    stroke-linecap: round;
+    stroke-linejoin: round;
+  }
+  @media (prefers-reduced-motion: reduce) {
+    *,
+    *::before,
+    *::after {
+      transition: none !important;
+      animation: none !important;
+    }
+  }
+  @media (pointer: coarse) {
+    button,
+    .button {
+      min-height: 44px;
+    }
+    button.icon {
+      width: 44px;
+    }
+  }
+`;

@@ -1,0 +1,174 @@
+// <strata-tool-rail>: tools, views, undo and redo.
+
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import type { StandardView } from "../core/camera";
+import type { ToolName } from "../tools/tool";
+import { icon } from "./icons";
+import "./menu";
+import type { ModelSession } from "./model-session";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+const kTools: [ToolName, string][] = [
+  ["orbit", "V"],
+  ["pan", "H"],
+  ["brush", "B"],
+  ["eraser", "E"],
+  ["pick", "I"],
+];
+const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
+
+@customElement("strata-tool-rail")
+export class StrataToolRail extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  private unsubscribe_: (() => void) | null = null;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: flex;
+        flex-direction: column;
+        align-items: center;
+        gap: 4px;
+        padding: 10px 8px;
+        background: var(--surface);
+        border-right: 1px solid var(--line);
+      }
+      button.icon {
+        width: 42px;
+        min-height: 42px;
+      }
+      button[aria-pressed="true"] {
+        background: var(--accent);
+        border-color: var(--accent);
+        color: var(--accent-ink);
+      }
+      button[aria-pressed="true"]:hover:not(:disabled) {
+        background: var(--accent);
+      }
+      hr {
+        width: 28px;
+        margin: 5px 0;
+        border: 0;
+        border-top: 1px solid var(--line);
+      }
+      kbd {
+        margin-left: auto;
+        padding-left: 18px;
+        color: var(--ink-soft);
+        font: 0.8rem var(--mono);
+      }
+      @media (max-width: 820px) {
+        :host {
+          flex-direction: row;
+          justify-content: safe center;
+          overflow-x: auto;
+          gap: 2px;
+          padding: 6px;
+          border-right: 0;
+          border-top: 1px solid var(--line);
+        }
+        hr {
+          width: 0;
+          height: 26px;
+          margin: 0 3px;
+          border-left: 1px solid var(--line);
+          border-top: 0;
+        }
+        button.icon,
+        strata-menu {
+          flex: 1 1 0;
+          width: auto;
+          min-width: 34px;
+          max-width: 52px;
+        }
+        strata-menu {
+          text-align: center;
+        }
+      }
+    `,
+  ];
+
+  override willUpdate(changed: PropertyValues<this>): void {
+    if (!changed.has("session")) return;
+    this.unsubscribe_?.();
+    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
+  }
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.unsubscribe_?.();
+  }
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const words = texts.model;
+    const shown = session.can_edit ? kTools : kTools.filter(([name]) => name !== "brush" && name !== "eraser");
+    return html`${shown.map(
+        ([name, key]) =>
+          html`<button
+            class="icon quiet"
+            aria-pressed=${session.tools.active === name}
+            aria-label=${texts.tools[name]}
+            title="${texts.tools[name]} (${key})"
+            @click=${() => session.choose_tool(name)}
+          >
+            ${icon(name)}
+          </button>`,
+      )}
+      <hr />
+      ${session.can_edit
+        ? html`<button
+              class="icon quiet"
+              aria-label=${words.undo}
+              title="${words.undo} (Ctrl Z)"
+              ?disabled=${!session.selected_layer}
+              @click=${() => session.undo()}
+            >
+              ${icon("undo")}
+            </button>
+            <button
+              class="icon quiet"
+              aria-label=${words.redo}
+              title="${words.redo} (Ctrl Shift Z)"
+              ?disabled=${!session.selected_layer}
+              @click=${() => session.redo()}
+            >
+              ${icon("redo")}
+            </button>
+            <hr />`
+        : nothing}
+      <button
+        class="icon quiet"
+        aria-label=${texts.views.fit}
+        title="${texts.views.fit} (Home)"
+        @click=${() => session.fit()}
+      >
+        ${icon("fit")}
+      </button>
+      <strata-menu label=${words.view} glyph="cube" side="right">
+        ${kViews.map(
+          (view, index) =>
+            html`<button class="quiet" role="menuitem" @click=${() => session.standard_view(view)}>
+              ${texts.views[view]}<kbd>${index + 1}</kbd>
+            </button>`,
+        )}
+        <hr />
+        ${this.projection(true, texts.views.perspective, "P")} ${this.projection(false, texts.views.orthographic, "O")}
+      </strata-menu>`;
+  }
+
+  private projection(perspective: boolean, label: string, key: string): TemplateResult {
+    const { session } = this;
+    const chosen = session.camera.perspective === perspective;
+    return html`<button
+      class="quiet"
+      role="menuitemradio"
+      aria-checked=${chosen}
+      @click=${() => session.set_perspective(perspective)}
+    >
+      ${label}${chosen ? icon("check") : nothing}<kbd>${key}</kbd>
+    </button>`;
+  }
+}

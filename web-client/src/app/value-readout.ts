@@ -1,0 +1,94 @@
+// <strata-value-readout>: position and the layers' values under the pointer.
+
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { color_of, css_color } from "../core/palette";
+import type { Layer } from "../core/types";
+import { describe_value } from "./brush-settings";
+import type { ModelSession } from "./model-session";
+import { styled } from "./styled";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+@customElement("strata-value-readout")
+export class StrataValueReadout extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  private unsubscribe_: (() => void) | null = null;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+        pointer-events: none;
+      }
+      div.card {
+        display: grid;
+        gap: 4px;
+        padding: 9px 13px 10px;
+        border: 1px solid var(--line);
+        border-radius: var(--radius);
+        background: color-mix(in srgb, var(--raised) 93%, transparent);
+        box-shadow: var(--shadow);
+        font-size: 0.86rem;
+      }
+      .line {
+        display: flex;
+        align-items: center;
+        gap: 8px;
+        min-width: 0;
+      }
+      .swatch {
+        width: 12px;
+        height: 12px;
+      }
+      .line b {
+        margin-left: auto;
+        padding-left: 14px;
+        font-weight: 600;
+      }
+      .line b.none {
+        color: var(--ink-soft);
+        font-weight: 400;
+      }
+      .position {
+        color: var(--ink-soft);
+        font-size: 0.8rem;
+      }
+    `,
+  ];
+
+  override willUpdate(changed: PropertyValues<this>): void {
+    if (!changed.has("session")) return;
+    this.unsubscribe_?.();
+    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
+  }
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.unsubscribe_?.();
+  }
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const { picked, model } = session;
+    if (!picked?.hit || !picked.position || !model) return html``;
+    const layers = [...session.layers].reverse().filter((layer) => session.visible(layer) || layer.id === session.selected);
+    const decimals = model.unit === "mm" ? 2 : model.unit === "cm" ? 3 : 4;
+    const coordinates = picked.position.map((each) => each.toFixed(decimals)).join(", ");
+    return html`<div class="card">
+      ${layers.map((layer) => this.line(layer))}
+      <span class="position numeric">${texts.value.position} ${coordinates} ${model.unit}</span>
+    </div>`;
+  }
+
+  private line(layer: Layer): TemplateResult {
+    const found = this.session.picked?.values?.[layer.slug];
+    const valid = found?.valid === true && found.value !== undefined;
+    const color = valid ? color_of(layer.palette, found.value!) : null;
+    return html`<span class="line">
+      ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
+      <span class="ellipsis">${layer.name}</span>
+      <b class=${valid ? "numeric" : "none"}>${valid ? describe_value(layer, found.value!) : texts.value.nothing}</b>
+    </span>`;
+  }
+}

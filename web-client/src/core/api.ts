@@ -1,0 +1,234 @@
+// The HTTP interface with typed results. Every failure, also a lost network, becomes an ApiError that carries a
+// problem a person can read.
+
+import type { CameraMessage } from "./camera";
+import type * as wire from "./protocol.gen";
+import {
+  complete_layer,
+  type Job,
+  type Layer,
+  type LayerCreate,
+  type LayerPatch,
+  type Me,
+  type Model,
+  type ModelPatch,
+  type ProblemBody,
+  type Project,
+  type Statistics,
+} from "./types";
+
+export class ApiError extends Error {
+  constructor(readonly problem: ProblemBody) {
+    super(problem.detail ?? problem.title);
+    this.name = "ApiError";
+  }
+  get status(): number {
+    return this.problem.status;
+  }
+}
+
+export interface Versioned<T> {
+  value: T;
+  etag: string;
+}
+
+export type Fetch = (input: string, init?: RequestInit) => Promise<Response>;
+
+type Id = number | string;
+
+export interface Upload {
+  /** Resolves with the job that imports the file. */
+  done: Promise<Job>;
+  cancel(): void;
+}
+
+const kBase = "/api/v1";
+
+export class Api {
+  constructor(
+    private readonly fetch_: Fetch = (input, init) => fetch(input, init),
+    private readonly make_request_: () => XMLHttpRequest = () => new XMLHttpRequest(),
+  ) {}
+
+  async me(): Promise<Me> {
+    return this.json("GET", "/me");
+  }
+  async login(token: string): Promise<void> {
+    await this.request("POST", "/login", { token });
+  }
+  async logout(): Promise<void> {
+    await this.request("POST", "/logout");
+  }
+
+  async projects(): Promise<Project[]> {
+    return (await this.json<wire.ProjectList>("GET", "/projects")).projects;
+  }
+  async models(): Promise<Model[]> {
+    return (await this.json<wire.ModelList>("GET", "/models?limit=1000")).models;
+  }
+  async model(id: Id): Promise<Versioned<Model>> {
+    return this.versioned("GET", `/models/${encodeURIComponent(id)}`);
+  }
+  async change_model(id: Id, change: ModelPatch, etag: string): Promise<Versioned<Model>> {
+    return this.versioned("PATCH", `/models/${encodeURIComponent(id)}`, change, etag);
+  }
+  async delete_model(id: Id): Promise<void> {
+    const { etag } = await this.model(id);
+    await this.request("DELETE", `/models/${encodeURIComponent(id)}`, undefined, { "If-Match": etag });
+  }
+
+  /** Raw file body with progress (0…1 of the bytes sent). */
+  upload_model(file: File, progress: (share: number) => void): Upload {
+    const request = this.make_request_();
+    const done = new Promise<Job>((resolve, reject) => {
+      const query = new URLSearchParams({ name: name_of_file(file.name), filename: file.name });
+      request.open("POST", `${kBase}/models?${query}`);
+      request.setRequestHeader("Content-Type", "application/octet-stream");
+      request.setRequestHeader("Idempotency-Key", new_id());
+      request.upload.onprogress = (event) => {
+        if (event.lengthComputable) progress(event.loaded / event.total);
+      };
+      request.onload = () => {
+        if (request.status >= 400) {
+          reject(new ApiError(problem_of_text(request.status, request.responseText)));
+          return;
+        }
+        try {
+          resolve(JSON.parse(request.responseText) as Job);
+        } catch {
+          reject(new ApiError(problem_of_text(502, "")));
+        }
+      };
+      request.onerror = () => reject(unreachable());
+      request.onabort = () => reject(new ApiError({ status: 499, title: "Cancelled" }));
+      request.send(file);
+    });
+    return { done, cancel: () => request.abort() };
+  }
+
+  async job(id: Id): Promise<Job> {
+    return this.json("GET", `/jobs/${encodeURIComponent(id)}`);
+  }
+  async cancel_job(id: Id): Promise<void> {
+    await this.request("DELETE", `/jobs/${encodeURIComponent(id)}`);
+  }
+
+  async layers(model: Id): Promise<Layer[]> {
+    const path = `/models/${encodeURIComponent(model)}/layers?limit=1000`;
+    return (await this.json<wire.LayerList>("GET", path)).layers.map(complete_layer);
+  }
+  async create_layer(model: Id, layer: LayerCreate): Promise<Layer> {
+    return complete_layer(await this.json<wire.Layer>("POST", `/models/${encodeURIComponent(model)}/layers`, layer));
+  }
+  /** Reads the layer's present version and changes it; another's change in between is an ApiError of status 412. */
+  async change_layer(model: Id, layer: Id, change: LayerPatch): Promise<Layer> {
+    const path = layer_path(model, layer);
+    const { etag } = await this.versioned<wire.Layer>("GET", path);
+    return complete_layer((await this.versioned<wire.Layer>("PATCH", path, change, etag)).value);
+  }
+  async delete_layer(model: Id, layer: Id): Promise<void> {
+    const path = layer_path(model, layer);
+    const { etag } = await this.versioned<wire.Layer>("GET", path);
+    await this.request("DELETE", path, undefined, { "If-Match": etag });
+  }
+  async statistics(model: Id, layer: Id): Promise<Statistics> {
+    return this.json("GET", `${layer_path(model, layer)}/statistics`);
+  }
+
+  async frame(model: Id, camera: CameraMessage): Promise<Blob> {
+    const response = await this.request("POST", `/models/${encodeURIComponent(model)}/frame`, { camera, format: "jpeg" });
+    return response.blob();
+  }
+
+  private async json<T>(method: string, path: string, body?: unknown): Promise<T> {
+    return (await this.versioned<T>(method, path, body)).value;
+  }
+
+  private async versioned<T>(method: string, path: string, body?: unknown, etag?: string): Promise<Versioned<T>> {
+    const response = await this.request(method, path, body, etag ? { "If-Match": etag } : {});
+    try {
+      return { value: (await response.json()) as T, etag: response.headers.get("ETag") ?? "" };
+    } catch {
+      throw new ApiError(problem_of_text(502, ""));
+    }
+  }
+
+  private async request(
+    method: string,
+    path: string,
+    body?: unknown,
+    headers: Record<string, string> = {},
+  ): Promise<Response> {
+    const all: Record<string, string> = { Accept: "application/json", ...headers };
+    if (body !== undefined) all["Content-Type"] = "application/json";
+    if (method === "POST" && path !== "/login") all["Idempotency-Key"] = new_id();
+    let response: Response;
+    try {
+      response = await this.fetch_(kBase + path, {
+        method,
+        headers: all,
+        credentials: "same-origin",
+        ...(body === undefined ? {} : { body: JSON.stringify(body) }),
+      });
+    } catch {
+      throw unreachable();
+    }
+    if (!response.ok) throw new ApiError(problem_of_text(response.status, await response.text().catch(() => "")));
+    return response;
+  }
+}
+
+const layer_path = (model: Id, layer: Id): string =>
+  `/models/${encodeURIComponent(model)}/layers/${encodeURIComponent(layer)}`;
+
+const unreachable = (): ApiError =>
+  new ApiError({
+    status: 0,
+    title: "The server cannot be reached",
+    detail: "Check that the server runs and that you are connected to its network, then try again.",
+  });
+
+const kPlainWords: Record<number, [string, string]> = {
+  401: ["Not signed in", "Sign in again."],
+  403: ["Not allowed", "Your account may not do this. Ask the owner of the site."],
+  404: ["Not found", "It may have been deleted. Reload the page."],
+  412: ["Changed by someone else", "Somebody changed this at the same time. Look at it again, then repeat your change."],
+  413: ["Too large", "The file or message is larger than the server accepts."],
+  429: ["Too fast", "The server asks for a pause. Try again in a moment."],
+  502: ["Unexpected answer", "The server's answer could not be read. Reload the page."],
+  503: ["The server is not ready", "It starts or lacks its database. Try again in a moment."],
+};
+
+/** The problem in an answer's text; where the text is not one, what the status means in plain words. */
+export function problem_of_text(status: number, text: string): ProblemBody {
+  try {
+    const body = JSON.parse(text) as Partial<ProblemBody> | null;
+    if (body && typeof body.title === "string") {
+      return {
+        status: typeof body.status === "number" ? body.status : status,
+        title: body.title,
+        ...(body.detail ? { detail: String(body.detail) } : {}),
+        ...(body.field ? { field: String(body.field) } : {}),
+      };
+    }
+  } catch {
+    // Not JSON: a proxy's page, or nothing. The status says enough.
+  }
+  const [title, detail] = kPlainWords[status] ?? [`The server answered ${status}`, "Try again; if it stays, tell whoever runs the server."];
+  return { status, title, detail };
+}
+
+/** A model's name from its file's: "statue_nefertiti_70k.ply" → "statue nefertiti 70k". */
+export function name_of_file(filename: string): string {
+  const stem = filename.replace(/\.[a-z0-9]{1,5}$/i, "").replace(/_+/g, " ").trim();
+  return stem || filename;
+}
+
+/** A random UUID; also on plain-HTTP addresses, where `crypto.randomUUID` is absent. */
+export function new_id(): string {
+  const bytes = crypto.getRandomValues(new Uint8Array(16));
+  bytes[6] = (bytes[6]! & 0x0f) | 0x40;
+  bytes[8] = (bytes[8]! & 0x3f) | 0x80;
+  const hex = [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+  return `${hex.slice(0, 8)}-${hex.slice(8, 12)}-${hex.slice(12, 16)}-${hex.slice(16, 20)}-${hex.slice(20)}`;
+}

@@ -1,0 +1,242 @@
+// The viewer's camera: a turntable around the model's up axis. All in world coordinates and double; the server
+// subtracts the model's origin. Pixels are of the window (width × height), origin top left, y down.
+
+import { add, cross, dot, length, scale, subtract, transform, type Mat4, type Vec3 } from "./vector";
+
+export type UpAxis = "x" | "y" | "z";
+export type StandardView = "front" | "back" | "left" | "right" | "top" | "bottom";
+
+export interface Bounds {
+  min: Vec3;
+  max: Vec3;
+}
+
+/** The camera as the protocol sends it: column-major, OpenGL clip space. */
+export interface CameraMessage {
+  view: number[];
+  projection: number[];
+  width: number;
+  height: number;
+}
+
+export interface Ray {
+  origin: Vec3;
+  direction: Vec3;
+}
+
+export const kFieldOfView = (35 * Math.PI) / 180; // vertical
+const kHalfFieldTangent = Math.tan(kFieldOfView / 2);
+const kMinZoom = 1e-4; // smallest and largest distance, relative to the model's radius
+const kMaxZoom = 40;
+const kFitMargin = 1.04;
+
+interface Frame {
+  right: Vec3;
+  into: Vec3;
+  up: Vec3;
+}
+
+// Right-handed frames of the front view: `right` of the picture, `into` the picture, `up`.
+const kFrames: Record<UpAxis, Frame> = {
+  z: { right: [1, 0, 0], into: [0, 1, 0], up: [0, 0, 1] },
+  y: { right: [1, 0, 0], into: [0, 0, -1], up: [0, 1, 0] },
+  x: { right: [0, 1, 0], into: [0, 0, 1], up: [1, 0, 0] },
+};
+
+export const centre = (bounds: Bounds): Vec3 => scale(add(bounds.min, bounds.max), 0.5);
+export const bounding_radius = (bounds: Bounds): number => Math.max(length(subtract(bounds.max, bounds.min)) / 2, 1e-9);
+
+export class OrbitCamera {
+  target: Vec3 = [0, 0, 0];
+  distance = 1;
+  azimuth = 0; // radians around up; 0 looks at the front
+  elevation = 0; // radians above the horizon, −π/2…π/2
+  perspective = true;
+  width = 1; // window pixels
+  height = 1;
+
+  private bounds_: Bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
+  private up_: UpAxis = "z";
+
+  get up(): UpAxis {
+    return this.up_;
+  }
+  get bounds(): Bounds {
+    return this.bounds_;
+  }
+
+  set_model(bounds: Bounds, up: UpAxis): void {
+    this.bounds_ = bounds;
+    this.up_ = up;
+  }
+
+  resize(width: number, height: number): void {
+    this.width = Math.max(1, Math.round(width));
+    this.height = Math.max(1, Math.round(height));
+  }
+
+  /** Whole model in the picture, seen from where the camera stands. */
+  fit(): void {
+    const { min, max } = this.bounds_;
+    const { right, up, back } = this.axes();
+    const half_width = (kHalfFieldTangent * this.width) / this.height;
+    this.target = centre(this.bounds_);
+    let distance = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const at: Vec3 = [corner & 1 ? max[0] : min[0], corner & 2 ? max[1] : min[1], corner & 4 ? max[2] : min[2]];
+      const offset = subtract(at, this.target);
+      const towards = this.perspective ? dot(offset, back) : 0;
+      const across = Math.abs(dot(offset, right)) / half_width;
+      const along = Math.abs(dot(offset, up)) / kHalfFieldTangent;
+      distance = Math.max(distance, towards + Math.max(across, along));
+    }
+    this.distance = Math.max(distance * kFitMargin, bounding_radius(this.bounds_) * kMinZoom);
+  }
+
+  standard_view(view: StandardView): void {
+    const quarter = Math.PI / 2;
+    const angles: Record<StandardView, [number, number]> = {
+      front: [0, 0],
+      right: [quarter, 0],
+      back: [Math.PI, 0],
+      left: [-quarter, 0],
+      top: [0, quarter],
+      bottom: [0, -quarter],
+    };
+    [this.azimuth, this.elevation] = angles[view];
+    this.fit();
+  }
+
+  /** Unit vectors of the window in the world: right, up, and backwards to the viewer. */
+  axes(): { right: Vec3; up: Vec3; back: Vec3 } {
+    const frame = kFrames[this.up_];
+    const [sa, ca] = [Math.sin(this.azimuth), Math.cos(this.azimuth)];
+    const [se, ce] = [Math.sin(this.elevation), Math.cos(this.elevation)];
+    const right = add(scale(frame.right, ca), scale(frame.into, sa));
+    const level = subtract(scale(frame.right, sa), scale(frame.into, ca));
+    const back = add(scale(level, ce), scale(frame.up, se));
+    return { right, up: cross(back, right), back };
+  }
+
+  eye(): Vec3 {
+    return add(this.target, scale(this.axes().back, this.distance));
+  }
+
+  /** World lengths of one window pixel at a depth before the eye. */
+  unit_per_pixel(depth = this.distance): number {
+    return (2 * kHalfFieldTangent * (this.perspective ? depth : this.distance)) / this.height;
+  }
+
+  depth_of(point: Vec3): number {
+    return dot(subtract(this.eye(), point), this.axes().back);
+  }
+
+  orbit(azimuth_delta: number, elevation_delta: number): void {
+    this.azimuth = wrap(this.azimuth + azimuth_delta);
+    this.elevation = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.elevation + elevation_delta));
+  }
+
+  /** Drag of one pixel turns the model by the same share of the window in both directions. */
+  orbit_pixels(dx: number, dy: number): void {
+    const turn = Math.PI / Math.min(this.width, this.height);
+    this.orbit(-dx * turn, dy * turn);
+  }
+
+  pan_pixels(dx: number, dy: number): void {
+    const { right, up } = this.axes();
+    const unit = this.unit_per_pixel();
+    this.target = add(this.target, add(scale(right, -dx * unit), scale(up, dy * unit)));
+  }
+
+  /** factor < 1 comes nearer. What is under the window pixel (x, y) stays there. */
+  zoom_at(factor: number, x: number, y: number): void {
+    const radius = bounding_radius(this.bounds_);
+    const distance = Math.min(kMaxZoom * radius, Math.max(kMinZoom * radius, this.distance * factor));
+    const kept = distance / this.distance;
+    const anchor = this.point_on_focus_plane(x, y);
+    this.target = add(anchor, scale(subtract(this.target, anchor), kept));
+    this.distance = distance;
+  }
+
+  point_on_focus_plane(x: number, y: number): Vec3 {
+    const { right, up } = this.axes();
+    const unit = this.unit_per_pixel();
+    return add(
+      this.target,
+      add(scale(right, (x - this.width / 2) * unit), scale(up, (this.height / 2 - y) * unit)),
+    );
+  }
+
+  ray_through(x: number, y: number): Ray {
+    const { back } = this.axes();
+    const point = this.point_on_focus_plane(x, y);
+    if (!this.perspective) return { origin: add(point, scale(back, this.distance)), direction: scale(back, -1) };
+    const origin = this.eye();
+    const towards = subtract(point, origin);
+    return { origin, direction: scale(towards, 1 / length(towards)) };
+  }
+
+  view_matrix(): number[] {
+    const { right, up, back } = this.axes();
+    const eye = this.eye();
+    // prettier-ignore
+    return [
+      right[0], up[0], back[0], 0,
+      right[1], up[1], back[1], 0,
+      right[2], up[2], back[2], 0,
+      -dot(right, eye), -dot(up, eye), -dot(back, eye), 1,
+    ];
+  }
+
+  projection_matrix(): number[] {
+    const { near, far } = this.depth_range();
+    const aspect = this.width / this.height;
+    if (this.perspective) {
+      const f = 1 / kHalfFieldTangent;
+      // prettier-ignore
+      return [
+        f / aspect, 0, 0, 0,
+        0, f, 0, 0,
+        0, 0, (far + near) / (near - far), -1,
+        0, 0, (2 * far * near) / (near - far), 0,
+      ];
+    }
+    const half_height = kHalfFieldTangent * this.distance;
+    // prettier-ignore
+    return [
+      1 / (half_height * aspect), 0, 0, 0,
+      0, 1 / half_height, 0, 0,
+      0, 0, -2 / (far - near), 0,
+      0, 0, -(far + near) / (far - near), 1,
+    ];
+  }
+
+  message(): CameraMessage {
+    return { view: this.view_matrix(), projection: this.projection_matrix(), width: this.width, height: this.height };
+  }
+
+  /** Window position of a world point, or null behind the eye. */
+  project(point: Vec3): { x: number; y: number; depth: number } | null {
+    const seen = transform(this.view_matrix(), [point[0], point[1], point[2], 1]);
+    const clip = transform(this.projection_matrix() as Mat4, seen);
+    if (clip[3] <= 0) return null;
+    return {
+      x: (clip[0] / clip[3] / 2 + 0.5) * this.width,
+      y: (0.5 - clip[1] / clip[3] / 2) * this.height,
+      depth: -seen[2],
+    };
+  }
+
+  private depth_range(): { near: number; far: number } {
+    const radius = bounding_radius(this.bounds_) * 1.02;
+    const middle = this.depth_of(centre(this.bounds_));
+    const far = Math.max(middle + radius, radius * 1e-3);
+    if (!this.perspective) return { near: middle - radius, far: Math.max(far, middle - radius + 1e-9) };
+    return { near: Math.max(middle - radius, far * 2e-4), far };
+  }
+}
+
+function wrap(angle: number): number {
+  const turn = 2 * Math.PI;
+  return ((((angle + Math.PI) % turn) + turn) % turn) - Math.PI;
+}

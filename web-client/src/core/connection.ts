@@ -1,0 +1,433 @@
+// The WebSocket of one open model: says hello, keeps the newest camera, resends what is not saved, and comes back by
+// itself after a lost connection. The socket can be replaced by a fake; nothing here touches the page.
+
+import { new_id } from "./api";
+import type { CameraMessage } from "./camera";
+import { decode_frame, FrameError, type FrameMessage } from "./frame-header";
+import { Outbox, type ChangeMessage, type SingleChange } from "./outbox";
+import {
+  parse_server_message,
+  SUBPROTOCOL,
+  type Applied,
+  type ClientMessage,
+  type LayerEvent,
+  type LayerOverride,
+  type ModelEvent,
+  type Picked,
+  type Presence,
+  type ProblemMessage,
+  type RecordEvent,
+  type Saved,
+  type ServerMessage,
+  type StrokeBegin,
+  type Welcome,
+} from "./protocol.gen";
+
+export interface SocketLike {
+  binaryType: BinaryType;
+  readonly bufferedAmount: number;
+  onopen: ((event: never) => void) | null;
+  onmessage: ((event: { data: unknown }) => void) | null;
+  onclose: ((event: { code: number; reason: string }) => void) | null;
+  onerror: ((event: never) => void) | null;
+  send(data: string): void;
+  close(code?: number, reason?: string): void;
+}
+
+/** lost: waits for the next attempt. open: the server said welcome. */
+export type ConnectionState = "connecting" | "open" | "lost" | "closed";
+
+export interface SavingState {
+  waiting: number; // changes that are not durable
+  failing: boolean; // the server could not keep some of them; they are sent again
+}
+
+export interface ConnectionCallbacks {
+  state(state: ConnectionState): void;
+  welcome(message: Welcome): void;
+  frame(part: FrameMessage): void;
+  saving(state: SavingState): void;
+  applied(message: Applied): void;
+  saved(message: Saved): void;
+  layer(message: LayerEvent): void;
+  model(message: ModelEvent): void;
+  record(message: RecordEvent): void;
+  presence(message: Presence): void;
+  picked(message: Picked): void;
+  /** A refusal; `given_up` when it was a change of this page that is now lost. */
+  problem(problem: Omit<ProblemMessage, "op">, given_up: boolean): void;
+}
+
+export interface ConnectionOptions {
+  url: string;
+  client: string;
+  device_pixel_ratio: number;
+  make_socket?: (url: string, protocol: string) => SocketLike;
+  /** Calls back before the next picture is drawn. */
+  next_frame?: (callback: () => void) => void;
+  random?: () => number;
+}
+
+export interface StrokeOptions {
+  layer: number | string;
+  value: number;
+  erase: boolean;
+  camera: CameraMessage;
+  radius: { px: number } | { mm: number };
+  shape: "disc" | "square";
+}
+
+export type Point = [number, number];
+
+const kFirstRetry_ms = 250;
+const kLastRetry_ms = 8000;
+const kSilence_ms = 20_000; // a change unanswered for so long: the connection is dead
+const kBusySocket_bytes = 256 * 1024; // cameras wait while so much is unsent
+const kMostWaiting = 5000; // changes; new strokes are refused above
+
+export class Connection {
+  private socket_: SocketLike | null = null;
+  private state_: ConnectionState = "connecting";
+  private attempts_ = 0;
+  private retry_timer_: ReturnType<typeof setTimeout> | null = null;
+  private resend_timer_: ReturnType<typeof setTimeout> | null = null;
+  private silence_timer_: ReturnType<typeof setTimeout> | null = null;
+  private resend_delay_ms_ = kFirstRetry_ms;
+  private failing_ = false;
+  private path_points_ = 4096;
+
+  private readonly outbox_ = new Outbox();
+  private readonly silenced_ = new Set<string>(); // ids given up: later complaints about them say nothing new
+
+  private camera_: { camera: CameraMessage; moving: boolean } | null = null;
+  private camera_seq_ = 0;
+  private camera_scheduled_ = false;
+  private overrides_: LayerOverride[] = [];
+
+  constructor(
+    private readonly options_: ConnectionOptions,
+    private readonly callbacks_: ConnectionCallbacks,
+  ) {}
+
+  get state(): ConnectionState {
+    return this.state_;
+  }
+  get waiting(): number {
+    return this.outbox_.waiting;
+  }
+  /** Number of the newest camera sent; frames echo it. */
+  get camera_seq(): number {
+    return this.camera_seq_;
+  }
+
+  open(): void {
+    this.set_state("connecting");
+    const make =
+      this.options_.make_socket ?? ((url, protocol) => new WebSocket(url, protocol) as unknown as SocketLike);
+    const socket = make(this.options_.url, SUBPROTOCOL);
+    socket.binaryType = "arraybuffer";
+    this.socket_ = socket;
+    socket.onopen = () => {
+      if (socket !== this.socket_) return;
+      this.send({
+        op: "hello",
+        client: this.options_.client,
+        dpr: this.options_.device_pixel_ratio,
+        accept: ["jpeg", "png"],
+      });
+    };
+    socket.onmessage = (event) => {
+      if (socket === this.socket_) this.on_message(event.data);
+    };
+    socket.onclose = () => {
+      if (socket === this.socket_) this.on_lost();
+    };
+    socket.onerror = () => {}; // a close follows
+  }
+
+  /** For good; what is not saved is lost. */
+  close(): void {
+    this.forget_timers();
+    const socket = this.socket_;
+    this.socket_ = null;
+    this.set_state("closed");
+    socket?.close(1000, "left");
+  }
+
+  /** Does not wait for the next attempt: the network is back, or a person asked. */
+  retry_now(): void {
+    if (this.state_ !== "lost") return;
+    if (this.retry_timer_) clearTimeout(this.retry_timer_);
+    this.retry_timer_ = null;
+    this.open();
+  }
+
+  /** Latest wins: at most one camera per drawn picture leaves, always the newest. */
+  set_camera(camera: CameraMessage, moving: boolean): void {
+    this.camera_ = { camera, moving };
+    this.schedule_camera();
+  }
+
+  set_layer_overrides(overrides: LayerOverride[]): void {
+    this.overrides_ = overrides;
+    if (this.state_ === "open") this.send({ op: "layers", layers: overrides });
+  }
+
+  ack(view_id: number, frame: number): void {
+    if (this.state_ === "open") this.send({ op: "ack", view_id, frame });
+  }
+
+  pick(id: string, x: number, y: number, camera?: CameraMessage): void {
+    if (this.state_ === "open") this.send({ op: "pick", id, x, y, ...(camera ? { camera } : {}) });
+  }
+
+  /** The pixel this person points at. */
+  presence(pointer: Point | null): void {
+    if (this.state_ === "open") this.send({ op: "presence", pointer });
+  }
+
+  /** Null while edits cannot be taken: not connected, or too much waits to be saved. */
+  begin_stroke(options: StrokeOptions): StrokeHandle | null {
+    if (this.state_ !== "open" || this.outbox_.waiting > kMostWaiting) return null;
+    const begin: StrokeBegin = {
+      op: "stroke.begin",
+      id: new_id(),
+      stroke: new_id(),
+      layer: options.layer,
+      ...(options.erase ? { erase: true } : { value: options.value }),
+      camera: options.camera,
+      ...("px" in options.radius ? { radius_px: options.radius.px } : { radius_mm: options.radius.mm }),
+      shape: options.shape,
+    };
+    this.change(begin);
+    return new StrokeHandle(begin.stroke, this.path_points_, (message) => {
+      if (this.outbox_.has_stroke(begin.stroke)) this.change(message);
+    });
+  }
+
+  /** An edit, undo or redo. Returns its id, or null while edits cannot be taken. */
+  send_change(message: SingleChange): string | null {
+    if (this.state_ !== "open") return null;
+    this.change(message);
+    return message.id;
+  }
+
+  private change(message: ChangeMessage): void {
+    this.outbox_.add(message);
+    if (this.state_ === "open") this.send(message);
+    this.watch_silence();
+    this.report_saving();
+  }
+
+  private send(message: ClientMessage): void {
+    this.socket_?.send(JSON.stringify(message));
+  }
+
+  private schedule_camera(): void {
+    if (this.camera_scheduled_ || !this.camera_) return;
+    this.camera_scheduled_ = true;
+    const next_frame = this.options_.next_frame ?? ((callback) => void requestAnimationFrame(callback));
+    next_frame(() => {
+      this.camera_scheduled_ = false;
+      if (this.state_ !== "open" || !this.camera_) return;
+      if ((this.socket_?.bufferedAmount ?? 0) > kBusySocket_bytes) this.schedule_camera();
+      else this.send_camera();
+    });
+  }
+
+  private send_camera(): void {
+    if (!this.camera_) return;
+    const { camera, moving } = this.camera_;
+    this.camera_ = { camera, moving: false }; // after a reconnect the picture is a still one
+    this.camera_seq_ += 1;
+    this.send({ op: "camera", seq: this.camera_seq_, ...camera, moving });
+  }
+
+  private on_message(data: unknown): void {
+    if (this.silence_timer_) this.watch_silence();
+    if (typeof data !== "string") {
+      this.on_frame(data as ArrayBuffer);
+      return;
+    }
+    let message: ServerMessage;
+    try {
+      message = parse_server_message(data);
+    } catch (error) {
+      this.callbacks_.problem(unreadable(String(error)), false);
+      return;
+    }
+    this.dispatch(message);
+  }
+
+  private on_frame(data: ArrayBuffer): void {
+    try {
+      this.callbacks_.frame(decode_frame(data));
+    } catch (error) {
+      if (!(error instanceof FrameError)) throw error;
+      this.callbacks_.problem(unreadable(error.message), false);
+    }
+  }
+
+  private dispatch(message: ServerMessage): void {
+    switch (message.op) {
+      case "welcome":
+        return this.on_welcome(message);
+      case "applied":
+        return this.callbacks_.applied(message);
+      case "saved":
+        this.outbox_.saved(message);
+        this.failing_ = false;
+        this.resend_delay_ms_ = kFirstRetry_ms;
+        this.report_saving();
+        return this.callbacks_.saved(message);
+      case "unsaved":
+        this.resend_later();
+        return this.report_saving();
+      case "problem":
+        return this.on_problem(message);
+      case "layer":
+        return this.callbacks_.layer(message);
+      case "model":
+        return this.callbacks_.model(message);
+      case "record":
+        return this.callbacks_.record(message);
+      case "presence":
+        return this.callbacks_.presence(message);
+      case "picked":
+        return this.callbacks_.picked(message);
+      default:
+        message satisfies never; // parse_server_message throws on an op it does not know
+    }
+  }
+
+  private on_welcome(message: Welcome): void {
+    this.attempts_ = 0;
+    this.path_points_ = message.limits.path_points;
+    this.set_state("open");
+    for (const { stroke, n } of message.strokes) this.outbox_.saved_through(stroke, n);
+    this.callbacks_.welcome(message);
+    if (this.overrides_.length > 0) this.send({ op: "layers", layers: this.overrides_ });
+    if (this.camera_) this.send_camera();
+    this.resend();
+    this.report_saving();
+  }
+
+  private on_problem(message: ProblemMessage): void {
+    const { op: _, ...problem } = message;
+    if (message.ref !== undefined && this.silenced_.delete(message.ref)) return;
+    if (message.ref === undefined || !this.outbox_.has(message.ref)) {
+      this.callbacks_.problem(problem, false);
+      return;
+    }
+    const passing = message.status === 429 || message.status >= 500;
+    if (passing) {
+      const first = !this.failing_;
+      this.resend_later();
+      this.report_saving();
+      if (first) this.callbacks_.problem(problem, false);
+      return;
+    }
+    for (const id of this.outbox_.give_up(message.ref)) if (id !== message.ref) this.silenced_.add(id);
+    this.report_saving();
+    this.callbacks_.problem(problem, true);
+  }
+
+  private resend(): void {
+    for (const message of this.outbox_.messages()) this.send(message);
+    if (!this.outbox_.idle) this.watch_silence();
+  }
+
+  private resend_later(): void {
+    this.failing_ = true;
+    if (this.resend_timer_) return;
+    this.resend_timer_ = setTimeout(() => {
+      this.resend_timer_ = null;
+      if (this.state_ === "open") this.resend();
+    }, this.resend_delay_ms_);
+    this.resend_delay_ms_ = Math.min(kLastRetry_ms, this.resend_delay_ms_ * 2);
+  }
+
+  private on_lost(): void {
+    this.forget_timers();
+    this.socket_ = null;
+    this.set_state("lost");
+    this.report_saving();
+    const random = (this.options_.random ?? Math.random)();
+    const delay_ms = Math.min(kLastRetry_ms, kFirstRetry_ms * 2 ** this.attempts_) * (0.75 + random / 2);
+    this.attempts_ += 1;
+    this.retry_timer_ = setTimeout(() => {
+      this.retry_timer_ = null;
+      this.open();
+    }, delay_ms);
+  }
+
+  private watch_silence(): void {
+    if (this.silence_timer_) clearTimeout(this.silence_timer_);
+    this.silence_timer_ = null;
+    if (this.outbox_.waiting === 0) return;
+    this.silence_timer_ = setTimeout(() => {
+      const socket = this.socket_;
+      if (!socket || this.outbox_.waiting === 0) return;
+      this.on_lost();
+      socket.close(4000, "no answer");
+    }, kSilence_ms);
+  }
+
+  private forget_timers(): void {
+    for (const timer of [this.retry_timer_, this.resend_timer_, this.silence_timer_]) if (timer) clearTimeout(timer);
+    this.retry_timer_ = this.resend_timer_ = this.silence_timer_ = null;
+  }
+
+  private set_state(state: ConnectionState): void {
+    if (state === this.state_ && state !== "connecting") return;
+    this.state_ = state;
+    this.callbacks_.state(state);
+  }
+
+  private report_saving(): void {
+    if (this.outbox_.waiting === 0) this.failing_ = false;
+    this.callbacks_.saving({ waiting: this.outbox_.waiting, failing: this.failing_ });
+  }
+}
+
+/** One stroke being drawn. Every batch starts with the last point of the one before, so that each stands alone. */
+export class StrokeHandle {
+  private n_ = 0;
+  private last_: Point | null = null;
+  private ended_ = false;
+
+  constructor(
+    readonly stroke: string,
+    private readonly path_points_: number,
+    private readonly change_: (message: ChangeMessage) => void,
+  ) {}
+
+  extend(points: readonly Point[]): void {
+    if (this.ended_ || points.length === 0) return;
+    const room = Math.max(1, this.path_points_ - 1);
+    for (let start = 0; start < points.length; start += room) {
+      const batch = points.slice(start, start + room);
+      const path = this.last_ ? [this.last_, ...batch] : batch;
+      this.last_ = batch[batch.length - 1]!;
+      this.change_({
+        op: "stroke.extend",
+        id: new_id(),
+        stroke: this.stroke,
+        n: this.n_++,
+        path,
+      });
+    }
+  }
+
+  end(): void {
+    if (this.ended_) return;
+    this.ended_ = true;
+    this.change_({ op: "stroke.end", id: new_id(), stroke: this.stroke });
+  }
+}
+
+const unreadable = (what: string): Omit<ProblemMessage, "op"> => ({
+  title: "The server sent something this page cannot read",
+  status: 502,
+  detail: `${what}. Reload the page; if it stays, the page and the server are of different versions.`,
+});

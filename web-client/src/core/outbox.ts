@@ -1,0 +1,121 @@
+// Everything this page asked the server to change and that is not known to be durable yet, in the order it was asked.
+// Ids never change, so sending a message again paints nothing twice.
+
+import type { EditRequest, Redo, StrokeBegin, StrokeEnd, StrokeExtend, Undo } from "./protocol.gen";
+
+export type ChangeMessage = StrokeBegin | StrokeExtend | StrokeEnd | EditRequest | Undo | Redo;
+export type SingleChange = EditRequest | Undo | Redo;
+
+interface StrokeEntry {
+  kind: "stroke";
+  begin: StrokeBegin;
+  parts: StrokeExtend[]; // unsaved ones, ascending n
+  end: StrokeEnd | null;
+}
+interface SingleEntry {
+  kind: "single";
+  message: SingleChange;
+}
+type Entry = StrokeEntry | SingleEntry;
+
+export class Outbox {
+  private entries_: Entry[] = [];
+
+  /** Changes that are not durable. */
+  get waiting(): number {
+    return this.entries_.reduce((sum, entry) => sum + (entry.kind === "stroke" ? entry.parts.length : 1), 0);
+  }
+
+  /** Nothing is waiting and no stroke is being drawn. */
+  get idle(): boolean {
+    return this.entries_.length === 0;
+  }
+
+  add(message: ChangeMessage): void {
+    switch (message.op) {
+      case "stroke.begin":
+        this.entries_.push({ kind: "stroke", begin: message, parts: [], end: null });
+        break;
+      case "stroke.extend":
+        this.stroke(message.stroke)?.parts.push(message);
+        break;
+      case "stroke.end": {
+        const entry = this.stroke(message.stroke);
+        if (entry) entry.end = message;
+        this.drop_finished();
+        break;
+      }
+      default:
+        this.entries_.push({ kind: "single", message });
+    }
+  }
+
+  has_stroke(stroke: string): boolean {
+    return this.stroke(stroke) !== undefined;
+  }
+
+  /** Whether the id is of a message that waits here. */
+  has(id: string): boolean {
+    return this.entries_.some((entry) =>
+      entry.kind === "single"
+        ? entry.message.id === id
+        : entry.begin.id === id || entry.end?.id === id || entry.parts.some((part) => part.id === id),
+    );
+  }
+
+  saved(answer: { id?: string | undefined; stroke?: string | undefined; n?: number | undefined }): void {
+    if (answer.stroke !== undefined && answer.n !== undefined) {
+      const entry = this.stroke(answer.stroke);
+      if (entry) entry.parts = entry.parts.filter((part) => part.n !== answer.n);
+    } else if (answer.id !== undefined) {
+      this.entries_ = this.entries_.filter((entry) => entry.kind !== "single" || entry.message.id !== answer.id);
+    }
+    this.drop_finished();
+  }
+
+  /** The server keeps all batches of the stroke up to n. */
+  saved_through(stroke: string, n: number): void {
+    const entry = this.stroke(stroke);
+    if (entry) entry.parts = entry.parts.filter((part) => part.n > n);
+    this.drop_finished();
+  }
+
+  /** The server will never take this message. Returns the ids that are given up with it. */
+  give_up(id: string): string[] {
+    const given_up: string[] = [];
+    for (const entry of this.entries_) {
+      if (entry.kind === "single") {
+        if (entry.message.id === id) given_up.push(id);
+      } else if (entry.begin.id === id) {
+        given_up.push(id, ...entry.parts.map((part) => part.id), ...(entry.end ? [entry.end.id] : []));
+      } else if (entry.parts.some((part) => part.id === id)) {
+        given_up.push(id);
+        entry.parts = entry.parts.filter((part) => part.id !== id);
+      }
+    }
+    this.entries_ = this.entries_.filter(
+      (entry) => (entry.kind === "single" ? entry.message.id : entry.begin.id) !== id,
+    );
+    this.drop_finished();
+    return given_up;
+  }
+
+  /** What to send again, in order. */
+  messages(): ChangeMessage[] {
+    return this.entries_.flatMap((entry): ChangeMessage[] =>
+      entry.kind === "single" ? [entry.message] : [entry.begin, ...entry.parts, ...(entry.end ? [entry.end] : [])],
+    );
+  }
+
+  private stroke(stroke: string): StrokeEntry | undefined {
+    return this.entries_.find(
+      (entry): entry is StrokeEntry => entry.kind === "stroke" && entry.begin.stroke === stroke,
+    );
+  }
+
+  private drop_finished(): void {
+    this.entries_ = this.entries_.filter(
+      (entry) => entry.kind === "single" || entry.end === null || entry.parts.length > 0,
+    );
+  }
+}

@@ -1,0 +1,108 @@
+// Colours of values, as the server's palette gives them: for legends and swatches.
+
+import type { Layer, Palette, PalettePoint } from "./types";
+
+export interface Rgba {
+  r: number;
+  g: number;
+  b: number;
+  a: number; // 0…255, as the others
+}
+
+export function parse_color(text: string): Rgba {
+  const hex = text.replace("#", "");
+  const byte = (at: number): number => parseInt(hex.slice(at, at + 2), 16);
+  return { r: byte(0), g: byte(2), b: byte(4), a: hex.length >= 8 ? byte(6) : 255 };
+}
+
+export const css_color = (text: string): string => {
+  const { r, g, b, a } = parse_color(text);
+  return `rgb(${r} ${g} ${b} / ${(a / 255).toFixed(3)})`;
+};
+
+/** #rrggbb for an <input type="color">, which knows no opacity. */
+export const opaque_color = (text: string): string => text.slice(0, 7);
+
+/** A CSS gradient of a linear or stepped palette from its lower to its upper limit. */
+export function css_gradient(palette: Palette, direction = "to right"): string {
+  const span = palette.max - palette.min || 1;
+  const points = [...palette.points].sort((a, b) => a.at - b.at);
+  if (points.length === 0) return "transparent";
+  const share = (at: number): string => `${(Math.min(1, Math.max(0, (at - palette.min) / span)) * 100).toFixed(2)}%`;
+  const stops: string[] = [];
+  points.forEach((point, index) => {
+    stops.push(`${css_color(point.color)} ${share(point.at)}`);
+    const next = points[index + 1];
+    if (palette.mode === "step" && next) stops.push(`${css_color(point.color)} ${share(next.at)}`);
+  });
+  if (stops.length === 1) stops.push(stops[0]!.replace(/ [\d.]+%$/, " 100%"));
+  return `linear-gradient(${direction}, ${stops.join(", ")})`;
+}
+
+export function point_of(palette: Palette, value: number): PalettePoint | undefined {
+  return palette.points.find((point) => point.at === value);
+}
+
+/** The colour a value is drawn in; null where only the server knows it (a class the palette does not list). */
+export function color_of(palette: Palette, value: number): string | null {
+  if (palette.mode === "categorical") return point_of(palette, value)?.color ?? null;
+  const points = [...palette.points].sort((a, b) => a.at - b.at);
+  const first = points[0];
+  const last = points[points.length - 1];
+  if (!first || !last) return null;
+  const at = Math.min(palette.max, Math.max(palette.min, value));
+  if (at <= first.at) return first.color;
+  if (at >= last.at) return last.color;
+  const above = points.findIndex((point) => point.at > at);
+  const low = points[above - 1]!;
+  const high = points[above]!;
+  if (palette.mode === "step") return low.color;
+  const t = (at - low.at) / (high.at - low.at);
+  const [a, b] = [parse_color(low.color), parse_color(high.color)];
+  const blend = (x: number, y: number): string => Math.round(x + (y - x) * t).toString(16).padStart(2, "0");
+  return `#${blend(a.r, b.r)}${blend(a.g, b.g)}${blend(a.b, b.b)}${blend(a.a, b.a)}`;
+}
+
+export type LayerPurpose = "presence" | "classes" | "measurement" | "records";
+
+/** What a layer is for, in the words of the create-layer dialog. */
+export function purpose_of(layer: Pick<Layer, "kind" | "palette">): LayerPurpose {
+  if (layer.kind === "database") return "records";
+  if (layer.palette.mode !== "categorical") return "measurement";
+  return layer.palette.points.length === 1 ? "presence" : "classes";
+}
+
+// Okabe and Ito's colours, and two more: told apart by colour-blind people.
+export const kClassColors = [
+  "#e69f00ff", "#56b4e9ff", "#009e73ff", "#f0e442ff", "#0072b2ff", "#d55e00ff", "#cc79a7ff", "#8c6d46ff", "#7f7f9fff",
+]; // prettier-ignore
+
+export const presence_palette = (label: string, color: string): Palette => ({
+  mode: "categorical",
+  min: 1,
+  max: 1,
+  points: [{ at: 1, color, label }],
+});
+
+export const class_palette = (classes: { label: string; color: string; at: number }[]): Palette => {
+  const points = [...classes].sort((a, b) => a.at - b.at).map(({ at, color, label }) => ({ at, color, label }));
+  return {
+    mode: "categorical",
+    min: points[0]?.at ?? 0,
+    max: points[points.length - 1]?.at ?? 1,
+    points,
+  };
+};
+
+// Viridis at even steps.
+const kViridis = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"];
+
+export const measurement_palette = (min: number, max: number, mode: "linear" | "step" = "linear"): Palette => ({
+  mode,
+  min,
+  max,
+  points: kViridis.map((color, index) => ({
+    at: min + ((max - min) * index) / (kViridis.length - (mode === "step" ? 0 : 1)),
+    color: `${color}ff`,
+  })),
+});

@@ -1,0 +1,67 @@
+// The generated types of the protocol, with what the page needs to be complete.
+
+import type * as wire from "./protocol.gen";
+
+export type {
+  Atlas,
+  HistogramBin,
+  Job,
+  KeyStatistics,
+  LayerCreate,
+  LayerPatch,
+  Me,
+  Model,
+  ModelPatch,
+  PalettePoint,
+  Project,
+  Resolution,
+  Role,
+  Statistics,
+  Unit,
+  ValueType,
+} from "./protocol.gen";
+
+export interface Palette extends wire.Palette {
+  min: number;
+  max: number;
+  points: wire.PalettePoint[];
+}
+
+export interface Layer extends wire.Layer {
+  palette: Palette;
+}
+
+/** RFC 9457, with the field that is wrong. */
+export interface ProblemBody {
+  status: number;
+  title: string;
+  detail?: string;
+  field?: string;
+}
+
+/** `min` and `max` default to the outer points. */
+export function complete_palette(palette: wire.Palette): Palette {
+  const points = [...(palette.points ?? [])].sort((a, b) => a.at - b.at);
+  return {
+    ...palette,
+    points,
+    min: palette.min ?? points[0]?.at ?? 0,
+    max: palette.max ?? points[points.length - 1]?.at ?? 1,
+  };
+}
+
+export const complete_layer = (layer: wire.Layer): Layer => ({ ...layer, palette: complete_palette(layer.palette) });
+
+const kRanges: Record<wire.ValueType, [number, number]> = {
+  u8: [0, 255],
+  u16: [0, 65535],
+  u32: [0, 4294967295],
+  i8: [-128, 127],
+  i16: [-32768, 32767],
+  i32: [-2147483648, 2147483647],
+  f16: [-65504, 65504],
+  f32: [-3.4028234663852886e38, 3.4028234663852886e38],
+};
+
+export const value_range = (type: wire.ValueType): [number, number] => kRanges[type];
+export const holds_fractions = (type: wire.ValueType): boolean => type === "f16" || type === "f32";

@@ -1,0 +1,87 @@
+// Brush and eraser: a drag becomes a stroke in the selected layer, sent a batch per drawn picture.
+
+import type { StrokeHandle, Point } from "../core/connection";
+import type { PointerSample } from "../core/input";
+import type { Tool } from "./tool";
+
+export interface BrushHost {
+  /** Null when there is nothing to paint on; the host has then told the person why. */
+  begin_stroke(erase: boolean): StrokeHandle | null;
+  stroke_ended(): void;
+  /** The radius in window pixels at the pointer; points closer than a tenth of it add nothing. */
+  radius_px(): number;
+  next_frame(callback: () => void): void;
+}
+
+export class BrushTool implements Tool {
+  private stroke_: StrokeHandle | null = null;
+  private waiting_: Point[] = [];
+  private last_: Point | null = null; // the last point taken
+  private newest_: Point | null = null; // where the pointer is
+  private scheduled_ = false;
+
+  constructor(
+    readonly name: "brush" | "eraser",
+    private readonly host_: BrushHost,
+  ) {}
+
+  activate(): void {}
+  deactivate(): void {
+    this.finish();
+  }
+
+  down(sample: PointerSample): void {
+    this.finish();
+    this.stroke_ = this.host_.begin_stroke(this.name === "eraser");
+    if (!this.stroke_) return;
+    this.last_ = this.newest_ = [sample.x, sample.y];
+    this.waiting_ = [this.last_];
+    this.flush();
+  }
+
+  move(samples: PointerSample[]): void {
+    if (!this.stroke_ || !this.last_) return;
+    const spacing = Math.max(0.5, this.host_.radius_px() * 0.1);
+    for (const { x, y } of samples) {
+      this.newest_ = [x, y];
+      if (Math.hypot(x - this.last_[0], y - this.last_[1]) < spacing) continue;
+      this.last_ = this.newest_;
+      this.waiting_.push(this.last_);
+    }
+    this.schedule();
+  }
+
+  up(): void {
+    this.finish();
+  }
+
+  /** What was painted stays: it can be undone. */
+  cancel(): void {
+    this.finish();
+  }
+
+  private schedule(): void {
+    if (this.scheduled_ || this.waiting_.length === 0) return;
+    this.scheduled_ = true;
+    this.host_.next_frame(() => {
+      this.scheduled_ = false;
+      this.flush();
+    });
+  }
+
+  private flush(): void {
+    if (this.waiting_.length === 0) return;
+    this.stroke_?.extend(this.waiting_);
+    this.waiting_ = [];
+  }
+
+  private finish(): void {
+    if (!this.stroke_) return;
+    if (this.newest_ && this.newest_ !== this.last_) this.waiting_.push(this.newest_);
+    this.flush();
+    this.stroke_.end();
+    this.stroke_ = null;
+    this.last_ = this.newest_ = null;
+    this.host_.stroke_ended();
+  }
+}

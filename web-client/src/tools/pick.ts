@@ -1,0 +1,29 @@
+// Shows the values under a point and, on a click, takes the selected layer's value onto the brush.
+
+import type { PointerSample } from "../core/input";
+import type { Tool } from "./tool";
+
+export class PickTool implements Tool {
+  readonly name = "pick";
+
+  constructor(
+    private readonly picked_: (sample: PointerSample) => void,
+    private readonly active_changed_: (active: boolean) => void = () => {},
+  ) {}
+
+  activate(): void {
+    this.active_changed_(true);
+  }
+  deactivate(): void {
+    this.active_changed_(false);
+  }
+  down(sample: PointerSample): void {
+    this.picked_(sample);
+  }
+  move(samples: PointerSample[]): void {
+    const last = samples[samples.length - 1];
+    if (last) this.picked_(last);
+  }
+  up(): void {}
+  cancel(): void {}
+}

@@ -1,0 +1,58 @@
+// Keeps one tool active, and sends it the stage's drags.
+
+import type { PointerSample } from "../core/input";
+import type { Tool, ToolName } from "./tool";
+
+export class ToolManager {
+  private readonly tools_ = new Map<ToolName, Tool>();
+  private active_: Tool;
+  private dragging_ = false;
+
+  constructor(
+    tools: readonly Tool[],
+    first: ToolName,
+    private readonly changed_: (name: ToolName) => void = () => {},
+  ) {
+    for (const tool of tools) this.tools_.set(tool.name, tool);
+    this.active_ = this.find(first);
+    this.active_.activate();
+  }
+
+  get active(): ToolName {
+    return this.active_.name;
+  }
+
+  choose(name: ToolName): void {
+    const tool = this.find(name);
+    if (tool === this.active_) return;
+    this.cancel();
+    this.active_.deactivate();
+    this.active_ = tool;
+    tool.activate();
+    this.changed_(name);
+  }
+
+  down(sample: PointerSample): void {
+    this.dragging_ = true;
+    this.active_.down(sample);
+  }
+  move(samples: PointerSample[]): void {
+    if (this.dragging_) this.active_.move(samples);
+  }
+  up(): void {
+    if (!this.dragging_) return;
+    this.dragging_ = false;
+    this.active_.up();
+  }
+  cancel(): void {
+    if (!this.dragging_) return;
+    this.dragging_ = false;
+    this.active_.cancel();
+  }
+
+  private find(name: ToolName): Tool {
+    const tool = this.tools_.get(name);
+    if (!tool) throw new Error(`no tool named ${name}`);
+    return tool;
+  }
+}

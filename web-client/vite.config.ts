@@ -1,0 +1,24 @@
+import { defineConfig } from "vitest/config";
+
+// The server's address while developing the page with `npm run dev`.
+const server = process.env["STRATA_SERVER"] ?? "http://127.0.0.1:8080";
+
+export default defineConfig({
+  build: {
+    outDir: "dist",
+    target: "es2022",
+    // The server's content security policy allows only files of its own: nothing is inlined into the page.
+    assetsInlineLimit: 0,
+    modulePreload: { polyfill: false },
+  },
+  server: {
+    proxy: {
+      "/api": { target: server, ws: true },
+      "/login": { target: server },
+    },
+  },
+  test: {
+    include: ["tests/**/*.test.ts"],
+    environment: "node",
+  },
+});
