@@ -98,7 +98,7 @@ class Writer:
         out.append("// Every definition of protocol/messages, by its name there.\nenum class Schema {\n")
         out += [f"  {name},\n" for name in self.protocol.definitions]
         out.append("};\nconstexpr int kSchemaCount = " + str(len(self.protocol.definitions)) + ";\n"
-                   "std::string_view name(Schema schema);\n"
+                   "using strata::name;  // of the core's types\nstd::string_view name(Schema schema);\n"
                    "std::string_view schema_bundle();  // JSON text: {\"definitions\": {name: schema}}\n\n"
                    "template <class T>\nextern const Schema schema_of;\n\n")
         for definition in self.order:

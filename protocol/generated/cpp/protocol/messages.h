@@ -109,6 +109,7 @@ enum class Schema {
   Readiness,
 };
 constexpr int kSchemaCount = 82;
+using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
 
