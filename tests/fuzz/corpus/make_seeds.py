@@ -47,3 +47,28 @@ OBJ = {
 }
 for name, text in OBJ.items():
     (HERE / "obj" / name).write_bytes(text.encode())
+
+
+def planes(values, size):
+    """A column as the stored geometry has it: zigzag differences, byte plane by byte plane."""
+    mask, before, codes = (1 << 8 * size) - 1, 0, []
+    for value in values:
+        step = (value - before) & mask
+        codes.append(((step << 1) ^ (mask if step >> (8 * size - 1) else 0)) & mask)
+        before = value
+    return b"".join(bytes((code >> 8 * plane) & 255 for code in codes) for plane in range(size))
+
+
+def bits(values, layout, whole):
+    return [struct.unpack(whole, struct.pack(layout, v))[0] for v in values]
+
+
+content = struct.pack("<3Q3d", 4, 4, 6, 0.5, 0.5, 0)
+for axis in range(3):
+    content += planes(bits([p[axis] for p in SQUARE], "<d", "<Q"), 8)
+content += planes([0x1FF << 20] * 4, 4)
+for axis in range(2):
+    content += planes(bits([p[axis] for p in SQUARE], "<f", "<I"), 4)
+content += planes([0xFFCFD3D6] * 4, 4) + planes([0, 1, 2, 3], 4) + planes([0, 1, 2, 0, 2, 3], 4)
+(HERE / "geometry").mkdir(exist_ok=True)
+(HERE / "geometry" / "square").write_bytes(content)
