@@ -75,16 +75,16 @@ class Profile {
 };
 
 const Profile& outer_lower() {
-  static const Profile kProfile{kOuterLower};
-  return kProfile;
+  static const Profile profile{kOuterLower};
+  return profile;
 }
 const Profile& outer_upper() {
-  static const Profile kProfile{kOuterUpper};
-  return kProfile;
+  static const Profile profile{kOuterUpper};
+  return profile;
 }
 const Profile& inner_lower() {
-  static const Profile kProfile{kInnerLower};
-  return kProfile;
+  static const Profile profile{kInnerLower};
+  return profile;
 }
 
 double bump(double distance, double width) {
