@@ -1,0 +1,91 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "gl/debug_messages.h"
+#include "gl/egl_context.h"
+#include "gl/program.h"
+#include "gl/shader_source.h"
+
+namespace strata::gl {
+namespace {
+
+namespace fs = std::filesystem;
+using Variants = std::vector<std::vector<std::string>>;
+
+// Every program the server builds: files and the defines they are built with.
+const std::map<std::vector<std::string>, Variants> kPrograms{
+    {{"mesh.vert", "depth_pass.frag"}, {{}}},
+    {{"mesh.vert", "gbuffer_pass.frag"}, {{}}},
+    {{"depth_grid_pass.comp"}, {{}}},
+    {{"depth_gather_pass.comp"}, {{}}},
+    {{"edit_pass.comp"}, {{"TEXEL_FORMAT r8ui"}, {"TEXEL_FORMAT r16ui"}, {"TEXEL_FORMAT r32ui"}}},
+    {{"tile_read_pass.comp"}, {{"TEXEL_BYTES 1"}, {"TEXEL_BYTES 2"}, {"TEXEL_BYTES 4"}}},
+    {{"shade_pass.comp"},
+     {{"CHUNK_COUNT 0"}, {"CHUNK_COUNT 1"}, {"CHUNK_COUNT 2"}, {"CHUNK_COUNT 3"}, {"CHUNK_COUNT 4"}, {"CHUNK_COUNT 5"}, {"CHUNK_COUNT 6"}}},
+};
+
+TEST(Shaders, every_file_belongs_to_a_program_and_every_program_builds) {
+  auto context = EglContext::create({.debug = true});
+  ASSERT_TRUE(context) << context.error().detail;
+  DebugMessages messages;
+  messages.install();
+  std::set<std::string> built;
+  for (const auto& [files, variants] : kPrograms) {
+    for (const auto& defines : variants) {
+      const auto program = Program::load(STRATA_SHADER_DIR, files, defines);
+      EXPECT_TRUE(program) << program.error().detail;
+    }
+    built.insert(files.begin(), files.end());
+  }
+  for (const auto& entry : fs::directory_iterator(STRATA_SHADER_DIR)) {
+    if (!entry.is_regular_file()) continue;
+    EXPECT_TRUE(built.contains(entry.path().filename().string())) << entry.path();
+  }
+  EXPECT_EQ(messages.errors(), 0);
+}
+
+class ShaderSource : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(directory_ / "shared"); }
+  void TearDown() override { fs::remove_all(directory_); }
+  void write(const std::string& name, const std::string& text) { std::ofstream(directory_ / name) << text; }
+  const fs::path directory_ =
+      fs::temp_directory_path() / ("strata-shaders-" + std::to_string(::getpid()));
+};
+
+TEST_F(ShaderSource, an_include_is_put_in_once_and_defines_follow_the_version) {
+  write("shared/a.h", "#pragma once\nconst int a = 1;\n");
+  write("shared/b.h", "#include \"shared/a.h\"\nconst int b = a;\n");
+  write("x.comp", "#version 450 core\n#include \"shared/a.h\"\n#include \"shared/b.h\"\nvoid main() {}\n");
+  const auto text = load_shader(directory_, "x.comp", {"N 3"});
+  ASSERT_TRUE(text) << text.error().detail;
+  EXPECT_TRUE(text->starts_with("#version 450 core\n#define N 3\n"));
+  EXPECT_EQ(text->find("const int a"), text->rfind("const int a"));
+  EXPECT_EQ(text->find("#pragma"), std::string::npos);
+}
+
+TEST_F(ShaderSource, a_missing_file_and_an_include_outside_the_folder_are_told) {
+  write("x.comp", "#version 450 core\n#include \"../secret\"\n");
+  EXPECT_FALSE(load_shader(directory_, "x.comp"));
+  const auto missing = load_shader(directory_, "no.comp");
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().detail.find("no.comp"), std::string::npos);
+}
+
+TEST_F(ShaderSource, a_shader_that_does_not_compile_is_told_with_its_file) {
+  auto context = EglContext::create({});
+  ASSERT_TRUE(context);
+  write("bad.comp", "#version 450 core\nlayout(local_size_x = 1) in;\nvoid main() { undeclared = 1; }\n");
+  const auto program = Program::load(directory_, {"bad.comp"});
+  ASSERT_FALSE(program);
+  EXPECT_NE(program.error().detail.find("bad.comp"), std::string::npos);
+  EXPECT_NE(program.error().detail.find("undeclared"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace strata::gl

@@ -1,0 +1,258 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "support/edit_oracle.h"
+
+namespace strata::test {
+namespace {
+
+constexpr int kResolution = 1024;
+
+int written_texels(const render::StrokeOutcome& outcome) {
+  int count = 0;
+  for (const auto& tile : outcome.tiles) count += tile.written.count();
+  return count;
+}
+
+void expect_as_oracle(TestRenderer& renderer, const Scene& scene, const StrokeBatch& stroke, int at_least) {
+  const auto model = renderer.add(scene);
+  const auto layer = renderer.add_layer(model, ValueType::u8, kResolution);
+  const auto outcome = renderer.paint(layer, stroke);
+  const std::vector<double> radii(stroke.path.size(), stroke.radius_px);
+  const auto expected = oracle_edit(scene, stroke, radii, renderer.depth(scene, stroke.camera));
+  const auto difference = compare(expected, outcome);
+  EXPECT_GE(expected.count, at_least) << "the stroke must hit something for the test to mean anything";
+  EXPECT_EQ(difference.surface, 0) << "of " << difference.compared;
+  EXPECT_LE(difference.undecided, 2 + difference.compared / 10'000);
+}
+
+TEST(Edit, a_dab_writes_the_texels_that_the_oracle_says) {
+  TestRenderer renderer;
+  const auto camera = perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 1280, 720);
+  expect_as_oracle(renderer, make_scene(bumpy_sphere(60), kResolution), dab(camera, 600, 350, 40), 500);
+}
+
+TEST(Edit, a_dab_with_an_orthographic_camera_writes_the_texels_that_the_oracle_says) {
+  TestRenderer renderer;
+  const auto camera = orthographic_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 1280, 720, 1.3);
+  expect_as_oracle(renderer, make_scene(bumpy_sphere(60), kResolution), dab(camera, 600, 350, 70), 1000);
+}
+
+TEST(Edit, a_square_tool_writes_the_texels_that_the_oracle_says) {
+  TestRenderer renderer;
+  auto stroke = dab(perspective_camera({2.4, 0.3, 1.1}, {0, 0, 0}, 1280, 720), 640, 380, 50);
+  stroke.shape = ToolShape::square;
+  expect_as_oracle(renderer, make_scene(bumpy_sphere(60), kResolution), stroke, 500);
+}
+
+TEST(Edit, a_swept_disc_over_a_silhouette_writes_the_texels_that_the_oracle_says) {
+  TestRenderer renderer;
+  auto stroke = dab(perspective_camera({0.4, -1.5, 2.4}, {0, 0, 0}, 1280, 720), 200, 100, 25);
+  stroke.path = {{200, 100}, {700, 350}, {720, 350}, {1000, 700}, {640, 200}};
+  expect_as_oracle(renderer, make_scene(bumpy_sphere(60), kResolution), stroke, 2000);
+}
+
+TEST(Edit, a_swept_square_writes_the_texels_that_the_oracle_says) {
+  TestRenderer renderer;
+  auto stroke = dab(perspective_camera({0.4, -1.5, 2.4}, {0, 0, 0}, 1280, 720), 200, 100, 25);
+  stroke.path = {{400, 300}, {700, 350}, {720, 500}};
+  stroke.shape = ToolShape::square;
+  expect_as_oracle(renderer, make_scene(bumpy_sphere(60), kResolution), stroke, 1000);
+}
+
+TEST(Edit, a_path_of_4096_points_writes_the_texels_that_the_oracle_says) {
+  TestRenderer renderer;
+  auto stroke = dab(orthographic_camera({0, 0, 3}, {0, 0, 0}, 640, 480, 0.7), 0, 0, 6);
+  stroke.path.clear();
+  for (int i = 0; i < 4096; ++i) stroke.path.emplace_back(320 + 150 * std::sin(i * 0.013), 240 + 110 * std::sin(i * 0.0097));
+  const auto scene = make_scene(flat_square(), 256);
+  const auto model = renderer.add(scene);
+  const auto outcome = renderer.paint(renderer.add_layer(model, ValueType::u8, 256), stroke);
+  const auto expected = oracle_edit(scene, stroke, std::vector<double>(4096, 6.0), renderer.depth(scene, stroke.camera));
+  EXPECT_EQ(compare(expected, outcome).surface, 0);
+  EXPECT_GT(expected.count, 5000);
+}
+
+TEST(Edit, painting_through_reaches_what_is_hidden) {
+  TestRenderer renderer;
+  auto stroke = dab(perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 1280, 720), 640, 360, 60);
+  stroke.through = true;
+  expect_as_oracle(renderer, make_scene(bumpy_sphere(60), kResolution), stroke, 2000);
+}
+
+TEST(Edit, an_occluded_texel_is_not_painted) {
+  TestRenderer renderer;
+  const auto scene = make_scene(folded_sheets(0.02), 512);
+  const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 512);
+  const auto camera = perspective_camera({0, 0, 2}, {0, 0, 0}, 800, 600);
+  const auto outcome = renderer.paint(layer, dab(camera, 400, 300, 100));
+  ASSERT_FALSE(outcome.tiles.empty());
+  int front = 0;
+  for (const auto& tile : outcome.tiles) {
+    EXPECT_LT(tile.address.x, 2) << "the hidden sheet lies in the right half of the atlas";
+    front += tile.written.count();
+  }
+  EXPECT_GT(front, 5000);
+  // From behind, the other sheet is the one that is seen.
+  for (const auto& tile : renderer.paint(layer, dab(perspective_camera({0, 0, -2}, {0, 0, 0}, 800, 600), 400, 300, 100)).tiles) {
+    EXPECT_GE(tile.address.x, 2);
+  }
+}
+
+TEST(Edit, a_stroke_at_3000_pixels_a_second_has_no_gap) {
+  TestRenderer renderer;
+  const auto scene = make_scene(flat_square(), 512);
+  const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 512);
+  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 1000, 1000, 0.5);
+  auto stroke = dab(camera, 100, 500, 4);
+  // Events at 60 Hz are 50 pixels apart.
+  stroke.path.clear();
+  for (int x = 100; x <= 900; x += 50) stroke.path.emplace_back(x, 500);
+  std::set<int> columns;
+  for (const auto& tile : renderer.paint(layer, stroke).tiles) {
+    for (int i = 0; i < kTexelsPerTile; ++i) {
+      if (tile.written.test(i)) columns.insert(tile.address.x * kTileSize + i % kTileSize);
+    }
+  }
+  ASSERT_FALSE(columns.empty());
+  EXPECT_EQ(*columns.rbegin() - *columns.begin() + 1, static_cast<int>(columns.size()));
+  EXPECT_GT(columns.size(), 360u);
+}
+
+TEST(Edit, a_radius_in_model_units_covers_that_area_at_any_distance) {
+  TestRenderer renderer;
+  const auto scene = make_scene(flat_square(), 1024);
+  const auto model = renderer.add(scene);
+  constexpr double kRadius = 0.2;
+  const double expected = 3.14159265358979 * kRadius * kRadius;
+  for (const auto& camera : {perspective_camera({0, 0, 2}, {0, 0, 0}, 800, 600), perspective_camera({0, 0, 5}, {0, 0, 0}, 800, 600),
+                             orthographic_camera({0, 0, 2}, {0, 0, 0}, 800, 600, 0.6)}) {
+    auto stroke = dab(camera, 400, 300, 0);
+    stroke.radius_world = kRadius;
+    const auto outcome = renderer.paint(renderer.add_layer(model, ValueType::u8, 1024), stroke);
+    const double area = written_texels(outcome) / (0.9 * 1024 * 0.9 * 1024);
+    EXPECT_NEAR(area, expected, expected * 0.01);
+  }
+}
+
+TEST(Edit, a_radius_in_model_units_grows_towards_the_eye_along_a_segment) {
+  TestRenderer renderer;
+  const auto scene = make_scene(flat_square(8), 1024);
+  const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 1024);
+  // Looking along the square at a slant: the lower end of the path is nearer.
+  const auto camera = perspective_camera({0, -1.2, 0.9}, {0, 0, 0}, 800, 600);
+  auto stroke = dab(camera, 400, 250, 0);
+  stroke.path = {{400, 220}, {400, 420}};
+  stroke.radius_world = 0.08;
+  const auto outcome = renderer.paint(layer, stroke);
+  const auto depth = renderer.depth(scene, camera);
+  std::vector<double> radii;
+  for (const auto& p : stroke.path) {
+    const double d = depth[static_cast<std::size_t>(599 - int(p.y)) * 800 + std::size_t(p.x)];
+    const double ndc = 2 * d - 1, near = 0.1, far = 20;
+    const double w = 2 * near * far / (far + near - ndc * (far - near));
+    radii.push_back(0.08 * 300 / std::tan(glm::radians(22.5)) / w);
+  }
+  EXPECT_GT(radii[1], radii[0] * 1.1);
+  EXPECT_EQ(compare(oracle_edit(scene, stroke, radii, depth), outcome).surface, 0);
+}
+
+TEST(Edit, erasing_clears_value_and_flag_and_tells_what_it_touched) {
+  TestRenderer renderer;
+  const auto scene = make_scene(flat_square(), 512);
+  const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u16, 512);
+  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 512, 512, 0.5);
+  const auto painted = renderer.paint(layer, dab(camera, 256, 256, 100, 513));
+  auto eraser = dab(camera, 256, 256, 50);
+  eraser.erase = true;
+  const auto erased = renderer.paint(layer, eraser);
+  ASSERT_FALSE(erased.tiles.empty());
+  for (const auto& tile : erased.tiles) {
+    for (int i = 0; i < kTexelsPerTile; ++i) {
+      if (!tile.written.test(i)) continue;
+      EXPECT_FALSE(tile.after.valid.test(i));
+      EXPECT_EQ(tile.after.bits(i), 0u);
+    }
+  }
+  EXPECT_LT(written_texels(erased), written_texels(painted));
+}
+
+TEST(Edit, erasing_an_empty_layer_counts_texels_as_written_and_makes_no_page) {
+  TestRenderer renderer;
+  const auto scene = make_scene(flat_square(), 512);
+  const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 512);
+  const auto before = renderer->layer_bytes_used(layer);
+  auto eraser = dab(orthographic_camera({0, 0, 2}, {0, 0, 0}, 512, 512, 0.5), 256, 256, 50);
+  eraser.erase = true;
+  const auto outcome = renderer.paint(layer, eraser);
+  EXPECT_GT(written_texels(outcome), 5000);
+  for (const auto& tile : outcome.tiles) EXPECT_FALSE(tile.after.valid.any());
+  EXPECT_EQ(renderer->layer_bytes_used(layer), before);
+}
+
+TEST(Edit, gutter_texels_follow_their_owner) {
+  TestRenderer renderer;
+  const auto scene = make_scene(bumpy_sphere(40), kResolution);
+  const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, kResolution);
+  const auto outcome = renderer.paint(layer, dab(perspective_camera({2.0, 2.0, 2.0}, {0, 0, 0}, 1280, 720), 640, 360, 120));
+  // A gutter texel has the packed position of its owner, so both must have the same fate.
+  const auto& map = *scene.map;
+  std::map<std::uint64_t, bool> written_at;
+  std::vector<std::pair<std::uint64_t, bool>> gutter;
+  for (const auto& tile : outcome.tiles) {
+    for (int i = 0; i < kTexelsPerTile; ++i) {
+      const int x = tile.address.x * kTileSize + i % kTileSize, y = tile.address.y * kTileSize + i / kTileSize;
+      const auto slot = map.slot_of_block[static_cast<std::size_t>(y / 8 * map.blocks_per_side + x / 8)];
+      if (slot == mesh::kNoSlot) continue;
+      const int in_block = y % 8 * 8 + x % 8;
+      const auto position = map.packed_position[slot * 64 + static_cast<std::uint32_t>(in_block)];
+      if (position == mesh::kNoPosition) continue;
+      if (map.surface_mask[slot] >> in_block & 1) written_at[position] = tile.written.test(i);
+      else gutter.emplace_back(position, tile.written.test(i));
+    }
+  }
+  int followed = 0;
+  for (const auto& [position, written] : gutter) {
+    const auto owner = written_at.find(position);
+    if (owner == written_at.end()) continue;  // in a tile that the stroke did not reach
+    EXPECT_EQ(written, owner->second);
+    followed += written ? 1 : 0;
+  }
+  EXPECT_GT(followed, 50) << "the stroke must lie over seams";
+}
+
+TEST(Edit, the_written_box_holds_the_painted_surface_and_little_more) {
+  TestRenderer renderer;
+  const auto scene = make_scene(flat_square(16), 1024);
+  const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 1024);
+  const auto outcome = renderer.paint(layer, dab(orthographic_camera({0, 0, 2}, {0, 0, 0}, 1000, 1000, 0.5), 500, 500, 100));
+  EXPECT_NEAR(outcome.written_min.x, -0.1, 0.015);
+  EXPECT_NEAR(outcome.written_max.y, 0.1, 0.015);
+}
+
+TEST(Edit, strokes_that_cannot_be_painted_are_refused_with_a_reason) {
+  TestRenderer renderer;
+  const auto scene = make_scene(flat_square(), 256);
+  const auto model = renderer.add(scene);
+  const auto layer = renderer.add_layer(model, ValueType::u8, 256);
+  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 100, 100, 0.5);
+  const auto refused = [&](render::LayerHandle target, const StrokeBatch& stroke, int status) {
+    const auto result = await<render::StrokeOutcome>([&](auto done) { renderer->paint(target, stroke, std::move(done)); });
+    ASSERT_FALSE(result.has_value());
+    EXPECT_EQ(result.error().status, status);
+    EXPECT_FALSE(result.error().detail.empty());
+  };
+  auto stroke = dab(camera, 50, 50, 10);
+  refused(layer + 100, stroke, 404);
+  refused(renderer.add_layer(model, ValueType::u8, 512), stroke, 409);  // no surface map of 512
+  stroke.path.clear();
+  refused(layer, stroke, 422);
+  refused(layer, dab(camera, std::nan(""), 0, 10), 422);
+  refused(layer, dab(camera, 50, 50, 0), 422);
+  refused(layer, dab({glm::dmat4(0.0), camera.projection, 100, 100}, 50, 50, 10), 422);
+}
+
+}  // namespace
+}  // namespace strata::test

@@ -1,0 +1,168 @@
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <random>
+
+#include "support/gl_scene.h"
+
+namespace strata::test {
+namespace {
+
+std::shared_ptr<TileData> random_tile(ValueType type, unsigned seed) {
+  std::mt19937 random(seed);
+  auto tile = std::make_shared<TileData>(type);
+  for (int i = 0; i < kTexelsPerTile; ++i) {
+    const std::uint32_t bits = static_cast<std::uint32_t>(random());
+    if (random() % 3 != 0) tile->write(i, bits);
+  }
+  return tile;
+}
+
+class EveryType : public testing::TestWithParam<ValueType> {};
+
+TEST_P(EveryType, tiles_come_back_as_they_were_written_and_paint_keeps_bits) {
+  TestRenderer renderer;
+  const auto scene = make_scene(flat_square(), 512);
+  const auto layer = renderer.add_layer(renderer.add(scene), GetParam(), 512);
+  const int bytes = bytes_per_texel(GetParam());
+  std::vector<render::TileUpload> uploads;
+  for (std::uint16_t y = 0; y < 4; ++y)
+    for (std::uint16_t x = 0; x < 4; ++x) uploads.push_back({{x, y}, random_tile(GetParam(), x * 31u + y)});
+  renderer.write(layer, uploads);
+
+  const std::uint32_t value = bytes == 4 ? 0xfedcba98u : bytes == 2 ? 0xfedcu : 0xfeu;
+  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 512, 512, 0.5);
+  const auto outcome = renderer.paint(layer, dab(camera, 256, 256, 150, value));
+  ASSERT_GE(outcome.tiles.size(), 4u);
+  for (const auto& tile : outcome.tiles) {
+    TileData expected = *uploads[tile.address.y * 4u + tile.address.x].data;
+    for (int i = 0; i < kTexelsPerTile; ++i) {
+      if (tile.written.test(i)) expected.write(i, value);
+    }
+    EXPECT_EQ(tile.after, expected);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Layers, EveryType,
+                         testing::Values(ValueType::u8, ValueType::u16, ValueType::u32, ValueType::i8, ValueType::i16,
+                                         ValueType::i32, ValueType::f16, ValueType::f32),
+                         [](const auto& type) { return std::string(name(type.param)); });
+
+TEST(Layers, an_empty_layer_of_8192_costs_less_than_a_mebibyte) {
+  TestRenderer renderer;
+  const auto model = renderer.add(make_scene(flat_square(), 256));
+  const auto before = renderer->gpu_bytes_used();
+  const auto layer = renderer.add_layer(model, ValueType::f32, 8192);
+  EXPECT_LT(renderer->gpu_bytes_used() - before, 1u << 20);
+  EXPECT_LT(renderer->layer_bytes_used(layer), 1u << 20);
+  EXPECT_GT(renderer->layer_bytes_used(layer), 0u);
+}
+
+TEST(Layers, memory_grows_with_what_is_painted_and_is_freed_when_erased) {
+  TestRenderer renderer;
+  const auto scene = make_scene(flat_square(), 1024);
+  const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u32, 1024);
+  const auto empty = renderer->layer_bytes_used(layer);
+  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 1000, 1000, 0.5);
+  const auto painted = renderer.paint(layer, dab(camera, 300, 300, 60, 9));
+  const std::uint64_t page = kTexelsPerTile * 5;
+  EXPECT_EQ(renderer->layer_bytes_used(layer), empty + painted.tiles.size() * page);
+  auto eraser = dab(camera, 300, 300, 70);
+  eraser.erase = true;
+  renderer.paint(layer, eraser);
+  EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
+  // Pages of the erased paint serve again, and hold nothing of it.
+  const auto pool = renderer->gpu_bytes_used();
+  const auto again = renderer.paint(layer, dab(camera, 700, 700, 60, 9));
+  EXPECT_EQ(renderer->gpu_bytes_used(), pool);
+  for (const auto& tile : again.tiles) {
+    for (int i = 0; i < kTexelsPerTile; ++i) ASSERT_EQ(tile.after.valid.test(i), tile.written.test(i));
+  }
+}
+
+TEST(Layers, an_empty_tile_frees_its_page) {
+  TestRenderer renderer;
+  const auto layer = renderer.add_layer(renderer.add(make_scene(flat_square(), 512)), ValueType::u8, 512);
+  const auto empty = renderer->layer_bytes_used(layer);
+  renderer.write(layer, {{{1, 1}, random_tile(ValueType::u8, 1)}, {{2, 1}, random_tile(ValueType::u8, 2)}});
+  EXPECT_EQ(renderer->layer_bytes_used(layer), empty + 2u * kTexelsPerTile * 2);
+  renderer.write(layer, {{{1, 1}, nullptr}, {{2, 1}, std::make_shared<TileData>(ValueType::u8)}});
+  EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
+}
+
+TEST(Layers, removing_a_layer_or_a_model_gives_its_memory_back) {
+  TestRenderer renderer;
+  const auto scene = make_scene(flat_square(), 512);
+  const auto start = renderer->gpu_bytes_used();
+  const auto model = renderer.add(scene);
+  const auto layer = renderer.add_layer(model, ValueType::u8, 512);
+  renderer.write(layer, {{{1, 1}, random_tile(ValueType::u8, 1)}});
+  renderer->remove_layer(layer);
+  renderer->run_on_gpu_thread_for_test([] {});
+  EXPECT_EQ(renderer->layer_bytes_used(layer), 0u);
+  const auto with_pool = renderer->gpu_bytes_used();
+  renderer->remove_model(model);
+  renderer->run_on_gpu_thread_for_test([] {});
+  EXPECT_LT(renderer->gpu_bytes_used(), with_pool);
+  EXPECT_GE(renderer->gpu_bytes_used(), start);
+  const auto gone = await<render::LayerHandle>([&](auto done) { renderer->add_layer(model, ValueType::u8, 512, std::move(done)); });
+  ASSERT_FALSE(gone);
+  EXPECT_EQ(gone.error().status, 404);
+}
+
+TEST(Layers, painting_beyond_the_memory_budget_is_refused_and_changes_nothing) {
+  render::RendererOptions options;
+  options.gpu_memory_bytes = 12u << 20;  // no chunk of four-byte pages fits
+  TestRenderer renderer(options);
+  const auto scene = make_scene(flat_square(), 256);
+  const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u32, 256);
+  const auto empty = renderer->layer_bytes_used(layer);
+  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 200, 200, 0.5);
+  const auto refused =
+      await<render::StrokeOutcome>([&](auto done) { renderer->paint(layer, dab(camera, 100, 100, 40), std::move(done)); });
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().status, 503);
+  EXPECT_NE(refused.error().detail.find("budget of 12 MiB is used up"), std::string::npos) << refused.error().detail;
+  EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
+  const auto tile = await<void>([&](auto done) {
+    renderer->write_tiles(layer, {{{0, 0}, random_tile(ValueType::u32, 1)}}, std::move(done));
+  });
+  EXPECT_FALSE(tile);
+}
+
+TEST(Layers, tiles_of_another_type_or_place_are_refused) {
+  TestRenderer renderer;
+  const auto layer = renderer.add_layer(renderer.add(make_scene(flat_square(), 256)), ValueType::u16, 256);
+  for (const render::TileUpload& wrong : {render::TileUpload{{2, 0}, random_tile(ValueType::u16, 1)},
+                                          render::TileUpload{{0, 0}, random_tile(ValueType::u8, 1)}}) {
+    const auto result = await<void>([&](auto done) { renderer->write_tiles(layer, {wrong}, std::move(done)); });
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().status, 422);
+  }
+}
+
+TEST(Layers, pages_that_fill_several_chunks_keep_their_content) {
+  TestRenderer renderer;
+  // 1024 tiles of 4096² fill the chunks of 1, 2 and part of 4 slices.
+  const auto scene = make_scene(flat_square(), 4096);
+  const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 4096);
+  std::vector<render::TileUpload> uploads;
+  for (std::uint16_t y = 0; y < 32; ++y)
+    for (std::uint16_t x = 0; x < 32; ++x) uploads.push_back({{x, y}, random_tile(ValueType::u8, y * 32u + x)});
+  renderer.write(layer, uploads);
+  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 512, 512, 0.5);
+  auto stroke = dab(camera, 0, 0, 3, 200);
+  stroke.path = {{40, 40}, {470, 470}, {470, 40}};
+  const auto outcome = renderer.paint(layer, stroke);
+  ASSERT_GT(outcome.tiles.size(), 30u);
+  for (const auto& tile : outcome.tiles) {
+    TileData expected = *uploads[tile.address.y * 32u + tile.address.x].data;
+    for (int i = 0; i < kTexelsPerTile; ++i) {
+      if (tile.written.test(i)) expected.write(i, 200);
+    }
+    ASSERT_EQ(tile.after, expected);
+  }
+}
+
+}  // namespace
+}  // namespace strata::test

@@ -1,0 +1,219 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "support/gl_scene.h"
+
+namespace strata::test {
+namespace {
+
+constexpr int kSize = 256;
+
+// A flat square that fills the picture: pixel (x, y) shows texel 0.05 … 0.95 of the atlas. One renderer with layers that are
+// filled everywhere with one value make every pixel a sample of the palette.
+class Shade : public testing::Test {
+ protected:
+  Shade() : scene_(make_scene(flat_square(), 256)), model_(renderer_.add(scene_)), view_(renderer_.add_view(model_)) {
+    request_.view = view_;
+    request_.camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, kSize, kSize, 0.5);
+    request_.width = request_.height = kSize;
+  }
+  render::LayerHandle filled_layer(ValueType type, std::uint32_t bits) {
+    const auto layer = renderer_.add_layer(model_, type, 256);
+    auto tile = std::make_shared<TileData>(type);
+    for (int i = 0; i < kTexelsPerTile; ++i) tile->write(i, bits);
+    std::vector<render::TileUpload> tiles;
+    for (std::uint16_t y = 0; y < 2; ++y)
+      for (std::uint16_t x = 0; x < 2; ++x) tiles.push_back({{x, y}, tile});
+    renderer_.write(layer, tiles);
+    return layer;
+  }
+  static std::array<double, 3> pixel(const render::Frame& frame, int x, int y) {
+    const auto* p = &frame.pixels[4 * static_cast<std::size_t>((y - frame.rect.y) * frame.rect.width + x - frame.rect.x)];
+    return {double(p[0]), double(p[1]), double(p[2])};
+  }
+  // Light on the square, from a layer that is plain white.
+  double light() {
+    auto white = std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, {255, 255, 255, 255}, {}}}, {}});
+    request_.layers = {{filled_layer(ValueType::u8, 1), white, 1}};
+    return pixel(renderer_.draw(request_), 128, 128)[0] / 255;
+  }
+  void expect_color(const std::vector<render::LayerStyle>& layers, const std::array<double, 3>& unlit, double lit) {
+    request_.layers = layers;
+    const auto got = pixel(renderer_.draw(request_), 100, 90);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(got[i], unlit[i] * lit, 2.0) << "channel " << i;
+  }
+  TestRenderer renderer_;
+  Scene scene_;
+  render::ModelHandle model_;
+  render::ViewHandle view_;
+  render::FrameRequest request_;
+};
+
+std::array<double, 3> rgb(const Rgba& c) { return {double(c[0]), double(c[1]), double(c[2])}; }
+
+TEST_F(Shade, every_type_is_coloured_as_the_palette_says) {
+  const double lit = light();
+  EXPECT_GT(lit, 0.5);
+  const Palette linear{PaletteMode::linear, -100, 100, {{-100, {255, 0, 0, 255}, {}}, {0, {0, 255, 0, 255}, {}}, {100, {0, 0, 255, 255}, {}}}, {}};
+  Palette step = linear;
+  step.mode = PaletteMode::step;
+  Palette keys = linear;
+  keys.mode = PaletteMode::categorical;
+  for (const auto type : {ValueType::u8, ValueType::u16, ValueType::u32, ValueType::i8, ValueType::i16, ValueType::i32,
+                          ValueType::f16, ValueType::f32}) {
+    for (const double value : {-120.0, -100.0, -30.0, 0.0, 30.0, 99.0, 100.0, 120.0}) {
+      const auto bits = encode_value(type, value);
+      if (!bits) continue;
+      const auto layer = filled_layer(type, *bits);
+      for (const Palette& palette : {linear, step, keys}) {
+        SCOPED_TRACE(std::string(name(type)) + " " + std::to_string(value) + " mode " + std::to_string(int(palette.mode)));
+        expect_color({{layer, std::make_shared<Palette>(palette), 1}}, rgb(color_of(palette, value)), lit);
+      }
+      renderer_->remove_layer(layer);
+    }
+  }
+}
+
+TEST_F(Shade, a_step_changes_colour_exactly_at_its_point) {
+  const double lit = light();
+  const Palette step{PaletteMode::step, 0, 255, {{0, {250, 0, 0, 255}, {}}, {3, {0, 250, 0, 255}, {}}, {255, {0, 0, 250, 255}, {}}}, {}};
+  for (const std::uint32_t value : {0u, 2u, 3u, 4u, 254u, 255u}) {
+    SCOPED_TRACE(value);
+    expect_color({{filled_layer(ValueType::u8, value), std::make_shared<Palette>(step), 1}}, rgb(color_of(step, value)), lit);
+  }
+}
+
+TEST_F(Shade, keys_that_are_not_listed_get_the_generated_colour) {
+  const double lit = light();
+  const Palette keys{PaletteMode::categorical, 0, 1, {{70000, {10, 200, 30, 255}, {}}}, {}};
+  for (const std::uint32_t key : {1u, 2u, 69999u, 70000u, 4000000000u}) {
+    SCOPED_TRACE(key);
+    expect_color({{filled_layer(ValueType::u32, key), std::make_shared<Palette>(keys), 1}}, rgb(color_of(keys, key)), lit);
+  }
+}
+
+TEST_F(Shade, layers_cover_each_other_bottom_to_top_by_opacity_and_palette_alpha) {
+  const double lit = light();
+  const auto plain = [](Rgba color) { return std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, color, {}}}, {}}); };
+  const auto lower = filled_layer(ValueType::u8, 1), upper = filled_layer(ValueType::u16, 1);
+  const auto red = plain({255, 0, 0, 255}), green = plain({0, 255, 0, 128});
+  expect_color({{lower, red, 1}, {upper, green, 1}}, {255 * (1 - 128 / 255.0), 128, 0}, lit);
+  expect_color({{upper, green, 1}, {lower, red, 1}}, {255, 0, 0}, lit);
+  expect_color({{lower, red, 1}, {upper, green, 0.5f}}, {255 * (1 - 64 / 255.0), 64, 0}, lit);
+}
+
+TEST_F(Shade, many_layers_of_every_width_are_drawn_in_their_order) {
+  const double lit = light();
+  std::vector<render::LayerStyle> layers;
+  std::array<double, 3> expected{0, 0, 0};
+  for (int i = 0; i < 24; ++i) {
+    const auto type = static_cast<ValueType>(i % 8);
+    const Rgba color{static_cast<std::uint8_t>(40 * (i % 6)), static_cast<std::uint8_t>(60 * (i % 4)), static_cast<std::uint8_t>(255 - 10 * i), 255};
+    auto palette = std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, color, {}}}, {}});
+    layers.push_back({filled_layer(type, 1), palette, i == 0 ? 1.0f : 0.3f});
+    for (std::size_t c = 0; c < 3; ++c) expected[c] = i == 0 ? color[c] : expected[c] * 0.7 + color[c] * 0.3;
+  }
+  expect_color(layers, expected, lit);
+}
+
+TEST_F(Shade, the_background_is_a_gradient_from_top_to_bottom) {
+  request_.camera = orthographic_camera({0, 0, 2}, {5, 0, 0}, kSize, kSize, 0.5);
+  request_.background_top = {250, 0, 0, 255};
+  request_.background_bottom = {0, 0, 250, 255};
+  const auto frame = renderer_.draw(request_);
+  EXPECT_NEAR(pixel(frame, 0, 0)[0], 250, 2);
+  EXPECT_NEAR(pixel(frame, 0, 255)[2], 250, 2);
+  EXPECT_NEAR(pixel(frame, 128, 128)[0], 125, 3);
+}
+
+TEST_F(Shade, the_top_row_of_the_picture_is_the_top_of_the_view) {
+  request_.camera = orthographic_camera({0, 0.5, 2}, {0, 0.5, 0}, kSize, kSize, 0.5);  // the square fills the lower half
+  const auto frame = renderer_.draw(request_);
+  EXPECT_EQ(pixel(frame, 128, 20), pixel(frame, 10, 20));
+  EXPECT_NE(pixel(frame, 128, 240)[0], pixel(frame, 128, 20)[0]);
+}
+
+TEST_F(Shade, a_reshaded_rectangle_equals_a_full_redraw) {
+  const auto scene = make_scene(bumpy_sphere(30), 512);
+  const auto model = renderer_.add(scene);
+  const auto layer = renderer_.add_layer(model, ValueType::u8, 512);
+  auto palette = std::make_shared<Palette>(default_palette(ValueType::u8, false));
+  render::FrameRequest request;
+  request.view = renderer_.add_view(model);
+  request.camera = perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 640, 480);
+  request.width = 640, request.height = 480;
+  request.layers = {{layer, palette, 0.8f}};
+  auto picture = renderer_.draw(request);
+  ASSERT_EQ(picture.rect, (render::PixelRect{0, 0, 640, 480}));
+  for (int i = 0; i < 5; ++i) {
+    const auto outcome = renderer_.paint(layer, dab(request.camera, 250 + 40 * i, 200 + 30 * i, 20, 20u * static_cast<unsigned>(i)));
+    auto partial_request = request;
+    partial_request.changed = {{outcome.written_min, outcome.written_max}};
+    const auto part = renderer_.draw(partial_request);
+    ASSERT_LT(part.rect.width * part.rect.height, 640 * 480 / 8);
+    EXPECT_EQ(part.rect.x % 16, 0);
+    EXPECT_EQ(part.rect.width % 16, 0);
+    for (int y = 0; y < part.rect.height; ++y) {
+      std::copy_n(&part.pixels[static_cast<std::size_t>(4 * y * part.rect.width)], 4 * part.rect.width,
+                  &picture.pixels[static_cast<std::size_t>(4 * ((part.rect.y + y) * 640 + part.rect.x))]);
+    }
+  }
+  EXPECT_EQ(picture.pixels, renderer_.draw(request).pixels);
+  // Nothing changed: nothing is sent. Another style: everything is.
+  auto nothing = request;
+  nothing.changed.emplace();
+  EXPECT_EQ(renderer_.draw(nothing).rect.width, 0);
+  nothing.layers[0].opacity = 0.5f;
+  EXPECT_EQ(renderer_.draw(nothing).rect.width, 640);
+}
+
+TEST_F(Shade, a_picture_may_have_another_size_than_the_cameras_window) {
+  request_.width = 96, request_.height = 64;
+  const auto frame = renderer_.draw(request_);
+  EXPECT_EQ(frame.pixels.size(), 4u * 96 * 64);
+  EXPECT_EQ(frame.rect, (render::PixelRect{0, 0, 96, 64}));
+}
+
+TEST_F(Shade, views_give_their_buffers_up_when_memory_runs_out_and_draw_again) {
+  render::RendererOptions options;
+  options.gpu_memory_bytes = 14u << 20;
+  TestRenderer renderer(options);
+  const auto model = renderer.add(scene_);
+  std::vector<render::ViewHandle> views;
+  for (int i = 0; i < 4; ++i) views.push_back(renderer.add_view(model));
+  request_.width = request_.height = 512;  // 4 MiB a view
+  for (int round = 0; round < 2; ++round) {
+    for (const auto view : views) {
+      request_.view = view;
+      EXPECT_EQ(renderer.draw(request_).rect.width, 512);
+      EXPECT_LE(renderer->gpu_bytes_used(), options.gpu_memory_bytes);
+    }
+  }
+}
+
+TEST_F(Shade, requests_that_cannot_be_drawn_are_refused_with_a_reason) {
+  const auto refused = [&](const render::FrameRequest& request, int status) {
+    const auto result = await<render::Frame>([&](auto done) { renderer_->draw(request, std::move(done)); });
+    ASSERT_FALSE(result.has_value());
+    EXPECT_EQ(result.error().status, status) << result.error().detail;
+  };
+  auto request = request_;
+  request.view += 1000;
+  refused(request, 404);
+  request = request_;
+  request.width = 0;
+  refused(request, 422);
+  request = request_;
+  request.layers = {{view_ + 1000, std::make_shared<Palette>(default_palette(ValueType::u8, true)), 1}};
+  refused(request, 404);
+  request.layers = {{filled_layer(ValueType::u8, 1), nullptr, 1}};
+  refused(request, 422);
+  EXPECT_EQ(renderer_.draw(request_).rect.width, kSize) << "a refused request leaves the view usable";
+}
+
+}  // namespace
+}  // namespace strata::test

@@ -1,0 +1,287 @@
+#include "stream/viewer.h"
+
+#include <gtest/gtest.h>
+#include <turbojpeg.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstdlib>
+#include <mutex>
+
+#include "protocol/frame_header.h"
+#include "support/gl_scene.h"
+
+namespace strata::stream {
+namespace {
+
+using protocol::FrameHeader;
+
+constexpr int kWidth = 320, kHeight = 240, kResolution = 256;
+constexpr auto kPatience = std::chrono::seconds(120);
+
+std::vector<std::uint8_t> decode_jpeg(std::span<const std::uint8_t> jpeg, int& width, int& height) {
+  tjhandle handle = tjInitDecompress();
+  EXPECT_EQ(tjDecompressHeader(handle, const_cast<unsigned char*>(jpeg.data()), jpeg.size(), &width, &height), 0);
+  std::vector<std::uint8_t> rgba(std::size_t(width) * height * 4);
+  EXPECT_EQ(tjDecompress2(handle, jpeg.data(), jpeg.size(), rgba.data(), width, 0, height, TJPF_RGBA, 0), 0);
+  tjDestroy(handle);
+  return rgba;
+}
+
+// A browser: keeps the headers, and draws every rectangle into its picture.
+class Client {
+ public:
+  Viewer::Send send() {
+    return [this](FrameBytes message) {
+      std::lock_guard lock(mutex_);
+      const auto header = protocol::decode_frame_header(*message);
+      ASSERT_TRUE(header) << header.error().detail;
+      draw(*header, std::span(*message).subspan(protocol::kFrameHeaderBytes));
+      frames_.push_back(*header);
+      changed_.notify_all();
+      if (viewer_ && acks_) viewer_->ack(header->frame);
+    };
+  }
+  void attach(std::shared_ptr<Viewer> viewer, bool acks) {
+    std::lock_guard lock(mutex_);
+    viewer_ = std::move(viewer);
+    acks_ = acks;
+    if (acks && !frames_.empty()) viewer_->ack(frames_.back().frame);
+  }
+  // Waits for a frame, from number `after` on, that fits.
+  template <class Fits>
+  FrameHeader wait_for(const Fits& fits, std::uint32_t after = 0) {
+    std::unique_lock lock(mutex_);
+    FrameHeader found;
+    const bool came = changed_.wait_for(lock, kPatience, [&] {
+      return std::any_of(frames_.begin(), frames_.end(), [&](const FrameHeader& header) {
+        found = header;
+        return header.frame > after && fits(header);
+      });
+    });
+    EXPECT_TRUE(came) << "no such frame came";
+    return found;
+  }
+  std::vector<FrameHeader> frames() {
+    std::lock_guard lock(mutex_);
+    return frames_;
+  }
+  std::vector<std::uint8_t> picture() {
+    std::lock_guard lock(mutex_);
+    return picture_;
+  }
+
+ private:
+  void draw(const FrameHeader& header, std::span<const std::uint8_t> jpeg) {
+    int width = 0, height = 0;
+    const auto rgba = decode_jpeg(jpeg, width, height);
+    ASSERT_EQ(std::uint32_t(width), header.width);
+    ASSERT_EQ(std::uint32_t(height), header.height);
+    const std::size_t row_bytes = std::size_t(header.full_width) * 4;
+    if (header.keyframe) picture_.assign(row_bytes * header.full_height, 0);
+    ASSERT_EQ(picture_.size(), row_bytes * header.full_height) << "the first frame is the whole picture";
+    for (int y = 0; y < height; ++y)
+      std::copy_n(rgba.begin() + std::ptrdiff_t(y) * width * 4, width * 4,
+                  picture_.begin() + std::ptrdiff_t((header.y + y) * row_bytes + header.x * 4));
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<FrameHeader> frames_;
+  std::vector<std::uint8_t> picture_;
+  std::shared_ptr<Viewer> viewer_;
+  bool acks_ = false;
+};
+
+class StreamViewer : public ::testing::Test {
+ protected:
+  StreamViewer() : scene_(test::make_scene(test::bumpy_sphere(12), kResolution)) { load(); }
+
+  void load() {
+    model_ = renderer_.add(scene_);
+    layer_ = renderer_.add_layer(model_, ValueType::u8, kResolution);
+  }
+  std::vector<render::LayerStyle> styles(float opacity = 1) const {
+    return {{layer_, std::make_shared<const Palette>(default_palette(ValueType::u8, true)), opacity}};
+  }
+  static Camera camera(double x) { return test::perspective_camera({x, 0.5, 3}, {0, 0, 0}, kWidth, kHeight); }
+  std::shared_ptr<Viewer> viewer(Client& client, Viewer::Options options = {}, bool acks = true) {
+    auto made = Viewer::create({&renderer_.get(), &encoder_}, model_, options, client.send());
+    made->set_layers(styles());
+    client.attach(made, acks);
+    viewers_.push_back(made);
+    clients_.push_back(&client);
+    return made;
+  }
+  // Paints a dab and tells the viewer, as a room does.
+  void paint(Viewer& viewer, std::int64_t sequence, double x, double y, std::uint32_t value = 2) {
+    const auto outcome = renderer_.paint(layer_, test::dab(camera(0), x, y, 12, value));
+    ASSERT_FALSE(outcome.tiles.empty());
+    viewer.changed({outcome.written_min, outcome.written_max}, sequence);
+  }
+  // What the client would see if it asked for the same picture anew.
+  std::vector<std::uint8_t> fresh_picture(const Camera& seen) {
+    render::FrameRequest request;
+    request.view = renderer_.add_view(model_);
+    request.camera = seen;
+    request.width = seen.width;
+    request.height = seen.height;
+    request.layers = styles();
+    auto pixels = renderer_.draw(request).pixels;
+    renderer_->remove_view(request.view);
+    return pixels;
+  }
+  static double mean_difference(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+    if (a.size() != b.size() || a.empty()) return 1e9;
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      if (i % 4 != 3) sum += std::abs(int(a[i]) - int(b[i]));
+    return sum / (double(a.size()) * 3 / 4);
+  }
+  void TearDown() override {
+    for (auto& one : viewers_) one->close();
+    for (auto* client : clients_) client->attach(nullptr, false);
+    viewers_.clear();
+  }
+
+  test::TestRenderer renderer_;
+  JpegPool encoder_{2};
+  test::Scene scene_;
+  render::ModelHandle model_ = 0;
+  render::LayerHandle layer_ = 0;
+  std::vector<std::shared_ptr<Viewer>> viewers_;
+  std::vector<Client*> clients_;
+};
+
+TEST_F(StreamViewer, a_still_camera_gives_one_whole_picture_of_full_quality) {
+  Client client;
+  Viewer::Options options;
+  options.view_id = 3;
+  options.sequence = 17;
+  auto view = viewer(client, options);
+  view->set_camera(5, camera(0), false);
+  const FrameHeader frame = client.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 5; });
+  EXPECT_TRUE(frame.keyframe);
+  EXPECT_TRUE(frame.last);
+  EXPECT_EQ(frame.view_id, 3u);
+  EXPECT_EQ(frame.scene_sequence, 17u);
+  EXPECT_EQ(frame.full_width, std::uint32_t(kWidth));
+  EXPECT_EQ(frame.full_height, std::uint32_t(kHeight));
+  EXPECT_LT(mean_difference(client.picture(), fresh_picture(camera(0))), 1.5);
+  const auto stats = view->stats();
+  EXPECT_GE(stats.frames, 1u);
+  EXPECT_GT(stats.bytes, protocol::kFrameHeaderBytes);
+}
+
+TEST_F(StreamViewer, a_window_beyond_the_limit_is_drawn_smaller_in_the_same_shape) {
+  Client client;
+  Viewer::Options options;
+  options.max_width = 200;
+  options.max_height = 90;
+  viewer(client, options)->set_camera(1, camera(0), false);
+  const FrameHeader frame = client.wait_for([](const FrameHeader& h) { return h.still; });
+  EXPECT_EQ(frame.full_width, 120u);
+  EXPECT_EQ(frame.full_height, 90u);
+}
+
+TEST_F(StreamViewer, after_moving_frames_a_picture_of_full_quality_comes_by_itself) {
+  Client client;
+  auto view = viewer(client);
+  for (int i = 1; i <= 8; ++i) view->set_camera(i, camera(0.1 * i), true);
+  const FrameHeader still = client.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 8; });
+  EXPECT_TRUE(still.keyframe);
+  EXPECT_LT(mean_difference(client.picture(), fresh_picture(camera(0.8))), 1.5);
+}
+
+TEST_F(StreamViewer, an_edit_sends_only_its_rectangle_and_the_picture_is_whole_again) {
+  Client client;
+  auto view = viewer(client);
+  view->set_camera(1, camera(0), false);
+  const auto first = client.wait_for([](const FrameHeader& h) { return h.still; });
+  // A change of layers may have given a second whole picture: parts are told by their sequence.
+  paint(*view, 41, 150, 110);
+  const FrameHeader part = client.wait_for([](const FrameHeader& h) { return h.scene_sequence == 41; }, first.frame);
+  EXPECT_FALSE(part.keyframe);
+  EXPECT_TRUE(part.still);
+  EXPECT_LT(part.width * part.height, std::uint32_t(kWidth * kHeight / 2));
+  EXPECT_EQ(part.x % 16, 0u);
+  EXPECT_EQ(part.y % 16, 0u);
+  EXPECT_LT(mean_difference(client.picture(), fresh_picture(camera(0))), 1.5);
+}
+
+TEST_F(StreamViewer, a_client_that_does_not_acknowledge_gets_no_more_than_its_window_and_misses_nothing_in_the_end) {
+  Client silent, lively;
+  Viewer::Options options;
+  options.window = 2;
+  auto slow = viewer(silent, options, false);
+  auto quick = viewer(lively, options, true);
+  slow->set_camera(1, camera(0), false);
+  quick->set_camera(1, camera(0), false);
+  silent.wait_for([](const FrameHeader& h) { return h.still; });
+  for (int i = 1; i <= 12; ++i) {
+    slow->set_camera(1 + i, camera(0.05 * i), false);
+    quick->set_camera(1 + i, camera(0.05 * i), false);
+    paint(*slow, i, 60 + 15 * i, 120);
+    quick->changed_everywhere(i);
+  }
+  lively.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 13 && h.scene_sequence == 12; });
+  EXPECT_LE(silent.frames().size(), 2u);
+  EXPECT_GT(slow->stats().dropped, 0u);
+  silent.attach(slow, true);
+  silent.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 13 && h.scene_sequence == 12; });
+  EXPECT_LT(mean_difference(silent.picture(), fresh_picture(camera(0.6))), 1.5);
+}
+
+TEST_F(StreamViewer, frames_are_numbered_without_gaps_in_the_order_they_are_sent) {
+  Client client;
+  auto view = viewer(client);
+  for (int i = 1; i <= 30; ++i) {
+    view->set_camera(i, camera(0.02 * i), i % 3 != 0);
+    paint(*view, i, 80 + 5 * i, 100, 1 + i % 5);
+  }
+  client.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 30 && h.scene_sequence == 30; });
+  const auto frames = client.frames();
+  EXPECT_EQ(frames.front().frame, 1u);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].frame, i + 1);
+    EXPECT_GE(frames[i].camera_seq, frames[i - 1].camera_seq);
+    EXPECT_GE(frames[i].scene_sequence, frames[i - 1].scene_sequence);
+  }
+  EXPECT_LT(mean_difference(client.picture(), fresh_picture(camera(0.6))), 1.5);
+}
+
+TEST_F(StreamViewer, after_a_lost_context_everything_comes_again) {
+  Client client;
+  auto view = viewer(client);
+  view->set_camera(1, camera(0), false);
+  const auto before = client.wait_for([](const FrameHeader& h) { return h.still; });
+  std::promise<void> lost;
+  renderer_->on_context_lost([&lost] { lost.set_value(); });
+  renderer_->lose_context_for_test();
+  view->set_camera(2, camera(0.3), false);  // fails or is drawn: the viewer must not stall
+  ASSERT_EQ(lost.get_future().wait_for(kPatience), std::future_status::ready);
+  load();
+  view->reset_model(model_, styles());
+  client.wait_for([](const FrameHeader& h) { return h.still && h.keyframe && h.camera_seq == 2; }, before.frame);
+  paint(*view, 9, 160, 120);
+  client.wait_for([](const FrameHeader& h) { return h.scene_sequence == 9; }, before.frame);
+  EXPECT_LT(mean_difference(client.picture(), fresh_picture(camera(0.3))), 1.5);
+}
+
+TEST_F(StreamViewer, after_close_nothing_is_sent) {
+  Client client;
+  auto view = viewer(client);
+  view->set_camera(1, camera(0), true);
+  client.wait_for([](const FrameHeader&) { return true; });
+  view->close();
+  const auto count = client.frames().size();
+  view->set_camera(2, camera(1), false);
+  view->changed_everywhere(5);
+  Client other;  // by the time another viewer has its picture, the first one's would be there, too
+  viewer(other)->set_camera(1, camera(0), false);
+  other.wait_for([](const FrameHeader& h) { return h.still; });
+  EXPECT_EQ(client.frames().size(), count);
+}
+
+}  // namespace
+}  // namespace strata::stream

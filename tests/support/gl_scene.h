@@ -1,0 +1,62 @@
+#pragma once
+
+#include <future>
+#include <memory>
+#include <string>
+
+#include "mesh/geometry.h"
+#include "mesh/surface_map.h"
+#include "render/renderer.h"
+
+namespace strata::test {
+
+// Meshes with charts of their own for GL tests.
+mesh::TriangleMesh bumpy_sphere(int quads_per_edge);           // radius ≈ 1; 6 charts; 12 · n² triangles
+mesh::TriangleMesh folded_sheets(double gap);                  // two unit squares at z = 0 and z = -gap; 2 charts
+mesh::TriangleMesh flat_square(int quads_per_edge = 1);        // unit square at z = 0, uv 0.05 … 0.95
+
+Camera perspective_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height, double fov_degrees = 45);
+Camera orthographic_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height, double half_height);
+
+struct Scene {
+  std::shared_ptr<const mesh::Geometry> geometry;
+  std::shared_ptr<const mesh::SurfaceMap> map;
+};
+Scene make_scene(const mesh::TriangleMesh& mesh, int resolution);  // uses the mesh's corner_uvs
+
+// Calls a function that ends in a `Done<T>` callback and waits for the answer.
+template <class T, class Call>
+Result<T> await(Call call) {
+  auto promise = std::make_shared<std::promise<Result<T>>>();
+  auto future = promise->get_future();
+  call([promise](Result<T> result) { promise->set_value(std::move(result)); });
+  return future.get();
+}
+
+// A renderer in a debug context with blocking calls, where any Problem fails the test. Its destructor checks that no GL
+// error was reported.
+class TestRenderer {
+ public:
+  explicit TestRenderer(render::RendererOptions options = {});
+  ~TestRenderer();
+
+  render::Renderer* operator->() { return renderer_.get(); }
+  render::Renderer& get() { return *renderer_; }
+
+  render::ModelHandle add(const Scene& scene);  // model and surface map
+  render::LayerHandle add_layer(render::ModelHandle model, ValueType type, int resolution);
+  render::ViewHandle add_view(render::ModelHandle model);
+  render::StrokeOutcome paint(render::LayerHandle layer, const StrokeBatch& stroke);
+  render::Frame draw(const render::FrameRequest& request);
+  void write(render::LayerHandle layer, std::vector<render::TileUpload> tiles);
+  // Depth of the full mesh, row 0 below.
+  std::vector<float> depth(const Scene& scene, const Camera& camera);
+
+ private:
+  std::unique_ptr<render::Renderer> renderer_;
+};
+
+// A dab of a disc with a u8 value.
+StrokeBatch dab(const Camera& camera, double x, double y, double radius_px, std::uint32_t value_bits = 7);
+
+}  // namespace strata::test
