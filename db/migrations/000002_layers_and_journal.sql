@@ -35,8 +35,8 @@ CREATE TABLE edits (
   in_force boolean NOT NULL DEFAULT true,
   -- sequence of the entry that undid it, while it is undone: gives the order in which redo takes strokes back
   undone_by bigint,
-  -- paint, not the moving of content that undo, redo and restore do
-  writer boolean NOT NULL GENERATED ALWAYS AS (op NOT IN ('undo', 'redo', 'restore')) STORED,
+  -- paint, not the moving of content that undo and redo do; a restore is a writer, so that later undos see what it brought back
+  writer boolean NOT NULL GENERATED ALWAYS AS (op NOT IN ('undo', 'redo')) STORED,
   PRIMARY KEY (model_id, sequence),
   UNIQUE (model_id, id),
   CHECK (in_force = (undone_by IS NULL))

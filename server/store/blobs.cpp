@@ -45,60 +45,64 @@ Result<bool> claim(PgConnection& connection, const Sha256& hash, std::int64_t by
 
 }  // namespace
 
-Result<Sha256> keep_blob(PgConnection& connection, Bytes content, const std::function<bool()>& cancelled) {
-  const Sha256 hash = sha256(content);
-  auto fresh = claim(connection, hash, static_cast<std::int64_t>(content.size()));
-  if (!fresh) return tl::unexpected(fresh.error());
-  if (!*fresh) return hash;
-  auto written = copy_chunks(connection, hash, [&]() -> Result<Bytes> {
-    if (cancelled && cancelled()) return cancelled_problem();
-    const Bytes chunk = content.first(std::min(content.size(), kChunkBytes));
-    content = content.subspan(chunk.size());
-    return chunk;
-  });
-  if (!written) return tl::unexpected(written.error());
-  return hash;
+Content content_of(Bytes memory) { return {sha256(memory), static_cast<std::int64_t>(memory.size()), memory, {}}; }
+
+namespace {
+
+// The next chunk of a file, empty at its end.
+Result<Bytes> next_chunk(std::ifstream& in, std::vector<std::uint8_t>& buffer, const std::filesystem::path& file) {
+  in.read(reinterpret_cast<char*>(buffer.data()), static_cast<std::streamsize>(buffer.size()));
+  if (in.bad()) return fail(500, "File not readable", "Cannot read " + file.string() + ".", "source_files");
+  return Bytes(buffer).first(static_cast<std::size_t>(in.gcount()));
 }
 
-Result<Sha256> keep_file(PgConnection& connection, const std::filesystem::path& file, const std::string& field,
-                         const std::function<bool()>& cancelled) {
-  std::ifstream in(file, std::ios::binary);
-  std::vector<std::uint8_t> buffer(kChunkBytes);
-  std::int64_t bytes = 0;
-  const auto unreadable = [&] { return fail(500, "File not readable", "Cannot read " + file.string() + ".", field); };
-  const NextChunk next = [&]() -> Result<Bytes> {
-    if (cancelled && cancelled()) return cancelled_problem();
-    in.read(reinterpret_cast<char*>(buffer.data()), static_cast<std::streamsize>(buffer.size()));
-    if (in.bad()) return unreadable();
-    return Bytes(buffer).first(static_cast<std::size_t>(in.gcount()));
-  };
-  if (!in) return unreadable();
+}  // namespace
 
-  // Hashed first: a scan that is kept already is not sent again.
-  Sha256Stream first;
+// Files are hashed before they are sent: a scan that is kept already is not sent again.
+Result<Content> content_of(const std::filesystem::path& file, const std::function<bool()>& cancelled) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return fail(500, "File not readable", "Cannot open " + file.string() + ".", "source_files");
+  std::vector<std::uint8_t> buffer(kChunkBytes);
+  Sha256Stream stream;
+  Content content;
+  content.file = file;
   for (;;) {
-    auto chunk = next();
+    if (cancelled && cancelled()) return cancelled_problem();
+    auto chunk = next_chunk(in, buffer, file);
     if (!chunk) return tl::unexpected(chunk.error());
     if (chunk->empty()) break;
-    first.add(*chunk);
-    bytes += static_cast<std::int64_t>(chunk->size());
+    stream.add(*chunk);
+    content.bytes += static_cast<std::int64_t>(chunk->size());
   }
-  const Sha256 hash = first.finish();
-  auto fresh = claim(connection, hash, bytes);
+  content.hash = stream.finish();
+  return content;
+}
+
+Result<void> keep(PgConnection& connection, const Content& content, const std::function<bool()>& cancelled) {
+  auto fresh = claim(connection, content.hash, content.bytes);
   if (!fresh) return tl::unexpected(fresh.error());
-  if (!*fresh) return hash;
-  in.clear();
-  in.seekg(0);
-  Sha256Stream second;
-  auto written = copy_chunks(connection, hash, [&]() -> Result<Bytes> {
-    auto chunk = next();
-    if (chunk) second.add(*chunk);
+  if (!*fresh) return {};
+  if (content.file.empty()) {
+    Bytes rest = content.memory;
+    return copy_chunks(connection, content.hash, [&]() -> Result<Bytes> {
+      if (cancelled && cancelled()) return cancelled_problem();
+      const Bytes chunk = rest.first(std::min(rest.size(), kChunkBytes));
+      rest = rest.subspan(chunk.size());
+      return chunk;
+    });
+  }
+  std::ifstream in(content.file, std::ios::binary);
+  std::vector<std::uint8_t> buffer(kChunkBytes);
+  Sha256Stream stream;
+  auto written = copy_chunks(connection, content.hash, [&]() -> Result<Bytes> {
+    if (cancelled && cancelled()) return cancelled_problem();
+    auto chunk = next_chunk(in, buffer, content.file);
+    if (chunk) stream.add(*chunk);
     return chunk;
   });
-  if (!written) return tl::unexpected(written.error());
-  if (second.finish() != hash)
-    return fail(409, "File changed", file.string() + " changed while it was read. Import it again.", field);
-  return hash;
+  if (written && stream.finish() != content.hash)
+    return fail(409, "File changed", content.file.string() + " changed while it was read. Import it again.", "source_files");
+  return written;
 }
 
 Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha256, std::int64_t bytes) {
@@ -119,6 +123,9 @@ Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha2
 Result<void> drop_unused(PgConnection& connection, const std::vector<std::vector<std::uint8_t>>& hashes) {
   PgArray list(oid::kBytea);
   for (const auto& hash : hashes) list.add(Bytes(hash));
+  // Locked first: of two deletions at once, the later one then sees that the earlier one's model is gone.
+  auto locked = connection.query("SELECT 1 FROM blobs WHERE sha256 = any($1) ORDER BY sha256 FOR UPDATE", Params().array(list));
+  if (!locked) return tl::unexpected(locked.error());
   auto done = connection.query("DELETE FROM blobs b WHERE sha256 = any($1) "
                                "AND NOT EXISTS (SELECT 1 FROM models WHERE geometry = b.sha256) "
                                "AND NOT EXISTS (SELECT 1 FROM model_sources s WHERE s.sha256 = b.sha256)",

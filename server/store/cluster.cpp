@@ -71,6 +71,7 @@ struct Cluster::Impl {
       }
       keeper.join();
     }
+    if (!sockets.empty() && sockets != folder) rmdir(sockets.c_str());
     if (lock_fd >= 0) close(lock_fd);
   }
 

@@ -161,13 +161,17 @@ struct JournalWriter::Impl {
   }
 
   // One of the group can never be written: the others are, each in a transaction of its own, except those of the same
-  // model that come after it, since they were made on top of it.
+  // model that come after it, since they were made on top of it. (A lower sequence is the model's owner starting anew.)
   tl::expected<void, CommitFailure> one_by_one(std::deque<Waiting>& group) {
-    std::map<std::int64_t, Problem> broken;
+    struct Broken {
+      std::int64_t sequence;
+      Problem problem;
+    };
+    std::map<std::int64_t, Broken> broken;
     while (!group.empty()) {
       const JournalEntry* entry = &group.front().entry;
-      if (const auto before = broken.find(entry->model_id); before != broken.end()) {
-        Problem problem = before->second;
+      if (const auto before = broken.find(entry->model_id); before != broken.end() && entry->sequence > before->second.sequence) {
+        Problem problem = before->second.problem;
         problem.detail = "An edit before this one was not saved, so this one was not, either: " + problem.detail;
         answer_front(group, tl::unexpected(problem));
         continue;
@@ -175,18 +179,19 @@ struct JournalWriter::Impl {
       auto to = connected();
       if (!to) return tl::unexpected(to.error());
       const auto committed = commit_entries(**to, std::span(&entry, 1));
-      if (committed) {
+      if (!committed && committed.error().transient) return committed;
+      bool saved = committed.has_value();
+      if (!saved) {
+        const auto found = find_saved(**to, std::span(&entry, 1));
+        if (!found) return tl::unexpected(CommitFailure{found.error(), true});
+        saved = (*found)[0];
+      }
+      if (saved) {
+        broken.erase(entry->model_id);
         answer_front(group, {});
         continue;
       }
-      if (committed.error().transient) return committed;
-      const auto saved = find_saved(**to, std::span(&entry, 1));
-      if (!saved) return tl::unexpected(CommitFailure{saved.error(), true});
-      if ((*saved)[0]) {
-        answer_front(group, {});
-        continue;
-      }
-      broken.emplace(entry->model_id, committed.error().problem);
+      broken.insert_or_assign(entry->model_id, Broken{entry->sequence, committed.error().problem});
       answer_front(group, tl::unexpected(committed.error().problem));
     }
     return {};

@@ -1,4 +1,7 @@
+#include <algorithm>
+
 #include "store/blobs.h"
+#include "core/progress.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -113,29 +116,33 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
       return fail(400, "Bad file name", "A file's name must have 1 to 255 bytes.", "source_files");
     if (auto good = check_text(source.name, "source_files"); !good) return tl::unexpected(good.error());
   }
+  std::vector<Content> contents{content_of(Bytes(fresh.geometry))};
+  for (const auto& source : fresh.sources) {
+    auto content = content_of(source.file, cancelled);
+    if (!content) return tl::unexpected(content.error());
+    contents.push_back(std::move(*content));
+  }
   return impl_->pool.write([&](PgConnection& connection) -> Result<Model> {
-    auto geometry = keep_blob(connection, fresh.geometry, cancelled);
-    if (!geometry) return tl::unexpected(geometry.error());
-    std::vector<Sha256> hashes;
-    for (const auto& source : fresh.sources) {
-      auto hash = keep_file(connection, source.file, "source_files", cancelled);
-      if (!hash) return tl::unexpected(hash.error());
-      hashes.push_back(*hash);
-    }
+    const Sha256 geometry = contents.front().hash;
+    std::vector<const Content*> by_hash;
+    for (const Content& content : contents) by_hash.push_back(&content);
+    std::sort(by_hash.begin(), by_hash.end(), [](const Content* a, const Content* b) { return a->hash < b->hash; });
+    for (const Content* content : by_hash)
+      if (auto kept = keep(connection, *content, cancelled); !kept) return tl::unexpected(kept.error());
     const Model& m = fresh.model;
     auto row = insert_with_slug(connection, "SELECT slug::text FROM models WHERE slug LIKE $1", {},
                                 m.slug.empty() ? m.name : m.slug, [&](const std::string& slug) {
-                                  return insert_model(connection, m, slug, *geometry);
+                                  return insert_model(connection, m, slug, geometry);
                                 });
     if (!row) return tl::unexpected(row.error());
     const std::int64_t id = row->integer(0, 0);
-    for (std::size_t i = 0; i < hashes.size(); ++i) {
+    for (std::size_t i = 0; i < fresh.sources.size(); ++i) {
       auto kept = connection.query("INSERT INTO model_sources (model_id, name, position, sha256) VALUES ($1, $2, $3, $4)",
                                    Params().integer(id).text(fresh.sources[i].name).integer(static_cast<std::int64_t>(i))
-                                       .bytes(hashes[i]));
+                                       .bytes(contents[i + 1].hash));
       if (!kept) return tl::unexpected(kept.error());
     }
-    if (cancelled && cancelled()) return fail(499, "Cancelled", "The work was cancelled.");
+    if (cancelled && cancelled()) return cancelled_problem();
     return model_by_id(connection, id);
   });
 }

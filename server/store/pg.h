@@ -125,6 +125,9 @@ class PgConnection {
   // SQLSTATE of the last failure; "08006" when the connection broke.
   const std::string& sqlstate() const { return sqlstate_; }
 
+  // True once after a failure that was the server's choice of a victim in a deadlock.
+  bool take_deadlock() { return std::exchange(sqlstate_, {}) == "40P01"; }
+
   Result<void> script(const std::string& sql);  // any number of statements without parameters
   Result<PgResult> query(const char* sql, const Params& params = {});
   // Hands out rows as they arrive, one result of one row each, so that memory stays small. An error of `on_row` ends it.

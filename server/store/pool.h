@@ -47,18 +47,23 @@ class Pool {
     }
   }
 
-  // Runs `work(connection)` in one transaction, committed when it succeeds.
+  // Runs `work(connection)` in one transaction, committed when it succeeds; from the start again after a deadlock.
   template <class Work>
   auto write(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
     using Outcome = std::invoke_result_t<Work, PgConnection&>;
     auto lease = acquire();
     if (!lease) return tl::unexpected(lease.error());
-    auto transaction = Transaction::begin(**lease);
-    if (!transaction) return tl::unexpected(transaction.error());
-    Outcome result = work(**lease);
-    if (!result) return result;
-    if (auto committed = transaction->commit(); !committed) return tl::unexpected(committed.error());
-    return result;
+    for (int tries_left = 3;; --tries_left) {
+      auto transaction = Transaction::begin(**lease);
+      if (!transaction) return tl::unexpected(transaction.error());
+      Outcome result = work(**lease);
+      if (!result) {
+        if ((**lease).take_deadlock() && tries_left > 0) continue;
+        return result;
+      }
+      if (auto committed = transaction->commit(); !committed) return tl::unexpected(committed.error());
+      return result;
+    }
   }
 
  private:

@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 #include <libpq-fe.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <chrono>
+#include <fstream>
 #include <stdexcept>
+#include <thread>
 
 namespace strata::test {
 namespace {
@@ -26,9 +31,14 @@ const auto* const kStopAtEnd = ::testing::AddGlobalTestEnvironment(new StopAtEnd
 }  // namespace
 
 TemporaryFolder::TemporaryFolder() {
-  char name[] = "/tmp/strata-test-XXXXXX";
-  if (!mkdtemp(name)) throw std::runtime_error("mkdtemp failed");
-  chmod(name, 0755);
+  // In memory where there is room: the tests kill processes, not machines, and a disk makes every initdb slow.
+  std::error_code error;
+  const char* wanted = std::getenv("STRATA_TEST_TMP");
+  const auto space = std::filesystem::space("/dev/shm", error);
+  const bool in_memory = !error && space.available > (std::uintmax_t{3} << 30) && access("/dev/shm", W_OK) == 0;
+  std::string name = std::string(wanted ? wanted : in_memory ? "/dev/shm" : "/tmp") + "/strata-test-XXXXXX";
+  if (!mkdtemp(name.data())) throw std::runtime_error("mkdtemp failed: " + name);
+  chmod(name.c_str(), 0755);
   path_ = name;
 }
 
@@ -47,6 +57,17 @@ store::Cluster& shared_cluster() {
   }
   if (auto running = shared->cluster->ensure_running(); !running) throw std::runtime_error(running.error().detail);
   return *shared->cluster;
+}
+
+void kill_postmaster(const store::Cluster& cluster) {
+  const int pid = cluster.postmaster_pid();
+  kill(pid, SIGKILL);
+  for (char state = 'R'; state != 'Z' && state != 'X';) {
+    std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+    std::string ignored;
+    if (!(stat >> ignored >> ignored >> state)) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
 }
 
 std::string fresh_database() {

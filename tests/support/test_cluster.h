@@ -12,6 +12,9 @@ namespace strata::test {
 // Compile tests/support/test_cluster.cpp into the test.
 store::Cluster& shared_cluster();
 
+// kill -9 of the postmaster; returns once it is dead, so that `ensure_running` sees it.
+void kill_postmaster(const store::Cluster& cluster);
+
 // A fresh, empty database of the shared cluster: its connection string.
 std::string fresh_database();
 
@@ -19,7 +22,8 @@ std::string fresh_database();
 std::unique_ptr<store::Store> fresh_store(int connections = 4);
 std::unique_ptr<store::Store> open_store(const std::string& dsn, int connections = 4);
 
-// A temporary folder that the database user can reach; removed with the object.
+// A temporary folder that the database user can reach; removed with the object. STRATA_TEST_TMP names another place
+// than /dev/shm (or /tmp) for it.
 class TemporaryFolder {
  public:
   TemporaryFolder();

@@ -1,0 +1,298 @@
+CREATE DOMAIN public.slug AS text
+	CONSTRAINT slug_check CHECK (((VALUE ~ '^[a-z0-9-]+$'::text) AND (VALUE !~ '^[0-9]+$'::text)));
+
+CREATE TABLE public.answers (
+    key text NOT NULL,
+    answer jsonb NOT NULL,
+    "time" timestamp with time zone DEFAULT now() NOT NULL
+);
+
+CREATE TABLE public.blob_chunks (
+    sha256 bytea NOT NULL,
+    chunk integer NOT NULL,
+    data bytea NOT NULL
+);
+ALTER TABLE ONLY public.blob_chunks ALTER COLUMN data SET STORAGE EXTERNAL;
+
+CREATE TABLE public.blobs (
+    sha256 bytea NOT NULL,
+    bytes bigint NOT NULL,
+    CONSTRAINT blobs_sha256_check CHECK ((octet_length(sha256) = 32))
+);
+
+CREATE TABLE public.edits (
+    model_id bigint NOT NULL,
+    sequence bigint NOT NULL,
+    id uuid NOT NULL,
+    layer_id bigint NOT NULL,
+    stroke uuid NOT NULL,
+    user_name text NOT NULL,
+    op text NOT NULL,
+    record jsonb NOT NULL,
+    answer jsonb NOT NULL,
+    "time" timestamp with time zone NOT NULL,
+    in_force boolean DEFAULT true NOT NULL,
+    undone_by bigint,
+    writer boolean GENERATED ALWAYS AS ((op <> ALL (ARRAY['undo'::text, 'redo'::text]))) STORED NOT NULL,
+    CONSTRAINT edits_check CHECK ((in_force = (undone_by IS NULL))),
+    CONSTRAINT edits_sequence_check CHECK ((sequence > 0))
+);
+
+CREATE TABLE public.layers (
+    id bigint NOT NULL,
+    model_id bigint NOT NULL,
+    name text NOT NULL,
+    slug public.slug NOT NULL,
+    kind text NOT NULL,
+    type text NOT NULL,
+    resolution integer NOT NULL,
+    unit text NOT NULL,
+    description text NOT NULL,
+    palette jsonb NOT NULL,
+    opacity double precision NOT NULL,
+    visible boolean NOT NULL,
+    draw_order integer NOT NULL,
+    records_table text,
+    sequence bigint DEFAULT 0 NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT layers_kind_check CHECK ((kind = ANY (ARRAY['numeric'::text, 'database'::text]))),
+    CONSTRAINT layers_name_check CHECK ((name <> ''::text)),
+    CONSTRAINT layers_opacity_check CHECK (((opacity >= (0)::double precision) AND (opacity <= (1)::double precision))),
+    CONSTRAINT layers_resolution_check CHECK ((((resolution >= 128) AND (resolution <= 16384)) AND ((resolution & (resolution - 1)) = 0))),
+    CONSTRAINT layers_type_check CHECK ((type = ANY (ARRAY['u8'::text, 'u16'::text, 'u32'::text, 'i8'::text, 'i16'::text, 'i32'::text, 'f16'::text, 'f32'::text])))
+);
+
+ALTER TABLE public.layers ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.layers_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
+CREATE TABLE public.model_sources (
+    model_id bigint NOT NULL,
+    name text NOT NULL,
+    "position" integer NOT NULL,
+    sha256 bytea NOT NULL
+);
+
+CREATE TABLE public.models (
+    id bigint NOT NULL,
+    project_id bigint NOT NULL,
+    name text NOT NULL,
+    slug public.slug NOT NULL,
+    unit text NOT NULL,
+    unit_assumed boolean NOT NULL,
+    scale_verified boolean NOT NULL,
+    up text NOT NULL,
+    north text NOT NULL,
+    crs text NOT NULL,
+    origin double precision[] NOT NULL,
+    bounds_min double precision[] NOT NULL,
+    bounds_max double precision[] NOT NULL,
+    triangles bigint NOT NULL,
+    vertices bigint NOT NULL,
+    area double precision NOT NULL,
+    atlas jsonb NOT NULL,
+    repairs jsonb NOT NULL,
+    default_resolution integer NOT NULL,
+    inventory_number text NOT NULL,
+    owner text NOT NULL,
+    creator text NOT NULL,
+    captured text NOT NULL,
+    method text NOT NULL,
+    accuracy text NOT NULL,
+    processing text NOT NULL,
+    rights_uri text NOT NULL,
+    credit text NOT NULL,
+    geometry bytea NOT NULL,
+    sequence bigint DEFAULT 0 NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT models_bounds_max_check CHECK ((cardinality(bounds_max) = 3)),
+    CONSTRAINT models_bounds_min_check CHECK ((cardinality(bounds_min) = 3)),
+    CONSTRAINT models_name_check CHECK ((name <> ''::text)),
+    CONSTRAINT models_origin_check CHECK ((cardinality(origin) = 3)),
+    CONSTRAINT models_unit_check CHECK ((unit = ANY (ARRAY['mm'::text, 'cm'::text, 'm'::text]))),
+    CONSTRAINT models_up_check CHECK ((up = ANY (ARRAY['x'::text, 'y'::text, 'z'::text])))
+);
+
+ALTER TABLE public.models ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.models_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
+CREATE TABLE public.projects (
+    id bigint NOT NULL,
+    name text NOT NULL,
+    slug public.slug NOT NULL,
+    description text NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT projects_name_check CHECK ((name <> ''::text))
+);
+
+ALTER TABLE public.projects ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.projects_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
+CREATE TABLE public.schema_checksums (
+    version character varying(128) NOT NULL,
+    sha256 text NOT NULL
+);
+
+CREATE TABLE public.schema_migrations (
+    version character varying(128) NOT NULL
+);
+
+CREATE TABLE public.tile_revisions (
+    layer_id bigint NOT NULL,
+    tile_y smallint NOT NULL,
+    tile_x smallint NOT NULL,
+    sequence bigint NOT NULL,
+    difference bytea NOT NULL,
+    key_tile bytea
+);
+ALTER TABLE ONLY public.tile_revisions ALTER COLUMN difference SET STORAGE EXTERNAL;
+ALTER TABLE ONLY public.tile_revisions ALTER COLUMN key_tile SET STORAGE EXTERNAL;
+
+CREATE TABLE public.tokens (
+    hash bytea NOT NULL,
+    kind text NOT NULL,
+    user_name text NOT NULL,
+    role text NOT NULL,
+    created timestamp with time zone DEFAULT now() NOT NULL,
+    expires timestamp with time zone,
+    revoked timestamp with time zone,
+    CONSTRAINT tokens_hash_check CHECK ((octet_length(hash) = 32)),
+    CONSTRAINT tokens_kind_check CHECK ((kind = ANY (ARRAY['session'::text, 'script'::text, 'owner_link'::text])))
+);
+
+CREATE TABLE public.users (
+    id bigint NOT NULL,
+    name text NOT NULL,
+    role text NOT NULL,
+    created timestamp with time zone DEFAULT now() NOT NULL,
+    CONSTRAINT users_name_check CHECK ((name <> ''::text))
+);
+
+ALTER TABLE public.users ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.users_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
+ALTER TABLE ONLY public.answers
+    ADD CONSTRAINT answers_pkey PRIMARY KEY (key);
+
+ALTER TABLE ONLY public.blob_chunks
+    ADD CONSTRAINT blob_chunks_pkey PRIMARY KEY (sha256, chunk);
+
+ALTER TABLE ONLY public.blobs
+    ADD CONSTRAINT blobs_pkey PRIMARY KEY (sha256);
+
+ALTER TABLE ONLY public.edits
+    ADD CONSTRAINT edits_model_id_id_key UNIQUE (model_id, id);
+
+ALTER TABLE ONLY public.edits
+    ADD CONSTRAINT edits_pkey PRIMARY KEY (model_id, sequence);
+
+ALTER TABLE ONLY public.layers
+    ADD CONSTRAINT layers_model_id_slug_key UNIQUE (model_id, slug);
+
+ALTER TABLE ONLY public.layers
+    ADD CONSTRAINT layers_pkey PRIMARY KEY (id);
+
+ALTER TABLE ONLY public.model_sources
+    ADD CONSTRAINT model_sources_pkey PRIMARY KEY (model_id, name);
+
+ALTER TABLE ONLY public.models
+    ADD CONSTRAINT models_pkey PRIMARY KEY (id);
+
+ALTER TABLE ONLY public.models
+    ADD CONSTRAINT models_slug_key UNIQUE (slug);
+
+ALTER TABLE ONLY public.projects
+    ADD CONSTRAINT projects_pkey PRIMARY KEY (id);
+
+ALTER TABLE ONLY public.projects
+    ADD CONSTRAINT projects_slug_key UNIQUE (slug);
+
+ALTER TABLE ONLY public.schema_checksums
+    ADD CONSTRAINT schema_checksums_pkey PRIMARY KEY (version);
+
+ALTER TABLE ONLY public.schema_migrations
+    ADD CONSTRAINT schema_migrations_pkey PRIMARY KEY (version);
+
+ALTER TABLE ONLY public.tile_revisions
+    ADD CONSTRAINT tile_revisions_pkey PRIMARY KEY (layer_id, tile_y, tile_x, sequence);
+
+ALTER TABLE ONLY public.tokens
+    ADD CONSTRAINT tokens_pkey PRIMARY KEY (hash);
+
+ALTER TABLE ONLY public.users
+    ADD CONSTRAINT users_name_key UNIQUE (name);
+
+ALTER TABLE ONLY public.users
+    ADD CONSTRAINT users_pkey PRIMARY KEY (id);
+
+CREATE INDEX answers_time ON public.answers USING btree ("time");
+
+CREATE INDEX edits_author ON public.edits USING btree (layer_id, user_name, in_force, sequence) WHERE writer;
+
+CREATE INDEX edits_layer ON public.edits USING btree (layer_id, sequence);
+
+CREATE INDEX edits_undone ON public.edits USING btree (layer_id, user_name, undone_by) WHERE (NOT in_force);
+
+CREATE INDEX model_sources_blob ON public.model_sources USING btree (sha256);
+
+CREATE INDEX models_geometry ON public.models USING btree (geometry);
+
+CREATE INDEX models_project ON public.models USING btree (project_id);
+
+CREATE INDEX tile_revisions_edit ON public.tile_revisions USING btree (layer_id, sequence);
+
+CREATE INDEX tokens_user ON public.tokens USING btree (user_name);
+
+ALTER TABLE ONLY public.blob_chunks
+    ADD CONSTRAINT blob_chunks_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.edits
+    ADD CONSTRAINT edits_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.edits
+    ADD CONSTRAINT edits_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.layers
+    ADD CONSTRAINT layers_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.model_sources
+    ADD CONSTRAINT model_sources_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.model_sources
+    ADD CONSTRAINT model_sources_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256);
+
+ALTER TABLE ONLY public.models
+    ADD CONSTRAINT models_geometry_fkey FOREIGN KEY (geometry) REFERENCES public.blobs(sha256);
+
+ALTER TABLE ONLY public.models
+    ADD CONSTRAINT models_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id);
+
+ALTER TABLE ONLY public.tile_revisions
+    ADD CONSTRAINT tile_revisions_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.tokens
+    ADD CONSTRAINT tokens_user_name_fkey FOREIGN KEY (user_name) REFERENCES public.users(name) ON UPDATE CASCADE ON DELETE CASCADE;
+
