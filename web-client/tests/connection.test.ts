@@ -128,7 +128,7 @@ describe("cameras", () => {
 });
 
 describe("strokes", () => {
-  it("a stroke is sent in batches, each starting where the one before ended", () => {
+  it("a stroke is sent in numbered batches", () => {
     connect();
     const stroke = connection.begin_stroke(stroke_options)!;
     stroke.extend([[1, 1]]);
@@ -140,7 +140,7 @@ describe("strokes", () => {
     expect(socket().sent_ops()).toEqual(["hello", "stroke.begin", "stroke.extend", "stroke.extend", "stroke.end"]);
     expect(socket().of("stroke.extend").map(({ n, path }) => [n, path])).toEqual([
       [0, [[1, 1]]],
-      [1, [[1, 1], [2, 2], [3, 3]]],
+      [1, [[2, 2], [3, 3]]],
     ]); // prettier-ignore
     const [begin] = socket().of("stroke.begin");
     expect(begin).toMatchObject({ layer: 7, value: 3, radius_px: 12, shape: "disc", camera });
@@ -149,10 +149,10 @@ describe("strokes", () => {
 
   it("a long path is split at the server's limit of points", () => {
     connect(); // path_points: 4
-    connection.begin_stroke(stroke_options)!.extend(Array.from({ length: 8 }, (_, i): [number, number] => [i, 0]));
+    connection.begin_stroke(stroke_options)!.extend(Array.from({ length: 9 }, (_, i): [number, number] => [i, 0]));
     const paths = socket().of("stroke.extend").map((message) => message.path);
     expect(paths.every((path) => path.length <= 4)).toBe(true);
-    expect(paths.map((path) => path.map(([x]) => x))).toEqual([[0, 1, 2], [2, 3, 4, 5], [5, 6, 7]]); // prettier-ignore
+    expect(paths.map((path) => path.map(([x]) => x))).toEqual([[0, 1, 2, 3], [4, 5, 6, 7], [8]]); // prettier-ignore
   });
 
   it("an erasing stroke has no value and may have its radius in millimetres", () => {
@@ -254,6 +254,21 @@ describe("a lost connection", () => {
     expect(socket().of("stroke.extend").map((message) => message.n)).toEqual([0, 1, 2]);
   });
 
+  it("resends no faster than the server takes, and new changes stay behind the old ones", () => {
+    connect(); // messages_per_second: 200
+    const stroke = connection.begin_stroke(stroke_options)!;
+    for (let i = 0; i < 250; ++i) stroke.extend([[i, i]]);
+    socket().lose();
+    vi.advanceTimersByTime(300);
+    connect();
+    stroke.extend([[999, 999]]);
+    expect(socket().of("stroke.extend").length).toBe(99);
+    vi.advanceTimersByTime(1000);
+    expect(socket().of("stroke.extend").length).toBe(199);
+    vi.advanceTimersByTime(1000);
+    expect(socket().of("stroke.extend").map((message) => message.n)).toEqual(Array.from({ length: 251 }, (_, n) => n));
+  });
+
   it("a server that stays silent while changes wait counts as lost", () => {
     connect();
     connection.begin_stroke(stroke_options)!.extend([[1, 1]]);
@@ -305,6 +320,20 @@ describe("refusals", () => {
     }
     expect(callbacks.problem).toHaveBeenCalledTimes(1);
     expect(saving()).toEqual({ waiting: 1, failing: true });
+  });
+
+  it("a batch that came out of order because the one before was refused for the moment goes again with it", () => {
+    connect();
+    const stroke = connection.begin_stroke(stroke_options)!;
+    stroke.extend([[1, 1]]);
+    stroke.extend([[2, 2]]);
+    const [first, second] = socket().of("stroke.extend");
+    socket().sent = [];
+    socket().receive({ op: "problem", ref: first!.id, status: 429, title: "Too many messages", detail: "Later." });
+    socket().receive({ op: "problem", ref: second!.id, status: 409, title: "Batch out of order", detail: "0 is next." });
+    vi.advanceTimersByTime(300);
+    expect(socket().of("stroke.extend")).toEqual([first, second]);
+    expect(saving()).toEqual({ waiting: 2, failing: true });
   });
 
   it("a refused stroke is given up as a whole and told once", () => {

@@ -45,7 +45,7 @@ export class StrataDialog extends LitElement {
       :host([aside]) dialog::backdrop {
         background: rgb(20 24 24 / 0.12);
       }
-      header {
+      .head {
         display: flex;
         align-items: flex-start;
         gap: 12px;
@@ -100,12 +100,12 @@ export class StrataDialog extends LitElement {
 
   override render(): TemplateResult {
     return html`<dialog aria-labelledby="heading" @close=${this.on_close} @click=${this.on_click}>
-      <header>
+      <div class="head">
         <h2 id="heading">${this.heading}</h2>
         <button class="icon quiet" aria-label=${texts.close} title=${texts.close} @click=${this.close}>
           ${icon("close")}
         </button>
-      </header>
+      </div>
       <div class="content"><slot></slot></div>
       <footer class="empty"><slot name="actions" @slotchange=${this.on_actions}></slot></footer>
     </dialog>`;

@@ -13,7 +13,7 @@ export const home_styles = css`
     border-bottom: 1px solid var(--line);
     background: var(--surface);
   }
-  a.brand {
+  .brand {
     display: flex;
     align-items: center;
     gap: 11px;

@@ -97,17 +97,19 @@ export class StrataModelPage extends LitElement {
       this.asked_scale_ = true;
       this.dialog_ ??= { dialog: "scale" };
     }
-    if (session.connection_state === "lost" && this.last_state_ !== "lost") void this.check_session();
+    if (session.connection_state === "lost" && this.last_state_ !== "lost") void this.find_why_lost();
     this.last_state_ = session.connection_state;
     this.requestUpdate();
   }
 
-  /** A refused socket does not say why: an expired session does. */
-  private async check_session(): Promise<void> {
+  /** A refused socket does not say why; the same question over HTTP does. */
+  private async find_why_lost(): Promise<void> {
     try {
-      await this.api.me();
+      await this.api.model(this.model_id);
     } catch (error) {
-      if (error instanceof ApiError && error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
+      if (!(error instanceof ApiError)) throw error;
+      if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
+      if (error.status === 404) this.missing_ = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
     }
   }
 
@@ -213,7 +215,8 @@ export class StrataModelPage extends LitElement {
 
   private panel(session: ModelSession): TemplateResult {
     const paints = session.tools.active === "brush" || session.tools.active === "eraser";
-    return html`<div
+    return html`<aside aria-label=${texts.model.panel}>
+      <div
         class="splitter"
         role="separator"
         aria-orientation="vertical"
@@ -225,7 +228,7 @@ export class StrataModelPage extends LitElement {
         @pointerdown=${this.on_splitter_down}
         @keydown=${this.on_splitter_key}
       ></div>
-      <aside aria-label=${texts.model.panel}>
+      <div class="scroll">
         ${paints ? html`<section><strata-brush-panel .session=${session}></strata-brush-panel></section>` : nothing}
         <section>
           <strata-layer-panel
@@ -233,7 +236,8 @@ export class StrataModelPage extends LitElement {
             @request=${(event: CustomEvent<LayerPanelRequest>) => (this.dialog_ = event.detail)}
           ></strata-layer-panel>
         </section>
-      </aside>`;
+      </div>
+    </aside>`;
   }
 
   private dialog(session: ModelSession): TemplateResult {

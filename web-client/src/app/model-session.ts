@@ -97,7 +97,7 @@ export class ModelSession {
           this.changed();
         },
         picked: (message) => this.on_picked(message),
-        problem: (problem, given_up) => this.on_problem(problem, given_up),
+        problem: (problem) => this.on_problem(problem),
       },
     );
     const brush_host = {
@@ -559,12 +559,11 @@ export class ModelSession {
     }
   }
 
-  private on_problem(problem: Omit<ProblemMessage, "op">, given_up: boolean): void {
+  private on_problem(problem: Omit<ProblemMessage, "op">): void {
     if (problem.ref !== undefined && problem.ref === this.pick_sent_?.id) {
       this.pick_sent_ = null;
       return; // the next move of the pointer asks again
     }
-    if (given_up) notices.show("problem", problem.title, `${texts.problems.given_up}. ${problem.detail}`);
-    else notices.problem(problem);
+    notices.problem(problem);
   }
 }

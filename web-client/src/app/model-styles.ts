@@ -7,14 +7,14 @@ export const model_styles = css`
   .page {
     display: grid;
     grid-template:
-      "header header header header" 54px
-      "rail stage splitter panel" minmax(0, 1fr)
-      / auto minmax(0, 1fr) 7px var(--panel);
+      "header header header" 54px
+      "rail stage panel" minmax(0, 1fr)
+      / auto minmax(0, 1fr) var(--panel);
     height: 100dvh;
     overflow: hidden;
   }
   .page.without-panel {
-    grid-template-columns: auto minmax(0, 1fr) 0 0;
+    grid-template-columns: auto minmax(0, 1fr) 0;
   }
   header {
     grid-area: header;
@@ -132,9 +132,10 @@ export const model_styles = css`
     max-width: min(340px, calc(100% - 220px));
   }
   .splitter {
-    grid-area: splitter;
-    border-left: 1px solid var(--line);
-    background: var(--surface);
+    position: absolute;
+    z-index: 1;
+    inset: 0 auto 0 0;
+    width: 7px;
     cursor: col-resize;
     touch-action: none;
   }
@@ -143,9 +144,15 @@ export const model_styles = css`
   }
   aside {
     grid-area: panel;
-    overflow: hidden auto;
-    padding: 0 14px 24px 8px;
+    position: relative;
+    min-height: 0;
+    border-left: 1px solid var(--line);
     background: var(--surface);
+  }
+  .scroll {
+    height: 100%;
+    overflow: hidden auto;
+    padding: 0 14px 24px;
   }
   aside section {
     padding: 15px 0 17px;
@@ -168,12 +175,16 @@ export const model_styles = css`
       display: none;
     }
     aside {
+      display: grid;
       max-height: 44dvh;
-      padding: 0 16px 10px;
+      border-left: 0;
       border-top: 1px solid var(--line);
       border-radius: 16px 16px 0 0;
       box-shadow: 0 -6px 20px rgb(0 0 0 / 0.1);
       z-index: 2;
+    }
+    .scroll {
+      padding: 0 16px 10px;
     }
     strata-tool-rail {
       padding-bottom: max(6px, env(safe-area-inset-bottom));

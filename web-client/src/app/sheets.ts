@@ -26,6 +26,9 @@ const sheet_styles = css`
     margin: 0;
     overflow-wrap: anywhere;
   }
+  dl.keys {
+    grid-template-columns: minmax(110px, 44%) 1fr;
+  }
   .keys dt {
     color: var(--ink);
     font-weight: 600;
@@ -83,7 +86,7 @@ export class StrataAboutSheet extends LitElement {
                 ${model.source_files.map(
                   (file) =>
                     html`<div>
-                      <a href="/api/v1/models/${model.id}/source/${encodeURIComponent(file.name)}" download=${file.name}
+                      <a class="text" href="/api/v1/models/${model.id}/source/${encodeURIComponent(file.name)}" download=${file.name}
                         >${file.name}</a
                       >
                       <span class="hint numeric">${format_bytes(file.bytes)}</span>

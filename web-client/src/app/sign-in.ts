@@ -28,10 +28,12 @@ export class StrataSignIn extends LitElement {
         min-height: 100dvh;
         padding: 20px;
       }
+      main {
+        width: min(420px, 100%);
+      }
       form {
         display: grid;
         gap: 18px;
-        width: min(420px, 100%);
         padding: 36px 34px 32px;
         border: 1px solid var(--line);
         border-radius: 16px;
@@ -67,7 +69,7 @@ export class StrataSignIn extends LitElement {
 
   override render(): TemplateResult {
     const words = texts.sign_in;
-    return html`<form @submit=${this.on_submit} novalidate>
+    return html`<main><form @submit=${this.on_submit} novalidate>
       <div class="brand">
         ${logo()}
         <div><b>${texts.product}</b><span>${texts.tagline}</span></div>
@@ -90,7 +92,7 @@ export class StrataSignIn extends LitElement {
       <p class="error" id="error" role="alert" ?hidden=${!this.error_}>${this.error_}</p>
       <button class="primary" ?disabled=${this.busy_}>${words.button}</button>
       <p class="hint">${words.hint} <code>${location.origin}/login?link=…</code></p>
-    </form>`;
+    </form></main>`;
   }
 
   private async on_submit(event: Event): Promise<void> {

@@ -4,6 +4,7 @@
 import { css, html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
 import { FrameCanvas } from "../core/frame-canvas";
+import type { FrameMessage } from "../core/frame-header";
 import { StageInput } from "../core/input";
 import { metres_per, scale_bar } from "../core/measure";
 import { color_of, css_color } from "../core/palette";
@@ -135,7 +136,7 @@ export class StrataStage extends LitElement {
 
   override firstUpdated(): void {
     this.frames_ = new FrameCanvas(this.canvas_, {
-      drawn: (part) => this.session.frame_drawn(part),
+      drawn: (part) => this.on_drawn(part),
       failed: (reason) => notices.show("problem", texts.problems.picture, reason),
     });
     this.session.on_frame = (part) => this.frames_?.push(part);
@@ -163,6 +164,16 @@ export class StrataStage extends LitElement {
     if (this.input_) this.input_.orbit_held = held;
   }
 
+  /** What the canvas shows is told in its data attributes, for tests and tools. */
+  private on_drawn(part: FrameMessage): void {
+    this.session.frame_drawn(part);
+    const { dataset } = this.canvas_;
+    dataset["frames"] = String(this.session.frames_drawn);
+    dataset["cameraSeq"] = String(part.header.camera_seq);
+    dataset["sceneSequence"] = String(part.header.scene_sequence);
+    dataset["still"] = String(part.header.still);
+  }
+
   private measure(): void {
     const { clientWidth: width, clientHeight: height } = this;
     if (width < 2 || height < 2) return;
@@ -180,7 +191,7 @@ export class StrataStage extends LitElement {
         role="application"
         aria-label=${texts.model.stage}
       >
-        <canvas width="2" height="2" data-frames=${session.frames_drawn}></canvas>
+        <canvas width="2" height="2"></canvas>
         ${paints ? this.brush_cursor() : nothing}
       </div>
       ${this.people()} ${this.scale_bar()}

@@ -89,7 +89,7 @@ export const shared_styles = css`
     padding: 0;
     flex: none;
   }
-  a:not(.button) {
+  a.text {
     color: var(--accent);
   }
   button.link {

@@ -296,7 +296,6 @@ export const texts = {
   problems: {
     unexpected: "Something went wrong on this page",
     unexpected_detail: "Reload the page. What was saved is safe on the server.",
-    given_up: "A change was not taken",
     picture: "A picture from the server could not be drawn",
   },
 } as const;

@@ -91,10 +91,13 @@ export class Connection {
   private attempts_ = 0;
   private retry_timer_: ReturnType<typeof setTimeout> | null = null;
   private resend_timer_: ReturnType<typeof setTimeout> | null = null;
+  private slice_timer_: ReturnType<typeof setTimeout> | null = null;
   private silence_timer_: ReturnType<typeof setTimeout> | null = null;
   private resend_delay_ms_ = kFirstRetry_ms;
   private failing_ = false;
   private path_points_ = 4096;
+  private resend_slice_ = 100; // messages a second, so that the server's limit is kept
+  private resending_: ChangeMessage[] = []; // still to go out again; new changes queue behind them
 
   private readonly outbox_ = new Outbox();
   private readonly silenced_ = new Set<string>(); // ids given up: later complaints about them say nothing new
@@ -214,7 +217,8 @@ export class Connection {
 
   private change(message: ChangeMessage): void {
     this.outbox_.add(message);
-    if (this.state_ === "open") this.send(message);
+    if (this.resending_.length > 0) this.resending_.push(message);
+    else if (this.state_ === "open") this.send(message);
     this.watch_silence();
     this.report_saving();
   }
@@ -303,6 +307,7 @@ export class Connection {
   private on_welcome(message: Welcome): void {
     this.attempts_ = 0;
     this.path_points_ = message.limits.path_points;
+    this.resend_slice_ = Math.max(1, Math.floor(message.limits.messages_per_second / 2));
     this.set_state("open");
     for (const { stroke, n } of message.strokes) this.outbox_.saved_through(stroke, n);
     this.callbacks_.welcome(message);
@@ -319,7 +324,9 @@ export class Connection {
       this.callbacks_.problem(problem, false);
       return;
     }
-    const passing = message.status === 429 || message.status >= 500;
+    // A batch is out of order when the one before it was refused for the moment: both go again.
+    const out_of_order = message.status === 409 && this.outbox_.follows_waiting_batch(message.ref);
+    const passing = message.status === 429 || message.status >= 500 || out_of_order;
     if (passing) {
       const first = !this.failing_;
       this.resend_later();
@@ -333,8 +340,17 @@ export class Connection {
   }
 
   private resend(): void {
-    for (const message of this.outbox_.messages()) this.send(message);
-    if (!this.outbox_.idle) this.watch_silence();
+    this.resending_ = this.outbox_.messages();
+    if (this.resending_.length > 0) this.watch_silence();
+    this.resend_slice();
+  }
+
+  private resend_slice(): void {
+    for (const message of this.resending_.splice(0, this.resend_slice_)) this.send(message);
+    if (this.slice_timer_) clearTimeout(this.slice_timer_);
+    this.slice_timer_ = null;
+    if (this.resending_.length === 0) return;
+    this.slice_timer_ = setTimeout(() => this.resend_slice(), 1000);
   }
 
   private resend_later(): void {
@@ -374,8 +390,10 @@ export class Connection {
   }
 
   private forget_timers(): void {
-    for (const timer of [this.retry_timer_, this.resend_timer_, this.silence_timer_]) if (timer) clearTimeout(timer);
-    this.retry_timer_ = this.resend_timer_ = this.silence_timer_ = null;
+    const timers = [this.retry_timer_, this.resend_timer_, this.slice_timer_, this.silence_timer_];
+    for (const timer of timers) if (timer) clearTimeout(timer);
+    this.retry_timer_ = this.resend_timer_ = this.slice_timer_ = this.silence_timer_ = null;
+    this.resending_ = [];
   }
 
   private set_state(state: ConnectionState): void {
@@ -390,10 +408,9 @@ export class Connection {
   }
 }
 
-/** One stroke being drawn. Every batch starts with the last point of the one before, so that each stands alone. */
+/** One stroke being drawn. The server sweeps the brush from the last point of the batch before. */
 export class StrokeHandle {
   private n_ = 0;
-  private last_: Point | null = null;
   private ended_ = false;
 
   constructor(
@@ -404,18 +421,9 @@ export class StrokeHandle {
 
   extend(points: readonly Point[]): void {
     if (this.ended_ || points.length === 0) return;
-    const room = Math.max(1, this.path_points_ - 1);
-    for (let start = 0; start < points.length; start += room) {
-      const batch = points.slice(start, start + room);
-      const path = this.last_ ? [this.last_, ...batch] : batch;
-      this.last_ = batch[batch.length - 1]!;
-      this.change_({
-        op: "stroke.extend",
-        id: new_id(),
-        stroke: this.stroke,
-        n: this.n_++,
-        path,
-      });
+    for (let start = 0; start < points.length; start += this.path_points_) {
+      const path = points.slice(start, start + this.path_points_);
+      this.change_({ op: "stroke.extend", id: new_id(), stroke: this.stroke, n: this.n_++, path });
     }
   }
 

@@ -73,6 +73,11 @@ export class Outbox {
     this.drop_finished();
   }
 
+  /** Whether the message is a stroke's batch, and one before it waits, too. */
+  follows_waiting_batch(id: string): boolean {
+    return this.entries_.some((entry) => entry.kind === "stroke" && entry.parts.findIndex((part) => part.id === id) > 0);
+  }
+
   /** The server keeps all batches of the stroke up to n. */
   saved_through(stroke: string, n: number): void {
     const entry = this.stroke(stroke);
