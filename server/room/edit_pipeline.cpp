@@ -156,12 +156,11 @@ bool EditPipeline::map_ready(int resolution) {
   return false;
 }
 
-void EditPipeline::start_stroke(Waiting item, const LayerState& layer) {
+void EditPipeline::start_stroke(Waiting taken, const LayerState& layer) {
   ++in_flight_;
-  const StrokeBatch& batch = std::get<StrokeEdit>(item.request.edit).batch;
-  parts_.renderer.paint(layer.handle, batch,
-                        [self = shared_from_this(), item = std::make_shared<Waiting>(std::move(item))](
-                            Result<render::StrokeOutcome> outcome) {
+  auto item = std::make_shared<Waiting>(std::move(taken));
+  parts_.renderer.paint(layer.handle, std::get<StrokeEdit>(item->request.edit).batch,
+                        [self = shared_from_this(), item](Result<render::StrokeOutcome> outcome) {
                           boost::asio::post(self->parts_.strand, [self, item, outcome = std::move(outcome)]() mutable {
                             --self->in_flight_;
                             self->stroke_done(*item, std::move(outcome));

@@ -25,6 +25,7 @@ RoomMember::View* RoomMember::view(std::uint32_t view_id, bool make) {
   View& made = views_[view_id];
   stream::Viewer::Options options;
   options.view_id = view_id;
+  options.sequence = room_->sequence();
   made.viewer = stream::Viewer::create(room_->stream_context(), room_->model_handle(), options, send_);
   made.viewer->set_layers(styles(made));
   return &made;

@@ -1,0 +1,128 @@
+#include "support/room_fixture.h"
+
+#include <future>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "mesh/demo_pot.h"
+#include "mesh/geometry.h"
+
+namespace strata::test {
+
+void RoomTest::SetUp() {
+  dsn_ = fresh_database();
+  store_ = open_store(dsn_);
+  ASSERT_TRUE(store_);
+  Progress progress;
+  const mesh::TriangleMesh pot = mesh::make_demo_pot(0.2);
+  auto atlas = mesh::make_atlas(pot, 2048, progress);
+  ASSERT_TRUE(atlas) << atlas.error().detail;
+  const mesh::Geometry geometry = mesh::build_geometry(pot, *atlas);
+  store::Store::NewModel made;
+  made.model.name = "Pot";
+  made.model.slug = "pot";
+  auto project = store_->project("default");
+  ASSERT_TRUE(project);
+  made.model.project_id = project->id;
+  made.model.unit = Unit::mm;
+  made.model.origin = geometry.origin;
+  made.model.triangles = geometry.triangle_count();
+  made.model.vertices = geometry.positions.size();
+  made.model.bounds_min = geometry.origin + glm::dvec3(geometry.box_min);
+  made.model.bounds_max = geometry.origin + glm::dvec3(geometry.box_max);
+  made.model.area = mesh::surface_area(pot);
+  made.model.atlas = atlas->report;
+  made.geometry = mesh::encode_geometry(geometry);
+  auto model = store_->create_model(made, [] { return false; });
+  ASSERT_TRUE(model) << model.error().detail;
+  model_ = *model;
+  store_.reset();
+  restart();
+}
+
+void RoomTest::TearDown() {
+  rooms_.reset();
+  encoder_.reset();
+  if (renderer_) {
+    EXPECT_EQ(renderer_->debug_errors(), 0);
+  }
+  renderer_.reset();
+  store_.reset();
+}
+
+void RoomTest::restart() {
+  rooms_.reset();
+  encoder_.reset();
+  renderer_.reset();
+  store_.reset();
+  store_ = open_store(dsn_);
+  ASSERT_TRUE(store_);
+  render::RendererOptions options;
+  options.shader_dir = STRATA_SHADER_DIR;
+  options.debug = true;
+  auto renderer = render::Renderer::start(options);
+  ASSERT_TRUE(renderer) << renderer.error().detail;
+  renderer_ = std::move(*renderer);
+  encoder_ = std::make_unique<stream::JpegPool>(1);
+  rooms_ = std::make_unique<room::Rooms>(*store_, *renderer_, stream::StreamContext{renderer_.get(), encoder_.get()}, options_);
+}
+
+std::shared_ptr<room::Room> RoomTest::room() {
+  auto room = rooms_->open("pot");
+  EXPECT_TRUE(room) << (room ? "" : room.error().detail);
+  return *room;
+}
+
+Layer RoomTest::make_layer(ValueType type, int resolution, const std::string& name) {
+  Layer layer;
+  layer.name = layer.slug = name;
+  layer.type = type;
+  layer.resolution = resolution;
+  layer.palette = default_palette(type, false);
+  auto made = room()->create_layer(layer);
+  EXPECT_TRUE(made) << (made ? "" : made.error().detail);
+  return *made;
+}
+
+Camera RoomTest::camera(glm::dvec3 from, bool orthographic) const {
+  const glm::dvec3 center = (model_.bounds_min + model_.bounds_max) * 0.5;
+  const double size = glm::length(model_.bounds_max - model_.bounds_min);
+  const glm::dvec3 direction = glm::normalize(from);
+  const glm::dvec3 up = std::abs(direction.z) > 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+  return {glm::lookAt(center + direction * size * 1.5, center, up),
+          orthographic ? glm::ortho(-size * 0.67, size * 0.67, -size * 0.5, size * 0.5, size * 0.1, size * 4)
+                       : glm::perspective(0.7, 640.0 / 480.0, size * 0.1, size * 4),
+          640, 480};
+}
+
+room::EditRequest RoomTest::request(const Layer& layer, decltype(room::EditRequest::edit) edit, const std::string& user) const {
+  return {random_uuid(), user, layer.id, std::move(edit), {{"op", "test"}}};
+}
+
+room::EditRequest RoomTest::stroke(const Layer& layer, double value, std::vector<glm::dvec2> path, double radius_px,
+                                   const std::string& user) const {
+  room::StrokeEdit edit;
+  edit.batch.camera = camera({0.3, -1, 0.4});
+  edit.batch.path = std::move(path);
+  edit.batch.radius_px = radius_px;
+  edit.batch.value_bits = encode_value(layer.type, value).value();
+  edit.stroke = random_uuid();
+  return request(layer, std::move(edit), user);
+}
+
+Result<room::EditAnswer> RoomTest::send(room::EditRequest edit) {
+  auto promise = std::make_shared<std::promise<Result<room::EditAnswer>>>();
+  auto future = promise->get_future();
+  room()->edit(std::move(edit), {}, [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
+  return future.get();
+}
+
+bool equal(const TileMap& a, const TileMap& b) {
+  if (a.size() != b.size()) return false;
+  for (const auto& [address, tile] : a) {
+    auto other = b.find(address);
+    if (other == b.end() || !(*other->second == *tile)) return false;
+  }
+  return true;
+}
+
+}  // namespace strata::test
