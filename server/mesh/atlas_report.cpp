@@ -11,8 +11,9 @@ namespace {
 
 double area_of(const TriangleMesh& mesh, std::size_t f) {
   const auto a = mesh.positions[mesh.triangles[3 * f]];
-  return glm::length(glm::cross(mesh.positions[mesh.triangles[3 * f + 1]] - a,
-                                mesh.positions[mesh.triangles[3 * f + 2]] - a)) / 2;
+  return glm::length(
+             glm::cross(mesh.positions[mesh.triangles[3 * f + 1]] - a, mesh.positions[mesh.triangles[3 * f + 2]] - a)) /
+         2;
 }
 
 struct Stretch {
@@ -65,14 +66,14 @@ AtlasMeasure measure_areas(const TriangleMesh& mesh, std::span<const glm::vec2> 
     if (pieces.area() == 0) measure.area_without_uv += area;
     if (area == 0) continue;
     uv_area += pieces.area();
-    faces.push_back({static_cast<float>(area * scale / std::max(pieces.area(), 1e-12)), static_cast<float>(area * scale)});
+    faces.push_back(
+        {static_cast<float>(area * scale / std::max(pieces.area(), 1e-12)), static_cast<float>(area * scale)});
     if (pieces.is_line()) {
       texel(pieces.centroid().x, pieces.centroid().y) += static_cast<float>(area * scale);
     } else {
       const double area_per_texel = area * scale / pieces.area();
-      pieces.for_each(0, resolution, [&](int x, int y, double piece) {
-        texel(x, y) += static_cast<float>(piece * area_per_texel);
-      });
+      pieces.for_each(0, resolution,
+                      [&](int x, int y, double piece) { texel(x, y) += static_cast<float>(piece * area_per_texel); });
     }
   }
   for (const float area : texel_areas) measure.texel_area_max = std::max(measure.texel_area_max, double{area} / scale);

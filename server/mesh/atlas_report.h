@@ -17,8 +17,8 @@ struct TexelOwners {
 
 // What an atlas does to areas at one resolution.
 struct AtlasMeasure {
-  double area = 0;             // of the surface, unit²
-  double area_without_uv = 0;  // of triangles whose uv area is 0, unit²
+  double area = 0;                           // of the surface, unit²
+  double area_without_uv = 0;                // of triangles whose uv area is 0, unit²
   double stretch_mean = 0, stretch_p99 = 0;  // as in AtlasReport; a triangle counts at most 50
   double texel_area_max = 0;                 // unit²
 };

@@ -13,9 +13,9 @@ namespace strata::mesh {
 namespace {
 
 constexpr std::uint32_t kNoChart = 0xffffffffu;
-constexpr float kSmallestFootprint = 0.15f;   // a face's area in the plane, relative to its area in space
-constexpr std::size_t kWorthRegrowing = 16;   // faces
-constexpr std::size_t kTinyChart = 24;        // faces: smaller charts give their faces away where they can
+constexpr float kSmallestFootprint = 0.15f;  // a face's area in the plane, relative to its area in space
+constexpr std::size_t kWorthRegrowing = 16;  // faces
+constexpr std::size_t kTinyChart = 24;       // faces: smaller charts give their faces away where they can
 
 void set_axis(Chart& chart, glm::vec3 axis) {
   chart.axis = axis;
@@ -152,7 +152,9 @@ bool Grower::grow_all(Progress& progress) {
     add_chart(seed);
     done += charts_.back().faces.size();
     if (charts_.size() % 16 == 0)
-      progress.report(0.1 + 0.6 * static_cast<double>(done) / static_cast<double>(chart_of_face_.size()),
+      progress.report(options_.progress_from + (options_.progress_to - options_.progress_from) *
+                                                   static_cast<double>(done) /
+                                                   static_cast<double>(chart_of_face_.size()),
                       "Cutting the surface into charts");
   }
   return true;

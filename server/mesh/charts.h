@@ -22,9 +22,9 @@ struct Chart {
 
 struct ChartOptions {
   float cone_degrees = 55;        // largest angle between a face's averaged normal and the chart's axis
-  int smoothing = 2;              // Laplacian rounds
   double texels_per_unit = 1000;  // density at which no two faces of a chart may share a texel
-  int largest_half_side = 800;    // texels from a chart's seed to its farthest point
+  int largest_half_side = 400;    // texels from a chart's seed to its farthest point
+  double progress_from = 0.1, progress_to = 0.7;
 };
 
 // Everything that growing and laying out charts needs to know of a mesh.

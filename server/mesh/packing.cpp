@@ -20,6 +20,21 @@ struct Profile {
   int width() const { return static_cast<int>(bottom.size()); }
 };
 
+// No single rule packs every set of charts best; each is quick, so several are tried.
+enum class Order { longer_side, box_area, perimeter };
+struct Strategy {
+  Order order;
+  int waste_weight;   // of texels lost below a chart
+  int height_weight;  // of the height at which a chart's top lies, per column
+};
+constexpr std::array<Strategy, 6> kStrategies{{{Order::longer_side, 2, 1},
+                                               {Order::box_area, 2, 1},
+                                               {Order::longer_side, 1, 1},
+                                               {Order::perimeter, 4, 1},
+                                               {Order::box_area, 1, 1},
+                                               {Order::longer_side, 1, 0}}};
+constexpr std::size_t kManyCharts = 3000;  // from here on one strategy has to do
+
 struct Shape {
   glm::ivec2 box{1};
   std::array<Profile, 4> turned;  // by quarter turns
@@ -95,7 +110,9 @@ Shape make_shape(const Outline& outline, double density) {
 class Skyline {
  public:
   Skyline(int side, int gap)
-      : side_(side), gap_(gap), heights_(static_cast<std::size_t>(side) + 2 * gap, static_cast<std::int16_t>(kEdgeMargin - gap)) {}
+      : side_(side),
+        gap_(gap),
+        heights_(static_cast<std::size_t>(side) + 2 * gap, static_cast<std::int16_t>(kEdgeMargin - gap)) {}
 
   struct Spot {
     int x = -1, y = 0;
@@ -103,7 +120,7 @@ class Skyline {
   };
 
   // The place with the least waste below the chart.
-  Spot find(const Profile& profile, int height) {
+  Spot find(const Profile& profile, int height, const Strategy& strategy) {
     const int width = profile.width(), reach = width + 2 * gap_;
     Spot best;
     if (width + 2 * kEdgeMargin > side_ || height + 2 * kEdgeMargin > side_) return best;
@@ -112,7 +129,8 @@ class Skyline {
     std::int64_t bottom_sum = 0;
     for (int i = 0; i < reach; ++i) {
       std::int16_t lowest = std::numeric_limits<std::int16_t>::max();
-      for (int j = std::max(0, i - 2 * gap_); j <= std::min(width - 1, i); ++j) lowest = std::min(lowest, profile.bottom[j]);
+      for (int j = std::max(0, i - 2 * gap_); j <= std::min(width - 1, i); ++j)
+        lowest = std::min(lowest, profile.bottom[j]);
       floor_[i] = static_cast<std::int16_t>(lowest - gap_);
       bottom_sum += floor_[i];
     }
@@ -128,7 +146,8 @@ class Skyline {
       }
       if (y + height + kEdgeMargin > side_) continue;
       const std::int64_t waste = std::int64_t{y} * reach + bottom_sum - (sums_[x + reach] - sums_[x]);
-      const std::int64_t cost = 2 * waste + std::int64_t{y} * width;
+      const std::int64_t cost =
+          strategy.waste_weight * waste + strategy.height_weight * std::int64_t{y + height} * width;
       if (cost < best.cost) best = {x, y, cost};
     }
     return best;
@@ -184,7 +203,11 @@ std::vector<Outline> make_outlines(const ChartSurface& surface, std::span<const 
   return outlines;
 }
 
-std::optional<Packing> pack(std::span<const Outline> outlines, double texels_per_unit, int side, int gap) {
+namespace {
+
+// All shapes at this density; empty where they cannot fit whatever the order.
+std::optional<std::vector<Shape>> make_shapes(std::span<const Outline> outlines, double texels_per_unit, int side,
+                                              int gap) {
   std::vector<Shape> shapes;
   shapes.reserve(outlines.size());
   std::int64_t least_area = 0;
@@ -192,32 +215,61 @@ std::optional<Packing> pack(std::span<const Outline> outlines, double texels_per
     const glm::dvec2 size = glm::dvec2(outline.size) * texels_per_unit;
     if (std::max(size.x, size.y) + 2 * kEdgeMargin + 1 > side) return std::nullopt;
     shapes.push_back(make_shape(outline, texels_per_unit));
-    for (const auto& column : {shapes.back().turned[0]})
-      for (int i = 0; i < column.width(); ++i) least_area += column.top[i] - column.bottom[i] + 1;
-    if (least_area > std::int64_t{side} * side) return std::nullopt;
+    const Profile& columns = shapes.back().turned[0];
+    for (int i = 0; i < columns.width(); ++i) least_area += columns.top[i] - columns.bottom[i] + 1 + gap;
+    if (least_area > std::int64_t{side} * (side + gap)) return std::nullopt;
   }
-  std::vector<std::uint32_t> order(outlines.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto longer_side = [&](std::uint32_t i) { return std::max(shapes[i].box.x, shapes[i].box.y); };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return longer_side(a) > longer_side(b); });
-  Packing packing;
-  packing.texels_per_unit = texels_per_unit;
-  packing.placements.resize(outlines.size());
+  return shapes;
+}
+
+std::vector<std::uint32_t> ordered(std::span<const Shape> shapes, Order order) {
+  const auto size_of = [&](std::uint32_t i) -> std::int64_t {
+    const glm::ivec2 box = shapes[i].box;
+    switch (order) {
+      case Order::box_area:
+        return std::int64_t{box.x} * box.y;
+      case Order::perimeter:
+        return box.x + box.y;
+      default:
+        return std::max(box.x, box.y);
+    }
+  };
+  std::vector<std::uint32_t> result(shapes.size());
+  std::iota(result.begin(), result.end(), 0u);
+  std::stable_sort(result.begin(), result.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return size_of(a) > size_of(b); });
+  return result;
+}
+
+std::optional<std::vector<Placement>> place(std::span<const Shape> shapes, int side, int gap,
+                                            const Strategy& strategy) {
+  std::vector<Placement> placements(shapes.size());
   Skyline skyline(side, gap);
-  for (const auto i : order) {
+  for (const auto i : ordered(shapes, strategy.order)) {
     const Shape& shape = shapes[i];
     Skyline::Spot best;
     int best_turn = 0;
     for (int turn = 0; turn < 4; ++turn) {
-      const auto spot = skyline.find(shape.turned[turn], turn % 2 == 0 ? shape.box.y : shape.box.x);
+      const auto spot = skyline.find(shape.turned[turn], turn % 2 == 0 ? shape.box.y : shape.box.x, strategy);
       if (spot.cost < best.cost) best = spot, best_turn = turn;
     }
     if (best.x < 0) return std::nullopt;
     skyline.put(shape.turned[best_turn], best);
-    packing.placements[i] = {best_turn, {best.x, best.y}, shape.box};
+    placements[i] = {best_turn, {best.x, best.y}, shape.box};
   }
-  return packing;
+  return placements;
+}
+
+}  // namespace
+
+std::optional<Packing> pack(std::span<const Outline> outlines, double texels_per_unit, int side, int gap) {
+  const auto shapes = make_shapes(outlines, texels_per_unit, side, gap);
+  if (!shapes) return std::nullopt;
+  for (const Strategy& strategy : kStrategies) {
+    if (auto placements = place(*shapes, side, gap, strategy)) return Packing{texels_per_unit, std::move(*placements)};
+    if (outlines.size() >= kManyCharts) break;
+  }
+  return std::nullopt;
 }
 
 std::optional<Packing> pack_densely(std::span<const Outline> outlines, double first_guess, int side, int gap) {

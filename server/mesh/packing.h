@@ -24,18 +24,25 @@ std::vector<Outline> make_outlines(const ChartSurface& surface, std::span<const 
 
 // Where a chart lies in the atlas.
 struct Placement {
-  int quarter_turns = 0;   // counterclockwise
-  glm::ivec2 corner{0};    // lower left texel of its box
-  glm::ivec2 box{1};       // its box before the quarter turns, whole texels
+  int quarter_turns = 0;  // counterclockwise
+  glm::ivec2 corner{0};   // lower left texel of its box
+  glm::ivec2 box{1};      // its box before the quarter turns, whole texels
 
   // `p`: texels from the outline's corner. Whole texels map to whole texels.
   glm::dvec2 to_atlas(glm::dvec2 p) const {
     const glm::dvec2 size(box);
     switch (quarter_turns) {
-      case 1: p = {size.y - p.y, p.x}; break;
-      case 2: p = size - p; break;
-      case 3: p = {p.y, size.x - p.x}; break;
-      default: break;
+      case 1:
+        p = {size.y - p.y, p.x};
+        break;
+      case 2:
+        p = size - p;
+        break;
+      case 3:
+        p = {p.y, size.x - p.x};
+        break;
+      default:
+        break;
     }
     return p + glm::dvec2(corner);
   }

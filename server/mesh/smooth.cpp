@@ -22,9 +22,8 @@ std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangl
     std::fill(weight.begin(), weight.end(), 0.f);
     for (std::size_t c = 0; c < triangles.size(); ++c) {
       const std::uint32_t a = triangles[c], b = other(c);
-      const bool is_boundary_edge = neighbours[c] == kNoTriangle;
-      if (is_boundary_edge || !on_boundary[a]) sum[a] += smoothed[b], weight[a] += 1;
-      if (is_boundary_edge || !on_boundary[b]) sum[b] += smoothed[a], weight[b] += 1;
+      if (!on_boundary[a]) sum[a] += smoothed[b], weight[a] += 1;
+      if (!on_boundary[b]) sum[b] += smoothed[a], weight[b] += 1;
     }
     for (std::size_t v = 0; v < smoothed.size(); ++v)
       if (weight[v] > 0) smoothed[v] += kStep * (sum[v] / weight[v] - smoothed[v]);

@@ -20,9 +20,9 @@ void SurfaceBake::credit_areas(int band) {
       if (holder != kNobody && islands_.of_triangle[holder] == island)
         map_.area[texel_index(x, y)] += static_cast<float>(area);
       else
-        leftovers.push_back({static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(resolution_) +
-                                 static_cast<std::uint32_t>(x),
-                             t, static_cast<float>(area)});
+        leftovers.push_back(
+            {static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(resolution_) + static_cast<std::uint32_t>(x), t,
+             static_cast<float>(area)});
     };
     pieces.set(texels_at(t, 0), texels_at(t, 1), texels_at(t, 2));
     if (pieces.is_line()) {
@@ -36,16 +36,13 @@ void SurfaceBake::credit_areas(int band) {
   }
 }
 
-// The surface texel that takes what lies on a texel of no or of another island: the nearest of its own island, else the
-// one that holds the triangle's centroid, which is always surface.
+// The surface texel that takes what lies on a texel of no or of another island: the nearest of its own island within
+// the ring; beyond (a tip too thin to cover centres) the nearest that the triangle covers; for a triangle that covers
+// none the one that holds its centroid, which is always surface.
 glm::ivec2 SurfaceBake::heir_of(const Leftover& leftover) const {
   const int x = static_cast<int>(leftover.texel % resolution_), y = static_cast<int>(leftover.texel / resolution_);
   glm::ivec2 found;
   if (nearest_surface(x, y, islands_.of_triangle[leftover.triangle], found)) return found;
-  const auto texel = centroid_texel(leftover.triangle);
-  const glm::ivec2 centre(texel % resolution_, texel / resolution_);
-  if (is_surface(centre.x, centre.y)) return centre;
-  // The triangle covers centres, though not near its centroid: the covered texel nearest to the piece.
   std::int64_t least = -1;
   raster_of(leftover.triangle).for_each_span(0, resolution_, 0, resolution_, [&](int row, int begin, int end) {
     const int column = std::clamp(x, begin, end - 1);
@@ -53,7 +50,9 @@ glm::ivec2 SurfaceBake::heir_of(const Leftover& leftover) const {
     if (least < 0 || squared < least) least = squared, found = {column, row};
     return true;
   });
-  return found;
+  if (least >= 0) return found;
+  const auto texel = centroid_texel(leftover.triangle);
+  return {texel % resolution_, texel / resolution_};
 }
 
 void SurfaceBake::credit_leftovers() {

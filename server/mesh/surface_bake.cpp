@@ -17,7 +17,9 @@ namespace {
 constexpr int kMostBands = 32;
 constexpr int kRing = 2;  // texels of gutter
 
-double inside_unit(float value) { return value >= 0 ? std::min(double{value}, 1.0) : 0.0; }  // also for NaN
+double inside_unit(float value) {
+  return value >= 0 ? std::min(double{value}, 1.0) : 0.0;
+}  // also for NaN
 
 struct Offset {
   int x, y;
@@ -149,7 +151,8 @@ void SurfaceBake::mark_surface(int band) {
     const auto texel = centroid_texel(t);
     const int x = static_cast<int>(texel % resolution_), y = static_cast<int>(texel / resolution_);
     if (y < y_low || y >= y_high || is_surface(x, y)) continue;
-    const bool covers_none = raster_of(t).for_each_span(0, resolution_, 0, resolution_, [](int, int, int) { return false; });
+    const bool covers_none =
+        raster_of(t).for_each_span(0, resolution_, 0, resolution_, [](int, int, int) { return false; });
     if (covers_none) claims.push_back({texel, t});
   }
   std::sort(claims.begin(), claims.end(), [&](const Claim& a, const Claim& b) {
@@ -157,12 +160,13 @@ void SurfaceBake::mark_surface(int band) {
     const float area_a = triangle_area_[a.triangle], area_b = triangle_area_[b.triangle];
     return area_a != area_b ? area_a > area_b : a.triangle < b.triangle;
   });
-  claims.erase(std::unique(claims.begin(), claims.end(), [](const Claim& a, const Claim& b) { return a.texel == b.texel; }),
-               claims.end());
+  claims.erase(
+      std::unique(claims.begin(), claims.end(), [](const Claim& a, const Claim& b) { return a.texel == b.texel; }),
+      claims.end());
   for (const Claim& claim : claims) {
     const int x = static_cast<int>(claim.texel % resolution_), y = static_cast<int>(claim.texel / resolution_);
-    surface_of_block_[static_cast<std::size_t>(y >> 3) * map_.blocks_per_side + (x >> 3)] |=
-        std::uint64_t{1} << ((y & 7) * 8 + (x & 7));
+    surface_of_block_[static_cast<std::size_t>(y >> 3) * map_.blocks_per_side + (x >> 3)] |= std::uint64_t{1}
+                                                                                             << ((y & 7) * 8 + (x & 7));
   }
 }
 
@@ -226,7 +230,10 @@ namespace {
 class PositionPlane {
  public:
   PositionPlane(const std::array<glm::dvec2, 3>& uv, const std::array<glm::dvec3, 3>& quantised)
-      : origin_(uv[0]), base_(quantised[0]), along_1_(quantised[1] - quantised[0]), along_2_(quantised[2] - quantised[0]) {
+      : origin_(uv[0]),
+        base_(quantised[0]),
+        along_1_(quantised[1] - quantised[0]),
+        along_2_(quantised[2] - quantised[0]) {
     const glm::dvec2 e1 = uv[1] - uv[0], e2 = uv[2] - uv[0];
     const double twice = e1.x * e2.y - e1.y * e2.x;
     is_line_ = std::abs(twice) <= 1e-12 * (glm::dot(e1, e1) + glm::dot(e2, e2));

@@ -20,15 +20,15 @@ class SurfaceBake {
 
   int band_count() const { return static_cast<int>(band_first_.size()) - 1; }
 
-  void mark_surface(int band);          // which texels are surface, into masks of all blocks
-  void mark_gutter(int band);           // after mark_surface of all bands
-  void assign_slots(int threads);       // after mark_gutter of all bands
-  void place_surface(int band);         // owners and positions of surface texels
-  void place_gutter(int band);          // after place_surface of all bands
-  void credit_areas(int band);          // after place_surface of all bands
-  void credit_leftovers();              // after credit_areas of all bands
-  void bound_slots(int band);           // after place_gutter of all bands
-  void bound_tiles();                   // after bound_slots of all bands
+  void mark_surface(int band);     // which texels are surface, into masks of all blocks
+  void mark_gutter(int band);      // after mark_surface of all bands
+  void assign_slots(int threads);  // after mark_gutter of all bands
+  void place_surface(int band);    // owners and positions of surface texels
+  void place_gutter(int band);     // after place_surface of all bands
+  void credit_areas(int band);     // after place_surface of all bands
+  void credit_leftovers();         // after credit_areas of all bands
+  void bound_slots(int band);      // after place_gutter of all bands
+  void bound_tiles();              // after bound_slots of all bands
 
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffu;

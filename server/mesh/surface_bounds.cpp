@@ -27,7 +27,8 @@ void SurfaceBake::bound_slots(int band) {
         box.low = glm::min(box.low, q), box.high = glm::max(box.high, q);
       }
       const auto unpacked = [&](glm::uvec3 q) {
-        return map_.box_min + glm::vec3(q) / glm::vec3(kLargestPackedX, kLargestPackedY, kLargestPackedZ) * map_.box_extent;
+        return map_.box_min +
+               glm::vec3(q) / glm::vec3(kLargestPackedX, kLargestPackedY, kLargestPackedZ) * map_.box_extent;
       };
       low = unpacked(box.low), high = unpacked(box.high);
       auto& bounds = map_.bounds_8[slot];

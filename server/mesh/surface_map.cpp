@@ -38,8 +38,7 @@ glm::vec3 SurfaceMap::position(std::uint32_t slot, int texel) const {
 TileMask SurfaceMap::owned_in_tile(TileAddress tile) const {
   return gather(*this, tile, [&](std::uint32_t slot) {
     std::uint64_t bits = 0;
-    for (int i = 0; i < 64; ++i)
-      bits |= std::uint64_t{packed_position[std::size_t{slot} * 64 + i] != kNoPosition} << i;
+    for (int i = 0; i < 64; ++i) bits |= std::uint64_t{packed_position[std::size_t{slot} * 64 + i] != kNoPosition} << i;
     return bits;
   });
 }
@@ -50,8 +49,8 @@ TileMask SurfaceMap::surface_in_tile(TileAddress tile) const {
 
 float SurfaceMap::area_of(TileAddress tile, int texel) const {
   const int x = texel % kTileSize, y = texel / kTileSize;
-  const auto slot = slot_at(*this, tile.x * kBlocksPerTileSide + x / kBlockSize,
-                            tile.y * kBlocksPerTileSide + y / kBlockSize);
+  const auto slot =
+      slot_at(*this, tile.x * kBlocksPerTileSide + x / kBlockSize, tile.y * kBlocksPerTileSide + y / kBlockSize);
   if (slot == kNoSlot) return 0;
   return area[std::size_t{slot} * 64 + (y % kBlockSize) * kBlockSize + x % kBlockSize];
 }

@@ -16,9 +16,11 @@ constexpr std::uint64_t kNoPosition = ~std::uint64_t{0};
 // For every texel of a model's atlas at one resolution: where it lies on the surface. Baked on the CPU, so that it is
 // the same on every GPU. Only occupied 8 × 8 blocks are stored ("slots").
 //
-// - *Surface texels* are those whose centre a triangle covers (OpenGL's rule on vertices snapped to 1/256 texel), and the
+// - *Surface texels* are those whose centre a triangle covers (OpenGL's rule on vertices snapped to 1/256 texel), and
+// the
 //   nearest texel of a triangle that covers no centre (conservative fill) where no other triangle owns it.
-// - *Gutter texels* are the ring of 2 texels around an island; they carry the position of the nearest surface texel of their own
+// - *Gutter texels* are the ring of 2 texels around an island; they carry the position of the nearest surface texel of
+// their own
 //   island, so an edit treats them exactly as their owner.
 // - Area: each triangle is clipped against the texel grid and each piece is credited to the surface texel that owns the
 //   texel it lies in (its own chart's); the sum is the mesh area.
@@ -47,7 +49,7 @@ struct SurfaceMap {
   double area_total = 0;
 
   glm::vec3 position(std::uint32_t slot, int texel) const;
-  TileMask owned_in_tile(TileAddress tile) const;    // surface and gutter texels
+  TileMask owned_in_tile(TileAddress tile) const;  // surface and gutter texels
   TileMask surface_in_tile(TileAddress tile) const;
   float area_of(TileAddress tile, int texel) const;  // unit²
   std::size_t bytes() const;

@@ -24,7 +24,7 @@ class TexelPieces {
     is_line_ = area_ <= 1e-9 * glm::dot(extent, extent);
   }
 
-  double area() const { return area_; }    // texel²
+  double area() const { return area_; }  // texel²
   bool is_line() const { return is_line_; }
   glm::dvec2 centroid() const { return (corners_[0] + corners_[1] + corners_[2]) / 3.0; }
   int first_row() const { return static_cast<int>(low_.y); }
@@ -69,7 +69,8 @@ class TexelPieces {
     x_from = std::clamp(x_from, 0.0, static_cast<double>(columns));
     x_to = std::clamp(x_to, 0.0, static_cast<double>(columns));
     const double height = direction * (y_to - y_from);
-    const int first = std::min(static_cast<int>(x_from), columns - 1), last = std::min(static_cast<int>(x_to), columns - 1);
+    const int first = std::min(static_cast<int>(x_from), columns - 1),
+              last = std::min(static_cast<int>(x_to), columns - 1);
     if (first == last) {
       const double middle = (x_from + x_to) / 2 - first;
       sums_[first] += height * (1 - middle);

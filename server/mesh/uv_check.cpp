@@ -9,8 +9,8 @@
 namespace strata::mesh {
 namespace {
 
-constexpr double kMostOverlap = 0.005;        // of covered texels
-constexpr double kMostAreaWithoutUv = 0.001;  // of the surface
+constexpr double kMostOverlap = 0.005;           // of covered texels
+constexpr double kMostAreaWithoutUv = 0.001;     // of the surface
 constexpr float kRoundingOutside = 1.f / 65536;  // writers round 1 up to a little more
 
 std::string percent(double share) {

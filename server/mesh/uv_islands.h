@@ -7,7 +7,8 @@
 
 namespace strata::mesh {
 
-// Pieces of a parametrisation: triangles are of one island when a chain of corners that share position and UV joins them.
+// Pieces of a parametrisation: triangles are of one island when a chain of corners that share position and UV joins
+// them.
 struct UvIslands {
   std::vector<std::uint32_t> of_triangle;  // numbered from 0 in the order of their first triangle
   std::uint32_t count = 0;

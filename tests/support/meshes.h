@@ -1,0 +1,32 @@
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "mesh/triangle_mesh.h"
+
+namespace strata::test {
+
+// Small meshes of each class that scans come in. Deterministic.
+mesh::TriangleMesh sphere(int segments, double noise = 0);     // closed
+mesh::TriangleMesh torus(int segments);                        // closed, with a hole through it
+mesh::TriangleMesh open_grid(int cells, double height = 0.2);  // boundary; corner_uvs fill [0.05, 0.95]²
+mesh::TriangleMesh grid_with_fins(int cells);                  // edges with three and four triangles
+mesh::TriangleMesh slivers(int count);                         // a fan of triangles 1000 times longer than wide
+mesh::TriangleMesh cube_with_face_charts();                    // 12 triangles; corner_uvs in 6 separate squares
+mesh::TriangleMesh flipped_and_duplicate(int cells);           // every 7th triangle turned round, some twice
+mesh::TriangleMesh separate_triangles(int count);              // no two connected
+
+mesh::TriangleMesh transformed(mesh::TriangleMesh mesh, double scale, const glm::dvec3& offset);
+
+struct NamedMesh {
+  std::string name;
+  mesh::TriangleMesh mesh;
+};
+inline void PrintTo(const NamedMesh& named, std::ostream* out) {
+  *out << named.name;
+}
+std::vector<NamedMesh> mesh_classes();  // all of the above, at sizes that tests can check by brute force
+
+}  // namespace strata::test

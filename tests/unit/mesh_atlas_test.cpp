@@ -1,0 +1,235 @@
+#include "mesh/atlas.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "mesh/load.h"
+#include "mesh/uv_islands.h"
+#include "support/meshes.h"
+
+namespace strata::mesh {
+namespace {
+
+constexpr int kLowest = 256;
+
+// How often each texel centre is covered: OpenGL's rule told again, texel by texel, with whole numbers.
+std::vector<int> owners_by_brute_force(const TriangleMesh& mesh, const Atlas& atlas, int resolution) {
+  std::vector<int> owners(std::size_t(resolution) * resolution, 0);
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    std::int64_t x[3], y[3];
+    for (int k = 0; k < 3; ++k) {
+      x[k] = std::lrint(double(atlas.corner_uvs[3 * t + k].x) * resolution * 256);
+      y[k] = std::lrint(double(atlas.corner_uvs[3 * t + k].y) * resolution * 256);
+    }
+    const auto side_of = [&](int a, int b, std::int64_t px, std::int64_t py) {
+      return (x[b] - x[a]) * (py - y[a]) - (y[b] - y[a]) * (px - x[a]);
+    };
+    const std::int64_t area = side_of(0, 1, x[2], y[2]);
+    if (area == 0) continue;
+    const auto [left, right] = std::minmax({x[0], x[1], x[2]});
+    const auto [bottom, top] = std::minmax({y[0], y[1], y[2]});
+    for (int row = int(bottom / 256); row <= std::min<int>(int(top / 256), resolution - 1); ++row)
+      for (int column = int(left / 256); column <= std::min<int>(int(right / 256), resolution - 1); ++column) {
+        const std::int64_t px = column * 256 + 128, py = row * 256 + 128;
+        bool covered = true;
+        for (int k = 0; k < 3; ++k) {
+          const int a = area > 0 ? k : (k + 1) % 3, b = area > 0 ? (k + 1) % 3 : k;
+          const std::int64_t s = side_of(a, b, px, py);
+          const bool owns = y[b] < y[a] || (y[b] == y[a] && x[b] > x[a]);
+          covered &= s > 0 || (s == 0 && owns);
+        }
+        owners[std::size_t(row) * resolution + column] += covered;
+      }
+  }
+  return owners;
+}
+
+std::vector<std::uint32_t> islands_of(const TriangleMesh& mesh, const Atlas& atlas) {
+  std::vector<std::uint32_t> indices;
+  const auto count = weld_corners(mesh.triangles, atlas.corner_uvs, mesh.positions.size(), indices);
+  return find_islands(indices, count).of_triangle;
+}
+
+double uv_area(const Atlas& atlas, std::size_t t) {
+  const glm::dvec2 a = atlas.corner_uvs[3 * t], b = atlas.corner_uvs[3 * t + 1], c = atlas.corner_uvs[3 * t + 2];
+  return std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
+}
+
+double area_of(const TriangleMesh& mesh, std::size_t t) {
+  const auto a = mesh.positions[mesh.triangles[3 * t]];
+  return glm::length(
+             glm::cross(mesh.positions[mesh.triangles[3 * t + 1]] - a, mesh.positions[mesh.triangles[3 * t + 2]] - a)) /
+         2;
+}
+
+class EveryMeshClass : public testing::TestWithParam<test::NamedMesh> {
+ protected:
+  const TriangleMesh& mesh() const { return GetParam().mesh; }
+  Atlas unwrap(int lowest = kLowest) {
+    Progress progress;
+    auto atlas = make_atlas(mesh(), lowest, progress);
+    EXPECT_TRUE(atlas.has_value()) << (atlas ? "" : atlas.error().detail);
+    return atlas ? *atlas : Atlas{};
+  }
+};
+INSTANTIATE_TEST_SUITE_P(mesh_atlas, EveryMeshClass, testing::ValuesIn(test::mesh_classes()),
+                         [](const auto& instance) { return instance.param.name; });
+
+TEST_P(EveryMeshClass, has_all_its_corners_inside_the_unit_square) {
+  const Atlas atlas = unwrap();
+  ASSERT_EQ(atlas.corner_uvs.size(), mesh().triangles.size());
+  for (const auto uv : atlas.corner_uvs) {
+    ASSERT_TRUE(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1) << uv.x << " " << uv.y;
+  }
+}
+
+TEST_P(EveryMeshClass, has_no_texel_with_two_owners_up_to_four_times_the_lowest_resolution) {
+  const Atlas atlas = unwrap();
+  for (const int resolution : {kLowest, 2 * kLowest, 4 * kLowest})
+    EXPECT_THAT(owners_by_brute_force(mesh(), atlas, resolution), testing::Each(testing::Le(1))) << resolution;
+}
+
+TEST_P(EveryMeshClass, reports_the_coverage_that_a_count_of_texels_finds) {
+  const Atlas atlas = unwrap();
+  const auto owners = owners_by_brute_force(mesh(), atlas, kLowest);
+  const auto covered = std::count_if(owners.begin(), owners.end(), [](int n) { return n > 0; });
+  EXPECT_DOUBLE_EQ(atlas.report.coverage, double(covered) / (kLowest * kLowest));
+  EXPECT_EQ(atlas.report.overlap, 0);
+  EXPECT_EQ(atlas.report.source, "made");
+  EXPECT_EQ(atlas.report.lowest_resolution, kLowest);
+}
+
+TEST_P(EveryMeshClass, gives_every_triangle_with_an_area_a_footprint) {
+  const Atlas atlas = unwrap();
+  double total = 0, total_uv = 0;
+  for (std::size_t t = 0; t < mesh().triangle_count(); ++t) total += area_of(mesh(), t), total_uv += uv_area(atlas, t);
+  ASSERT_GT(total_uv, 0);
+  for (std::size_t t = 0; t < mesh().triangle_count(); ++t) {
+    const double relative = area_of(mesh(), t) / total;
+    if (relative < 1e-9) continue;
+    EXPECT_GT(uv_area(atlas, t) / total_uv, relative / 30) << "triangle " << t;
+  }
+}
+
+TEST_P(EveryMeshClass, keeps_two_empty_texels_between_charts) {
+  const Atlas atlas = unwrap();
+  const auto islands = islands_of(mesh(), atlas);
+  EXPECT_EQ(atlas.report.charts, 1 + int(*std::max_element(islands.begin(), islands.end())));
+  // The box of a triangle reaches at most a texel farther than it, which a made atlas' gap of 4 leaves room for: exact
+  // on its corners, which are what can come nearest to another chart's.
+  constexpr std::uint32_t kFree = 0xffffffffu;
+  std::vector<std::uint32_t> touched(kLowest * kLowest, kFree);
+  const auto touch = [&](glm::dvec2 p, std::uint32_t island) {
+    const auto x = std::min(int(p.x), kLowest - 1), y = std::min(int(p.y), kLowest - 1);
+    auto& texel = touched[y * kLowest + x];
+    ASSERT_TRUE(texel == kFree || texel == island) << x << " " << y;
+    texel = island;
+  };
+  for (std::size_t t = 0; t < mesh().triangle_count(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const glm::dvec2 a = glm::dvec2(atlas.corner_uvs[3 * t + k]) * double(kLowest);
+      const glm::dvec2 b = glm::dvec2(atlas.corner_uvs[3 * t + (k + 1) % 3]) * double(kLowest);
+      const int steps = 1 + int(8 * glm::length(b - a));
+      for (int i = 0; i <= steps; ++i) touch(a + (b - a) * (double(i) / steps), islands[t]);
+    }
+  for (int y = 0; y < kLowest; ++y)
+    for (int x = 0; x < kLowest; ++x) {
+      const auto island = touched[y * kLowest + x];
+      if (island == kFree) continue;
+      for (int dy = -2; dy <= 2; ++dy)
+        for (int dx = -2; dx <= 2; ++dx) {
+          if (x + dx < 0 || y + dy < 0 || x + dx >= kLowest || y + dy >= kLowest) continue;
+          const auto near = touched[(y + dy) * kLowest + x + dx];
+          ASSERT_TRUE(near == kFree || near == island) << x << " " << y;
+        }
+    }
+}
+
+TEST_P(EveryMeshClass, is_unwrapped_the_same_every_time) {
+  EXPECT_EQ(unwrap().corner_uvs, unwrap().corner_uvs);
+}
+
+TEST(mesh_atlas, does_not_depend_on_scale_or_place) {
+  const auto plain = test::sphere(40);
+  Progress progress;
+  const auto expected = make_atlas(plain, kLowest, progress);
+  ASSERT_TRUE(expected);
+  for (const auto& moved : {test::transformed(plain, 1e-9, {0, 0, 0}), test::transformed(plain, 1e9, {0, 0, 0}),
+                            test::transformed(plain, 0.05, {433210.12, 4581234.57, 612.25})}) {
+    const auto atlas = make_atlas(moved, kLowest, progress);
+    ASSERT_TRUE(atlas);
+    EXPECT_EQ(atlas->report.charts, expected->report.charts);
+    EXPECT_NEAR(atlas->report.coverage, expected->report.coverage, 0.02);
+    EXPECT_NEAR(atlas->report.stretch_mean, expected->report.stretch_mean, 0.01);
+  }
+}
+
+TEST(mesh_atlas, reports_the_largest_texel_in_the_units_of_the_file) {
+  Progress progress;
+  const auto small = make_atlas(test::sphere(40), kLowest, progress);
+  const auto large = make_atlas(test::transformed(test::sphere(40), 1024, {0, 0, 0}), kLowest, progress);
+  ASSERT_TRUE(small && large);
+  EXPECT_NEAR(large->report.texel_area_max / small->report.texel_area_max, 1024.0 * 1024.0, 1024);
+  const double mean = 4 * M_PI / (small->report.coverage * kLowest * kLowest);
+  EXPECT_GT(small->report.texel_area_max, mean);
+  EXPECT_LT(small->report.texel_area_max, 6 * mean);
+}
+
+TEST(mesh_atlas, lays_a_flat_sheet_out_without_stretch) {
+  Progress progress;
+  const auto atlas = make_atlas(test::open_grid(20, 0), kLowest, progress);
+  ASSERT_TRUE(atlas);
+  EXPECT_NEAR(atlas->report.stretch_mean, 1, 0.01);
+  EXPECT_NEAR(atlas->report.stretch_p99, 1, 0.1);
+}
+
+TEST(mesh_atlas, stops_when_cancelled) {
+  Progress progress;
+  progress.cancel();
+  const auto atlas = make_atlas(test::sphere(40), kLowest, progress);
+  ASSERT_FALSE(atlas);
+  EXPECT_EQ(atlas.error().status, 499);
+}
+
+TEST(mesh_atlas, refuses_more_pieces_than_texels_can_hold_apart) {
+  Progress progress;
+  const auto atlas = make_atlas(test::separate_triangles(3000), 128, progress);
+  ASSERT_FALSE(atlas);
+  EXPECT_EQ(atlas.error().status, 422);
+  EXPECT_THAT(atlas.error().detail, testing::HasSubstr("higher lowest resolution"));
+}
+
+TEST(mesh_atlas, refuses_a_mesh_without_area) {
+  TriangleMesh line;
+  line.positions = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
+  line.triangles = {0, 1, 2};
+  Progress progress;
+  const auto atlas = make_atlas(line, kLowest, progress);
+  ASSERT_FALSE(atlas);
+  EXPECT_EQ(atlas.error().status, 422);
+}
+
+TEST(mesh_atlas, of_real_scans_uses_most_texels_with_little_stretch) {
+  const std::filesystem::path data = STRATA_TEST_DATA;
+  int found = 0;
+  for (const char* name : {"statue_nefertiti_70k.ply", "gargoyle_3dhop_50k_colour_normals.ply",
+                           "vessel_lekythos_gigamesh_15k.ply", "vessel_jug_seavase_35k.ply"}) {
+    if (!std::filesystem::exists(data / name)) continue;
+    ++found;
+    Progress progress;
+    const auto scan = load_mesh(data / name, name, progress);
+    ASSERT_TRUE(scan) << scan.error().detail;
+    const auto atlas = make_atlas(scan->mesh, 2048, progress);
+    ASSERT_TRUE(atlas) << atlas.error().detail;
+    EXPECT_GE(atlas->report.coverage, 0.6) << name;
+    EXPECT_LE(atlas->report.stretch_mean, 1.35) << name;
+    EXPECT_EQ(atlas->report.overlap, 0) << name;
+  }
+  if (found == 0) GTEST_SKIP() << "no scans at " << data;
+}
+
+}  // namespace
+}  // namespace strata::mesh
