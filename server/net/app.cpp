@@ -1,0 +1,172 @@
+#include "net/app.h"
+
+#include <exception>
+
+#include "core/log.h"
+#include "net/origin.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::size_t kMaxKey = 255;
+constexpr std::size_t kMaxWaitingQueries = 256;
+
+bool changes(Method method) { return method != Method::get && method != Method::head && method != Method::options; }
+
+std::shared_ptr<LiveShared> make_shared_state(const ServerOptions& options, store::Store& store) {
+  auto shared = std::make_shared<LiveShared>();
+  shared->metrics = std::make_shared<Metrics>();
+  shared->strokes = std::make_shared<StrokeBook>();
+  shared->queries = std::make_shared<WorkerPool>(options.query_threads, kMaxWaitingQueries);
+  shared->store = &store;
+  shared->limits = options.live;
+  return shared;
+}
+
+}  // namespace
+
+const Headers& security_headers() {
+  static const Headers kHeaders = {
+      {"Content-Security-Policy",
+       "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"Cross-Origin-Resource-Policy", "same-origin"},
+  };
+  return kHeaders;
+}
+
+App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs, render::Renderer& renderer)
+    : options_(std::move(options)),
+      store_(store),
+      rooms_(rooms),
+      auth_(store, options_.owner_token),
+      answers_(store),
+      files_(options_.static_dir),
+      shared_(make_shared_state(options_, store)),
+      workers_(options_.worker_threads, options_.max_waiting_requests),
+      context_{options_, store, rooms, jobs, renderer, auth_, *shared_->metrics, workers_} {
+  add_system_routes(router_, context_);
+  add_auth_routes(router_, context_);
+  add_project_routes(router_, context_);
+  add_model_routes(router_, context_);
+  add_import_routes(router_, context_);
+  add_job_routes(router_, context_);
+  add_layer_routes(router_, context_);
+  add_edit_routes(router_, context_);
+  add_query_routes(router_, context_);
+  add_frame_routes(router_, context_);
+  add_texel_routes(router_, context_);
+  page_.pattern = "/";
+  page_.role = std::nullopt;
+  page_.any_query = true;
+  page_.handler = [this](const Request& request, const Respond& respond) { respond(files_.serve(request)); };
+}
+
+App::~App() { stop_workers(); }
+
+void App::stop_workers() {
+  workers_.stop();
+  shared_->queries->stop();
+}
+
+const Route* App::find_route(Request& request, Response& refusal) const {
+  const bool is_api = !request.segments.empty() && request.segments.front() == "api";
+  if (request.method == Method::unknown) {
+    refusal = problem_response({405, "Unknown method", "Use GET, HEAD, POST, PUT, PATCH, DELETE or OPTIONS.", {}});
+    return nullptr;
+  }
+  if (is_live_address(request) && request.method == Method::get) {
+    refusal = problem_response({426, "Upgrade required", "This address speaks WebSocket, subprotocol strata.v1.", {}});
+    refusal.with("Upgrade", "websocket");
+    return nullptr;
+  }
+  Router::Match match = router_.find(request.method, request.segments);
+  if (match.route) {
+    request.params = std::move(match.params);
+    return match.route;
+  }
+  if (match.allowed.empty() && !is_api) match.allowed = {Method::get, Method::head, Method::options};
+  if (match.allowed.empty()) {
+    refusal = problem_response({404, "Not found", "There is nothing at " + request.path + ". The addresses are listed at /api/v1/docs.", {}});
+    return nullptr;
+  }
+  if (!is_api && (request.method == Method::get || request.method == Method::head)) return &page_;
+  const std::string allow = allow_header(match.allowed);
+  if (request.method == Method::options) {
+    refusal = empty_response(204);
+  } else {
+    refusal = problem_response({405, "Method not allowed", "This address takes: " + allow + ".", {}});
+  }
+  refusal.with("Allow", allow);
+  return nullptr;
+}
+
+Result<void> App::identify(Request& request, std::optional<Role> least) {
+  auto principal = auth_.identify(request);
+  if (!principal) return tl::unexpected(principal.error());
+  request.principal = std::move(*principal);
+  if (!least) return {};
+  if (!request.principal)
+    return fail(401, "Not signed in", "Open the sign-in link that the server prints, or send `Authorization: Bearer TOKEN`.");
+  if (request.principal->role < *least)
+    return fail(403, "Not allowed", "This takes the role " + std::string(name(*least)) + "; yours is " + std::string(name(request.principal->role)) + ".");
+  return {};
+}
+
+std::optional<Response> App::admit(Request& request, const Route& route) {
+  // What is open to everyone must work with a stale cookie, too: the page itself, signing in, health.
+  if (route.role)
+    if (auto known = identify(request, route.role); !known) return problem_response(known.error());
+  if (changes(request.method))
+    if (auto own = check_same_origin(request, options_.allowed_origins); !own) return problem_response(own.error());
+  if (auto known = check_query(route, request); !known) return problem_response(known.error());
+  if (request.header("idempotency-key").size() > kMaxKey)
+    return problem_response({400, "Key too long", "An Idempotency-Key has at most 255 characters.", "Idempotency-Key"});
+  return std::nullopt;
+}
+
+void App::handle(const Request& request, const Route& route, const Respond& respond) {
+  const std::string_view key = request.header("idempotency-key");
+  const bool remembered = route.keeps_answer && !key.empty();
+  if (remembered) {
+    auto kept = answers_.begin(request, key);
+    if (!kept) return respond(kept.error());
+    if (*kept) return respond(std::move(**kept));
+  }
+  // Handlers that keep their answer reply before they return, so the request is still there.
+  const Respond answer = remembered ? Respond([this, &request, key, respond](Response response) {
+                                        answers_.finish(request, key, response);
+                                        respond(std::move(response));
+                                      })
+                                    : respond;
+  try {
+    route.handler(request, answer);
+  } catch (const std::exception& error) {
+    log::error("request " + std::string(name(request.method)) + " " + request.path + " failed: " + error.what());
+    answer(Problem{500, "Internal error", "The server made a mistake; its log says more.", {}});
+  }
+}
+
+bool App::is_live_address(const Request& request) {
+  const auto& s = request.segments;
+  return s.size() == 5 && s[0] == "api" && s[1] == "v1" && s[2] == "models" && s[4] == "live";
+}
+
+Result<App::LiveEntry> App::admit_live(Request& request) {
+  if (auto known = identify(request, Role::viewer); !known) return tl::unexpected(known.error());
+  if (auto own = check_upgrade_origin(request, options_.allowed_origins); !own) return tl::unexpected(own.error());
+  auto room = rooms_.open(request.segments[3]);
+  if (!room) return tl::unexpected(room.error());
+  auto project = store_.project(std::to_string((*room)->model().project_id));
+  if (!project) return tl::unexpected(project.error());
+  return LiveEntry{std::move(*room), project->slug, *request.principal};
+}
+
+std::shared_ptr<LiveSession> App::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) const {
+  return std::make_shared<LiveSession>(shared_, std::move(entry.room), std::move(entry.project_slug), std::move(entry.principal),
+                                       std::move(socket));
+}
+
+}  // namespace strata::net

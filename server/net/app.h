@@ -1,0 +1,70 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "jobs/job_queue.h"
+#include "net/answer_book.h"
+#include "net/auth.h"
+#include "net/live_session.h"
+#include "net/router.h"
+#include "net/routes.h"
+#include "net/server_options.h"
+#include "net/static_files.h"
+#include "net/worker_pool.h"
+#include "render/renderer.h"
+#include "room/room.h"
+#include "store/store.h"
+
+namespace strata::net {
+
+// Everything between the sockets and the rooms: which route, who asks, may they, was it asked before. Knows no socket library.
+class App {
+ public:
+  App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs, render::Renderer& renderer);
+  ~App();
+
+  const ServerOptions& options() const { return options_; }
+  Metrics& metrics() { return *shared_->metrics; }
+  WorkerPool& workers() { return workers_; }
+
+  // Once the request's head is read; does not block. Puts the path's parameters into the request. Null: `refusal` is the answer.
+  const Route* find_route(Request& request, Response& refusal) const;
+  // On a worker, before the body is read: the refusal, if any.
+  std::optional<Response> admit(Request& request, const Route& route);
+  // On a worker, with the body.
+  void handle(const Request& request, const Route& route, const Respond& respond);
+
+  // The live connection of a model: whether this is its address; and who may come in (blocks: opens the room).
+  static bool is_live_address(const Request& request);
+  struct LiveEntry {
+    std::shared_ptr<room::Room> room;
+    std::string project_slug;
+    Principal principal;
+  };
+  Result<LiveEntry> admit_live(Request& request);
+  std::shared_ptr<LiveSession> make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) const;
+
+  void stop_workers();
+
+ private:
+  Result<void> identify(Request& request, std::optional<Role> least);
+
+  const ServerOptions options_;
+  store::Store& store_;
+  room::Rooms& rooms_;
+  Authenticator auth_;
+  AnswerBook answers_;
+  StaticFiles files_;
+  std::shared_ptr<LiveShared> shared_;
+  WorkerPool workers_;
+  Router router_;
+  Route page_;  // everything that is no API address
+  const RouteContext context_;
+};
+
+// Headers that every answer carries.
+const Headers& security_headers();
+
+}  // namespace strata::net

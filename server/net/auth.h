@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include "net/http_types.h"
+#include "store/store.h"
+
+namespace strata::net {
+
+constexpr std::string_view kSessionCookie = "strata_session";
+constexpr std::chrono::hours kSessionLifetime{24 * 30};
+constexpr std::size_t kMinOwnerTokenLength = 32;
+
+// Tells who sends a request: by bearer token, or by the session cookie. Thread-safe; may ask the database, so call it on a
+// worker. Answers are remembered for a few seconds so that a busy page costs no query a request.
+class Authenticator {
+ public:
+  // `owner_token` acts as the owner when it is not empty (STRATA_OWNER_TOKEN).
+  Authenticator(store::Store& store, std::string owner_token);
+
+  // Empty: no secret was sent. 401: one was sent that is unknown, expired or revoked. 503: the database is away.
+  Result<std::optional<Principal>> identify(const Request& request);
+  Result<std::optional<Principal>> identify_token(const std::string& token);
+
+  // A new browser session for who holds the token (a script's, the owner's, or the secret of an owner link) or the link.
+  Result<std::string> session_for_token(const std::string& token);
+  Result<std::string> session_for_link(const std::string& link);
+  Result<void> end_session(const std::string& session_token);
+
+  static std::string set_cookie(const std::string& session_token, bool secure);
+  static std::string clear_cookie(bool secure);
+
+ private:
+  struct Remembered {
+    Principal principal;
+    std::chrono::steady_clock::time_point until;
+  };
+  store::Store& store_;
+  const std::string owner_token_;
+  std::mutex mutex_;
+  std::unordered_map<std::string, Remembered> remembered_;
+};
+
+}  // namespace strata::net

@@ -1,0 +1,379 @@
+#include "net/http_session.h"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <future>
+
+#include "core/log.h"
+#include "core/uuid.h"
+#include "net/on_worker.h"
+#include "net/token_bucket.h"
+#include "net/websocket_session.h"
+
+namespace strata::net {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using asio::ip::tcp;
+using std::chrono::seconds;
+
+constexpr auto use_result = asio::as_tuple(asio::use_awaitable);
+constexpr seconds kFirstHead{10};        // from connecting to the end of the first head
+constexpr seconds kIdle{60};             // between requests
+constexpr seconds kStall{60};            // a body that does not move
+constexpr std::uint32_t kMaxHead = 8192;
+constexpr std::uint64_t kMaxIgnoredBody = 64 * 1024;  // of a refused request: read to keep the connection
+constexpr std::string_view kSubprotocol = "strata.v1";
+
+Method method_of(http::verb verb) {
+  switch (verb) {
+    case http::verb::get: return Method::get;
+    case http::verb::head: return Method::head;
+    case http::verb::post: return Method::post;
+    case http::verb::put: return Method::put;
+    case http::verb::patch: return Method::patch;
+    case http::verb::delete_: return Method::remove;
+    case http::verb::options: return Method::options;
+    default: return Method::unknown;
+  }
+}
+
+Result<Request> request_of(const http::request<http::empty_body>& head) {
+  Request request;
+  request.method = method_of(head.method());
+  for (const auto& field : head) request.headers.emplace_back(to_lower(field.name_string()), std::string(field.value()));
+  if (auto parsed = parse_target(head.target(), request); !parsed) return tl::unexpected(parsed.error());
+  return request;
+}
+
+class CountAtWork {
+ public:
+  explicit CountAtWork(std::atomic<int>& count) : count_(count) { ++count_; }
+  ~CountAtWork() { --count_; }
+  CountAtWork(const CountAtWork&) = delete;
+  CountAtWork& operator=(const CountAtWork&) = delete;
+
+ private:
+  std::atomic<int>& count_;
+};
+
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
+ public:
+  HttpSession(tcp::socket socket, std::shared_ptr<Connections> connections)
+      : stream_(std::move(socket)),
+        connections_(std::move(connections)),
+        app_(connections_->app),
+        bucket_(app_.options().requests_per_second, app_.options().request_burst) {
+    ++app_.metrics().open_connections;
+  }
+  ~HttpSession() {
+    if (!connections_->stopping) --app_.metrics().open_connections;
+  }
+
+  asio::awaitable<void> run() {
+    auto self = shared_from_this();  // the frame keeps the session
+    for (bool first = true;; first = false) {
+      http::request_parser<http::empty_body> head;
+      head.header_limit(kMaxHead);
+      head.body_limit(boost::none);
+      stream_.expires_after(first ? kFirstHead : kIdle);
+      auto [error, size] = co_await http::async_read_header(stream_, buffer_, head, use_result);
+      if (error) {
+        co_await refuse_head(error);
+        break;
+      }
+      const bool goes_on = co_await serve(head);
+      if (handed_over_) co_return;
+      if (!goes_on) break;
+    }
+    co_await say_goodbye();
+  }
+
+ private:
+  asio::awaitable<void> refuse_head(beast::error_code error) {
+    if (error == http::error::header_limit)
+      co_await send(problem_response({431, "Header too large", "The head of a request has at most 8 KiB.", {}}), Method::get, false);
+    else if (error.category() == http::make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream &&
+             error != http::error::partial_message)
+      co_await send(problem_response({400, "Malformed request", "This is not HTTP: " + error.message() + ".", {}}), Method::get, false);
+  }
+
+  // One request; false: the connection ends.
+  asio::awaitable<bool> serve(http::request_parser<http::empty_body>& head) {
+    const CountAtWork at_work(connections_->requests_at_work);
+    const bool keep_alive = head.keep_alive() && !connections_->stopping;
+    auto parsed = request_of(head.get());
+    if (!parsed) co_return co_await send(problem_response(parsed.error()), method_of(head.get().method()), false);
+    auto request = std::make_shared<Request>(std::move(*parsed));
+    if (!bucket_.take())
+      co_return co_await refuse(head, *request, problem_response({429, "Too many requests", "This connection asks too fast; wait a second.", {}}), keep_alive);
+    if (beast::websocket::is_upgrade(head.get()) && App::is_live_address(*request)) co_return co_await upgrade(head, request);
+
+    Response refusal;
+    const Route* route = app_.find_route(*request, refusal);
+    if (!route) co_return co_await refuse(head, *request, std::move(refusal), keep_alive);
+    const auto length = head.content_length();
+    const std::uint64_t max_body = route->body == BodyKind::none ? kMaxIgnoredBody : route->max_body;
+    if (length && *length > max_body) co_return co_await refuse(head, *request, too_large(max_body), keep_alive);
+
+    Response admitted = co_await on_worker(connections_, stream_.get_executor(), [this, request, route](const Respond& respond) {
+      auto refused = app_.admit(*request, *route);
+      respond(refused ? std::move(*refused) : empty_response(100));
+    });
+    if (admitted.status != 100) co_return co_await refuse(head, *request, std::move(admitted), keep_alive);
+
+    if (!head.is_done()) {
+      if (beast::iequals(head.get()[http::field::expect], "100-continue") && !co_await send_continue()) co_return false;
+      auto problem = route->body == BodyKind::file ? co_await read_to_file(head, *request, max_body)
+                                                   : co_await read_to_memory(head, *request, max_body);
+      if (problem) {
+        remove_body_file(*request);
+        if (problem->status == 0) co_return false;  // the connection broke
+        co_return co_await send(problem_response(*problem), request->method, false);
+      }
+    }
+    Response response = co_await on_worker(connections_, stream_.get_executor(), [this, request, route](const Respond& respond) {
+      app_.handle(*request, *route, respond);
+    });
+    remove_body_file(*request);
+    co_return co_await send(std::move(response), request->method, keep_alive);
+  }
+
+  Response too_large(std::uint64_t max_body) {
+    return problem_response({413, "Body too large", "This address takes at most " + std::to_string(max_body) + " bytes.", "body"});
+  }
+
+  static void remove_body_file(const Request& request) {
+    if (request.body_file.empty()) return;
+    std::error_code gone_already;
+    std::filesystem::remove(request.body_file, gone_already);
+  }
+
+  // Answers without the body being wanted. A small one is read, so that the connection can go on.
+  asio::awaitable<bool> refuse(http::request_parser<http::empty_body>& head, const Request& request, Response response, bool keep_alive) {
+    const Method method = request.method;
+    if (!head.is_done()) {
+      const auto length = head.content_length();
+      const bool waits = !head.get()[http::field::expect].empty();
+      if (!length || *length > kMaxIgnoredBody || waits) co_return co_await send(std::move(response), method, false);
+      Request ignored;
+      if (co_await read_to_memory(head, ignored, kMaxIgnoredBody)) co_return false;
+    }
+    co_return co_await send(std::move(response), method, keep_alive);
+  }
+
+  asio::awaitable<bool> send_continue() {
+    static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+    stream_.expires_after(kStall);
+    auto [error, size] = co_await asio::async_write(stream_, asio::buffer(kContinue), use_result);
+    co_return !error;
+  }
+
+  // A problem with status 0 says that the connection broke.
+  asio::awaitable<std::optional<Problem>> read_to_memory(http::request_parser<http::empty_body>& head, Request& request, std::uint64_t max_body) {
+    http::request_parser<http::string_body> parser(std::move(head));
+    parser.body_limit(boost::none);
+    while (!parser.is_done()) {
+      stream_.expires_after(kStall);
+      auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, use_result);
+      if (error) co_return body_problem(error);
+      if (parser.get().body().size() > max_body)
+        co_return Problem{413, "Body too large", "This address takes at most " + std::to_string(max_body) + " bytes.", "body"};
+    }
+    request.body = std::move(parser.get().body());
+    request.body_bytes = request.body.size();
+    co_return std::nullopt;
+  }
+
+  asio::awaitable<std::optional<Problem>> read_to_file(http::request_parser<http::empty_body>& head, Request& request, std::uint64_t max_body) {
+    http::request_parser<http::file_body> parser(std::move(head));
+    parser.body_limit(boost::none);
+    request.body_file = app_.options().upload_dir / (to_string(random_uuid()) + ".body");
+    beast::error_code file_error;
+    parser.get().body().open(request.body_file.c_str(), beast::file_mode::write_new, file_error);
+    if (file_error) {
+      log::error("upload folder not writable: " + file_error.message());
+      co_return Problem{507, "No room for uploads", "The server cannot write its upload folder: " + file_error.message() + ".", {}};
+    }
+    while (!parser.is_done()) {
+      stream_.expires_after(kStall);
+      auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, use_result);
+      if (error.category() == beast::system_category() && error == boost::system::errc::no_space_on_device)
+        co_return Problem{507, "Disk full", "The upload does not fit on the server's disk.", "body"};
+      if (error) co_return body_problem(error);
+      request.body_bytes += size;
+      if (request.body_bytes > max_body)
+        co_return Problem{413, "Body too large", "This address takes at most " + std::to_string(max_body) + " bytes.", "body"};
+    }
+    parser.get().body().close();
+    std::error_code size_error;
+    request.body_bytes = std::filesystem::file_size(request.body_file, size_error);  // without a chunked body's framing
+    co_return std::nullopt;
+  }
+
+  static Problem body_problem(beast::error_code error) {
+    const bool malformed = error.category() == http::make_error_code(http::error::bad_chunk).category() &&
+                           error != http::error::partial_message && error != http::error::end_of_stream;
+    if (malformed) return {400, "Malformed body", "The body does not follow its framing: " + error.message() + ".", "body"};
+    return {0, {}, {}, {}};
+  }
+
+  template <class Body>
+  void put_head(http::response<Body>& message, const Response& response, bool keep_alive) {
+    message.version(11);
+    message.result(static_cast<unsigned>(response.status));
+    message.reason(reason_phrase(response.status));
+    message.set(http::field::server, "strata");
+    for (const auto& [key, value] : security_headers()) message.insert(key, value);
+    if (response.header("Cache-Control").empty())
+      message.set(http::field::cache_control, response.header("ETag").empty() ? "no-store" : "private, no-cache");
+    for (const auto& [key, value] : response.headers) message.insert(key, value);
+    message.keep_alive(keep_alive);
+  }
+
+  template <class Body>
+  asio::awaitable<bool> write(http::response<Body>& message) {
+    http::response_serializer<Body> serializer(message);
+    while (!serializer.is_done()) {
+      stream_.expires_after(kStall);
+      auto [error, size] = co_await http::async_write_some(stream_, serializer, use_result);
+      if (error) co_return false;
+    }
+    co_return message.keep_alive();
+  }
+
+  // False: the connection ends.
+  asio::awaitable<bool> send(Response response, Method method, bool keep_alive) {
+    app_.metrics().count_request(response.status);
+    if (response.stream) co_return co_await send_stream(response, method, keep_alive);
+    if (!response.file.empty()) {
+      http::response<http::file_body> message;
+      beast::error_code error;
+      message.body().open(response.file.c_str(), beast::file_mode::scan, error);
+      if (!error) {
+        put_head(message, response, keep_alive);
+        if (method == Method::head) co_return co_await send_head(response, message.body().size(), keep_alive);
+        message.prepare_payload();
+        co_return co_await write(message);
+      }
+      response = problem_response({404, "Not found", "The file is gone.", {}});
+    }
+    if (method == Method::head) co_return co_await send_head(response, response.body.size(), keep_alive);
+    http::response<http::string_body> message;
+    put_head(message, response, keep_alive);
+    message.body() = std::move(response.body);
+    if (response.status != 204 && response.status != 304) message.content_length(message.body().size());
+    co_return co_await write(message);
+  }
+
+  asio::awaitable<bool> send_head(const Response& response, std::uint64_t length, bool keep_alive) {
+    http::response<http::empty_body> message;
+    put_head(message, response, keep_alive);
+    if (response.status != 204 && response.status != 304) message.content_length(length);
+    co_return co_await write(message);
+  }
+
+  // A worker makes the bytes and waits for each piece to be sent; few at once, so that slow readers leave workers for others.
+  asio::awaitable<bool> send_stream(Response& response, Method method, bool keep_alive) {
+    if (method == Method::head) co_return co_await send_head(response, response.stream->length, keep_alive);
+    const CountAtWork counted(connections_->streams_at_work);
+    if (connections_->streams_at_work > std::max(1, app_.options().worker_threads / 2))
+      co_return co_await send(problem_response({503, "Too many downloads", "Ask again when another download has ended.", {}}), method, keep_alive);
+    if (!co_await send_head(response, response.stream->length, true)) co_return false;
+    auto sent = std::make_shared<std::uint64_t>(0);
+    auto stream = *response.stream;
+    Response done = co_await on_worker(connections_, stream_.get_executor(), [this, self = shared_from_this(), stream, sent](const Respond& respond) {
+      stream.write([&](std::span<const std::uint8_t> bytes) {
+        if (*sent + bytes.size() > stream.length || !send_piece(bytes)) return false;
+        *sent += bytes.size();
+        return true;
+      });
+      respond(empty_response(200));
+    });
+    co_return done.status == 200 && *sent == response.stream->length && keep_alive;
+  }
+
+  // On a worker: waits until the piece is sent.
+  bool send_piece(std::span<const std::uint8_t> bytes) {
+    auto data = std::make_shared<const std::vector<std::uint8_t>>(bytes.begin(), bytes.end());
+    auto result = std::make_shared<std::promise<bool>>();
+    auto future = result->get_future();
+    asio::post(stream_.get_executor(), [self = shared_from_this(), data, result] {
+      self->stream_.expires_after(kStall);
+      asio::async_write(self->stream_, asio::buffer(*data),
+                        [self, data, result](beast::error_code error, std::size_t) { result->set_value(!error); });
+    });
+    while (future.wait_for(std::chrono::milliseconds(200)) != std::future_status::ready)
+      if (connections_->stopping) return false;
+    return future.get();
+  }
+
+  asio::awaitable<bool> upgrade(http::request_parser<http::empty_body>& head, std::shared_ptr<Request> request) {
+    http::token_list offered(head.get()[http::field::sec_websocket_protocol]);
+    if (!offered.exists(kSubprotocol))
+      co_return co_await send(problem_response({400, "Subprotocol missing", "Live connections speak strata.v1: name it in Sec-WebSocket-Protocol.", "Sec-WebSocket-Protocol"}),
+                              Method::get, false);
+    auto entry = std::make_shared<App::LiveEntry>();
+    Response admitted = co_await on_worker(connections_, stream_.get_executor(), [this, request, entry](const Respond& respond) {
+      auto may_enter = app_.admit_live(*request);
+      if (!may_enter) return respond(may_enter.error());
+      *entry = std::move(*may_enter);
+      respond(empty_response(101));
+    });
+    if (admitted.status != 101) co_return co_await send(std::move(admitted), Method::get, false);
+    app_.metrics().count_request(101);
+    handed_over_ = true;
+    stream_.expires_never();
+    start_websocket(std::move(stream_), head.release(), connections_, std::move(*entry));
+    co_return false;
+  }
+
+  // Ends our side, and reads what is still under way for a moment: closing at once could destroy the answer in the client's hands.
+  asio::awaitable<void> say_goodbye() {
+    beast::error_code ignored;
+    stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    stream_.expires_after(seconds(2));
+    std::array<char, 4096> rest;
+    for (std::uint64_t total = 0; total < (1u << 20);) {
+      auto [error, size] = co_await stream_.async_read_some(asio::buffer(rest), use_result);
+      if (error) break;
+      total += size;
+    }
+    stream_.close();
+  }
+
+  beast::tcp_stream stream_;
+  const std::shared_ptr<Connections> connections_;
+  App& app_;
+  beast::flat_buffer buffer_;
+  TokenBucket bucket_;
+  bool handed_over_ = false;
+};
+
+}  // namespace
+
+void start_http_session(tcp::socket socket, std::shared_ptr<Connections> connections) {
+  beast::error_code ignored;
+  socket.set_option(tcp::no_delay(true), ignored);
+  auto executor = socket.get_executor();
+  auto session = std::make_shared<HttpSession>(std::move(socket), std::move(connections));
+  asio::co_spawn(executor, [session] { return session->run(); }, [](std::exception_ptr failure) {
+    if (!failure) return;
+    try {
+      std::rethrow_exception(failure);
+    } catch (const std::exception& error) {
+      log::error(std::string("a connection failed: ") + error.what());
+    }
+  });
+}
+
+}  // namespace strata::net

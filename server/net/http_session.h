@@ -1,0 +1,27 @@
+#pragma once
+
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <memory>
+
+#include "net/app.h"
+#include "net/live_sockets.h"
+
+namespace strata::net {
+
+// What every connection of one server shares. Answers under way hold `io`, so that one which comes after the server has
+// stopped finds a place to end; connections do not, since their frames live in it.
+struct Connections {
+  std::weak_ptr<boost::asio::io_context> io;
+  App& app;
+  LiveSockets live;
+  std::atomic<int> requests_at_work{0};
+  std::atomic<int> streams_at_work{0};
+  std::atomic<bool> stopping{false};
+};
+
+// Serves one TCP connection until it ends or becomes a WebSocket. The socket's executor is a strand of its own.
+void start_http_session(boost::asio::ip::tcp::socket socket, std::shared_ptr<Connections> connections);
+
+}  // namespace strata::net

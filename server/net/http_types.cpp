@@ -1,0 +1,260 @@
+#include "net/http_types.h"
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+
+namespace strata::net {
+namespace {
+
+constexpr std::pair<Role, std::string_view> kRoles[] = {{Role::viewer, "viewer"},
+                                                        {Role::annotator, "annotator"},
+                                                        {Role::curator, "curator"},
+                                                        {Role::administrator, "administrator"},
+                                                        {Role::owner, "owner"}};
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+}  // namespace
+
+std::string_view name(Method method) {
+  static constexpr std::string_view kNames[] = {"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "?"};
+  return kNames[static_cast<int>(method)];
+}
+
+std::optional<Role> parse_role(std::string_view text) {
+  for (const auto& [role, role_name] : kRoles)
+    if (role_name == text) return role;
+  return std::nullopt;
+}
+
+std::string_view name(Role role) { return kRoles[static_cast<int>(role)].second; }
+
+std::string_view Request::header(std::string_view lower_case_name) const {
+  for (const auto& [key, value] : headers)
+    if (key == lower_case_name) return value;
+  return {};
+}
+
+std::string Request::query_or(const std::string& key, std::string fallback) const {
+  auto found = query.find(key);
+  return found == query.end() ? std::move(fallback) : found->second;
+}
+
+Response& Response::with(std::string header_name, std::string value) {
+  headers.emplace_back(std::move(header_name), std::move(value));
+  return *this;
+}
+
+std::string_view Response::header(std::string_view header_name) const {
+  for (const auto& [key, value] : headers)
+    if (key == header_name) return value;
+  return {};
+}
+
+Response json_response(const nlohmann::json& json, int status) {
+  Response response;
+  response.status = status;
+  response.with("Content-Type", "application/json");
+  // Names come from people and files: broken UTF-8 must not turn into an exception here.
+  response.body = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return response;
+}
+
+Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_type) {
+  return text_response(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), std::move(content_type));
+}
+
+Response text_response(std::string text, std::string content_type) {
+  Response response;
+  response.with("Content-Type", std::move(content_type));
+  response.body = std::move(text);
+  return response;
+}
+
+Response empty_response(int status) {
+  Response response;
+  response.status = status;
+  return response;
+}
+
+nlohmann::json to_json(const Problem& problem) {
+  nlohmann::json json{
+      {"type", "about:blank"}, {"title", problem.title}, {"status", problem.status}, {"detail", problem.detail}};
+  if (!problem.field.empty()) json["field"] = problem.field;
+  return json;
+}
+
+Response problem_response(const Problem& problem) {
+  Response response = json_response(to_json(problem), problem.status);
+  response.headers = {{"Content-Type", "application/problem+json"}};
+  if (problem.status == 401) response.with("WWW-Authenticate", "Bearer realm=\"strata\"");
+  if (problem.status == 429 || problem.status == 503) response.with("Retry-After", "1");
+  return response;
+}
+
+std::string_view reason_phrase(int status) {
+  switch (status) {
+    case 200: return "OK";
+    case 201: return "Created";
+    case 202: return "Accepted";
+    case 204: return "No Content";
+    case 303: return "See Other";
+    case 304: return "Not Modified";
+    case 400: return "Bad Request";
+    case 401: return "Unauthorized";
+    case 403: return "Forbidden";
+    case 404: return "Not Found";
+    case 405: return "Method Not Allowed";
+    case 406: return "Not Acceptable";
+    case 408: return "Request Timeout";
+    case 409: return "Conflict";
+    case 412: return "Precondition Failed";
+    case 413: return "Content Too Large";
+    case 415: return "Unsupported Media Type";
+    case 422: return "Unprocessable Content";
+    case 426: return "Upgrade Required";
+    case 429: return "Too Many Requests";
+    case 431: return "Request Header Fields Too Large";
+    case 499: return "Cancelled";
+    case 500: return "Internal Server Error";
+    case 503: return "Service Unavailable";
+    case 507: return "Insufficient Storage";
+    default: return status < 400 ? "OK" : status < 500 ? "Refused" : "Failed";
+  }
+}
+
+struct Respond::State {
+  explicit State(std::function<void(Response)> function) : send(std::move(function)) {}
+  ~State() {
+    if (!answered)
+      send(problem_response({503, "Request dropped", "The server stopped before it answered; ask again.", {}}));
+  }
+  std::function<void(Response)> send;
+  std::atomic<bool> answered{false};
+};
+
+Respond::Respond(std::function<void(Response)> send) : state_(std::make_shared<State>(std::move(send))) {}
+
+void Respond::operator()(Response response) const {
+  if (!state_->answered.exchange(true)) state_->send(std::move(response));
+}
+
+std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space) {
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char c = text[i];
+    if (c == '%') {
+      if (i + 2 >= text.size()) return std::nullopt;
+      const int high = hex_digit(text[i + 1]), low = hex_digit(text[i + 2]);
+      if (high < 0 || low < 0) return std::nullopt;
+      c = static_cast<char>(high * 16 + low);
+      i += 2;
+    } else if (c == '+' && plus_is_space) {
+      c = ' ';
+    }
+    if (c == '\0') return std::nullopt;
+    out += c;
+  }
+  return out;
+}
+
+std::string percent_encode(std::string_view text) {
+  static constexpr char kDigits[] = "0123456789ABCDEF";
+  std::string out;
+  for (unsigned char c : text) {
+    if ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' || c == '.' || c == '_' || c == '~') {
+      out += static_cast<char>(c);
+    } else {
+      out += '%';
+      out += kDigits[c >> 4];
+      out += kDigits[c & 15];
+    }
+  }
+  return out;
+}
+
+std::string to_lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
+
+Result<void> parse_target(std::string_view target, Request& request) {
+  auto wrong = [](std::string detail) { return fail(400, "Malformed address", std::move(detail)); };
+  request.target = target;
+  if (target.empty() || target[0] != '/') return wrong("A request names a path that begins with a slash.");
+  const auto question = target.find('?');
+  const std::string_view path = target.substr(0, question);
+  for (std::size_t begin = 1; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('/', begin), path.size());
+    auto segment = percent_decode(path.substr(begin, end - begin), false);
+    if (!segment) return wrong("The path has a percent escape that is not one.");
+    request.segments.push_back(std::move(*segment));
+    begin = end + 1;
+  }
+  auto decoded = percent_decode(path, false);
+  if (!decoded) return wrong("The path has a percent escape that is not one.");
+  request.path = std::move(*decoded);
+  if (question == std::string_view::npos) return {};
+  const std::string_view query = target.substr(question + 1);
+  for (std::size_t begin = 0; begin < query.size();) {
+    const std::size_t end = std::min(query.find('&', begin), query.size());
+    const std::string_view pair = query.substr(begin, end - begin);
+    begin = end + 1;
+    if (pair.empty()) continue;
+    const auto equals = pair.find('=');
+    auto key = percent_decode(pair.substr(0, equals), true);
+    auto value = percent_decode(equals == std::string_view::npos ? std::string_view() : pair.substr(equals + 1), true);
+    if (!key || !value) return wrong("The query has a percent escape that is not one.");
+    if (!request.query.emplace(*key, std::move(*value)).second)
+      return fail(400, "Query parameter given twice", "Give '" + *key + "' once.", *key);
+  }
+  return {};
+}
+
+Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std::int64_t high, const std::string& field) {
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
+    return fail(422, "Number out of range",
+                "'" + field + "' is a whole number from " + std::to_string(low) + " to " + std::to_string(high) + ".", field);
+  return value;
+}
+
+Result<Page> page_of(const Request& request) {
+  Page page;
+  if (auto found = request.query.find("limit"); found != request.query.end()) {
+    auto limit = parse_integer(found->second, 1, kMaxPage, "limit");
+    if (!limit) return tl::unexpected(limit.error());
+    page.limit = static_cast<int>(*limit);
+  }
+  if (auto found = request.query.find("offset"); found != request.query.end()) {
+    auto offset = parse_integer(found->second, 0, 1'000'000'000, "offset");
+    if (!offset) return tl::unexpected(offset.error());
+    page.offset = static_cast<int>(*offset);
+  }
+  return page;
+}
+
+void add_page_links(Response& response, const Request& request, const Page& page, std::int64_t total) {
+  auto link = [&](int offset, const char* relation) {
+    std::string target = request.target.substr(0, request.target.find('?')) + "?";
+    for (const auto& [key, value] : request.query)
+      if (key != "limit" && key != "offset") target += percent_encode(key) + "=" + percent_encode(value) + "&";
+    return "<" + target + "limit=" + std::to_string(page.limit) + "&offset=" + std::to_string(offset) + ">; rel=\"" + relation + "\"";
+  };
+  std::string links;
+  if (std::int64_t{page.offset} + page.limit < total) links = link(page.offset + page.limit, "next");
+  if (page.offset > 0) links += (links.empty() ? "" : ", ") + link(std::max(0, page.offset - page.limit), "prev");
+  if (!links.empty()) response.with("Link", links);
+}
+
+}  // namespace strata::net

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/problem.h"
+
+namespace strata::net {
+
+// What routes see of HTTP: no socket library in here, so that they compile fast and can be tested without a socket.
+
+enum class Method { get, head, post, put, patch, remove, options, unknown };
+std::string_view name(Method method);
+
+// Ascending: each may do what the ones before may.
+enum class Role { viewer, annotator, curator, administrator, owner };
+std::optional<Role> parse_role(std::string_view name);
+std::string_view name(Role role);
+
+// Who asks. `by_cookie`: the browser sent the secret by itself, so changing calls must prove where they come from.
+struct Principal {
+  std::string user;
+  Role role = Role::viewer;
+  bool by_cookie = false;
+};
+
+using Headers = std::vector<std::pair<std::string, std::string>>;
+
+struct Request {
+  Method method = Method::get;
+  std::string target;                          // as sent
+  std::string path;                            // decoded, without the query
+  std::vector<std::string> segments;           // of the path, each decoded
+  std::map<std::string, std::string> query;    // decoded
+  std::map<std::string, std::string> params;   // what the route's pattern caught
+  Headers headers;                             // names in lower case
+  std::string body;                            // in memory, or…
+  std::filesystem::path body_file;             // …in a file that is removed after the answer unless a handler moves it
+  std::uint64_t body_bytes = 0;
+  std::optional<Principal> principal;
+
+  std::string_view header(std::string_view lower_case_name) const;  // empty when absent
+  const std::string& param(const std::string& name) const { return params.at(name); }
+  std::string query_or(const std::string& name, std::string fallback) const;
+  const std::string& user() const { return principal->user; }  // routes that need a principal have one
+};
+
+struct Response {
+  int status = 200;
+  Headers headers;
+  std::string body;
+  std::filesystem::path file;  // sent in place of `body` when not empty
+  // Bytes made while they are sent, in place of `body`. `write` runs on a worker and stops when the sink says false.
+  using Sink = std::function<bool(std::span<const std::uint8_t>)>;
+  struct Stream {
+    std::uint64_t length = 0;
+    std::function<void(const Sink&)> write;
+  };
+  std::optional<Stream> stream;
+
+  Response& with(std::string header_name, std::string value);
+  std::string_view header(std::string_view name) const;  // as written by `with`; empty when absent
+};
+
+Response json_response(const nlohmann::json& json, int status = 200);
+Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_type);
+Response text_response(std::string text, std::string content_type);
+Response empty_response(int status);                 // 204, 304
+Response problem_response(const Problem& problem);   // RFC 9457
+nlohmann::json to_json(const Problem& problem);
+std::string_view reason_phrase(int status);
+
+// The one answer to a request; may be called from any thread. The first call counts; when the last copy goes without one, the
+// client gets a 500 rather than silence.
+class Respond {
+ public:
+  explicit Respond(std::function<void(Response)> send);
+  void operator()(Response response) const;
+  void operator()(const Problem& problem) const { (*this)(problem_response(problem)); }
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_;
+};
+
+// Splits and decodes a request target. Refused: bad percent escapes, NUL, a query parameter given twice.
+Result<void> parse_target(std::string_view target, Request& request);
+std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space);
+std::string percent_encode(std::string_view text);
+std::string to_lower(std::string_view text);
+
+// `limit` and `offset` of a list; `Link` header values (next, prev) for it.
+struct Page {
+  int limit = 100;
+  int offset = 0;
+};
+constexpr int kMaxPage = 1000;
+Result<Page> page_of(const Request& request);
+void add_page_links(Response& response, const Request& request, const Page& page, std::int64_t total);
+
+// Whole number in a query parameter or path; refused with the field's name otherwise.
+Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std::int64_t high, const std::string& field);
+
+}  // namespace strata::net

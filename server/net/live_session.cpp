@@ -1,0 +1,453 @@
+#include "net/live_session.h"
+
+#include <algorithm>
+
+#include "net/wire.h"
+
+namespace strata::net {
+namespace {
+
+constexpr int kHistoryToSearch = 500;  // journal rows looked at for the end of a stroke's batch
+
+Problem need_hello() { return {409, "Say hello first", "The first message of a connection is `hello`.", "op"}; }
+
+std::string ref_of(const std::optional<std::string>& id) { return id.value_or(std::string()); }
+
+}  // namespace
+
+LiveSession::LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room, std::string project_slug,
+                         Principal principal, std::weak_ptr<LiveSocket> socket)
+    : shared_(std::move(shared)),
+      room_(std::move(room)),
+      project_slug_(std::move(project_slug)),
+      principal_(std::move(principal)),
+      owner_{room_->model().id, principal_.user},
+      socket_(std::move(socket)),
+      bucket_(shared_->limits.messages_per_second, shared_->limits.burst) {}
+
+LiveSession::~LiveSession() { on_closed(); }
+
+LiveSession::Work LiveSession::on_text(const std::string& text) {
+  ++shared_->metrics->messages_received;
+  std::string ref;
+  const bool in_time = bucket_.take();
+  auto message = protocol::parse_client_message(text, &ref, {shared_->limits.message_bytes, 32});
+  if (!in_time) {
+    refuse({429, "Too many messages",
+            "At most " + std::to_string(static_cast<int>(shared_->limits.messages_per_second)) + " messages a second are taken; send this one again later.", {}},
+           ref);
+    if (++refusals_ > shared_->limits.max_refusals)
+      if (auto socket = socket_.lock()) socket->close(kClosePolicy, "too many messages");
+    return {};
+  }
+  refusals_ = 0;
+  if (!message) {
+    refuse(message.error(), ref);
+    return {};
+  }
+  if (!member() && !std::holds_alternative<protocol::Hello>(*message)) {
+    refuse(need_hello(), ref);
+    return {};
+  }
+  std::visit([this](const auto& m) { on(m); }, *message);
+  return std::exchange(work_, {});
+}
+
+void LiveSession::on_binary() {
+  ++shared_->metrics->messages_received;
+  refuse({415, "Binary message", "Clients send text messages: one JSON object each.", {}}, std::string());
+}
+
+void LiveSession::on_closed() {
+  std::shared_ptr<room::Member> leaving;
+  {
+    std::lock_guard lock(mutex_);
+    leaving = std::move(member_);
+    pointer_.reset();
+  }
+  // Leaving waits for the room's listeners, which may wait for our mutex: so not under it.
+}
+
+// --- messages
+
+void LiveSession::on(const protocol::Hello& message) {
+  if (member()) return refuse({409, "Hello said already", "A connection says hello once.", "op"}, std::string());
+  if (message.accept && std::none_of(message.accept->begin(), message.accept->end(), [](const auto& codec) { return codec == "jpeg"; }))
+    return refuse({406, "No common picture format", "Pictures are sent as jpeg.", "accept"}, std::string());
+
+  std::shared_ptr<room::Member> joined = room_->join(
+      principal_.user, this, [socket = socket_, metrics = shared_->metrics](stream::FrameBytes frame) {
+        ++metrics->frames_sent;
+        metrics->frame_bytes_sent += frame->size();
+        if (auto open = socket.lock()) open->send_frame(std::move(frame));
+      });
+  protocol::Welcome welcome;
+  welcome.session = joined->session();
+  welcome.user = principal_.user;
+  welcome.role = static_cast<protocol::Role>(static_cast<int>(principal_.role));
+  const Model model = room_->model();
+  welcome.model = to_json(model, project_slug_);
+  for (const auto& layer : room_->layers()) welcome.layers.push_back(to_json(layer));
+  const LiveLimits& limits = shared_->limits;
+  welcome.limits.message_bytes = static_cast<int>(limits.message_bytes);
+  welcome.limits.path_points = static_cast<int>(StrokeBook::kMaxPath - 1);
+  welcome.limits.view_size = kMaxViewSize;
+  welcome.limits.views = limits.views;
+  welcome.limits.frames_in_flight = stream::Viewer::Options{}.window;
+  welcome.limits.messages_per_second = static_cast<int>(limits.messages_per_second);
+  for (const auto& stroke : shared_->strokes->open_strokes(owner_)) welcome.strokes.push_back({stroke.stroke, stroke.n});
+  send(welcome);
+  {
+    std::lock_guard lock(mutex_);
+    member_ = std::move(joined);
+  }
+  presence_changed();
+}
+
+void LiveSession::on(const protocol::CameraUpdate& message) {
+  if (!has_view(message.view_id, std::string())) return;
+  const Camera camera = protocol::camera_of(message);
+  cameras_[message.view_id] = camera;
+  member()->camera(static_cast<std::uint32_t>(message.view_id), static_cast<std::uint64_t>(message.seq), camera, message.moving);
+}
+
+void LiveSession::on(const protocol::LayersUpdate& message) {
+  if (!has_view(message.view_id, std::string())) return;
+  std::vector<room::LayerView> views;
+  for (std::size_t i = 0; i < message.layers.size(); ++i) {
+    const auto& asked = message.layers[i];
+    const std::string field = "layers[" + std::to_string(i) + "]";
+    auto layer = layer_of(asked.layer);
+    if (!layer) {
+      Problem problem = layer.error();
+      problem.field = field + ".layer";
+      return refuse(problem, std::string());
+    }
+    room::LayerView view{layer->id, asked.visible, asked.opacity, std::nullopt};
+    if (asked.palette) {
+      auto palette = palette_from_json(*asked.palette, field + ".palette");
+      if (!palette) return refuse(palette.error(), std::string());
+      view.palette = std::move(*palette);
+    }
+    views.push_back(std::move(view));
+  }
+  if (auto done = member()->layers(static_cast<std::uint32_t>(message.view_id), std::move(views)); !done)
+    refuse(done.error(), std::string());
+}
+
+void LiveSession::on(const protocol::StrokeBegin& message) {
+  if (!may_edit(message.id)) return;
+  auto layer = layer_of(message.layer);
+  if (!layer) return refuse(layer.error(), message.id);
+  auto tool = stroke_tool(message, *layer, room_->model());
+  if (!tool) return refuse(tool.error(), message.id);
+  if (auto begun = shared_->strokes->begin(owner_, message.stroke, std::move(*tool)); !begun) refuse(begun.error(), message.id);
+}
+
+void LiveSession::on(const protocol::StrokeExtend& message) {
+  if (!may_edit(message.id)) return;
+  if (!shared_->strokes->lacks_start(owner_, message.stroke, message.n)) return paint(message);
+  // Only after a restart of the server: the batch before this one is in the journal, and reading it may block.
+  work_ = [self = shared_from_this(), message] {
+    self->find_start(message);
+    self->paint(message);
+  };
+}
+
+void LiveSession::on(const protocol::StrokeEnd& message) {
+  if (auto ended = shared_->strokes->end(owner_, message.stroke); !ended) refuse(ended.error(), message.id);
+}
+
+void LiveSession::on(const protocol::EditRequest& message) {
+  if (!may_edit(message.id)) return;
+  auto layer = layer_of(message.layer);
+  if (!layer) return refuse(layer.error(), message.id);
+  auto request = edit_request(message.edit, *layer, room_->model(), message.id, principal_.user);
+  if (!request) return refuse(request.error(), message.id);
+  submit(std::move(*request), std::nullopt);
+}
+
+template <class Message>
+void LiveSession::step_through_history(const Message& message) {
+  if (!may_edit(message.id)) return;
+  auto layer = layer_of(message.layer);
+  if (!layer) return refuse(layer.error(), message.id);
+  room::EditRequest request;
+  request.id = message.id;
+  request.user = principal_.user;
+  request.layer_id = layer->id;
+  if constexpr (std::is_same_v<Message, protocol::Undo>) request.edit = room::UndoEdit{};
+  else request.edit = room::RedoEdit{};
+  request.record = {{"op", std::string(Message::kOp)}};
+  submit(std::move(request), std::nullopt);
+}
+
+void LiveSession::on(const protocol::Undo& message) { step_through_history(message); }
+void LiveSession::on(const protocol::Redo& message) { step_through_history(message); }
+
+void LiveSession::on(const protocol::Ack& message) {
+  member()->ack(static_cast<std::uint32_t>(message.view_id), static_cast<std::uint64_t>(message.frame));
+}
+
+void LiveSession::on(const protocol::PresenceUpdate& message) {
+  if (!message.pointer) {
+    {
+      std::lock_guard lock(mutex_);
+      pointer_.reset();
+    }
+    return member()->pointer(std::nullopt);
+  }
+  auto camera = cameras_.find(message.view_id);
+  if (camera == cameras_.end()) return;  // nothing is drawn yet, so the pointer is over nothing
+  {
+    std::lock_guard lock(mutex_);
+    pointer_ = Pointer{camera->second, {(*message.pointer)[0], (*message.pointer)[1]}};
+    if (std::exchange(pointer_busy_, true)) return;
+  }
+  if (!shared_->queries->post([self = shared_from_this()] { self->resolve_pointer(); })) {
+    std::lock_guard lock(mutex_);
+    pointer_busy_ = false;
+  }
+}
+
+void LiveSession::on(const protocol::Pick& message) {
+  std::optional<Camera> camera = message.camera;
+  if (!camera)
+    if (auto found = cameras_.find(message.view_id); found != cameras_.end()) camera = found->second;
+  if (!camera)
+    return refuse({409, "No camera yet", "Send a camera for this view first, or give one with the pick.", "camera"}, ref_of(message.id));
+  const bool posted = shared_->queries->post([self = shared_from_this(), message, camera = *camera] {
+    std::vector<std::string> layers;
+    for (const auto& layer : self->room_->layers()) layers.push_back(layer.slug);
+    auto point = self->room_->pick(camera, message.x, message.y, layers);
+    if (!point) return self->refuse(point.error(), ref_of(message.id));
+    self->send(to_picked(*point, message.id));
+  });
+  if (!posted) refuse({503, "Too busy", "Too many questions wait for an answer; ask again.", {}}, ref_of(message.id));
+}
+
+// --- edits
+
+void LiveSession::paint(const protocol::StrokeExtend& message) {
+  const std::vector<glm::dvec2> path(message.path.begin(), message.path.end());
+  auto batch = shared_->strokes->extend(owner_, message.stroke, message.id, message.n, path);
+  if (!batch) return refuse(batch.error(), message.id);
+  submit(batch_request(std::move(*batch), message.stroke, message.id, message.n, principal_.user), BatchName{message.stroke, message.n});
+}
+
+void LiveSession::find_start(const protocol::StrokeExtend& message) {
+  const auto tool = shared_->strokes->tool(owner_, message.stroke);
+  if (!tool) return;
+  auto page = shared_->store->history(tool->layer_id, kHistoryToSearch, 0);
+  if (!page) return;  // the stroke starts with a gap rather than not at all; the edit itself will tell that the database is away
+  for (const auto& row : page->rows) {
+    if (row.stroke != message.stroke || row.user != principal_.user || !row.record.is_object() || row.record.value("n", -1) != message.n - 1) continue;
+    if (auto end = end_of_path(row.record)) shared_->strokes->continue_from(owner_, message.stroke, message.n, *end);
+    return;
+  }
+}
+
+void LiveSession::submit(room::EditRequest request, std::optional<BatchName> batch) {
+  const Uuid id = request.id;
+  {
+    std::lock_guard lock(mutex_);
+    own_edits_.emplace(id, false);
+  }
+  // The answer counts even when this connection is gone by then: the stroke book outlives it.
+  room_->edit(
+      std::move(request),
+      [weak = weak_from_this(), shared = shared_, id, batch](const room::EditAnswer& answer) {
+        if (!answer.repeated) ++shared->metrics->edits_applied;
+        if (auto self = weak.lock()) self->on_applied(id, batch, answer);
+      },
+      [weak = weak_from_this(), shared = shared_, owner = owner_, id, batch](Result<room::EditAnswer> answer) {
+        if (answer && batch) shared->strokes->saved(owner, batch->stroke, batch->n);
+        if (answer && !answer->repeated) ++shared->metrics->edits_saved;
+        if (auto self = weak.lock()) self->on_saved(id, batch, answer);
+      });
+}
+
+namespace {
+
+template <class Message>
+Message edit_message(const Uuid& id, bool is_batch, const Uuid& stroke, int n, const room::EditAnswer& answer) {
+  Message message;
+  if (is_batch) {
+    message.stroke = stroke;
+    message.n = n;
+  } else {
+    message.id = id;
+  }
+  message.sequence = answer.sequence;
+  message.texels_changed = static_cast<std::int64_t>(answer.texels_changed);
+  message.area_m2 = answer.area_m2;
+  return message;
+}
+
+}  // namespace
+
+void LiveSession::on_applied(const Uuid& id, const std::optional<BatchName>& batch, const room::EditAnswer& answer) {
+  {
+    std::lock_guard lock(mutex_);
+    if (auto found = own_edits_.find(id); found != own_edits_.end()) found->second = true;
+  }
+  send(edit_message<protocol::Applied>(id, batch.has_value(), batch ? batch->stroke : Uuid{}, batch ? batch->n : 0, answer));
+}
+
+void LiveSession::on_saved(const Uuid& id, const std::optional<BatchName>& batch, const Result<room::EditAnswer>& answer) {
+  bool applied = false;
+  {
+    std::lock_guard lock(mutex_);
+    if (auto found = own_edits_.find(id); found != own_edits_.end()) {
+      applied = found->second;
+      own_edits_.erase(found);
+    }
+  }
+  if (answer)
+    return send(edit_message<protocol::Saved>(id, batch.has_value(), batch ? batch->stroke : Uuid{}, batch ? batch->n : 0, *answer));
+  if (!applied) {
+    ++shared_->metrics->edits_refused;
+    return refuse(answer.error(), id);
+  }
+  ++shared_->metrics->edits_unsaved;
+  protocol::Unsaved unsaved;
+  unsaved.ids = {id};
+  unsaved.detail = answer.error().detail;
+  send(unsaved);
+}
+
+// --- what the room tells
+
+void LiveSession::edit_applied(const Edit& edit) {
+  {
+    std::lock_guard lock(mutex_);
+    if (own_edits_.contains(edit.id)) return;  // the author is told by `applied`
+  }
+  protocol::LayerEvent event;
+  event.event = protocol::LayerEventEvent::edited;
+  event.layer_id = edit.layer_id;
+  event.sequence = edit.sequence;
+  event.user = edit.user;
+  send(event);
+}
+
+void LiveSession::edit_saved(const Edit&) {}  // the author is told by the edit's own answer; nobody else waits for it
+
+void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Problem&) {
+  // Others see the layer go back; the authors hear of each id by the edit's own answer.
+  std::map<std::int64_t, std::int64_t> sequences;
+  for (const auto& edit : edits) sequences[edit.layer_id] = std::max(sequences[edit.layer_id], edit.sequence);
+  for (const auto& [layer_id, sequence] : sequences) {
+    protocol::LayerEvent event;
+    event.event = protocol::LayerEventEvent::edited;
+    event.layer_id = layer_id;
+    event.sequence = sequence;
+    send(event);
+  }
+}
+
+void LiveSession::layer_changed(LayerChange change, const Layer& layer) {
+  protocol::LayerEvent event;
+  event.layer_id = layer.id;
+  event.event = change == LayerChange::created   ? protocol::LayerEventEvent::created
+                : change == LayerChange::changed ? protocol::LayerEventEvent::changed
+                                                 : protocol::LayerEventEvent::deleted;
+  if (change != LayerChange::deleted) event.layer = to_json(layer);
+  send(event);
+}
+
+void LiveSession::model_changed(const Model&) {}  // strata.v1 has no message for it; the page reads the model again when it shows it
+
+void LiveSession::presence_changed() {
+  auto socket = socket_.lock();
+  if (!socket) return;
+  std::chrono::milliseconds delay{0};
+  {
+    std::lock_guard lock(mutex_);
+    if (std::exchange(presence_scheduled_, true)) return;
+    const auto due = presence_sent_ + shared_->limits.presence_every;
+    delay = std::max(delay, std::chrono::ceil<std::chrono::milliseconds>(due - std::chrono::steady_clock::now()));
+  }
+  socket->run_after(delay, [weak = weak_from_this()] {
+    if (auto self = weak.lock()) self->send_presence();
+  });
+}
+
+void LiveSession::send_presence() {
+  {
+    std::lock_guard lock(mutex_);
+    presence_scheduled_ = false;
+    presence_sent_ = std::chrono::steady_clock::now();
+    if (!member_) return;
+  }
+  protocol::Presence presence;
+  for (const auto& person : room_->presence()) {
+    protocol::PresenceUser user;
+    user.session = person.session;
+    user.name = person.user;
+    user.color = person.color;
+    if (person.pointer) {
+      protocol::PresencePointer pointer;
+      pointer.position = *person.pointer;
+      user.pointer = pointer;
+    }
+    presence.users.push_back(std::move(user));
+  }
+  send(presence);
+}
+
+void LiveSession::resolve_pointer() {
+  for (;;) {
+    Pointer asked;
+    std::shared_ptr<room::Member> here;
+    {
+      std::lock_guard lock(mutex_);
+      if (!pointer_ || !member_) {
+        pointer_busy_ = false;
+        return;
+      }
+      asked = *std::exchange(pointer_, std::nullopt);
+      here = member_;
+    }
+    auto point = room_->pick(asked.camera, asked.pixel.x, asked.pixel.y, {});
+    here->pointer(point && point->hit ? std::optional(point->position) : std::nullopt);
+  }
+}
+
+// --- helpers
+
+bool LiveSession::may_edit(const Uuid& id) {
+  if (principal_.role >= Role::annotator) return true;
+  refuse({403, "Not allowed", "Your role is viewer: you may look, but not paint. Ask for the role annotator.", {}}, id);
+  return false;
+}
+
+bool LiveSession::has_view(int view_id, const std::string& ref) {
+  if (view_id < shared_->limits.views) return true;
+  refuse({422, "Too many views", "A connection has views 0 to " + std::to_string(shared_->limits.views - 1) + ".", "view_id"}, ref);
+  return false;
+}
+
+Result<Layer> LiveSession::layer_of(const protocol::LayerRef& ref) const {
+  auto layer = room_->layer(protocol::to_ref(ref));
+  if (layer) return layer;
+  Problem problem = layer.error();
+  if (problem.field.empty()) problem.field = "layer";
+  return tl::unexpected(std::move(problem));
+}
+
+std::shared_ptr<room::Member> LiveSession::member() const {
+  std::lock_guard lock(mutex_);
+  return member_;
+}
+
+void LiveSession::send(const protocol::ServerMessage& message) {
+  if (auto socket = socket_.lock()) socket->send_text(protocol::to_text(message));
+}
+
+void LiveSession::refuse(const Problem& problem, const std::string& ref) {
+  ++shared_->metrics->messages_refused;
+  send(protocol::problem_message(problem, ref));
+}
+
+}  // namespace strata::net

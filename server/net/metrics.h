@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+namespace strata::net {
+
+// Counters of this room, added to from any thread.
+struct Metrics {
+  std::array<std::atomic<std::uint64_t>, 6> requests{};  // by the first digit of the status
+  std::atomic<std::int64_t> open_connections{0};
+  std::atomic<std::int64_t> open_sockets{0};             // WebSockets
+  std::atomic<std::uint64_t> edits_applied{0}, edits_saved{0}, edits_unsaved{0}, edits_refused{0};
+  std::atomic<std::uint64_t> frames_sent{0}, frame_bytes_sent{0};
+  std::atomic<std::uint64_t> messages_received{0}, messages_refused{0};
+
+  void count_request(int status) { ++requests[status >= 100 && status < 600 ? status / 100 : 0]; }
+};
+
+struct Gauges {
+  std::size_t open_rooms = 0;
+  std::uint64_t gpu_bytes = 0;
+  std::size_t waiting_requests = 0;
+};
+
+// Prometheus text format 0.0.4.
+std::string metrics_text(const Metrics& metrics, const Gauges& gauges);
+
+}  // namespace strata::net

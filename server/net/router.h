@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "net/http_types.h"
+
+namespace strata::net {
+
+// Handlers run on a worker thread and may block; they answer at once or later through `respond`.
+using Handler = std::function<void(const Request& request, const Respond& respond)>;
+
+// How the session takes the body in before the handler runs.
+enum class BodyKind { none, memory, file };
+
+struct Route {
+  Method method = Method::get;
+  std::string pattern;                  // "/api/v1/models/{model}/texels.{format}": one {name} per segment
+  Handler handler;
+  std::optional<Role> role = Role::viewer;  // least role that may call it; empty: open to everyone
+  std::vector<std::string> query{};     // parameters it knows; others are refused
+  bool any_query = false;
+  BodyKind body = BodyKind::none;
+  std::uint64_t max_body = 0;           // bytes
+  bool keeps_answer = false;            // Idempotency-Key is answered from the store of answers
+};
+
+// Finds the route of a request. Filled before the server starts, read-only (so thread-safe) afterwards.
+class Router {
+ public:
+  void add(Route route);
+
+  struct Match {
+    const Route* route = nullptr;                // null: see `allowed`
+    std::map<std::string, std::string> params;
+    std::vector<Method> allowed;                 // methods of the path; empty: no such path
+  };
+  // HEAD finds the route of GET.
+  Match find(Method method, const std::vector<std::string>& segments) const;
+
+ private:
+  struct Segment {
+    std::string prefix, param, suffix;  // without a param: `prefix` is the whole segment
+  };
+  struct Entry {
+    Route route;
+    std::vector<Segment> segments;
+  };
+  static bool matches(const Entry& entry, const std::vector<std::string>& segments, std::map<std::string, std::string>& params);
+  std::vector<Entry> entries_;
+};
+
+std::string allow_header(const std::vector<Method>& methods);
+Result<void> check_query(const Route& route, const Request& request);
+
+}  // namespace strata::net

@@ -1,0 +1,65 @@
+#include "net/routes.h"
+
+#include "core/slug.h"
+#include "core/uuid.h"
+#include "net/digest.h"
+
+namespace strata::net {
+
+Handler answering(std::function<Result<Response>(const Request&)> answer) {
+  return [answer = std::move(answer)](const Request& request, const Respond& respond) {
+    auto response = answer(request);
+    if (response) respond(std::move(*response));
+    else respond(response.error());
+  };
+}
+
+std::string etag_of(std::int64_t version) { return "\"v" + std::to_string(version) + "\""; }
+
+Response with_etag(Response response, const Request& request, std::int64_t version) {
+  const std::string etag = etag_of(version);
+  if (request.method != Method::get && request.method != Method::head) return response.with("ETag", etag);
+  if (request.header("if-none-match") == etag) return empty_response(304).with("ETag", etag);
+  return response.with("ETag", etag);
+}
+
+Result<void> check_if_match(const Request& request, std::int64_t version) {
+  const auto wanted = request.header("if-match");
+  if (wanted.empty() || wanted == "*" || wanted == etag_of(version)) return {};
+  return fail(412, "Changed meanwhile", "Somebody changed this since you read it; read it again and repeat your change.", "If-Match");
+}
+
+void add_sequences(Response& response, std::int64_t shown, std::int64_t durable) {
+  response.with("Strata-Sequence", std::to_string(shown)).with("Strata-Durable-Sequence", std::to_string(durable));
+}
+
+Uuid edit_id(const Request& request) {
+  const auto key = request.header("idempotency-key");
+  if (key.empty()) return random_uuid();
+  return uuid_of_text(request.user() + '\n' + std::string(name(request.method)) + '\n' + request.path + '\n' + std::string(key));
+}
+
+void apply_edit(const std::shared_ptr<room::Room>& room, room::EditRequest request, const RouteContext& context,
+                const Respond& respond) {
+  room->edit(
+      std::move(request),
+      [&metrics = context.metrics](const room::EditAnswer& answer) {
+        if (!answer.repeated) ++metrics.edits_applied;
+      },
+      [&metrics = context.metrics, respond](Result<room::EditAnswer> answer) {
+        if (!answer) {
+          ++metrics.edits_refused;
+          return respond(answer.error());
+        }
+        if (!answer->repeated) ++metrics.edits_saved;
+        respond(json_response(room::to_json(*answer)).with("Strata-Sequence", std::to_string(answer->sequence)));
+      });
+}
+
+Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& text) {
+  if (!wish) return make_slug(text);
+  if (is_all_digits(*wish)) return fail(422, "Slug of digits", "A slug of digits only would be taken for an id; add a letter.", "slug");
+  return *wish;
+}
+
+}  // namespace strata::net

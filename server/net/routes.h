@@ -1,0 +1,70 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "jobs/job_queue.h"
+#include "net/auth.h"
+#include "net/metrics.h"
+#include "net/router.h"
+#include "net/server_options.h"
+#include "protocol/parse.h"
+#include "render/renderer.h"
+#include "room/room.h"
+#include "store/store.h"
+
+namespace strata::net {
+
+// What handlers work with. Lives as long as the router.
+struct RouteContext {
+  const ServerOptions& options;
+  store::Store& store;
+  room::Rooms& rooms;
+  jobs::JobQueue& jobs;
+  render::Renderer& renderer;
+  Authenticator& auth;
+  Metrics& metrics;
+  WorkerPool& workers;
+};
+
+void add_system_routes(Router& router, const RouteContext& context);
+void add_auth_routes(Router& router, const RouteContext& context);
+void add_project_routes(Router& router, const RouteContext& context);
+void add_model_routes(Router& router, const RouteContext& context);
+void add_import_routes(Router& router, const RouteContext& context);
+void add_job_routes(Router& router, const RouteContext& context);
+void add_layer_routes(Router& router, const RouteContext& context);
+void add_edit_routes(Router& router, const RouteContext& context);
+void add_query_routes(Router& router, const RouteContext& context);
+void add_frame_routes(Router& router, const RouteContext& context);
+void add_texel_routes(Router& router, const RouteContext& context);
+
+// --- shared by the route files
+
+// A handler that answers at once.
+Handler answering(std::function<Result<Response>(const Request&)> answer);
+
+template <class T>
+Result<T> body_of(const Request& request, std::uint64_t max_bytes = 1u << 20) {
+  return protocol::parse<T>(request.body, {static_cast<std::size_t>(max_bytes), 32});
+}
+
+// Metadata versions: "v7". `If-None-Match` of a read, `If-Match` of a change (absent: any version; stale: 412).
+std::string etag_of(std::int64_t version);
+Response with_etag(Response response, const Request& request, std::int64_t version);
+Result<void> check_if_match(const Request& request, std::int64_t version);
+
+// Strata-Sequence: what a read shows; Strata-Durable-Sequence: what is safe.
+void add_sequences(Response& response, std::int64_t shown, std::int64_t durable);
+
+// The edit's id: from the Idempotency-Key, so that a repeat gets the journal's first answer; random without one.
+Uuid edit_id(const Request& request);
+// Hands the edit to the room and answers once it is durable or refused.
+void apply_edit(const std::shared_ptr<room::Room>& room, room::EditRequest request, const RouteContext& context,
+                const Respond& respond);
+
+// Slug of a wish or of the name; a wished slug of digits only is refused.
+Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& name);
+
+}  // namespace strata::net

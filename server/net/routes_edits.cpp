@@ -1,0 +1,110 @@
+#include "net/routes.h"
+#include "net/wire.h"
+
+namespace strata::net {
+namespace {
+
+Result<Response> history(const RouteContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  auto layer = context.store.layer(model->id, request.param("layer"));
+  if (!layer) return tl::unexpected(layer.error());
+  auto rows = context.store.history(layer->id, page->limit, page->offset);
+  if (!rows) return tl::unexpected(rows.error());
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& row : rows->rows) list.push_back(to_json(row));
+  Response response = json_response({{"edits", list}, {"total", rows->total}});
+  add_page_links(response, request, *page, rows->total);
+  return response;
+}
+
+struct Target {
+  std::shared_ptr<room::Room> room;
+  Layer layer;
+};
+
+Result<Target> target_of(const RouteContext& context, const Request& request) {
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  auto layer = (*room)->layer(request.param("layer"));
+  if (!layer) return tl::unexpected(layer.error());
+  return Target{std::move(*room), std::move(*layer)};
+}
+
+// Runs `make` for the layer that is named by the path and applies the edit that it returns.
+template <class Make>
+Handler editing(const RouteContext& context, Make make) {
+  return [&context, make](const Request& request, const Respond& respond) {
+    auto target = target_of(context, request);
+    if (!target) return respond(target.error());
+    Result<room::EditRequest> edit = make(request, *target);
+    if (!edit) return respond(edit.error());
+    apply_edit(target->room, std::move(*edit), context, respond);
+  };
+}
+
+room::EditRequest bare_edit(const Request& request, const Target& target, std::string op) {
+  room::EditRequest edit;
+  edit.id = edit_id(request);
+  edit.user = request.user();
+  edit.layer_id = target.layer.id;
+  edit.record = {{"op", std::move(op)}};
+  return edit;
+}
+
+// Undo and redo take no members; no body is the same as an empty object.
+Result<void> check_empty(const Request& request) {
+  if (request.body.empty()) return {};
+  auto body = body_of<protocol::Empty>(request);
+  if (!body) return tl::unexpected(body.error());
+  return {};
+}
+
+}  // namespace
+
+void add_edit_routes(Router& router, const RouteContext& context) {
+  const std::string layer = "/api/v1/models/{model}/layers/{layer}";
+  auto change = [&](const std::string& pattern, Handler handler) {
+    router.add({.method = Method::post,
+                .pattern = pattern,
+                .handler = std::move(handler),
+                .role = Role::annotator,
+                .body = BodyKind::memory,
+                .max_body = context.options.max_json_bytes});
+  };
+  router.add({.method = Method::get,
+              .pattern = layer + "/edits",
+              .handler = answering([&context](const Request& request) { return history(context, request); }),
+              .query = {"limit", "offset"}});
+  change(layer + "/edits", editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+           auto asked = body_of<protocol::Edit>(request);
+           if (!asked) return tl::unexpected(asked.error());
+           return edit_request(*asked, target.layer, target.room->model(), edit_id(request), request.user());
+         }));
+  change(layer + "/undo", editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+           if (auto empty = check_empty(request); !empty) return tl::unexpected(empty.error());
+           auto edit = bare_edit(request, target, "undo");
+           edit.edit = room::UndoEdit{};
+           return edit;
+         }));
+  change(layer + "/redo", editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+           if (auto empty = check_empty(request); !empty) return tl::unexpected(empty.error());
+           auto edit = bare_edit(request, target, "redo");
+           edit.edit = room::RedoEdit{};
+           return edit;
+         }));
+  change(layer + "/restore", editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+           auto asked = body_of<protocol::Restore>(request);
+           if (!asked) return tl::unexpected(asked.error());
+           if (asked->sequence > target.room->sequence())
+             return fail(422, "Not yet there", "The newest sequence of this model is " + std::to_string(target.room->sequence()) + ".", "sequence");
+           auto edit = bare_edit(request, target, "restore");
+           edit.record["sequence"] = asked->sequence;
+           edit.edit = room::RestoreEdit{asked->sequence};
+           return edit;
+         }));
+}
+
+}  // namespace strata::net

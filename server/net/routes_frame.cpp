@@ -1,0 +1,49 @@
+#include "net/routes.h"
+#include "stream/jpeg_pool.h"
+
+namespace strata::net {
+namespace {
+
+constexpr int kJpegQuality = 90;  // one picture for keeps, not a frame of many
+
+Result<Response> frame(const RouteContext& context, const Request& request) {
+  auto asked = body_of<protocol::FrameRequest>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  std::optional<std::vector<std::string>> layers;
+  if (asked->layers) {
+    layers.emplace();
+    for (std::size_t i = 0; i < asked->layers->size(); ++i) {
+      auto layer = (*room)->layer(protocol::to_ref((*asked->layers)[i]));
+      if (!layer) {
+        Problem problem = layer.error();
+        problem.field = "layers[" + std::to_string(i) + "]";
+        return tl::unexpected(std::move(problem));
+      }
+      layers->push_back(layer->slug);
+    }
+  }
+  const auto sequence = (*room)->sequence();
+  if (asked->at && *asked->at > sequence)
+    return fail(422, "Not yet there", "The newest sequence of this model is " + std::to_string(sequence) + ".", "at");
+  auto picture = (*room)->picture(asked->camera, std::move(layers), asked->at);
+  if (!picture) return tl::unexpected(picture.error());
+  const bool is_png = asked->format == protocol::FrameRequestFormat::png;
+  Response response = is_png ? bytes_response(stream::encode_png(picture->pixels, picture->width, picture->height), "image/png")
+                             : bytes_response(stream::encode_jpeg(picture->pixels, picture->width, picture->height, {kJpegQuality, true}), "image/jpeg");
+  add_sequences(response, asked->at.value_or(sequence), (*room)->durable_sequence());
+  return response;
+}
+
+}  // namespace
+
+void add_frame_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/frame",
+              .handler = answering([&context](const Request& request) { return frame(context, request); }),
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,53 @@
+#include "net/routes.h"
+#include "net/wire.h"
+
+namespace strata::net {
+namespace {
+
+Result<jobs::JobStatus> find_job(const RouteContext& context, const Request& request) {
+  auto id = parse_integer(request.param("job"), 1, INT64_MAX, "job");
+  auto status = id ? context.jobs.status(*id) : std::nullopt;
+  if (!status) return fail(404, "No such job", "There is no job of this id, or it ended long ago.", "job");
+  return *status;
+}
+
+bool is_over(const jobs::JobStatus& job) { return job.state != jobs::JobState::queued && job.state != jobs::JobState::running; }
+
+}  // namespace
+
+void add_job_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/jobs",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto page = page_of(request);
+                if (!page) return tl::unexpected(page.error());
+                const auto all = context.jobs.all();
+                nlohmann::json list = nlohmann::json::array();
+                const int total = static_cast<int>(all.size());
+                for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json(all[i]));
+                Response response = json_response({{"jobs", list}, {"total", total}});
+                add_page_links(response, request, *page, total);
+                return response;
+              }),
+              .query = {"limit", "offset"}});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/jobs/{job}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto job = find_job(context, request);
+                if (!job) return tl::unexpected(job.error());
+                return json_response(to_json(*job));
+              })});
+  router.add({.method = Method::remove,
+              .pattern = "/api/v1/jobs/{job}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto job = find_job(context, request);
+                if (!job) return tl::unexpected(job.error());
+                if (is_over(*job) || !context.jobs.cancel(job->id))
+                  return fail(409, "Job is over", "The job has ended; there is nothing to cancel.", "job");
+                auto now = context.jobs.status(job->id);
+                return json_response(to_json(now.value_or(*job)));
+              }),
+              .role = Role::curator});
+}
+
+}  // namespace strata::net

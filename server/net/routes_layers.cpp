@@ -1,0 +1,151 @@
+#include <algorithm>
+
+#include "net/routes.h"
+
+namespace strata::net {
+namespace {
+
+Result<Layer> stored_layer(const RouteContext& context, const Request& request) {
+  auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  return context.store.layer(model->id, request.param("layer"));
+}
+
+Result<Response> list_layers(const RouteContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  auto layers = context.store.layers(model->id);
+  if (!layers) return tl::unexpected(layers.error());
+  nlohmann::json list = nlohmann::json::array();
+  const int total = static_cast<int>(layers->size());
+  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json((*layers)[i]));
+  Response response = json_response({{"layers", list}, {"total", total}});
+  add_page_links(response, request, *page, total);
+  return response;
+}
+
+Result<Palette> palette_of(const std::optional<nlohmann::json>& asked, ValueType type, bool categorical) {
+  if (!asked) return default_palette(type, categorical);
+  return palette_from_json(*asked);
+}
+
+Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, const std::vector<Layer>& others) {
+  Layer layer;
+  layer.model_id = model.id;
+  layer.name = asked.name;
+  auto slug = slug_of(asked.slug, asked.name);
+  if (!slug) return tl::unexpected(slug.error());
+  layer.slug = *slug;
+  layer.kind = asked.kind;
+  layer.type = asked.type;
+  const bool is_key = layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
+  if (layer.kind == LayerKind::database && !is_key)
+    return fail(422, "Type not usable", "A database layer holds keys: its type is u8, u16 or u32.", "type");
+  if (asked.table && layer.kind != LayerKind::database)
+    return fail(422, "Table on a numeric layer", "Only database layers have a table.", "table");
+  layer.table = asked.table;
+  layer.resolution = asked.resolution.value_or(std::max(model.default_resolution, model.atlas.lowest_resolution));
+  if (layer.resolution < model.atlas.lowest_resolution)
+    return fail(422, "Resolution too low", "Layers of this model have at least " + std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+                "resolution");
+  layer.unit = asked.unit;
+  layer.description = asked.description;
+  auto palette = palette_of(asked.palette, layer.type, layer.kind == LayerKind::database);
+  if (!palette) return tl::unexpected(palette.error());
+  layer.palette = std::move(*palette);
+  layer.opacity = asked.opacity;
+  layer.visible = asked.visible;
+  int top = -1;
+  for (const auto& other : others) top = std::max(top, other.order);
+  layer.order = asked.order.value_or(top + 1);
+  return layer;
+}
+
+Result<Response> create_layer(const RouteContext& context, const Request& request) {
+  auto asked = body_of<protocol::LayerCreate>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  const Model model = (*room)->model();
+  auto layer = new_layer(*asked, model, (*room)->layers());
+  if (!layer) return tl::unexpected(layer.error());
+  auto created = (*room)->create_layer(std::move(*layer));
+  if (!created) return tl::unexpected(created.error());
+  return json_response(to_json(*created), 201)
+      .with("Location", "/api/v1/models/" + model.slug + "/layers/" + created->slug)
+      .with("ETag", etag_of(created->version));
+}
+
+Result<Response> change_layer(const RouteContext& context, const Request& request) {
+  auto asked = body_of<protocol::LayerPatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  auto layer = (*room)->layer(request.param("layer"));
+  if (!layer) return tl::unexpected(layer.error());
+  if (auto fresh = check_if_match(request, layer->version); !fresh) return tl::unexpected(fresh.error());
+  if (asked->name) layer->name = *asked->name;
+  if (asked->unit) layer->unit = *asked->unit;
+  if (asked->description) layer->description = *asked->description;
+  if (asked->palette) {
+    auto palette = palette_from_json(*asked->palette);
+    if (!palette) return tl::unexpected(palette.error());
+    layer->palette = std::move(*palette);
+  }
+  if (asked->opacity) layer->opacity = *asked->opacity;
+  if (asked->visible) layer->visible = *asked->visible;
+  if (asked->order) layer->order = *asked->order;
+  auto changed = (*room)->update_layer(std::move(*layer));
+  if (!changed) return tl::unexpected(changed.error());
+  return json_response(to_json(*changed)).with("ETag", etag_of(changed->version));
+}
+
+Result<Response> delete_layer(const RouteContext& context, const Request& request) {
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  auto layer = (*room)->layer(request.param("layer"));
+  if (!layer) return tl::unexpected(layer.error());
+  if (auto fresh = check_if_match(request, layer->version); !fresh) return tl::unexpected(fresh.error());
+  if (auto gone = (*room)->delete_layer(layer->id); !gone) return tl::unexpected(gone.error());
+  return empty_response(204);
+}
+
+}  // namespace
+
+void add_layer_routes(Router& router, const RouteContext& context) {
+  const std::string layers = "/api/v1/models/{model}/layers";
+  router.add({.method = Method::get,
+              .pattern = layers,
+              .handler = answering([&context](const Request& request) { return list_layers(context, request); }),
+              .query = {"limit", "offset"}});
+  router.add({.method = Method::post,
+              .pattern = layers,
+              .handler = answering([&context](const Request& request) { return create_layer(context, request); }),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true});
+  router.add({.method = Method::get,
+              .pattern = layers + "/{layer}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto layer = stored_layer(context, request);
+                if (!layer) return tl::unexpected(layer.error());
+                return with_etag(json_response(to_json(*layer)), request, layer->version);
+              })});
+  router.add({.method = Method::patch,
+              .pattern = layers + "/{layer}",
+              .handler = answering([&context](const Request& request) { return change_layer(context, request); }),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true});
+  router.add({.method = Method::remove,
+              .pattern = layers + "/{layer}",
+              .handler = answering([&context](const Request& request) { return delete_layer(context, request); }),
+              .role = Role::curator,
+              .keeps_answer = true});
+}
+
+}  // namespace strata::net

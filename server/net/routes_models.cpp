@@ -1,0 +1,146 @@
+#include <map>
+
+#include "net/routes.h"
+
+namespace strata::net {
+namespace {
+
+Result<std::string> project_slug(const RouteContext& context, std::int64_t project_id) {
+  auto project = context.store.project(std::to_string(project_id));
+  if (!project) return tl::unexpected(project.error());
+  return project->slug;
+}
+
+Result<Response> model_answer(const RouteContext& context, const Request& request, const Model& model) {
+  auto slug = project_slug(context, model.project_id);
+  if (!slug) return tl::unexpected(slug.error());
+  return with_etag(json_response(to_json(model, *slug)), request, model.version);
+}
+
+Result<Response> list_models(const RouteContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  auto projects = context.store.projects();
+  if (!projects) return tl::unexpected(projects.error());
+  std::map<std::int64_t, std::string> slugs;
+  for (const auto& project : *projects) slugs[project.id] = project.slug;
+  std::optional<std::int64_t> only;
+  if (auto wanted = request.query.find("project"); wanted != request.query.end()) {
+    auto project = context.store.project(wanted->second);
+    if (!project) return tl::unexpected(project.error());
+    only = project->id;
+  }
+  auto models = context.store.models(only);
+  if (!models) return tl::unexpected(models.error());
+  nlohmann::json list = nlohmann::json::array();
+  const int total = static_cast<int>(models->size());
+  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i)
+    list.push_back(to_json((*models)[i], slugs[(*models)[i].project_id]));
+  Response response = json_response({{"models", list}, {"total", total}});
+  add_page_links(response, request, *page, total);
+  return response;
+}
+
+Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
+  if (patch.name) model.name = *patch.name;
+  if (patch.unit) {
+    model.unit = *patch.unit;
+    model.unit_assumed = false;
+  }
+  if (patch.scale_verified) model.scale_verified = *patch.scale_verified;
+  if (patch.up) model.up = std::string(protocol::name(*patch.up));
+  if (patch.north) model.north = *patch.north;
+  if (patch.crs) model.crs = *patch.crs;
+  if (patch.default_resolution) {
+    if (*patch.default_resolution < model.atlas.lowest_resolution)
+      return fail(422, "Resolution too low", "Layers of this model have at least " + std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+                  "default_resolution");
+    model.default_resolution = *patch.default_resolution;
+  }
+  auto set = [](std::string& member, const std::optional<std::string>& value) {
+    if (value) member = *value;
+  };
+  set(model.inventory_number, patch.inventory_number);
+  set(model.owner, patch.owner);
+  set(model.creator, patch.creator);
+  set(model.captured, patch.captured);
+  set(model.method, patch.method);
+  set(model.accuracy, patch.accuracy);
+  set(model.processing, patch.processing);
+  set(model.rights_uri, patch.rights_uri);
+  set(model.credit, patch.credit);
+  return {};
+}
+
+Result<Response> change_model(const RouteContext& context, const Request& request) {
+  auto asked = body_of<protocol::ModelPatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  // Through the room: those who look at the model are told.
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  Model model = (*room)->model();
+  if (auto fresh = check_if_match(request, model.version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fits = apply_patch(*asked, model); !fits) return tl::unexpected(fits.error());
+  auto changed = (*room)->update_model(std::move(model));
+  if (!changed) return tl::unexpected(changed.error());
+  return model_answer(context, request, *changed);
+}
+
+Result<Response> source(const RouteContext& context, const Request& request) {
+  auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  const std::string& wanted = request.param("name");
+  for (const auto& file : model->source_files) {
+    if (file.name != wanted) continue;
+    const std::string etag = "\"" + file.sha256 + "\"";
+    if (request.header("if-none-match") == etag) return empty_response(304).with("ETag", etag);
+    Response response;
+    response.with("Content-Type", "application/octet-stream").with("ETag", etag);
+    response.with("Content-Disposition", "attachment; filename*=UTF-8''" + percent_encode(file.name));
+    response.stream = Response::Stream{file.bytes, [&store = context.store, id = model->id, wanted](const Response::Sink& sink) {
+                                         (void)store.read_source(id, wanted, sink);  // a short body tells the client
+                                       }};
+    return response;
+  }
+  return fail(404, "No such file", "The model was not made from a file of this name; see `source_files`.", "name");
+}
+
+}  // namespace
+
+void add_model_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models",
+              .handler = answering([&context](const Request& request) { return list_models(context, request); }),
+              .query = {"project", "limit", "offset"}});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto model = context.store.model(request.param("model"));
+                if (!model) return tl::unexpected(model.error());
+                return model_answer(context, request, *model);
+              })});
+  router.add({.method = Method::patch,
+              .pattern = "/api/v1/models/{model}",
+              .handler = answering([&context](const Request& request) { return change_model(context, request); }),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true});
+  router.add({.method = Method::remove,
+              .pattern = "/api/v1/models/{model}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto model = context.store.model(request.param("model"));
+                if (!model) return tl::unexpected(model.error());
+                if (auto fresh = check_if_match(request, model->version); !fresh) return tl::unexpected(fresh.error());
+                if (auto gone = context.store.delete_model(model->id); !gone) return tl::unexpected(gone.error());
+                context.rooms.forget(model->id);
+                return empty_response(204);
+              }),
+              .role = Role::curator,
+              .keeps_answer = true});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/source/{name}",
+              .handler = answering([&context](const Request& request) { return source(context, request); })});
+}
+
+}  // namespace strata::net

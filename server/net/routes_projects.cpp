@@ -1,0 +1,89 @@
+#include "net/routes.h"
+
+namespace strata::net {
+namespace {
+
+Result<Response> list_projects(const RouteContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  auto projects = context.store.projects();
+  if (!projects) return tl::unexpected(projects.error());
+  nlohmann::json list = nlohmann::json::array();
+  const int total = static_cast<int>(projects->size());
+  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json((*projects)[i]));
+  Response response = json_response({{"projects", list}, {"total", total}});
+  add_page_links(response, request, *page, total);
+  return response;
+}
+
+Result<Response> create_project(const RouteContext& context, const Request& request) {
+  auto asked = body_of<protocol::ProjectCreate>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto slug = slug_of(asked->slug, asked->name);
+  if (!slug) return tl::unexpected(slug.error());
+  Project project;
+  project.name = asked->name;
+  project.slug = *slug;
+  project.description = asked->description;
+  auto created = context.store.create_project(std::move(project));
+  if (!created) return tl::unexpected(created.error());
+  return json_response(to_json(*created), 201)
+      .with("Location", "/api/v1/projects/" + created->slug)
+      .with("ETag", etag_of(created->version));
+}
+
+Result<Response> change_project(const RouteContext& context, const Request& request) {
+  auto project = context.store.project(request.param("project"));
+  if (!project) return tl::unexpected(project.error());
+  if (auto fresh = check_if_match(request, project->version); !fresh) return tl::unexpected(fresh.error());
+  auto asked = body_of<protocol::ProjectPatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  if (asked->name) project->name = *asked->name;
+  if (asked->description) project->description = *asked->description;
+  auto changed = context.store.update_project(std::move(*project));
+  if (!changed) return tl::unexpected(changed.error());
+  return json_response(to_json(*changed)).with("ETag", etag_of(changed->version));
+}
+
+}  // namespace
+
+void add_project_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/projects",
+              .handler = answering([&context](const Request& request) { return list_projects(context, request); }),
+              .query = {"limit", "offset"}});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/projects",
+              .handler = answering([&context](const Request& request) { return create_project(context, request); }),
+              .role = Role::administrator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/projects/{project}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto project = context.store.project(request.param("project"));
+                if (!project) return tl::unexpected(project.error());
+                return with_etag(json_response(to_json(*project)), request, project->version);
+              })});
+  router.add({.method = Method::patch,
+              .pattern = "/api/v1/projects/{project}",
+              .handler = answering([&context](const Request& request) { return change_project(context, request); }),
+              .role = Role::administrator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true});
+  router.add({.method = Method::remove,
+              .pattern = "/api/v1/projects/{project}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto project = context.store.project(request.param("project"));
+                if (!project) return tl::unexpected(project.error());
+                if (auto fresh = check_if_match(request, project->version); !fresh) return tl::unexpected(fresh.error());
+                if (auto gone = context.store.delete_project(project->id); !gone) return tl::unexpected(gone.error());
+                return empty_response(204);
+              }),
+              .role = Role::administrator,
+              .keeps_answer = true});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,151 @@
+#include "net/point_text.h"
+#include "net/routes.h"
+#include "net/wire.h"
+
+namespace strata::net {
+namespace {
+
+std::vector<std::string> slugs_of(const std::vector<Layer>& layers) {
+  std::vector<std::string> slugs;
+  for (const auto& layer : layers) slugs.push_back(layer.slug);
+  return slugs;
+}
+
+Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs, const std::string& field) {
+  std::vector<Layer> layers;
+  for (const auto& ref : refs) {
+    auto layer = room.layer(ref);
+    if (!layer) {
+      Problem problem = layer.error();
+      problem.field = field;
+      return tl::unexpected(std::move(problem));
+    }
+    layers.push_back(std::move(*layer));
+  }
+  return layers;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (end > begin) parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+constexpr const char* kCsvType = "text/csv; charset=utf-8";
+
+Result<Response> position(const RouteContext& context, const Request& request) {
+  auto coordinates = parse_point(request.query_or("coords", {}));
+  if (!coordinates) return tl::unexpected(coordinates.error());
+  const std::string format = request.query_or("f", "json");
+  if (format != "json" && format != "covjson" && format != "csv")
+    return fail(406, "Unknown format", "`f` is json, covjson or csv.", "f");
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  std::vector<Layer> layers = (*room)->layers();
+  if (auto named = request.query.find("parameter-name"); named != request.query.end()) {
+    auto found = find_layers(**room, split(named->second), "parameter-name");
+    if (!found) return tl::unexpected(found.error());
+    layers = std::move(*found);
+  }
+  const auto sequence = (*room)->sequence();
+  auto point = (*room)->position(*coordinates, slugs_of(layers));
+  if (!point) return tl::unexpected(point.error());
+  Response response;
+  if (format == "csv") response = text_response(points_csv({*point}, slugs_of(layers)), kCsvType);
+  else if (format == "json") response = json_response(protocol::to_json(to_protocol(*point)));
+  else if (!point->hit) return fail(404, "No surface", "The model has no surface to measure at.", "coords");
+  else {
+    response = json_response(point_coverage(*point, layers, (*room)->model()));
+    response.headers = {{"Content-Type", "application/prs.coverage+json"}};
+  }
+  add_sequences(response, sequence, (*room)->durable_sequence());
+  return response;
+}
+
+Result<Response> positions(const RouteContext& context, const Request& request) {
+  auto asked = body_of<protocol::PositionsRequest>(request, context.options.max_positions_bytes);
+  if (!asked) return tl::unexpected(asked.error());
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  std::vector<Layer> layers = (*room)->layers();
+  if (asked->layers) {
+    std::vector<std::string> refs;
+    for (const auto& ref : *asked->layers) refs.push_back(protocol::to_ref(ref));
+    auto found = find_layers(**room, refs, "layers");
+    if (!found) return tl::unexpected(found.error());
+    layers = std::move(*found);
+  }
+  const std::vector<glm::dvec3> points(asked->points.begin(), asked->points.end());
+  const auto sequence = (*room)->sequence();
+  auto answers = (*room)->positions(points, slugs_of(layers));
+  if (!answers) return tl::unexpected(answers.error());
+  Response response;
+  if (request.header("accept").find("text/csv") != std::string_view::npos) {
+    response = text_response(points_csv(*answers, slugs_of(layers)), kCsvType);
+  } else {
+    nlohmann::json list = nlohmann::json::array();
+    for (const auto& point : *answers) list.push_back(protocol::to_json(to_protocol(point)));
+    const std::size_t total = list.size();
+    response = json_response({{"positions", std::move(list)}, {"total", total}});
+  }
+  add_sequences(response, sequence, (*room)->durable_sequence());
+  response.with("Vary", "Accept");
+  return response;
+}
+
+Result<Response> pick(const RouteContext& context, const Request& request) {
+  auto asked = body_of<protocol::PickRequest>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  const auto sequence = (*room)->sequence();
+  auto point = (*room)->pick(asked->camera, asked->x, asked->y, slugs_of((*room)->layers()));
+  if (!point) return tl::unexpected(point.error());
+  Response response = json_response(protocol::to_json(to_protocol(*point)));
+  add_sequences(response, sequence, (*room)->durable_sequence());
+  return response;
+}
+
+Result<Response> statistics(const RouteContext& context, const Request& request) {
+  if (auto include = request.query_or("include", {}); !include.empty())
+    return fail(422, "Not computed here", "pieces, perimeter and quantiles are not available; leave `include` out.", "include");
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  auto layer = (*room)->layer(request.param("layer"));
+  if (!layer) return tl::unexpected(layer.error());
+  const auto sequence = (*room)->sequence();
+  auto statistics = (*room)->statistics(layer->slug);
+  if (!statistics) return tl::unexpected(statistics.error());
+  Response response = json_response(to_json(*statistics));
+  add_sequences(response, sequence, (*room)->durable_sequence());
+  return response;
+}
+
+}  // namespace
+
+void add_query_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/position",
+              .handler = answering([&context](const Request& request) { return position(context, request); }),
+              .query = {"coords", "parameter-name", "f"}});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/positions",
+              .handler = answering([&context](const Request& request) { return positions(context, request); }),
+              .body = BodyKind::memory,
+              .max_body = context.options.max_positions_bytes});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/pick",
+              .handler = answering([&context](const Request& request) { return pick(context, request); }),
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/layers/{layer}/statistics",
+              .handler = answering([&context](const Request& request) { return statistics(context, request); }),
+              .query = {"include"}});
+}
+
+}  // namespace strata::net

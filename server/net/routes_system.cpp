@@ -1,0 +1,43 @@
+#include "net/docs_page.h"
+#include "net/routes.h"
+
+namespace strata::net {
+namespace {
+
+Response readiness(const RouteContext& context) {
+  nlohmann::json reasons = nlohmann::json::array();
+  if (!context.store.ready()) reasons.push_back("The database does not answer.");
+  if (context.renderer.info().version.empty()) reasons.push_back("There is no GL context.");
+  const bool ready = reasons.empty();
+  return json_response({{"ready", ready}, {"reasons", reasons}}, ready ? 200 : 503);
+}
+
+Result<Response> contract(const RouteContext& context) {
+  Response response;
+  response.with("Content-Type", "application/json").with("Cache-Control", "no-cache");
+  response.file = context.options.protocol_dir / "openapi.json";
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(response.file, error))
+    return fail(503, "Contract missing", "openapi.json is not part of this installation.");
+  return response;
+}
+
+}  // namespace
+
+void add_system_routes(Router& router, const RouteContext& context) {
+  auto open = [&](std::string pattern, std::function<Result<Response>(const Request&)> answer) {
+    router.add({.method = Method::get, .pattern = std::move(pattern), .handler = answering(std::move(answer)), .role = std::nullopt});
+  };
+  open("/livez", [](const Request&) -> Result<Response> { return text_response("ok\n", "text/plain; charset=utf-8"); });
+  open("/readyz", [&context](const Request&) -> Result<Response> { return readiness(context); });
+  open("/metrics", [&context](const Request&) -> Result<Response> {
+    return text_response(metrics_text(context.metrics, {context.rooms.open_rooms(), context.renderer.gpu_bytes_used(), context.workers.waiting()}),
+                         "text/plain; version=0.0.4; charset=utf-8");
+  });
+  open("/api/v1/openapi.json", [&context](const Request&) { return contract(context); });
+  for (const char* pattern : {"/docs", "/api/v1/docs"})
+    open(pattern, [&context](const Request&) { return docs_page(context.options.protocol_dir / "openapi.json"); });
+  open("/api/v1/docs.css", [](const Request&) -> Result<Response> { return text_response(std::string(docs_style()), "text/css; charset=utf-8"); });
+}
+
+}  // namespace strata::net

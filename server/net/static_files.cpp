@@ -1,0 +1,97 @@
+#include "net/static_files.h"
+
+#include <algorithm>
+#include <map>
+
+namespace strata::net {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_page(const Request& request) {
+  if (request.path == "/") return true;
+  const std::string& first = request.segments.front();
+  return first == "models" || first == "projects";
+}
+
+bool is_safe(const std::string& segment) {
+  return segment != "." && segment != ".." && segment.find_first_of("/\\") == std::string::npos && !segment.starts_with('.');
+}
+
+bool is_inside(const fs::path& file, const fs::path& folder) {
+  auto [end_of_folder, at] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
+  return end_of_folder == folder.end() && at != file.end();
+}
+
+// Size and time of change name a version well enough: the files are replaced as a whole by a build.
+std::string etag_of(const fs::path& file) {
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  const auto time = fs::last_write_time(file, error).time_since_epoch().count();
+  return "\"" + std::to_string(size) + "-" + std::to_string(time) + "\"";
+}
+
+}  // namespace
+
+std::string_view media_type(const fs::path& file) {
+  static const std::map<std::string, std::string_view, std::less<>> kTypes = {
+      {".html", "text/html; charset=utf-8"},
+      {".js", "text/javascript; charset=utf-8"},
+      {".mjs", "text/javascript; charset=utf-8"},
+      {".css", "text/css; charset=utf-8"},
+      {".json", "application/json"},
+      {".map", "application/json"},
+      {".webmanifest", "application/manifest+json"},
+      {".svg", "image/svg+xml"},
+      {".png", "image/png"},
+      {".jpg", "image/jpeg"},
+      {".jpeg", "image/jpeg"},
+      {".webp", "image/webp"},
+      {".ico", "image/x-icon"},
+      {".woff2", "font/woff2"},
+      {".wasm", "application/wasm"},
+      {".txt", "text/plain; charset=utf-8"}};
+  auto found = kTypes.find(to_lower(file.extension().string()));
+  return found == kTypes.end() ? "application/octet-stream" : found->second;
+}
+
+StaticFiles::StaticFiles(fs::path folder) {
+  std::error_code error;
+  folder_ = fs::weakly_canonical(folder, error);
+  if (error) folder_ = std::move(folder);
+  if (!folder_.has_filename()) folder_ = folder_.parent_path();
+}
+
+Response StaticFiles::serve(const Request& request) const {
+  const Problem missing{404, "Not found", "There is nothing at " + request.path + ".", {}};
+  fs::path file = folder_;
+  for (const auto& segment : request.segments) {
+    if (segment.empty()) continue;
+    if (!is_safe(segment)) return problem_response(missing);
+    file /= segment;
+  }
+  std::error_code error;
+  if (file == folder_ || !fs::is_regular_file(file, error)) {
+    if (!is_page(request)) return problem_response(missing);
+    file = folder_ / "index.html";
+    if (!fs::is_regular_file(file, error))
+      return problem_response({503, "Page not built", "The web page is not part of this installation; the API works. Build web-client and start again.", {}});
+  }
+  file = fs::canonical(file, error);
+  if (error || !is_inside(file, folder_)) return problem_response(missing);
+
+  const std::string etag = etag_of(file);
+  const bool unchanging = request.segments.size() > 1 && request.segments.front() == "assets";
+  Response response;
+  if (request.header("if-none-match") == etag) {
+    response = empty_response(304);
+  } else {
+    response.with("Content-Type", std::string(media_type(file)));
+    response.file = file;
+  }
+  response.with("ETag", etag);
+  response.with("Cache-Control", unchanging ? "public, max-age=31536000, immutable" : "no-cache");
+  return response;
+}
+
+}  // namespace strata::net

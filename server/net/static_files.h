@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "net/http_types.h"
+
+namespace strata::net {
+
+std::string_view media_type(const std::filesystem::path& file);
+
+// The page's files. Only files inside the folder are served, links included; `/`, `/models/…` and `/projects/…` are the page
+// itself, which finds its way by the address. Files under /assets/ carry a hash in their name and never change.
+class StaticFiles {
+ public:
+  explicit StaticFiles(std::filesystem::path folder);
+  Response serve(const Request& request) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace strata::net

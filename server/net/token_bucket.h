@@ -1,0 +1,30 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+
+namespace strata::net {
+
+// Lets `per_second` things pass on average and `burst` at once. One thread at a time.
+class TokenBucket {
+ public:
+  using Clock = std::chrono::steady_clock;
+  TokenBucket(double per_second, double burst, Clock::time_point now = Clock::now())
+      : per_second_(per_second), burst_(burst), tokens_(burst), filled_at_(now) {}
+
+  // False: too fast.
+  bool take(Clock::time_point now = Clock::now()) {
+    const double elapsed_s = std::chrono::duration<double>(now - filled_at_).count();
+    tokens_ = std::min(burst_, tokens_ + std::max(0.0, elapsed_s) * per_second_);
+    filled_at_ = std::max(filled_at_, now);
+    if (tokens_ < 1) return false;
+    tokens_ -= 1;
+    return true;
+  }
+
+ private:
+  double per_second_, burst_, tokens_;
+  Clock::time_point filled_at_;
+};
+
+}  // namespace strata::net

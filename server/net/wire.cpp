@@ -1,0 +1,251 @@
+#include "net/wire.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace strata::net {
+namespace {
+
+Result<std::uint32_t> value_bits(const Layer& layer, double value, bool erase) {
+  if (erase) return 0u;
+  auto bits = encode_value(layer.type, value);
+  if (!bits) {
+    Problem problem = bits.error();
+    problem.field = "value";
+    return tl::unexpected(std::move(problem));
+  }
+  return *bits;
+}
+
+// The brush members that EditStroke and StrokeBegin share.
+template <class Stroke>
+Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Model& model) {
+  auto bits = value_bits(layer, stroke.value, stroke.erase);
+  if (!bits) return tl::unexpected(bits.error());
+  StrokeBatch batch;
+  batch.camera = stroke.camera;
+  batch.shape = stroke.shape;
+  if (stroke.radius_px) batch.radius_px = *stroke.radius_px;
+  else if (stroke.radius_mm) batch.radius_world = in_model_units(*stroke.radius_mm, model.unit);
+  batch.through = stroke.through;
+  batch.erase = stroke.erase;
+  batch.value_bits = *bits;
+  return batch;
+}
+
+std::string number(double value) {
+  char text[40];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return error == std::errc() ? std::string(text, end) : "0";
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+nlohmann::json vec3(const glm::dvec3& v) { return nlohmann::json::array({v.x, v.y, v.z}); }
+
+}  // namespace
+
+double in_model_units(double millimetres, Unit unit) { return millimetres * 0.001 / metres_per(unit); }
+
+Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer, const Model& model, const Uuid& id,
+                                       const std::string& user) {
+  room::EditRequest request;
+  request.id = id;
+  request.user = user;
+  request.layer_id = layer.id;
+  request.record = protocol::to_json(edit);
+  if (const auto* stroke = std::get_if<protocol::EditStroke>(&edit)) {
+    auto batch = brush_of(*stroke, layer, model);
+    if (!batch) return tl::unexpected(batch.error());
+    batch->path.assign(stroke->path.begin(), stroke->path.end());
+    request.edit = room::StrokeEdit{std::move(*batch), id, 0};
+    return request;
+  }
+  const auto& fill = std::get<protocol::EditFill>(edit);
+  auto bits = value_bits(layer, fill.value, fill.erase);
+  if (!bits) return tl::unexpected(bits.error());
+  request.edit = room::FillEdit{fill.erase, *bits};
+  return request;
+}
+
+Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer, const Model& model) {
+  auto batch = brush_of(begin, layer, model);
+  if (!batch) return tl::unexpected(batch.error());
+  StrokeTool tool;
+  tool.layer_id = layer.id;
+  tool.batch = std::move(*batch);
+  tool.record = protocol::to_json(begin);
+  tool.record["op"] = "stroke";
+  for (const char* member : {"id", "layer", "stroke"}) tool.record.erase(member);
+  return tool;
+}
+
+room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n, const std::string& user) {
+  room::EditRequest request;
+  request.id = id;
+  request.user = user;
+  request.layer_id = batch.tool.layer_id;
+  request.record = std::move(batch.tool.record);
+  request.record["n"] = n;
+  nlohmann::json path = nlohmann::json::array();
+  for (const auto& point : batch.path) path.push_back({point.x, point.y});
+  request.record["path"] = std::move(path);
+  batch.tool.batch.path = std::move(batch.path);
+  request.edit = room::StrokeEdit{std::move(batch.tool.batch), stroke, n};
+  return request;
+}
+
+std::optional<glm::dvec2> end_of_path(const nlohmann::json& record) {
+  if (!record.is_object()) return std::nullopt;
+  const auto path = record.find("path");
+  if (path == record.end() || !path->is_array() || path->empty()) return std::nullopt;
+  const auto& point = path->back();
+  if (!point.is_array() || point.size() != 2 || !point[0].is_number() || !point[1].is_number()) return std::nullopt;
+  return glm::dvec2(point[0].get<double>(), point[1].get<double>());
+}
+
+protocol::SurfacePoint to_protocol(const query::SurfacePoint& point) {
+  protocol::SurfacePoint out;
+  out.hit = point.hit;
+  if (!point.hit) return out;
+  out.position = point.position;
+  out.normal = glm::dvec3(point.normal);
+  out.uv = glm::dvec2(point.uv);
+  out.distance = std::max(0.0, point.distance);
+  out.values.emplace();
+  for (const auto& value : point.values) {
+    protocol::SurfaceValue& entry = (*out.values)[value.layer];
+    entry.valid = value.valid;
+    // A float layer may hold what JSON cannot carry only if a raster brought it in; such a texel reads as valid, unnamed.
+    if (value.valid && std::isfinite(value.value)) entry.value = value.value;
+  }
+  return out;
+}
+
+protocol::Picked to_picked(const query::SurfacePoint& point, const std::optional<std::string>& id) {
+  protocol::SurfacePoint surface = to_protocol(point);
+  protocol::Picked picked;
+  picked.id = id;
+  picked.hit = surface.hit;
+  picked.position = surface.position;
+  picked.normal = surface.normal;
+  picked.uv = surface.uv;
+  picked.distance = surface.distance;
+  picked.values = std::move(surface.values);
+  return picked;
+}
+
+nlohmann::json to_json(const query::Statistics& statistics) {
+  nlohmann::json json{{"texels", statistics.texels}, {"area_m2", statistics.area_m2}};
+  if (statistics.texels > 0) {
+    json["min"] = statistics.min;
+    json["max"] = statistics.max;
+    json["mean"] = statistics.mean;
+    json["std"] = statistics.std;
+  }
+  nlohmann::json bins = nlohmann::json::array();
+  for (const auto& bin : statistics.histogram) {
+    nlohmann::json item{{"from", bin.from}, {"to", bin.to}, {"area_m2", bin.area_m2}};
+    if constexpr (requires { bin.texels; }) item["texels"] = bin.texels;
+    bins.push_back(std::move(item));
+  }
+  json["histogram"] = std::move(bins);
+  nlohmann::json keys = nlohmann::json::array();
+  for (const auto& [key, entry] : statistics.keys)
+    keys.push_back({{"key", key},
+                    {"texels", entry.texels},
+                    {"area_m2", entry.area_m2},
+                    {"centroid", vec3(entry.centroid)},
+                    {"bounds", {{"min", vec3(entry.bounds_min)}, {"max", vec3(entry.bounds_max)}}}});
+  json["keys"] = std::move(keys);
+  return json;
+}
+
+nlohmann::json to_json(const jobs::JobStatus& job) {
+  static constexpr const char* kStates[] = {"queued", "running", "done", "failed", "cancelled"};
+  nlohmann::json json{
+      {"id", job.id}, {"state", kStates[static_cast<int>(job.state)]}, {"progress", job.progress}, {"message", job.message}};
+  if (job.problem) json["problem"] = protocol::problem_body(*job.problem);
+  if (job.model) json["model"] = *job.model;
+  return json;
+}
+
+std::string utc_text(std::chrono::system_clock::time_point time) {
+  const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(time.time_since_epoch()).count();
+  const std::time_t seconds = static_cast<std::time_t>(milliseconds >= 0 ? milliseconds / 1000 : (milliseconds - 999) / 1000);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  char text[40];
+  const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
+  std::snprintf(text + length, sizeof text - length, ".%03dZ", static_cast<int>(milliseconds - std::int64_t{seconds} * 1000));
+  return text;
+}
+
+nlohmann::json to_json(const store::JournalRow& row) {
+  nlohmann::json json{{"sequence", row.sequence}, {"id", to_string(row.id)}, {"stroke", to_string(row.stroke)},
+                      {"user", row.user},         {"op", row.op},            {"time", utc_text(row.time)},
+                      {"in_force", row.in_force}};
+  if (row.answer.is_object())
+    for (const char* member : {"texels_changed", "area_m2"})
+      if (auto found = row.answer.find(member); found != row.answer.end()) json[member] = *found;
+  return json;
+}
+
+std::string points_csv(const std::vector<query::SurfacePoint>& points, const std::vector<std::string>& layers) {
+  std::string text = "hit,x,y,z,normal_x,normal_y,normal_z,distance,u,v";
+  for (const auto& layer : layers) text += "," + csv_field(layer);
+  text += "\r\n";
+  for (const auto& point : points) {
+    if (!point.hit) {
+      text += "false" + std::string(9 + layers.size(), ',') + "\r\n";
+      continue;
+    }
+    text += "true";
+    for (double value : {point.position.x, point.position.y, point.position.z, double(point.normal.x), double(point.normal.y),
+                         double(point.normal.z), point.distance, double(point.uv.x), double(point.uv.y)})
+      text += "," + number(value);
+    for (const auto& layer : layers) {
+      text += ",";
+      for (const auto& value : point.values)
+        if (value.layer == layer && value.valid) text += number(value.value);
+    }
+    text += "\r\n";
+  }
+  return text;
+}
+
+nlohmann::json point_coverage(const query::SurfacePoint& point, const std::vector<Layer>& layers, const Model& model) {
+  nlohmann::json parameters = nlohmann::json::object(), ranges = nlohmann::json::object();
+  for (const auto& layer : layers) {
+    nlohmann::json parameter{{"type", "Parameter"}, {"observedProperty", {{"label", {{"en", layer.name}}}}}};
+    if (!layer.description.empty()) parameter["description"] = {{"en", layer.description}};
+    if (!layer.unit.empty()) parameter["unit"] = {{"symbol", layer.unit}};
+    parameters[layer.slug] = std::move(parameter);
+    nlohmann::json value;
+    for (const auto& entry : point.values)
+      if (entry.layer == layer.slug && entry.valid) value = entry.value;
+    ranges[layer.slug] = {{"type", "NdArray"}, {"dataType", is_float(layer.type) ? "float" : "integer"}, {"values", {value}}};
+  }
+  nlohmann::json system{{"type", "GeographicCRS"}};
+  if (model.crs.starts_with("EPSG:")) system["id"] = "http://www.opengis.net/def/crs/EPSG/0/" + model.crs.substr(5);
+  auto axis = [&](double value) { return nlohmann::json{{"values", {value}}}; };
+  return {{"type", "Coverage"},
+          {"domain",
+           {{"type", "Domain"},
+            {"domainType", "Point"},
+            {"axes", {{"x", axis(point.position.x)}, {"y", axis(point.position.y)}, {"z", axis(point.position.z)}}},
+            {"referencing", {{{"coordinates", {"x", "y", "z"}}, {"system", system}}}}}},
+          {"parameters", parameters},
+          {"ranges", ranges}};
+}
+
+}  // namespace strata::net

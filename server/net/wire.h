@@ -1,0 +1,43 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/layer.h"
+#include "core/model.h"
+#include "jobs/job_queue.h"
+#include "net/stroke_book.h"
+#include "protocol/parse.h"
+#include "query/statistics.h"
+#include "query/values.h"
+#include "room/edit.h"
+#include "store/journal.h"
+
+// Between the protocol's values and the domain's. Values outside a layer's type are refused, not clamped.
+namespace strata::net {
+
+// Millimetres on the object in the model's unit.
+double in_model_units(double millimetres, Unit unit);
+
+// `edit` for the layer; its `record` is the edit as asked.
+Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer, const Model& model, const Uuid& id,
+                                       const std::string& user);
+Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer, const Model& model);
+room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n, const std::string& user);
+
+// Where the path of a stroke's batch ended, from its journal record; nothing when the record is of another kind.
+std::optional<glm::dvec2> end_of_path(const nlohmann::json& record);
+
+protocol::SurfacePoint to_protocol(const query::SurfacePoint& point);
+protocol::Picked to_picked(const query::SurfacePoint& point, const std::optional<std::string>& id);
+nlohmann::json to_json(const query::Statistics& statistics);
+nlohmann::json to_json(const jobs::JobStatus& job);
+nlohmann::json to_json(const store::JournalRow& row);
+std::string utc_text(std::chrono::system_clock::time_point time);  // RFC 3339 with milliseconds
+
+// Answers of many points in the formats of GET …/position and POST …/positions. `layers`: slugs, one column each.
+std::string points_csv(const std::vector<query::SurfacePoint>& points, const std::vector<std::string>& layers);
+nlohmann::json point_coverage(const query::SurfacePoint& point, const std::vector<Layer>& layers, const Model& model);
+
+}  // namespace strata::net

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "core/bounded_queue.h"
+
+namespace strata::net {
+
+// Threads for what may block (database, queries, encoding of pictures), so that the sockets' threads never do.
+class WorkerPool {
+ public:
+  WorkerPool(int threads, std::size_t max_waiting) : queue_(max_waiting) {
+    for (int i = 0; i < threads; ++i)
+      threads_.emplace_back([this] {
+        while (auto work = queue_.pop()) (*work)();
+      });
+  }
+  ~WorkerPool() { stop(); }
+
+  // False when too much waits or the pool has stopped: the caller answers 503.
+  bool post(std::function<void()> work) { return queue_.push(std::move(work)); }
+  std::size_t waiting() const { return queue_.size(); }
+
+  // Runs what waits, then joins.
+  void stop() {
+    queue_.close();
+    for (auto& thread : threads_)
+      if (thread.joinable()) thread.join();
+  }
+
+ private:
+  BoundedQueue<std::function<void()>> queue_;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace strata::net

@@ -1,0 +1,379 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <thread>
+
+#include "core/uuid.h"
+#include "net/digest.h"
+#include "net/docs_page.h"
+#include "net/http_types.h"
+#include "net/metrics.h"
+#include "net/origin.h"
+#include "net/point_text.h"
+#include "net/static_files.h"
+#include "net/token_bucket.h"
+#include "net/upload.h"
+#include "net/worker_pool.h"
+
+namespace strata::net {
+namespace {
+
+namespace fs = std::filesystem;
+
+Request parsed(const std::string& target) {
+  Request request;
+  EXPECT_TRUE(parse_target(target, request)) << target;
+  return request;
+}
+
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / ("strata-net-" + std::to_string(::getpid()) + "-" + to_string(random_uuid()))) {
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  fs::path write(const std::string& name, const std::string& text) const {
+    fs::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// --- targets
+
+TEST(Target, path_and_query_are_decoded) {
+  const Request request = parsed("/models/muro%203?coords=POINT+Z(1%202%203)&f=csv");
+  EXPECT_EQ(request.path, "/models/muro 3");
+  EXPECT_EQ(request.segments.back(), "muro 3");
+  EXPECT_EQ(request.query.at("coords"), "POINT Z(1 2 3)");
+  EXPECT_EQ(request.query.at("f"), "csv");
+}
+
+TEST(Target, what_is_not_an_address_is_refused) {
+  for (const char* target : {"", "models", "/a%2", "/a%zz", "/a%00", "/a?b=%", "/a?b=%00", "*"}) {
+    Request request;
+    const auto result = parse_target(target, request);
+    ASSERT_FALSE(result) << target;
+    EXPECT_EQ(result.error().status, 400);
+  }
+}
+
+TEST(Target, a_query_parameter_given_twice_is_refused) {
+  Request request;
+  const auto result = parse_target("/a?limit=1&limit=2", request);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().field, "limit");
+}
+
+TEST(Page, limits_out_of_range_are_refused_and_links_lead_on) {
+  EXPECT_FALSE(page_of(parsed("/a?limit=0")));
+  EXPECT_FALSE(page_of(parsed("/a?limit=1001")));
+  EXPECT_FALSE(page_of(parsed("/a?offset=-1")));
+  EXPECT_FALSE(page_of(parsed("/a?limit=ten")));
+  const Request request = parsed("/a?limit=10&offset=20&project=x");
+  const auto page = page_of(request);
+  ASSERT_TRUE(page);
+  Response response;
+  add_page_links(response, request, *page, 35);
+  EXPECT_EQ(response.header("Link"), "</a?project=x&limit=10&offset=30>; rel=\"next\", </a?project=x&limit=10&offset=10>; rel=\"prev\"");
+  Response last;
+  add_page_links(last, request, *page, 30);
+  EXPECT_EQ(last.header("Link"), "</a?project=x&limit=10&offset=10>; rel=\"prev\"");
+}
+
+// --- answers
+
+TEST(Respond, only_the_first_answer_counts) {
+  std::vector<int> answers;
+  {
+    const Respond respond([&](Response response) { answers.push_back(response.status); });
+    respond(empty_response(204));
+    respond(Problem{500, "Too late", "", {}});
+  }
+  EXPECT_EQ(answers, std::vector<int>{204});
+}
+
+TEST(Respond, a_dropped_request_still_gets_an_answer) {
+  int status = 0;
+  { const Respond respond([&](Response response) { status = response.status; }); }
+  EXPECT_EQ(status, 503);
+}
+
+TEST(Problems, carry_what_rfc_9457_names_and_the_field) {
+  const Response response = problem_response({422, "Not a point", "Write it so.", "coords"});
+  EXPECT_EQ(response.header("Content-Type"), "application/problem+json");
+  const auto json = nlohmann::json::parse(response.body);
+  EXPECT_EQ(json["status"], 422);
+  EXPECT_EQ(json["title"], "Not a point");
+  EXPECT_EQ(json["field"], "coords");
+}
+
+// --- cookies and origins
+
+TEST(Cookie, is_found_among_others) {
+  EXPECT_EQ(cookie_value("a=1; strata_session=abc; b=2", "strata_session"), "abc");
+  EXPECT_EQ(cookie_value("strata_session=\"abc\"", "strata_session"), "abc");
+  EXPECT_EQ(cookie_value("xstrata_session=no; strata_session_=no", "strata_session"), "");
+  EXPECT_EQ(cookie_value("strata_session", "strata_session"), "");
+  EXPECT_EQ(cookie_value("", "strata_session"), "");
+}
+
+Request from(const std::string& origin, bool by_cookie) {
+  Request request;
+  request.headers = {{"host", "strata.local:8080"}};
+  if (!origin.empty()) request.headers.emplace_back("origin", origin);
+  request.principal = Principal{"owner", Role::owner, by_cookie};
+  return request;
+}
+
+TEST(Origin, a_change_signed_by_cookie_comes_from_our_own_pages) {
+  EXPECT_TRUE(check_same_origin(from("http://strata.local:8080", true), {}));
+  EXPECT_TRUE(check_same_origin(from("https://STRATA.local:8080", true), {}));
+  EXPECT_FALSE(check_same_origin(from("http://strata.local", true), {}));
+  EXPECT_FALSE(check_same_origin(from("http://evil.example", true), {}));
+  EXPECT_FALSE(check_same_origin(from("http://strata.local:8080.evil.example", true), {}));
+  EXPECT_FALSE(check_same_origin(from("null", true), {}));
+  EXPECT_TRUE(check_same_origin(from("https://museum.example", true), {"https://museum.example/"}));
+}
+
+TEST(Origin, without_an_origin_the_browser_must_say_same_origin) {
+  Request request = from("", true);
+  EXPECT_EQ(check_same_origin(request, {}).error().status, 403);
+  request.headers.emplace_back("sec-fetch-site", "same-origin");
+  EXPECT_TRUE(check_same_origin(request, {}));
+  request.headers.back().second = "cross-site";
+  EXPECT_FALSE(check_same_origin(request, {}));
+}
+
+TEST(Origin, bearer_tokens_need_none) { EXPECT_TRUE(check_same_origin(from("", false), {})); }
+
+TEST(Origin, signing_in_from_a_foreign_page_is_refused) {
+  Request request = from("http://evil.example", false);
+  request.principal.reset();
+  EXPECT_FALSE(check_same_origin(request, {}));
+  EXPECT_TRUE(check_same_origin(Request{}, {}));
+}
+
+TEST(Origin, an_upgrade_by_cookie_needs_an_origin_and_by_token_does_not) {
+  EXPECT_FALSE(check_upgrade_origin(from("", true), {}));
+  EXPECT_TRUE(check_upgrade_origin(from("", false), {}));
+  EXPECT_FALSE(check_upgrade_origin(from("http://evil.example", false), {}));
+  EXPECT_TRUE(check_upgrade_origin(from("http://strata.local:8080", true), {}));
+}
+
+// --- points
+
+TEST(Point, is_read_in_every_spelling) {
+  for (const char* text : {"POINT Z(1 -2.5 3e2)", "POINT Z (1 -2.5 3e2)", "point(1 -2.5 3e2)", "PointZ(1  -2.5\t3e2)", " POINT Z( +1 -2.5 3e2 ) "}) {
+    const auto point = parse_point(text);
+    ASSERT_TRUE(point) << text;
+    EXPECT_EQ(*point, glm::dvec3(1, -2.5, 300)) << text;
+  }
+}
+
+TEST(Point, what_is_no_point_is_refused_by_field) {
+  for (const char* text : {"", "POINT", "POINT Z()", "POINT Z(1 2)", "POINT Z(1 2 3 4)", "POINT Z(1,2,3)", "POINT Z(nan 1 2)", "POINT Z(1 2 inf)",
+                           "POINT Z(1 2 1e999)", "POINT Z(1 2 3", "POINT Z(1 2 3) x", "LINE(1 2 3)", "POINT Z(1 2.3.4)", "POINT M(1 2 3)"}) {
+    const auto point = parse_point(text);
+    ASSERT_FALSE(point) << text;
+    EXPECT_EQ(point.error().field, "coords");
+  }
+}
+
+// --- speed
+
+TEST(TokenBucket, lets_a_burst_pass_and_then_the_rate) {
+  const auto start = TokenBucket::Clock::now();
+  TokenBucket bucket(10, 3, start);
+  EXPECT_TRUE(bucket.take(start));
+  EXPECT_TRUE(bucket.take(start));
+  EXPECT_TRUE(bucket.take(start));
+  EXPECT_FALSE(bucket.take(start));
+  EXPECT_TRUE(bucket.take(start + std::chrono::milliseconds(101)));
+  EXPECT_FALSE(bucket.take(start + std::chrono::milliseconds(102)));
+  const auto later = start + std::chrono::hours(1);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(bucket.take(later));
+  EXPECT_FALSE(bucket.take(later)) << "an idle hour earns one burst, not 36 000";
+}
+
+TEST(TokenBucket, a_clock_that_steps_back_earns_nothing) {
+  const auto start = TokenBucket::Clock::now();
+  TokenBucket bucket(10, 1, start);
+  EXPECT_TRUE(bucket.take(start));
+  EXPECT_FALSE(bucket.take(start - std::chrono::hours(1)));
+  EXPECT_FALSE(bucket.take(start));
+}
+
+TEST(WorkerPool, refuses_when_too_much_waits_and_ends_what_it_took) {
+  std::promise<void> gate;
+  auto open = gate.get_future().share();
+  std::promise<void> started;
+  std::atomic<int> done{0};
+  WorkerPool pool(1, 1);
+  ASSERT_TRUE(pool.post([&] {
+    started.set_value();
+    open.wait();
+    ++done;
+  }));
+  started.get_future().wait();
+  EXPECT_TRUE(pool.post([&] { ++done; }));
+  EXPECT_FALSE(pool.post([&] { ++done; }));
+  gate.set_value();
+  pool.stop();
+  EXPECT_EQ(done, 2);
+  EXPECT_FALSE(pool.post([] {}));
+}
+
+// --- ids and secrets
+
+TEST(Digest, the_same_key_makes_the_same_valid_uuid) {
+  const Uuid a = uuid_of_text("key"), b = uuid_of_text("key"), c = uuid_of_text("other");
+  EXPECT_EQ(a, b);
+  EXPECT_NE(a, c);
+  EXPECT_EQ(parse_uuid(to_string(a)), a);
+  EXPECT_EQ(sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_TRUE(equal_in_constant_time("abc", "abc"));
+  EXPECT_FALSE(equal_in_constant_time("abc", "abd"));
+  EXPECT_FALSE(equal_in_constant_time("abc", "abcd"));
+}
+
+// --- the page's files
+
+TEST(StaticFiles, serves_files_with_type_and_version) {
+  const Folder folder;
+  folder.write("index.html", "<p>page</p>");
+  folder.write("assets/app-1a2b.js", "run()");
+  const StaticFiles files(folder.path());
+  const Response script = files.serve(parsed("/assets/app-1a2b.js"));
+  EXPECT_EQ(script.header("Content-Type"), "text/javascript; charset=utf-8");
+  EXPECT_NE(script.header("Cache-Control").find("immutable"), std::string_view::npos);
+  EXPECT_EQ(text_of(script.file), "run()");
+
+  Request again = parsed("/assets/app-1a2b.js");
+  again.headers = {{"if-none-match", std::string(script.header("ETag"))}};
+  EXPECT_EQ(files.serve(again).status, 304);
+}
+
+TEST(StaticFiles, addresses_of_the_page_are_the_page) {
+  const Folder folder;
+  folder.write("index.html", "<p>page</p>");
+  const StaticFiles files(folder.path());
+  for (const char* target : {"/", "/models/pot", "/projects/default", "/models/pot/layers/cracks"})
+    EXPECT_EQ(text_of(files.serve(parsed(target)).file), "<p>page</p>") << target;
+  EXPECT_EQ(files.serve(parsed("/nothing.js")).status, 404);
+}
+
+TEST(StaticFiles, nothing_outside_the_folder_is_served) {
+  const Folder outside;
+  const auto secret = outside.write("secret.txt", "secret");
+  const Folder folder;
+  folder.write("index.html", "<p>page</p>");
+  folder.write(".env", "secret");
+  fs::create_symlink(secret, folder.path() / "link.txt");
+  const StaticFiles files(folder.path());
+  for (const std::string& target : {std::string("/../") + outside.path().filename().string() + "/secret.txt", std::string("/%2e%2e/secret.txt"),
+                                   std::string("/..%2f..%2fetc%2fpasswd"), std::string("/link.txt"), std::string("/.env"), std::string("/a\\..\\b")})
+    EXPECT_EQ(files.serve(parsed(target)).status, 404) << target;
+}
+
+TEST(StaticFiles, a_missing_page_says_so) {
+  const Folder folder;
+  EXPECT_EQ(StaticFiles(folder.path()).serve(parsed("/")).status, 503);
+}
+
+// --- uploads
+
+Request upload_of(const fs::path& file, const std::string& type) {
+  Request request;
+  request.body_file = file;
+  if (!type.empty()) request.headers = {{"content-type", type}};
+  return request;
+}
+
+TEST(Upload, a_raw_body_is_the_file_itself) {
+  const Folder folder;
+  const auto body = folder.write("1.body", "ply\n");
+  const auto upload = take_upload(upload_of(body, "application/octet-stream"), folder.path());
+  ASSERT_TRUE(upload);
+  EXPECT_EQ(upload->file, body);
+}
+
+TEST(Upload, the_one_file_of_a_form_is_cut_out_bit_for_bit) {
+  const Folder folder;
+  const std::string content = std::string("ply\r\n--not-the-boundary\r\n\0binary", 32);
+  const auto body = folder.write("1.body",
+                                 "--X\r\nContent-Disposition: form-data; name=\"note\"\r\n\r\nhello\r\n"
+                                 "--X\r\nContent-Disposition: form-data; name=\"file\"; filename=\"C:\\scans\\pot.ply\"\r\n\r\n" +
+                                     content + "\r\n--X--\r\n");
+  const auto upload = take_upload(upload_of(body, "multipart/form-data; boundary=X"), folder.path());
+  ASSERT_TRUE(upload) << upload.error().detail;
+  EXPECT_EQ(upload->filename, "pot.ply");
+  EXPECT_EQ(text_of(upload->file), content);
+}
+
+TEST(Upload, archives_and_several_files_are_refused_with_what_is_taken) {
+  const Folder folder;
+  const auto zip = take_upload(upload_of(folder.write("1.body", std::string("PK\x03\x04 rest")), ""), folder.path());
+  ASSERT_FALSE(zip);
+  EXPECT_EQ(zip.error().status, 415);
+  EXPECT_NE(zip.error().detail.find("PLY"), std::string::npos);
+  const std::string part = "--X\r\nContent-Disposition: form-data; name=\"f\"; filename=\"a.obj\"\r\n\r\nv\r\n";
+  const auto two = take_upload(upload_of(folder.write("2.body", part + part + "--X--\r\n"), "multipart/form-data; boundary=X"), folder.path());
+  ASSERT_FALSE(two);
+  EXPECT_EQ(two.error().status, 415);
+}
+
+TEST(Upload, broken_forms_are_refused) {
+  const Folder folder;
+  for (const char* body : {"--X", "--X\r\n", "--X\r\nno end of headers", "--X\r\nA: b\r\n\r\nno boundary", "X--", "--Y\r\n\r\n\r\n--Y--"}) {
+    const auto upload = take_upload(upload_of(folder.write("1.body", body), "multipart/form-data; boundary=X"), folder.path());
+    ASSERT_FALSE(upload) << body;
+    EXPECT_EQ(upload.error().status, 400) << body;
+  }
+  EXPECT_FALSE(take_upload(upload_of(folder.write("2.body", ""), ""), folder.path()));
+}
+
+TEST(Upload, file_names_lose_their_folders) {
+  EXPECT_EQ(base_filename("../../etc/pot.ply"), "pot.ply");
+  EXPECT_EQ(base_filename("C:\\scans\\pot.ply"), "pot.ply");
+  EXPECT_EQ(base_filename(".."), "");
+  EXPECT_EQ(base_filename("a\r\nb.ply"), "ab.ply");
+}
+
+// --- pages and figures
+
+TEST(Docs, text_of_the_contract_cannot_become_markup) {
+  const nlohmann::json contract = {{"info", {{"title", "<script>alert(1)</script>"}, {"version", "1"}}},
+                                   {"paths", {{"/a", {{"get", {{"summary", "a & b"}, {"responses", {{"200", {{"description", "ok"}}}}}}}}}}}};
+  const std::string page = docs_html(contract);
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_NE(page.find("a &amp; b"), std::string::npos);
+}
+
+TEST(Metrics, text_names_every_counter_once) {
+  Metrics metrics;
+  metrics.count_request(204);
+  metrics.count_request(404);
+  metrics.count_request(404);
+  metrics.frames_sent = 7;
+  const std::string text = metrics_text(metrics, {2, 1024, 0});
+  EXPECT_NE(text.find("strata_http_requests_total{status=\"4xx\"} 2\n"), std::string::npos);
+  EXPECT_NE(text.find("strata_frames_sent_total 7\n"), std::string::npos);
+  EXPECT_NE(text.find("strata_open_rooms 2\n"), std::string::npos);
+  EXPECT_NE(text.find("strata_gpu_bytes 1024\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace strata::net

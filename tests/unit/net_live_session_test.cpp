@@ -1,0 +1,372 @@
+#include "net/live_session.h"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+
+namespace strata::net {
+namespace {
+
+using nlohmann::json;
+
+class FakeSocket final : public LiveSocket {
+ public:
+  void send_text(std::string text) override { sent.push_back(json::parse(text)); }
+  void send_frame(stream::FrameBytes frame) override { frames.push_back(std::move(frame)); }
+  void close(int code, std::string) override { close_code = code; }
+  void run_after(std::chrono::milliseconds, std::function<void()> work) override { later.push_back(std::move(work)); }
+
+  std::vector<json> of(const std::string& op) const {
+    std::vector<json> found;
+    for (const auto& message : sent)
+      if (message["op"] == op) found.push_back(message);
+    return found;
+  }
+
+  std::vector<json> sent;
+  std::vector<stream::FrameBytes> frames;
+  std::deque<std::function<void()>> later;
+  int close_code = 0;
+};
+
+class FakeMember final : public room::Member {
+ public:
+  explicit FakeMember(Uuid session) : session_(session) {}
+  Uuid session() const override { return session_; }
+  void camera(std::uint32_t view_id, std::uint64_t seq, const Camera&, bool) override { cameras.emplace_back(view_id, seq); }
+  Result<void> layers(std::uint32_t, std::vector<room::LayerView>) override { return {}; }
+  void ack(std::uint32_t, std::uint64_t) override {}
+  void pointer(std::optional<glm::dvec3>) override {}
+  std::vector<std::pair<std::uint32_t, std::uint64_t>> cameras;
+
+ private:
+  Uuid session_;
+};
+
+// Holds every edit until the test answers it.
+class FakeRoom final : public room::Room {
+ public:
+  FakeRoom() {
+    layer_.id = 7;
+    layer_.model_id = 1;
+    layer_.name = layer_.slug = "cracks";
+    layer_.palette = default_palette(ValueType::u8, false);
+  }
+  Model model() const override {
+    Model model;
+    model.id = 1;
+    model.project_id = 1;
+    model.name = model.slug = "pot";
+    return model;
+  }
+  std::vector<Layer> layers() const override { return {layer_}; }
+  Result<Layer> layer(const std::string& ref) const override {
+    if (ref == "cracks" || ref == "7") return layer_;
+    return fail(404, "No such layer", "There is no layer '" + ref + "'.");
+  }
+  std::int64_t sequence() const override { return 0; }
+  std::int64_t durable_sequence() const override { return 0; }
+  void edit(room::EditRequest request, Applied applied, Saved saved) override {
+    edits.push_back({std::move(request), std::move(applied), std::move(saved)});
+  }
+  std::unique_ptr<room::Member> join(std::string, room::Listener* listener, stream::Viewer::Send send) override {
+    listeners.push_back(listener);
+    sends.push_back(std::move(send));
+    return std::make_unique<FakeMember>(random_uuid());
+  }
+  std::vector<room::Presence> presence() const override { return {{random_uuid(), "anna", "#112233", glm::dvec3(1, 2, 3)}}; }
+  std::vector<OpenStroke> open_strokes() const override { return {}; }
+  Result<Layer> create_layer(Layer layer) override { return layer; }
+  Result<Layer> update_layer(Layer layer) override { return layer; }
+  Result<void> delete_layer(std::int64_t) override { return {}; }
+  Result<Model> update_model(Model model) override { return model; }
+  Result<query::SurfacePoint> position(const glm::dvec3&, const std::vector<std::string>&) override { return query::SurfacePoint{}; }
+  Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>&, const std::vector<std::string>&) override {
+    return std::vector<query::SurfacePoint>{};
+  }
+  Result<query::SurfacePoint> pick(const Camera&, double, double, const std::vector<std::string>&) override { return query::SurfacePoint{}; }
+  Result<query::Statistics> statistics(const std::string&) override { return query::Statistics{}; }
+  Result<TileMirror::Snapshot> tiles(const std::string&, std::optional<std::int64_t>) override { return TileMirror::Snapshot{}; }
+  Result<render::Frame> picture(const Camera&, std::optional<std::vector<std::string>>, std::optional<std::int64_t>) override {
+    return render::Frame{};
+  }
+
+  struct Held {
+    room::EditRequest request;
+    Applied applied;
+    Saved saved;
+  };
+  std::vector<Held> edits;
+  std::vector<room::Listener*> listeners;
+  std::vector<stream::Viewer::Send> sends;
+
+ private:
+  Layer layer_;
+};
+
+json camera_json() {
+  const json identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  return {{"view", identity}, {"projection", identity}, {"width", 640}, {"height", 480}};
+}
+
+struct Live : testing::Test {
+  Live() {
+    shared = std::make_shared<LiveShared>();
+    shared->metrics = std::make_shared<Metrics>();
+    shared->strokes = std::make_shared<StrokeBook>();
+    shared->queries = std::make_shared<WorkerPool>(1, 16);
+    room = std::make_shared<FakeRoom>();
+    connect();
+  }
+  void connect(Role role = Role::owner) {
+    if (session) session->on_closed();
+    socket = std::make_shared<FakeSocket>();
+    session = std::make_shared<LiveSession>(shared, room, "default", Principal{"anna", role, true}, socket);
+  }
+  void say(const json& message) { EXPECT_FALSE(session->on_text(message.dump())); }
+  void hello() { say({{"op", "hello"}}); }
+  json begin(const std::string& id) {
+    return {{"op", "stroke.begin"}, {"id", to_string(random_uuid())}, {"stroke", id},              {"layer", "cracks"},
+            {"value", 3},           {"camera", camera_json()},        {"radius_px", 8}};
+  }
+  json extend(const std::string& id, int n, const json& path) {
+    return {{"op", "stroke.extend"}, {"id", to_string(random_uuid())}, {"stroke", id}, {"n", n}, {"path", path}};
+  }
+  std::shared_ptr<LiveShared> shared;
+  std::shared_ptr<FakeRoom> room;
+  std::shared_ptr<FakeSocket> socket;
+  std::shared_ptr<LiveSession> session;
+  const std::string stroke = to_string(random_uuid());
+};
+
+TEST_F(Live, every_message_it_sends_keeps_the_contract) {
+  hello();
+  say(begin(stroke));
+  say(extend(stroke, 0, {{1, 1}}));
+  room->edits.at(0).applied({5, 10, 0.5, false});
+  room->edits.at(0).saved(room::EditAnswer{5, 10, 0.5, false});
+  say({{"op", "nonsense"}});
+  session->layer_changed(room::Listener::LayerChange::created, room->layers()[0]);
+  session->layer_changed(room::Listener::LayerChange::deleted, room->layers()[0]);
+  while (!socket->later.empty()) {
+    auto work = std::move(socket->later.front());
+    socket->later.pop_front();
+    work();
+  }
+  EXPECT_EQ(socket->of("presence").size(), 1u);
+  for (const auto& message : socket->sent) {
+    if (message["op"] == "welcome") continue;  // its model is made up and has no bounds worth checking
+    const auto parsed = protocol::parse_server_message(message.dump());
+    EXPECT_TRUE(parsed) << message.dump() << "\n" << (parsed ? "" : parsed.error().detail);
+  }
+}
+
+TEST_F(Live, hello_comes_first_and_once) {
+  say({{"op", "undo"}, {"id", to_string(random_uuid())}, {"layer", "cracks"}});
+  ASSERT_EQ(socket->of("problem").size(), 1u);
+  EXPECT_EQ(socket->of("problem")[0]["status"], 409);
+  hello();
+  ASSERT_EQ(socket->of("welcome").size(), 1u);
+  const json welcome = socket->of("welcome")[0];
+  EXPECT_EQ(welcome["role"], "owner");
+  EXPECT_EQ(welcome["layers"][0]["slug"], "cracks");
+  EXPECT_EQ(welcome["model"]["project"], "default");
+  hello();
+  EXPECT_EQ(socket->of("welcome").size(), 1u);
+  EXPECT_EQ(socket->of("problem").size(), 2u);
+}
+
+TEST_F(Live, a_stroke_is_applied_then_saved_under_its_number) {
+  hello();
+  say(begin(stroke));
+  say(extend(stroke, 0, {{1, 1}, {2, 2}}));
+  say(extend(stroke, 1, {{3, 3}}));
+  ASSERT_EQ(room->edits.size(), 2u);
+  const auto& second = std::get<room::StrokeEdit>(room->edits[1].request.edit);
+  EXPECT_EQ(second.n, 1);
+  EXPECT_EQ(second.batch.path, (std::vector<glm::dvec2>{{2, 2}, {3, 3}}));
+  EXPECT_TRUE(socket->of("applied").empty());
+  room->edits[0].applied({1, 4, 0.1, false});
+  ASSERT_EQ(socket->of("applied").size(), 1u);
+  EXPECT_EQ(socket->of("applied")[0]["stroke"], stroke);
+  EXPECT_EQ(socket->of("applied")[0]["n"], 0);
+  EXPECT_TRUE(socket->of("saved").empty());
+  room->edits[0].saved(room::EditAnswer{1, 4, 0.1, false});
+  ASSERT_EQ(socket->of("saved").size(), 1u);
+  EXPECT_EQ(socket->of("saved")[0]["sequence"], 1);
+  EXPECT_EQ(shared->metrics->edits_saved, 1u);
+}
+
+TEST_F(Live, after_a_reconnect_the_resent_batch_is_joined_as_before) {
+  hello();
+  const json first_begin = begin(stroke);
+  const json batch0 = extend(stroke, 0, {{1, 1}}), batch1 = extend(stroke, 1, {{2, 2}});
+  say(first_begin);
+  say(batch0);
+  say(batch1);
+  room->edits[0].applied({1, 1, 0, false});
+  room->edits[0].saved(room::EditAnswer{1, 1, 0, false});
+
+  connect();
+  hello();
+  const json strokes = socket->of("welcome")[0]["strokes"];
+  ASSERT_EQ(strokes.size(), 1u);
+  EXPECT_EQ(strokes[0], json({{"stroke", stroke}, {"n", 0}}));
+  say(first_begin);
+  say(batch1);
+  say(extend(stroke, 2, {{3, 3}}));
+  EXPECT_TRUE(socket->of("problem").empty());
+  ASSERT_EQ(room->edits.size(), 4u);
+  EXPECT_EQ(room->edits[2].request.id, room->edits[1].request.id);
+  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits[2].request.edit).batch.path, (std::vector<glm::dvec2>{{1, 1}, {2, 2}}));
+  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits[3].request.edit).batch.path, (std::vector<glm::dvec2>{{2, 2}, {3, 3}}));
+}
+
+TEST_F(Live, a_save_that_ends_after_the_connection_counts_for_the_next) {
+  hello();
+  say(begin(stroke));
+  say(extend(stroke, 0, {{1, 1}}));
+  connect();
+  room->edits[0].applied({1, 1, 0, false});
+  room->edits[0].saved(room::EditAnswer{1, 1, 0, false});
+  EXPECT_TRUE(socket->of("saved").empty());
+  hello();
+  EXPECT_EQ(socket->of("welcome")[0]["strokes"][0]["n"], 0);
+}
+
+TEST_F(Live, an_edit_that_is_taken_back_is_told_as_unsaved) {
+  hello();
+  say(begin(stroke));
+  const json batch = extend(stroke, 0, {{1, 1}});
+  say(batch);
+  room->edits[0].applied({1, 1, 0, false});
+  room->edits[0].saved(fail(503, "Not saved", "The database is away."));
+  ASSERT_EQ(socket->of("unsaved").size(), 1u);
+  EXPECT_EQ(socket->of("unsaved")[0]["ids"], json::array({batch["id"]}));
+  EXPECT_TRUE(socket->of("problem").empty());
+}
+
+TEST_F(Live, an_edit_that_is_refused_is_a_problem_with_its_id) {
+  hello();
+  const std::string id = to_string(random_uuid());
+  say({{"op", "edit"}, {"id", id}, {"layer", 7}, {"edit", {{"op", "fill"}, {"mode", "where"}, {"where", "true"}, {"value", 1}}}});
+  ASSERT_EQ(room->edits.size(), 1u);
+  room->edits[0].saved(fail(429, "Too many edits", "Wait."));
+  ASSERT_EQ(socket->of("problem").size(), 1u);
+  EXPECT_EQ(socket->of("problem")[0]["ref"], id);
+  EXPECT_EQ(socket->of("problem")[0]["status"], 429);
+  EXPECT_EQ(shared->metrics->edits_refused, 1u);
+}
+
+TEST_F(Live, others_hear_that_the_layer_was_edited_and_the_author_does_not) {
+  hello();
+  say(begin(stroke));
+  say(extend(stroke, 0, {{1, 1}}));
+  room::Listener::Edit own;
+  own.layer_id = 7;
+  own.id = room->edits[0].request.id;
+  own.user = "anna";
+  own.sequence = 1;
+  session->edit_applied(own);
+  EXPECT_TRUE(socket->of("layer").empty());
+  room::Listener::Edit foreign = own;
+  foreign.id = random_uuid();
+  foreign.user = "bert";
+  foreign.sequence = 2;
+  session->edit_applied(foreign);
+  ASSERT_EQ(socket->of("layer").size(), 1u);
+  EXPECT_EQ(socket->of("layer")[0]["event"], "edited");
+  EXPECT_EQ(socket->of("layer")[0]["sequence"], 2);
+  EXPECT_EQ(socket->of("layer")[0]["user"], "bert");
+}
+
+TEST_F(Live, bad_messages_name_the_field_and_the_connection_lives_on) {
+  hello();
+  json wrong = begin(stroke);
+  wrong["value"] = 400;  // the layer is u8
+  say(wrong);
+  wrong["value"] = 3;
+  wrong["layer"] = "nothing";
+  say(wrong);
+  say(extend(stroke, 0, {{1, 1}}));  // never begun
+  EXPECT_FALSE(session->on_text("{"));
+  session->on_binary();
+  json singular = {{"op", "camera"}, {"seq", 1}};
+  singular.update(camera_json());
+  singular["view"] = json(std::vector<int>(16, 0));
+  say(singular);
+  const auto problems = socket->of("problem");
+  ASSERT_EQ(problems.size(), 6u);
+  EXPECT_EQ(problems[0]["field"], "value");
+  EXPECT_EQ(problems[0]["ref"], wrong["id"]);
+  EXPECT_EQ(problems[1]["field"], "layer");
+  EXPECT_EQ(problems[2]["field"], "stroke");
+  EXPECT_EQ(problems[3]["status"], 400);
+  EXPECT_EQ(problems[4]["status"], 415);
+  EXPECT_EQ(problems[5]["field"], "view");
+  EXPECT_TRUE(room->edits.empty());
+  EXPECT_EQ(socket->close_code, 0);
+}
+
+TEST_F(Live, a_viewer_may_look_but_not_paint) {
+  connect(Role::viewer);
+  hello();
+  say(begin(stroke));
+  say({{"op", "undo"}, {"id", to_string(random_uuid())}, {"layer", "cracks"}});
+  const auto problems = socket->of("problem");
+  ASSERT_EQ(problems.size(), 2u);
+  EXPECT_EQ(problems[0]["status"], 403);
+  EXPECT_TRUE(room->edits.empty());
+}
+
+TEST_F(Live, too_many_messages_are_refused_and_abuse_ends_the_connection) {
+  shared->limits.messages_per_second = 0.001;
+  shared->limits.burst = 2;
+  shared->limits.max_refusals = 3;
+  connect();
+  hello();
+  for (int i = 0; i < 4; ++i) say({{"op", "ack"}, {"frame", i}});
+  EXPECT_EQ(socket->of("problem").size(), 3u);
+  EXPECT_EQ(socket->of("problem")[0]["status"], 429);
+  EXPECT_EQ(socket->close_code, 0);
+  say({{"op", "ack"}, {"frame", 9}});
+  EXPECT_EQ(socket->close_code, kClosePolicy);
+}
+
+TEST_F(Live, presence_is_told_once_for_many_changes) {
+  hello();
+  for (int i = 0; i < 100; ++i) session->presence_changed();
+  ASSERT_EQ(socket->later.size(), 1u);
+  socket->later.front()();
+  ASSERT_EQ(socket->of("presence").size(), 1u);
+  EXPECT_EQ(socket->of("presence")[0]["users"][0]["pointer"]["position"], json({1.0, 2.0, 3.0}));
+  session->presence_changed();
+  EXPECT_EQ(socket->later.size(), 2u);
+}
+
+TEST_F(Live, a_client_that_draws_no_jpeg_is_told) {
+  say({{"op", "hello"}, {"accept", {"av1"}}});
+  ASSERT_EQ(socket->of("problem").size(), 1u);
+  EXPECT_EQ(socket->of("problem")[0]["field"], "accept");
+}
+
+TEST_F(Live, frames_are_counted_and_stop_with_the_socket) {
+  hello();
+  room->sends.at(0)(std::make_shared<const std::vector<std::uint8_t>>(100));
+  EXPECT_EQ(socket->frames.size(), 1u);
+  EXPECT_EQ(shared->metrics->frame_bytes_sent, 100u);
+  session->on_closed();
+  session.reset();
+  socket.reset();
+  room->sends.at(0)(std::make_shared<const std::vector<std::uint8_t>>(100));  // an encoder that was late
+}
+
+TEST_F(Live, after_a_restart_the_batch_before_is_looked_up_off_the_socket_thread) {
+  hello();
+  say(begin(stroke));
+  EXPECT_TRUE(session->on_text(extend(stroke, 4, {{1, 1}}).dump())) << "work for a worker, before the next message is read";
+  EXPECT_TRUE(room->edits.empty());
+}
+
+}  // namespace
+}  // namespace strata::net

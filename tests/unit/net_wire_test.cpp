@@ -1,0 +1,192 @@
+#include "net/wire.h"
+
+#include <gtest/gtest.h>
+
+namespace strata::net {
+namespace {
+
+Layer layer_of(ValueType type) {
+  Layer layer;
+  layer.id = 5;
+  layer.slug = "cracks";
+  layer.type = type;
+  return layer;
+}
+
+Model model_in(Unit unit) {
+  Model model;
+  model.id = 1;
+  model.unit = unit;
+  return model;
+}
+
+Camera camera() {
+  Camera made;
+  made.width = 640;
+  made.height = 480;
+  return made;
+}
+
+protocol::Edit stroke(double value) {
+  protocol::EditStroke edit;
+  edit.value = value;
+  edit.camera = camera();
+  edit.radius_px = 12.0;
+  edit.path = {{1, 2}, {3, 4}};
+  return edit;
+}
+
+TEST(Wire, a_stroke_becomes_an_edit_of_the_layer) {
+  const Uuid id = random_uuid();
+  const auto request = edit_request(stroke(7), layer_of(ValueType::u8), model_in(Unit::m), id, "anna");
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->id, id);
+  EXPECT_EQ(request->user, "anna");
+  EXPECT_EQ(request->layer_id, 5);
+  const auto& edit = std::get<room::StrokeEdit>(request->edit);
+  EXPECT_EQ(edit.stroke, id);
+  EXPECT_EQ(edit.batch.value_bits, 7u);
+  EXPECT_EQ(edit.batch.radius_px, 12);
+  EXPECT_EQ(edit.batch.path.size(), 2u);
+  EXPECT_EQ(edit.batch.path[1], glm::dvec2(3, 4));
+  EXPECT_EQ(edit.batch.camera, camera());
+  EXPECT_EQ(request->record["op"], "stroke");
+}
+
+TEST(Wire, a_value_outside_the_type_is_refused_not_clamped) {
+  for (double value : {256.0, -1.0, 1.5}) {
+    const auto request = edit_request(stroke(value), layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), "anna");
+    ASSERT_FALSE(request) << value;
+    EXPECT_EQ(request.error().field, "value");
+  }
+  EXPECT_TRUE(edit_request(stroke(1.5), layer_of(ValueType::f16), model_in(Unit::m), random_uuid(), "anna"));
+}
+
+TEST(Wire, erasing_needs_no_value_of_the_type) {
+  protocol::EditStroke edit = std::get<protocol::EditStroke>(stroke(-400));
+  edit.erase = true;
+  const auto request = edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), "anna");
+  ASSERT_TRUE(request);
+  EXPECT_TRUE(std::get<room::StrokeEdit>(request->edit).batch.erase);
+}
+
+TEST(Wire, millimetres_become_the_models_unit) {
+  EXPECT_DOUBLE_EQ(in_model_units(25, Unit::mm), 25);
+  EXPECT_DOUBLE_EQ(in_model_units(25, Unit::cm), 2.5);
+  EXPECT_DOUBLE_EQ(in_model_units(25, Unit::m), 0.025);
+  protocol::EditStroke edit = std::get<protocol::EditStroke>(stroke(1));
+  edit.radius_px.reset();
+  edit.radius_mm = 10.0;
+  const auto request = edit_request(edit, layer_of(ValueType::u8), model_in(Unit::cm), random_uuid(), "anna");
+  ASSERT_TRUE(request);
+  EXPECT_EQ(std::get<room::StrokeEdit>(request->edit).batch.radius_px, 0);
+  EXPECT_DOUBLE_EQ(std::get<room::StrokeEdit>(request->edit).batch.radius_world, 1);
+}
+
+TEST(Wire, a_fill_carries_the_bits_of_its_value) {
+  protocol::EditFill fill;
+  fill.value = -1;
+  const auto request = edit_request(fill, layer_of(ValueType::i8), model_in(Unit::m), random_uuid(), "anna");
+  ASSERT_TRUE(request);
+  EXPECT_EQ(std::get<room::FillEdit>(request->edit).value_bits, 0xffu);
+  EXPECT_EQ(request->record["op"], "fill");
+}
+
+TEST(Wire, a_batch_keeps_in_the_journal_all_that_made_it) {
+  protocol::StrokeBegin begin;
+  begin.id = random_uuid();
+  begin.stroke = random_uuid();
+  begin.layer = std::string("cracks");
+  begin.value = 3;
+  begin.camera = camera();
+  begin.radius_px = 4.0;
+  auto tool = stroke_tool(begin, layer_of(ValueType::u8), model_in(Unit::m));
+  ASSERT_TRUE(tool);
+  const Uuid id = random_uuid();
+  const auto request = batch_request({*tool, {{1, 1}, {2, 3}}}, begin.stroke, id, 4, "anna");
+  const auto& edit = std::get<room::StrokeEdit>(request.edit);
+  EXPECT_EQ(edit.stroke, begin.stroke);
+  EXPECT_EQ(edit.n, 4);
+  EXPECT_EQ(edit.batch.value_bits, 3u);
+  EXPECT_EQ(request.record["op"], "stroke");
+  EXPECT_EQ(request.record["n"], 4);
+  EXPECT_EQ(request.record["radius_px"], 4);
+  EXPECT_EQ(request.record["camera"]["width"], 640);
+  EXPECT_FALSE(request.record.contains("id"));
+  EXPECT_EQ(end_of_path(request.record), glm::dvec2(2, 3));
+}
+
+TEST(Wire, the_end_of_a_path_is_found_only_in_strokes) {
+  EXPECT_FALSE(end_of_path({{"op", "fill"}}));
+  EXPECT_FALSE(end_of_path({{"path", nlohmann::json::array()}}));
+  EXPECT_FALSE(end_of_path({{"path", {{1, "x"}}}}));
+  EXPECT_FALSE(end_of_path(nullptr));
+}
+
+query::SurfacePoint point() {
+  query::SurfacePoint made;
+  made.hit = true;
+  made.position = {1.5, 2, 3};
+  made.normal = {0, 0, 1};
+  made.distance = 0.25;
+  made.uv = {0.5f, 0.25f};
+  made.values = {{"cracks", true, 4}, {"a,b", false, 0}};
+  return made;
+}
+
+TEST(Wire, a_surface_point_reads_as_the_contract_says) {
+  const auto json = protocol::to_json(to_protocol(point()));
+  EXPECT_TRUE(protocol::validate(protocol::Schema::SurfacePoint, json));
+  EXPECT_EQ(json["values"]["cracks"]["value"], 4);
+  EXPECT_EQ(json["values"]["a,b"]["valid"], false);
+  EXPECT_FALSE(json["values"]["a,b"].contains("value"));
+  const auto miss = protocol::to_json(to_protocol(query::SurfacePoint{}));
+  EXPECT_TRUE(protocol::validate(protocol::Schema::SurfacePoint, miss));
+  EXPECT_FALSE(miss.contains("position"));
+}
+
+TEST(Wire, points_as_csv_have_a_column_for_each_layer) {
+  const std::string text = points_csv({point(), query::SurfacePoint{}}, {"cracks", "a,b"});
+  EXPECT_EQ(text,
+            "hit,x,y,z,normal_x,normal_y,normal_z,distance,u,v,cracks,\"a,b\"\r\n"
+            "true,1.5,2,3,0,0,1,0.25,0.5,0.25,4,\r\n"
+            "false,,,,,,,,,,,\r\n");
+}
+
+TEST(Wire, a_coverage_names_its_parameters) {
+  Layer layer = layer_of(ValueType::f32);
+  layer.name = "Moisture";
+  layer.unit = "%";
+  const auto json = point_coverage(point(), {layer}, model_in(Unit::m));
+  EXPECT_EQ(json["type"], "Coverage");
+  EXPECT_EQ(json["domain"]["axes"]["x"]["values"][0], 1.5);
+  EXPECT_EQ(json["ranges"]["cracks"]["values"][0], 4);
+  EXPECT_EQ(json["parameters"]["cracks"]["unit"]["symbol"], "%");
+}
+
+TEST(Wire, statistics_of_an_empty_layer_have_no_extremes) {
+  const auto json = to_json(query::Statistics{});
+  EXPECT_FALSE(json.contains("min"));
+  EXPECT_EQ(json["area_m2"], 0);
+  EXPECT_TRUE(json["histogram"].empty());
+}
+
+TEST(Wire, times_are_written_in_utc) {
+  using namespace std::chrono;
+  EXPECT_EQ(utc_text(system_clock::time_point(milliseconds(1'700'000'000'123))), "2023-11-14T22:13:20.123Z");
+  EXPECT_EQ(utc_text(system_clock::time_point(milliseconds(-1))), "1969-12-31T23:59:59.999Z");
+}
+
+TEST(Wire, a_job_tells_what_went_wrong) {
+  jobs::JobStatus job;
+  job.id = 3;
+  job.state = jobs::JobState::failed;
+  job.problem = Problem{422, "Bad file", "Line 3.", {}};
+  const auto json = to_json(job);
+  EXPECT_EQ(json["state"], "failed");
+  EXPECT_EQ(json["problem"]["title"], "Bad file");
+  EXPECT_FALSE(json.contains("model"));
+}
+
+}  // namespace
+}  // namespace strata::net
