@@ -92,10 +92,8 @@ FrameBytes frame_message(const FlowControl::Draw& draw, const FlowControl::Numbe
   header.encode_us = microseconds(encode_ms);
   header.payload_bytes = static_cast<std::uint32_t>(jpeg.size());
   const auto head = protocol::encode_frame_header(header);
-  auto message = std::make_shared<std::vector<std::uint8_t>>();
-  message->reserve(head.size() + jpeg.size());
-  message->insert(message->end(), head.begin(), head.end());
-  message->insert(message->end(), jpeg.begin(), jpeg.end());
+  auto message = std::make_shared<std::vector<std::uint8_t>>(head.size() + jpeg.size());
+  std::copy(jpeg.begin(), jpeg.end(), std::copy(head.begin(), head.end(), message->begin()));
   return message;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <condition_variable>
 #include <cstdlib>
+#include <list>
 #include <mutex>
 
 #include "protocol/frame_header.h"
@@ -104,13 +105,13 @@ class StreamViewer : public ::testing::Test {
   std::vector<render::LayerStyle> styles(float opacity = 1) const {
     return {{layer_, std::make_shared<const Palette>(default_palette(ValueType::u8, true)), opacity}};
   }
+  Client& new_client() { return clients_.emplace_back(); }
   static Camera camera(double x) { return test::perspective_camera({x, 0.5, 3}, {0, 0, 0}, kWidth, kHeight); }
   std::shared_ptr<Viewer> viewer(Client& client, Viewer::Options options = {}, bool acks = true) {
     auto made = Viewer::create({&renderer_.get(), &encoder_}, model_, options, client.send());
     made->set_layers(styles());
     client.attach(made, acks);
     viewers_.push_back(made);
-    clients_.push_back(&client);
     return made;
   }
   // Paints a dab and tells the viewer, as a room does.
@@ -140,7 +141,7 @@ class StreamViewer : public ::testing::Test {
   }
   void TearDown() override {
     for (auto& one : viewers_) one->close();
-    for (auto* client : clients_) client->attach(nullptr, false);
+    for (auto& client : clients_) client.attach(nullptr, false);
     viewers_.clear();
   }
 
@@ -150,11 +151,11 @@ class StreamViewer : public ::testing::Test {
   render::ModelHandle model_ = 0;
   render::LayerHandle layer_ = 0;
   std::vector<std::shared_ptr<Viewer>> viewers_;
-  std::vector<Client*> clients_;
+  std::list<Client> clients_;  // they outlive the viewers, which call them
 };
 
 TEST_F(StreamViewer, a_still_camera_gives_one_whole_picture_of_full_quality) {
-  Client client;
+  Client& client = new_client();
   Viewer::Options options;
   options.view_id = 3;
   options.sequence = 17;
@@ -174,7 +175,7 @@ TEST_F(StreamViewer, a_still_camera_gives_one_whole_picture_of_full_quality) {
 }
 
 TEST_F(StreamViewer, a_window_beyond_the_limit_is_drawn_smaller_in_the_same_shape) {
-  Client client;
+  Client& client = new_client();
   Viewer::Options options;
   options.max_width = 200;
   options.max_height = 90;
@@ -185,7 +186,7 @@ TEST_F(StreamViewer, a_window_beyond_the_limit_is_drawn_smaller_in_the_same_shap
 }
 
 TEST_F(StreamViewer, after_moving_frames_a_picture_of_full_quality_comes_by_itself) {
-  Client client;
+  Client& client = new_client();
   auto view = viewer(client);
   for (int i = 1; i <= 8; ++i) view->set_camera(i, camera(0.1 * i), true);
   const FrameHeader still = client.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 8; });
@@ -194,7 +195,7 @@ TEST_F(StreamViewer, after_moving_frames_a_picture_of_full_quality_comes_by_itse
 }
 
 TEST_F(StreamViewer, an_edit_sends_only_its_rectangle_and_the_picture_is_whole_again) {
-  Client client;
+  Client& client = new_client();
   auto view = viewer(client);
   view->set_camera(1, camera(0), false);
   const auto first = client.wait_for([](const FrameHeader& h) { return h.still; });
@@ -210,7 +211,7 @@ TEST_F(StreamViewer, an_edit_sends_only_its_rectangle_and_the_picture_is_whole_a
 }
 
 TEST_F(StreamViewer, a_client_that_does_not_acknowledge_gets_no_more_than_its_window_and_misses_nothing_in_the_end) {
-  Client silent, lively;
+  Client &silent = new_client(), &lively = new_client();
   Viewer::Options options;
   options.window = 2;
   auto slow = viewer(silent, options, false);
@@ -233,7 +234,7 @@ TEST_F(StreamViewer, a_client_that_does_not_acknowledge_gets_no_more_than_its_wi
 }
 
 TEST_F(StreamViewer, frames_are_numbered_without_gaps_in_the_order_they_are_sent) {
-  Client client;
+  Client& client = new_client();
   auto view = viewer(client);
   for (int i = 1; i <= 30; ++i) {
     view->set_camera(i, camera(0.02 * i), i % 3 != 0);
@@ -251,7 +252,7 @@ TEST_F(StreamViewer, frames_are_numbered_without_gaps_in_the_order_they_are_sent
 }
 
 TEST_F(StreamViewer, after_a_lost_context_everything_comes_again) {
-  Client client;
+  Client& client = new_client();
   auto view = viewer(client);
   view->set_camera(1, camera(0), false);
   const auto before = client.wait_for([](const FrameHeader& h) { return h.still; });
@@ -269,7 +270,7 @@ TEST_F(StreamViewer, after_a_lost_context_everything_comes_again) {
 }
 
 TEST_F(StreamViewer, after_close_nothing_is_sent) {
-  Client client;
+  Client& client = new_client();
   auto view = viewer(client);
   view->set_camera(1, camera(0), true);
   client.wait_for([](const FrameHeader&) { return true; });
@@ -277,7 +278,7 @@ TEST_F(StreamViewer, after_close_nothing_is_sent) {
   const auto count = client.frames().size();
   view->set_camera(2, camera(1), false);
   view->changed_everywhere(5);
-  Client other;  // by the time another viewer has its picture, the first one's would be there, too
+  Client& other = new_client();  // by the time another viewer has its picture, the first one's would be there, too
   viewer(other)->set_camera(1, camera(0), false);
   other.wait_for([](const FrameHeader& h) { return h.still; });
   EXPECT_EQ(client.frames().size(), count);
