@@ -4,11 +4,13 @@
 #include "shared/shade.h"
 // Colours a rectangle of a view: background, lit surface, and the layers bottom to top, sampled by texture coordinate.
 // CHUNK_COUNT (0…6) pairs of value and valid textures are bound; a texel whose chunk is not bound is left to another dispatch.
+// With SINGLE_LAYER the dispatch has one layer, which spares CPUs the lookup of its settings in each lane.
+// MODES has the bits 1 (linear), 2 (step), 4 (categorical) of the palettes that occur: CPUs run every side of a branch.
 layout(local_size_x = 16, local_size_y = 4) in;
 layout(std140, binding = 0) uniform ShadeUniformBlock { ShadeUniforms shade; };
 layout(std430, binding = 0) readonly buffer Tables { uint page_tables[]; };
-layout(std430, binding = 1) readonly buffer Layers { ShadeLayer layers[]; };
-layout(std430, binding = 2) readonly buffer Points { PalettePoint points[]; };
+layout(std430, binding = 1) readonly buffer Points { PalettePoint points[]; };
+layout(std140, binding = 1) uniform LayerBlock { ShadeLayer layers[kMaxShadeLayers]; };
 layout(binding = 0) uniform usampler2D surface_uv;
 layout(binding = 1) uniform sampler2D surface_light;
 layout(binding = 2) uniform sampler2D palettes;
@@ -70,12 +72,24 @@ vec4 category_color(ShadeLayer layer, uint bits) {
   return generated_color(key_of(bits, layer.type));
 }
 
+vec4 linear_color(ShadeLayer layer, float value) {
+  float position = clamp((value - layer.palette_min) / (layer.palette_max - layer.palette_min), 0.0, 1.0);
+  return texelFetch(palettes, ivec2(int(position * float(kPaletteWidth - 1u) + 0.5), int(layer.row)), 0);
+}
+
 vec4 color_of(ShadeLayer layer, uint bits) {
+#if MODES == 1
+  return linear_color(layer, number_of(bits, layer.type));
+#elif MODES == 2
+  return step_color(layer, clamp(number_of(bits, layer.type), layer.palette_min, layer.palette_max));
+#elif MODES == 4
+  return category_color(layer, bits);
+#else
   if (layer.mode == kPaletteCategorical) return category_color(layer, bits);
   float value = number_of(bits, layer.type);
   if (layer.mode == kPaletteStep) return step_color(layer, clamp(value, layer.palette_min, layer.palette_max));
-  float position = clamp((value - layer.palette_min) / (layer.palette_max - layer.palette_min), 0.0, 1.0);
-  return texelFetch(palettes, ivec2(int(position * float(kPaletteWidth - 1u) + 0.5), int(layer.row)), 0);
+  return linear_color(layer, value);
+#endif
 }
 
 #if CHUNK_COUNT > 0
@@ -117,7 +131,12 @@ void main() {
   }
 #if CHUNK_COUNT > 0
   if (q != kBackground) {
+#if SINGLE_LAYER
+    const uint i = 0u;
+    {
+#else
     for (uint i = 0u; i < shade.layer_count; ++i) {
+#endif
       ShadeLayer layer = layers[i];
       uvec2 texel = texel_of(layer, q);
       if (texel.y != 0u) {

@@ -32,17 +32,34 @@ void set_unit(shader::ShadeLayer& layer, int chunk, std::uint32_t unit) {
 
 }  // namespace
 
-Result<ShadePass> ShadePass::create(const std::filesystem::path& shader_dir) {
+Result<ShadePass> ShadePass::create(const std::filesystem::path& shader_dir, bool one_layer_per_dispatch) {
   ShadePass pass;
-  for (std::size_t chunks = 0; chunks < pass.programs_.size(); ++chunks) {
-    auto program = gl::Program::load(shader_dir, {"shade_pass.comp"}, {"CHUNK_COUNT " + std::to_string(chunks)});
-    if (!program) return tl::unexpected(program.error());
-    pass.programs_[chunks] = std::move(*program);
-  }
+  pass.shader_dir_ = shader_dir;
+  pass.one_layer_per_dispatch_ = one_layer_per_dispatch;
   auto palettes = PaletteTextures::create();
   if (!palettes) return tl::unexpected(palettes.error());
   pass.palettes_ = std::move(*palettes);
+  // The usual ones at once, so that the first strokes and frames do not wait for the compiler.
+  for (const auto& [chunks, modes] : {std::pair{0, 0u}, {1, 1u}, {1, 2u}, {1, 4u}}) {
+    if (auto built = pass.program(static_cast<std::size_t>(chunks), modes); !built) return tl::unexpected(built.error());
+  }
   return pass;
+}
+
+Result<const gl::Program*> ShadePass::program(std::size_t chunks, std::uint32_t modes) {
+  const auto built = programs_.find({chunks, modes});
+  if (built != programs_.end()) return &built->second;
+  auto program = gl::Program::load(shader_dir_, {"shade_pass.comp"},
+                                   {"CHUNK_COUNT " + std::to_string(chunks), "MODES " + std::to_string(modes),
+                                    std::string("SINGLE_LAYER ") + (one_layer_per_dispatch_ ? "1" : "0")});
+  if (!program) return tl::unexpected(program.error());
+  return &programs_.insert_or_assign({chunks, modes}, std::move(*program)).first->second;
+}
+
+bool ShadePass::can_take(const Batch& batch, const Chunk& chunk) const {
+  const bool bound = std::find(batch.chunks.begin(), batch.chunks.end(), chunk) != batch.chunks.end();
+  if (one_layer_per_dispatch_) return batch.chunks.empty();
+  return bound || batch.chunks.size() < kChunksPerDispatch;
 }
 
 shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
@@ -69,28 +86,20 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
 std::vector<ShadePass::Batch> ShadePass::plan(const ShadeInput& input) {
   std::vector<Batch> batches(1);
   for (const ShadeInput::Layer& layer : input.layers) {
-    std::vector<Chunk> chunks;
-    for (int i = 0; i < layer.textures->pool().chunk_count(); ++i) {
-      if (layer.textures->chunks() >> i & 1u) chunks.push_back({&layer.textures->pool(), i});
-    }
-    if (chunks.empty()) continue;
-    const auto missing = [&](const Batch& batch) {
-      return static_cast<std::size_t>(std::count_if(chunks.begin(), chunks.end(), [&](const Chunk& chunk) {
-        return std::find(batch.chunks.begin(), batch.chunks.end(), chunk) == batch.chunks.end();
-      }));
-    };
     const auto described = describe(layer);
-    if (batches.back().chunks.size() + missing(batches.back()) > kChunksPerDispatch) batches.emplace_back();
-    bool listed = false;
-    for (const Chunk& chunk : chunks) {
-      if (batches.back().chunks.size() == kChunksPerDispatch && missing(batches.back()) > 0 &&
-          std::find(batches.back().chunks.begin(), batches.back().chunks.end(), chunk) == batches.back().chunks.end()) {
+    const std::uint32_t mode = 1u << described.mode;
+    bool listed = false;  // in the last batch
+    for (int i = 0; i < layer.textures->pool().chunk_count(); ++i) {
+      if (!(layer.textures->chunks() >> i & 1u)) continue;
+      const Chunk chunk{&layer.textures->pool(), i};
+      if (!can_take(batches.back(), chunk)) {
         batches.emplace_back();
         listed = false;
       }
       Batch& batch = batches.back();
       if (!listed) batch.layers.push_back(described);
       listed = true;
+      batch.modes |= mode;
       auto bound = std::find(batch.chunks.begin(), batch.chunks.end(), chunk);
       if (bound == batch.chunks.end()) bound = batch.chunks.insert(bound, chunk);
       set_unit(batch.layers.back(), chunk.index, static_cast<std::uint32_t>(bound - batch.chunks.begin()));
@@ -125,11 +134,13 @@ Result<void> ShadePass::dispatch(const ShadeInput& input, const Batch& batch, bo
   if (auto sent = uniforms_.replace(std::span<const shader::ShadeUniforms>(&uniforms, 1)); !sent) return sent;
   if (auto sent = layers_.replace(std::span<const shader::ShadeLayer>(batch.layers)); !sent) return sent;
 
-  programs_[batch.chunks.size()].use();
+  auto built = program(batch.chunks.size(), batch.modes);
+  if (!built) return tl::unexpected(built.error());
+  (*built)->use();
   uniforms_.bind_uniform(0);
+  layers_.bind_uniform(1);
   tables.bind(0);
-  layers_.bind_storage(1);
-  palettes_.bind(kPaletteUnit, 2);
+  palettes_.bind(kPaletteUnit, 1);
   input.uv.bind(kUvUnit);
   input.light.bind(kLightUnit);
   for (std::size_t i = 0; i < batch.chunks.size(); ++i) {

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "gl/program.h"
@@ -33,7 +34,9 @@ class ShadePass {
  public:
   static constexpr std::size_t kChunksPerDispatch = 6;  // pairs; with 3 more, 15 of the 16 units every driver has
 
-  static Result<ShadePass> create(const std::filesystem::path& shader_dir);
+  // `one_layer_per_dispatch`: of one kind of palette and one chunk. CPUs run every side of a branch in every lane, so that
+  // is faster there; GPUs are better off with fewer dispatches.
+  static Result<ShadePass> create(const std::filesystem::path& shader_dir, bool one_layer_per_dispatch);
   Result<void> shade(const ShadeInput& input, const PageTables& tables);
   int dispatches() const { return dispatches_; }  // of the last call
 
@@ -46,12 +49,17 @@ class ShadePass {
   struct Batch {
     std::vector<shader::ShadeLayer> layers;
     std::vector<Chunk> chunks;
+    std::uint32_t modes = 0;  // bits: 1 linear, 2 step, 4 categorical
   };
+  bool can_take(const Batch& batch, const Chunk& chunk) const;
+  Result<const gl::Program*> program(std::size_t chunks, std::uint32_t modes);
   std::vector<Batch> plan(const ShadeInput& input);
   Result<void> dispatch(const ShadeInput& input, const Batch& batch, bool first, const PageTables& tables);
   shader::ShadeLayer describe(const ShadeInput::Layer& layer);
 
-  std::array<gl::Program, kChunksPerDispatch + 1> programs_;  // by the number of chunks
+  std::filesystem::path shader_dir_;
+  bool one_layer_per_dispatch_ = false;
+  std::map<std::pair<std::size_t, std::uint32_t>, gl::Program> programs_;  // by chunks and modes, built when first used
   PaletteTextures palettes_;
   StreamBuffer uniforms_{"shade uniforms"}, layers_{"shade layers"};
   int dispatches_ = 0;

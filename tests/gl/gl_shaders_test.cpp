@@ -26,7 +26,9 @@ const std::map<std::vector<std::string>, Variants> kPrograms{
     {{"edit_pass.comp"}, {{"TEXEL_FORMAT r8ui"}, {"TEXEL_FORMAT r16ui"}, {"TEXEL_FORMAT r32ui"}}},
     {{"tile_read_pass.comp"}, {{"TEXEL_BYTES 1"}, {"TEXEL_BYTES 2"}, {"TEXEL_BYTES 4"}}},
     {{"shade_pass.comp"},
-     {{"CHUNK_COUNT 0"}, {"CHUNK_COUNT 1"}, {"CHUNK_COUNT 2"}, {"CHUNK_COUNT 3"}, {"CHUNK_COUNT 4"}, {"CHUNK_COUNT 5"}, {"CHUNK_COUNT 6"}}},
+     {{"CHUNK_COUNT 0", "MODES 0", "SINGLE_LAYER 0"}, {"CHUNK_COUNT 1", "MODES 1", "SINGLE_LAYER 1"}, {"CHUNK_COUNT 1", "MODES 2", "SINGLE_LAYER 0"}, {"CHUNK_COUNT 1", "MODES 4", "SINGLE_LAYER 0"},
+      {"CHUNK_COUNT 2", "MODES 3", "SINGLE_LAYER 0"}, {"CHUNK_COUNT 3", "MODES 5", "SINGLE_LAYER 0"}, {"CHUNK_COUNT 4", "MODES 6", "SINGLE_LAYER 0"}, {"CHUNK_COUNT 5", "MODES 7", "SINGLE_LAYER 0"},
+      {"CHUNK_COUNT 6", "MODES 7", "SINGLE_LAYER 0"}}},
 };
 
 TEST(Shaders, every_file_belongs_to_a_program_and_every_program_builds) {

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+
+#include "core/stroke.h"
+#include "gl/framebuffer.h"
+#include "gl/program.h"
+#include "gl/vertex_array.h"
+#include "mesh/geometry.h"
+
+namespace strata::bench {
+
+// The paper's editing, literally: the Texture Editing Algorithm draws the whole mesh at its texture coordinates into data,
+// mask and edited-area textures, discarding what fails the window, depth (fixed bias) and tool tests; the Texture Padding
+// Algorithm then filters the whole texture, setting outline texels (1 wide) beside the edited area. The outline mask is
+// made by its two passes when the model is loaded. The tool is a disc by formula; the window → tool map is derived anew,
+// because the printed translation factor has the wrong sign and lacks ½. GPU thread only; one dab an edit, values of 8 bits.
+class PaperEditor {
+ public:
+  static Result<std::unique_ptr<PaperEditor>> create(const mesh::Geometry& geometry, int resolution);
+
+  // `depth` is the system's depth texture: the mesh from this camera at its window's size.
+  void edit(const Camera& camera, const gl::Texture& depth, glm::dvec2 center, double radius_px, std::uint8_t value);
+  void clear();
+
+  int resolution() const { return resolution_; }
+  std::vector<std::uint8_t> data() const { return read(data_); }
+  std::vector<std::uint8_t> mask() const { return read(mask_); }
+  std::vector<std::uint8_t> coverage() const { return read(coverage_); }  // 1 where the parametrisation lies
+  std::uint64_t bytes() const;                                            // of textures that a layer and its editing need
+
+ private:
+  static std::vector<std::uint8_t> read(const gl::Texture& texture);
+  void draw_mesh(const gl::Framebuffer& target) const;
+  void draw_texture(const gl::Framebuffer& target) const;
+  Result<void> make_textures();
+  void make_outline();
+
+  int resolution_ = 0;
+  GLsizei index_count_ = 0;
+  glm::dvec3 origin_{0};
+  std::uint32_t edit_number_ = 0;
+  gl::Buffer vertices_, indices_;
+  gl::VertexArray mesh_array_, empty_array_;
+  gl::Texture data_, mask_, edited_, coverage_, outline_;
+  gl::Framebuffer editing_, padding_, coverage_target_, outline_target_;
+  gl::Program cover_, outline_pass_, texture_editing_, texture_padding_;
+};
+
+}  // namespace strata::bench
