@@ -9,7 +9,7 @@ import type { Me, Model } from "../core/types";
 import "./blank";
 import { ask } from "./dialog";
 import { icon, logo } from "./icons";
-import { Imports, type ImportEntry } from "./imports";
+import { choose_scans, Imports, type ImportEntry } from "./imports";
 import "./menu";
 import { notices } from "./notices";
 import { follow, navigate, path_of_model } from "./routes";
@@ -187,7 +187,8 @@ export class StrataHomePage extends LitElement {
     await this.imports_.cancel(entry.key).catch((error: unknown) => notices.error(error));
   }
 
-  private async import_files(files: File[]): Promise<void> {
+  private async import_files(dropped: File[]): Promise<void> {
+    const files = choose_scans(dropped);
     const done = await Promise.all(files.map((file) => this.imports_.start(file)));
     const models = done.filter((model): model is number => model !== null);
     if (!this.isConnected) return;

@@ -21,6 +21,15 @@ export interface ImportEntry {
 const kPoll_ms = 400;
 const kMostFailedPolls = 20;
 const kFileKinds = /\.(ply|obj)$/i;
+const kCompanions = /\.(mtl|png|jpe?g|tiff?|bmp|tga)$/i; // materials and pictures that lie beside an OBJ
+
+/** The scans among dropped files. What belongs to an OBJ is left out, and the person is told. */
+export function choose_scans(files: readonly File[]): File[] {
+  const has_obj = files.some((file) => /\.obj$/i.test(file.name));
+  const scans = files.filter((file) => !has_obj || !kCompanions.test(file.name));
+  if (scans.length < files.length) notices.show("info", texts.import.companions);
+  return scans;
+}
 
 export class Imports {
   entries: readonly ImportEntry[] = [];

@@ -19,13 +19,19 @@ export class StrataNotices extends LitElement {
       :host {
         position: fixed;
         z-index: 50;
-        left: 50%;
-        bottom: max(20px, env(safe-area-inset-bottom));
-        transform: translateX(-50%);
+        left: 76px; /* beside the tools and above the scale bar */
+        bottom: 76px;
         display: grid;
         gap: 8px;
-        width: min(480px, calc(100vw - 24px));
+        width: min(440px, calc(100vw - 88px));
         pointer-events: none;
+      }
+      @media (max-width: 820px) {
+        :host {
+          left: 12px;
+          bottom: calc(68px + env(safe-area-inset-bottom));
+          width: calc(100vw - 24px);
+        }
       }
       .notice {
         display: flex;

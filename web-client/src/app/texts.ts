@@ -54,6 +54,7 @@ export const texts = {
     dismiss: (name: string) => `Remove the note about ${name}`,
     open: "Open",
     wrong_kind: (name: string) => `“${name}” is not a PLY or OBJ file. Export the scan as one of these, then drop it here.`,
+    companions: "Only the shape of the OBJ is imported; its material and picture files were left out.",
     empty_file: (name: string) => `“${name}” is empty.`,
     ready: (name: string) => `“${name}” is ready.`,
   },

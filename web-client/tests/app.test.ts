@@ -1,0 +1,93 @@
+import { describe, expect, it } from "vitest";
+
+import { BrushSettings, describe_value, value_problem } from "../src/app/brush-settings";
+import { choose_scans } from "../src/app/imports";
+import { notices } from "../src/app/notices";
+import { route_of } from "../src/app/routes";
+import { texts } from "../src/app/texts";
+import { class_palette, measurement_palette, presence_palette } from "../src/core/palette";
+import type { Layer, Palette, ValueType } from "../src/core/types";
+
+const layer = (type: ValueType, palette: Palette, unit = ""): Layer => ({
+  id: 7, model: 1, name: "L", slug: "l", kind: "numeric", type, resolution: 2048, unit, description: "", palette,
+  opacity: 1, visible: true, order: 0, sequence: 0,
+}); // prettier-ignore
+const classes = class_palette([
+  { at: 2, label: "Plaster", color: "#ffffffff" },
+  { at: 5, label: "", color: "#000000ff" },
+]);
+
+describe("the brush's value", () => {
+  it("starts with the first class, presence, or the middle of a measurement", () => {
+    const brush = new BrushSettings();
+    expect(brush.value_of(layer("u8", classes))).toBe(2);
+    expect(new BrushSettings().value_of(layer("u8", presence_palette("Salt", "#ffffffff")))).toBe(1);
+    expect(new BrushSettings().value_of(layer("f32", measurement_palette(0, 0.3)))).toBe(0.15);
+    expect(new BrushSettings().value_of(layer("i16", measurement_palette(0, 5)))).toBe(3);
+  });
+  it("is kept per layer", () => {
+    const brush = new BrushSettings();
+    const one = layer("u8", classes);
+    brush.set_value(one, 5);
+    expect(brush.value_of(one)).toBe(5);
+    expect(brush.value_of({ ...one, id: 8 })).toBe(2);
+  });
+  it("is refused in plain words where the layer cannot hold it", () => {
+    expect(value_problem(layer("u8", classes), 256)).toBe(texts.brush.out_of_range("0", "255"));
+    expect(value_problem(layer("u8", classes), 1.5)).toBe(texts.brush.whole_number);
+    expect(value_problem(layer("f32", classes), Number.NaN)).toBe(texts.brush.bad_value);
+    expect(value_problem(layer("f32", classes), 1.5)).toBeNull();
+  });
+  it("is told by its label, or with its unit", () => {
+    expect(describe_value(layer("u8", classes), 2)).toBe("Plaster");
+    expect(describe_value(layer("u8", classes), 5)).toBe("Class 5");
+    expect(describe_value(layer("f32", measurement_palette(0, 1), "%"), 12.3456)).toBe("12.35 %");
+  });
+  it("a width stays within its limits, and each step of the keys changes it", () => {
+    const brush = new BrushSettings();
+    brush.set_width("px", 1e9);
+    expect(brush.width.px).toBe(400);
+    brush.set_width("px", Number.NaN);
+    expect(brush.width.px).toBe(400);
+    brush.set_width("px", 2);
+    brush.step_width(1);
+    expect(brush.width.px).toBeGreaterThan(2);
+    brush.unit = "mm";
+    brush.set_width("mm", 10);
+    brush.step_width(-1);
+    expect(brush.width.mm).toBeLessThan(10);
+  });
+});
+
+describe("addresses", () => {
+  it("name the gallery or a model", () => {
+    expect(route_of("/")).toEqual({ page: "home" });
+    expect(route_of("/models/12")).toEqual({ page: "model", model: "12" });
+    expect(route_of("/models/muro%203/")).toEqual({ page: "model", model: "muro 3" });
+    expect(route_of("/models/%")).toEqual({ page: "home" });
+  });
+});
+
+describe("dropped files", () => {
+  const named = (...names: string[]): File[] => names.map((name) => ({ name }) as File);
+  it("an OBJ is taken without its materials, and the person is told", () => {
+    expect(choose_scans(named("a.mtl", "a.obj", "a.JPG")).map((file) => file.name)).toEqual(["a.obj"]);
+    let told = "";
+    notices.subscribe((shown) => (told = shown.map((notice) => notice.title).join()))();
+    expect(told).toBe(texts.import.companions);
+  });
+  it("a picture alone is not left out silently", () => {
+    expect(choose_scans(named("a.jpg", "b.ply")).length).toBe(2);
+  });
+});
+
+describe("the page's words", () => {
+  const all = (value: unknown): string =>
+    typeof value === "string" ? value
+    : typeof value === "function" ? String((value as (...args: string[]) => unknown)("a", "b"))
+    : typeof value === "object" && value !== null ? Object.values(value).map(all).join("\n")
+    : ""; // prettier-ignore
+  it("are those of people who study objects", () => {
+    expect(all(texts)).not.toMatch(/texel|atlas|\bu8\b|\bf32\b|shader|websocket/i);
+  });
+});
