@@ -99,12 +99,19 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
  private:
+  // Objects that are built inside a co_await expression are destroyed twice by GCC 12 in some cases: what the functions below
+  // are given is always a named local of the caller, by reference.
   asio::awaitable<void> refuse_head(beast::error_code error) {
-    if (error == http::error::header_limit)
-      co_await send(problem_response({431, "Header too large", "The head of a request has at most 8 KiB.", {}}), Method::get, false);
-    else if (error.category() == http::make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream &&
-             error != http::error::partial_message)
-      co_await send(problem_response({400, "Malformed request", "This is not HTTP: " + error.message() + ".", {}}), Method::get, false);
+    Response refusal;
+    if (error == http::error::header_limit) {
+      refusal = problem_response({431, "Header too large", "The head of a request has at most 8 KiB.", {}});
+    } else if (error.category() == http::make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream &&
+               error != http::error::partial_message) {
+      refusal = problem_response({400, "Malformed request", "This is not HTTP: " + error.message() + ".", {}});
+    } else {
+      co_return;
+    }
+    co_await send(refusal, Method::get, false);
   }
 
   // One request; false: the connection ends.
@@ -112,44 +119,57 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const CountAtWork at_work(connections_->requests_at_work);
     const bool keep_alive = head.keep_alive() && !connections_->stopping;
     auto parsed = request_of(head.get());
-    if (!parsed) co_return co_await send(problem_response(parsed.error()), method_of(head.get().method()), false);
-    auto request = std::make_shared<Request>(std::move(*parsed));
-    if (!bucket_.take())
-      co_return co_await refuse(head, *request, problem_response({429, "Too many requests", "This connection asks too fast; wait a second.", {}}), keep_alive);
+    if (!parsed) {
+      Response malformed = problem_response(parsed.error());
+      co_return co_await send(malformed, method_of(head.get().method()), false);
+    }
+    const auto request = std::make_shared<Request>(std::move(*parsed));
+    Response response;
+    if (!bucket_.take()) {
+      response = problem_response({429, "Too many requests", "This connection asks too fast; wait a second.", {}});
+      co_return co_await refuse(head, *request, response, keep_alive);
+    }
     if (beast::websocket::is_upgrade(head.get()) && App::is_live_address(*request)) co_return co_await upgrade(head, request);
 
-    Response refusal;
-    const Route* route = app_.find_route(*request, refusal);
-    if (!route) co_return co_await refuse(head, *request, std::move(refusal), keep_alive);
+    const Route* route = app_.find_route(*request, response);
+    if (!route) co_return co_await refuse(head, *request, response, keep_alive);
     const auto length = head.content_length();
     const std::uint64_t max_body = route->body == BodyKind::none ? kMaxIgnoredBody : route->max_body;
-    if (length && *length > max_body) co_return co_await refuse(head, *request, too_large(max_body), keep_alive);
-
-    Response admitted = co_await on_worker(connections_, stream_.get_executor(), [this, request, route](const Respond& respond) {
+    if (length && *length > max_body) {
+      response = problem_response(too_large(max_body));
+      co_return co_await refuse(head, *request, response, keep_alive);
+    }
+    const Work admit = [this, request, route](const Respond& respond) {
       auto refused = app_.admit(*request, *route);
       respond(refused ? std::move(*refused) : empty_response(100));
-    });
-    if (admitted.status != 100) co_return co_await refuse(head, *request, std::move(admitted), keep_alive);
+    };
+    response = co_await on_worker(connections_, stream_.get_executor(), admit);
+    if (response.status != 100) co_return co_await refuse(head, *request, response, keep_alive);
 
     if (!head.is_done()) {
-      if (beast::iequals(head.get()[http::field::expect], "100-continue") && !co_await send_continue()) co_return false;
-      auto problem = route->body == BodyKind::file ? co_await read_to_file(head, *request, max_body)
-                                                   : co_await read_to_memory(head, *request, max_body);
-      if (problem) {
+      if (beast::iequals(head.get()[http::field::expect], "100-continue")) {
+        const bool told = co_await send_continue();
+        if (!told) co_return false;
+      }
+      Problem problem;
+      bool is_read = false;
+      if (route->body == BodyKind::file) is_read = co_await read_to_file(head, *request, max_body, problem);
+      else is_read = co_await read_to_memory(head, *request, max_body, problem);
+      if (!is_read) {
         remove_body_file(*request);
-        if (problem->status == 0) co_return false;  // the connection broke
-        co_return co_await send(problem_response(*problem), request->method, false);
+        if (problem.title.empty()) co_return false;  // the connection broke
+        response = problem_response(problem);
+        co_return co_await send(response, request->method, false);
       }
     }
-    Response response = co_await on_worker(connections_, stream_.get_executor(), [this, request, route](const Respond& respond) {
-      app_.handle(*request, *route, respond);
-    });
+    const Work handle = [this, request, route](const Respond& respond) { app_.handle(*request, *route, respond); };
+    response = co_await on_worker(connections_, stream_.get_executor(), handle);
     remove_body_file(*request);
-    co_return co_await send(std::move(response), request->method, keep_alive);
+    co_return co_await send(response, request->method, keep_alive);
   }
 
-  Response too_large(std::uint64_t max_body) {
-    return problem_response({413, "Body too large", "This address takes at most " + std::to_string(max_body) + " bytes.", "body"});
+  static Problem too_large(std::uint64_t max_body) {
+    return {413, "Body too large", "This address takes at most " + std::to_string(max_body) + " bytes.", "body"};
   }
 
   static void remove_body_file(const Request& request) {
@@ -159,16 +179,18 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   // Answers without the body being wanted. A small one is read, so that the connection can go on.
-  asio::awaitable<bool> refuse(http::request_parser<http::empty_body>& head, const Request& request, Response response, bool keep_alive) {
+  asio::awaitable<bool> refuse(http::request_parser<http::empty_body>& head, const Request& request, Response& response, bool keep_alive) {
     const Method method = request.method;
     if (!head.is_done()) {
       const auto length = head.content_length();
       const bool waits = !head.get()[http::field::expect].empty();
-      if (!length || *length > kMaxIgnoredBody || waits) co_return co_await send(std::move(response), method, false);
+      if (!length || *length > kMaxIgnoredBody || waits) co_return co_await send(response, method, false);
       Request ignored;
-      if (co_await read_to_memory(head, ignored, kMaxIgnoredBody)) co_return false;
+      Problem problem;
+      const bool is_read = co_await read_to_memory(head, ignored, kMaxIgnoredBody, problem);
+      if (!is_read) co_return false;
     }
-    co_return co_await send(std::move(response), method, keep_alive);
+    co_return co_await send(response, method, keep_alive);
   }
 
   asio::awaitable<bool> send_continue() {
@@ -178,23 +200,30 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return !error;
   }
 
-  // A problem with status 0 says that the connection broke.
-  asio::awaitable<std::optional<Problem>> read_to_memory(http::request_parser<http::empty_body>& head, Request& request, std::uint64_t max_body) {
+  // False: see the problem; one without a title says that the connection broke.
+  asio::awaitable<bool> read_to_memory(http::request_parser<http::empty_body>& head, Request& request, std::uint64_t max_body,
+                                       Problem& problem) {
     http::request_parser<http::string_body> parser(std::move(head));
     parser.body_limit(boost::none);
     while (!parser.is_done()) {
       stream_.expires_after(kStall);
       auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, use_result);
-      if (error) co_return body_problem(error);
-      if (parser.get().body().size() > max_body)
-        co_return Problem{413, "Body too large", "This address takes at most " + std::to_string(max_body) + " bytes.", "body"};
+      if (error) {
+        problem = body_problem(error);
+        co_return false;
+      }
+      if (parser.get().body().size() > max_body) {
+        problem = too_large(max_body);
+        co_return false;
+      }
     }
     request.body = std::move(parser.get().body());
     request.body_bytes = request.body.size();
-    co_return std::nullopt;
+    co_return true;
   }
 
-  asio::awaitable<std::optional<Problem>> read_to_file(http::request_parser<http::empty_body>& head, Request& request, std::uint64_t max_body) {
+  asio::awaitable<bool> read_to_file(http::request_parser<http::empty_body>& head, Request& request, std::uint64_t max_body,
+                                     Problem& problem) {
     http::request_parser<http::file_body> parser(std::move(head));
     parser.body_limit(boost::none);
     request.body_file = app_.options().upload_dir / (to_string(random_uuid()) + ".body");
@@ -202,29 +231,35 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     parser.get().body().open(request.body_file.c_str(), beast::file_mode::write_new, file_error);
     if (file_error) {
       log::error("upload folder not writable: " + file_error.message());
-      co_return Problem{507, "No room for uploads", "The server cannot write its upload folder: " + file_error.message() + ".", {}};
+      problem = {507, "No room for uploads", "The server cannot write its upload folder: " + file_error.message() + ".", {}};
+      co_return false;
     }
     while (!parser.is_done()) {
       stream_.expires_after(kStall);
       auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, use_result);
-      if (error.category() == beast::system_category() && error == boost::system::errc::no_space_on_device)
-        co_return Problem{507, "Disk full", "The upload does not fit on the server's disk.", "body"};
-      if (error) co_return body_problem(error);
+      if (error) {
+        problem = error == boost::system::errc::no_space_on_device
+                      ? Problem{507, "Disk full", "The upload does not fit on the server's disk.", "body"}
+                      : body_problem(error);
+        co_return false;
+      }
       request.body_bytes += size;
-      if (request.body_bytes > max_body)
-        co_return Problem{413, "Body too large", "This address takes at most " + std::to_string(max_body) + " bytes.", "body"};
+      if (request.body_bytes > max_body) {
+        problem = too_large(max_body);
+        co_return false;
+      }
     }
     parser.get().body().close();
     std::error_code size_error;
     request.body_bytes = std::filesystem::file_size(request.body_file, size_error);  // without a chunked body's framing
-    co_return std::nullopt;
+    co_return true;
   }
 
   static Problem body_problem(beast::error_code error) {
     const bool malformed = error.category() == http::make_error_code(http::error::bad_chunk).category() &&
                            error != http::error::partial_message && error != http::error::end_of_stream;
     if (malformed) return {400, "Malformed body", "The body does not follow its framing: " + error.message() + ".", "body"};
-    return {0, {}, {}, {}};
+    return {};
   }
 
   template <class Body>
@@ -252,7 +287,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   // False: the connection ends.
-  asio::awaitable<bool> send(Response response, Method method, bool keep_alive) {
+  asio::awaitable<bool> send(Response& response, Method method, bool keep_alive) {
     app_.metrics().count_request(response.status);
     if (response.stream) co_return co_await send_stream(response, method, keep_alive);
     if (!response.file.empty()) {
@@ -286,19 +321,23 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   asio::awaitable<bool> send_stream(Response& response, Method method, bool keep_alive) {
     if (method == Method::head) co_return co_await send_head(response, response.stream->length, keep_alive);
     const CountAtWork counted(connections_->streams_at_work);
-    if (connections_->streams_at_work > std::max(1, app_.options().worker_threads / 2))
-      co_return co_await send(problem_response({503, "Too many downloads", "Ask again when another download has ended.", {}}), method, keep_alive);
-    if (!co_await send_head(response, response.stream->length, true)) co_return false;
+    if (connections_->streams_at_work > std::max(1, app_.options().worker_threads / 2)) {
+      Response refusal = problem_response({503, "Too many downloads", "Ask again when another download has ended.", {}});
+      co_return co_await send(refusal, method, keep_alive);
+    }
+    const bool head_sent = co_await send_head(response, response.stream->length, true);
+    if (!head_sent) co_return false;
     auto sent = std::make_shared<std::uint64_t>(0);
     auto stream = *response.stream;
-    Response done = co_await on_worker(connections_, stream_.get_executor(), [this, self = shared_from_this(), stream, sent](const Respond& respond) {
+    const Work pump = [this, self = shared_from_this(), stream, sent](const Respond& respond) {
       stream.write([&](std::span<const std::uint8_t> bytes) {
         if (*sent + bytes.size() > stream.length || !send_piece(bytes)) return false;
         *sent += bytes.size();
         return true;
       });
       respond(empty_response(200));
-    });
+    };
+    const Response done = co_await on_worker(connections_, stream_.get_executor(), pump);
     co_return done.status == 200 && *sent == response.stream->length && keep_alive;
   }
 
@@ -317,19 +356,22 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     return future.get();
   }
 
-  asio::awaitable<bool> upgrade(http::request_parser<http::empty_body>& head, std::shared_ptr<Request> request) {
+  asio::awaitable<bool> upgrade(http::request_parser<http::empty_body>& head, const std::shared_ptr<Request>& request) {
     http::token_list offered(head.get()[http::field::sec_websocket_protocol]);
-    if (!offered.exists(kSubprotocol))
-      co_return co_await send(problem_response({400, "Subprotocol missing", "Live connections speak strata.v1: name it in Sec-WebSocket-Protocol.", "Sec-WebSocket-Protocol"}),
-                              Method::get, false);
+    Response response;
+    if (!offered.exists(kSubprotocol)) {
+      response = problem_response({400, "Subprotocol missing", "Live connections speak strata.v1: name it in Sec-WebSocket-Protocol.", "Sec-WebSocket-Protocol"});
+      co_return co_await send(response, Method::get, false);
+    }
     auto entry = std::make_shared<App::LiveEntry>();
-    Response admitted = co_await on_worker(connections_, stream_.get_executor(), [this, request, entry](const Respond& respond) {
+    const Work admit = [this, request, entry](const Respond& respond) {
       auto may_enter = app_.admit_live(*request);
       if (!may_enter) return respond(may_enter.error());
       *entry = std::move(*may_enter);
       respond(empty_response(101));
-    });
-    if (admitted.status != 101) co_return co_await send(std::move(admitted), Method::get, false);
+    };
+    response = co_await on_worker(connections_, stream_.get_executor(), admit);
+    if (response.status != 101) co_return co_await send(response, Method::get, false);
     app_.metrics().count_request(101);
     handed_over_ = true;
     stream_.expires_never();

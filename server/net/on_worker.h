@@ -4,6 +4,7 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -11,20 +12,23 @@
 
 namespace strata::net {
 
+using Work = std::function<void(const Respond&)>;
+
 // Runs `work(respond)` on a worker and comes back to `executor` with the answer; 503 when too much waits.
-template <class Executor, class Work>
-boost::asio::awaitable<Response> on_worker(std::shared_ptr<Connections> connections, Executor executor, Work work) {
+// Give it a named function, not a lambda written into the co_await: GCC 12 destroys captures of such temporaries twice.
+template <class Executor>
+boost::asio::awaitable<Response> on_worker(const std::shared_ptr<Connections>& connections, Executor executor, const Work& work) {
   namespace asio = boost::asio;
-  auto initiate = [connections, executor, work = std::move(work)](auto handler) mutable {
+  auto initiate = [connections, executor, work](auto handler) {
     auto waiting = std::make_shared<decltype(handler)>(std::move(handler));
     Respond respond([io = connections->io.lock(), executor, waiting](Response response) {
       asio::post(executor, [waiting, response = std::move(response)]() mutable { std::move (*waiting)(std::move(response)); });
     });
     auto& workers = connections->app.workers();
-    if (!workers.post([work = std::move(work), respond] { work(respond); }))
+    if (!workers.post([work, respond] { work(respond); }))
       respond(Problem{503, "Too busy", "Too many requests wait; ask again in a moment.", {}});
   };
-  co_return co_await asio::async_initiate<const asio::use_awaitable_t<>, void(Response)>(std::move(initiate), asio::use_awaitable);
+  return asio::async_initiate<const asio::use_awaitable_t<>, void(Response)>(std::move(initiate), asio::use_awaitable);
 }
 
 }  // namespace strata::net

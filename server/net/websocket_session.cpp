@@ -99,10 +99,11 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
       } else if (!ws_.got_text()) {
         live_->on_binary();
       } else if (auto work = live_->on_text(beast::buffers_to_string(buffer.data()))) {
-        Response done = co_await on_worker(connections_, ws_.get_executor(), [work = std::move(work)](const Respond& respond) {
+        const Work run_it = [work](const Respond& respond) {
           work();
           respond(empty_response(200));
-        });
+        };
+        const Response done = co_await on_worker(connections_, ws_.get_executor(), run_it);
         if (done.status != 200) start_close(kCloseTryAgain, "server too busy");
       }
       buffer.consume(buffer.size());
