@@ -178,9 +178,7 @@ export class ModelSession {
   private fit_at_first(): void {
     if (this.fitted_ || !this.model || this.camera.width <= 1) return;
     this.fitted_ = true;
-    this.camera.azimuth = 0.5;
-    this.camera.elevation = 0.3;
-    this.camera.fit();
+    this.camera.first_view();
     this.camera_moved(false);
   }
 

@@ -4,7 +4,7 @@
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
-import { format_size, metres_per } from "../core/measure";
+import { format_size, likely_unit, metres_per } from "../core/measure";
 import type { Model, Unit } from "../core/types";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
@@ -41,7 +41,7 @@ export class StrataScaleDialog extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     if (!this.session.model) return;
-    this.unit_ = this.session.model.unit;
+    this.unit_ = likely_unit(this.session.model);
     this.up_ = this.session.model.up;
   }
 

@@ -70,9 +70,7 @@ export class StrataThumbnail extends LitElement {
     const camera = new OrbitCamera();
     camera.set_model(this.model.bounds, this.model.up);
     camera.resize(kWidth, kHeight);
-    camera.azimuth = 0.5;
-    camera.elevation = 0.3;
-    camera.fit();
+    camera.first_view();
     try {
       const bitmap = await createImageBitmap(await this.api.frame(this.model.id, camera.message()));
       this.canvas_.width = bitmap.width;

@@ -93,6 +93,13 @@ export class OrbitCamera {
     this.distance = Math.max(distance * kFitMargin, bounding_radius(this.bounds_) * kMinZoom);
   }
 
+  /** A little from the right and above: shows that the thing is solid. */
+  first_view(): void {
+    this.azimuth = 0.4;
+    this.elevation = 0.18;
+    this.fit();
+  }
+
   standard_view(view: StandardView): void {
     const quarter = Math.PI / 2;
     const angles: Record<StandardView, [number, number]> = {

@@ -1,6 +1,6 @@
 // Lengths, areas and numbers as people write them, and the smallest detail a layer can hold.
 
-import type { Atlas, Unit } from "./types";
+import type { Atlas, Model, Unit } from "./types";
 
 export const metres_per = (unit: Unit): number => ({ mm: 0.001, cm: 0.01, m: 1 })[unit];
 
@@ -41,6 +41,19 @@ export function format_size(sides_in_metres: readonly number[]): string {
     return value >= 100 ? Math.round(value).toLocaleString("en-GB") : format_number(value);
   };
   return `${sides_in_metres.map(side).join(" × ")} ${unit}`;
+}
+
+/**
+ * The likeliest unit of a file that names none, for the question after import: an object "239 units" long is one of
+ * millimetres, unless it lies far from zero, as surveyed sites do.
+ */
+export function likely_unit(model: Pick<Model, "unit" | "unit_assumed" | "crs" | "bounds">): Unit {
+  const { min, max } = model.bounds;
+  const axes = [0, 1, 2];
+  const longest = Math.max(...axes.map((axis) => max[axis]! - min[axis]!));
+  const farthest = Math.max(...axes.map((axis) => Math.max(Math.abs(min[axis]!), Math.abs(max[axis]!))));
+  const surveyed = model.crs !== "" || farthest > Math.max(10_000, 20 * longest);
+  return model.unit_assumed && !surveyed && longest > 20 ? "mm" : model.unit;
 }
 
 export function format_bytes(bytes: number): string {
