@@ -21,6 +21,10 @@ import "./thumbnail";
 
 let imports: Imports | null = null;
 
+/** The server's name of a step of the import, where it is one that people know. */
+const plain_step = (message: string): string =>
+  /\b(atlas|texels?|uvs?|charts?)\b/i.test(message) ? texts.import.unfolding : message;
+
 @customElement("strata-home-page")
 export class StrataHomePage extends LitElement {
   @property({ attribute: false }) api!: Api;
@@ -153,7 +157,7 @@ export class StrataHomePage extends LitElement {
         ? words.uploading(`${Math.round(entry.progress * 100)} %`)
         : entry.state === "failed"
           ? [entry.problem?.title ?? words.failed, entry.problem?.detail].filter(Boolean).join(". ")
-          : entry.message || words[entry.state];
+          : plain_step(entry.message) || words[entry.state];
     return html`<div class="import ${entry.state}">
       <div class="grow">
         <b class="ellipsis">${entry.name}</b>
@@ -189,7 +193,13 @@ export class StrataHomePage extends LitElement {
 
   private async import_files(dropped: File[]): Promise<void> {
     const files = choose_scans(dropped);
-    const done = await Promise.all(files.map((file) => this.imports_.start(file)));
+    const done = await Promise.all(
+      files.map(async (file) => {
+        const model = await this.imports_.start(file);
+        if (model !== null && files.length > 1 && this.isConnected) await this.load();
+        return model;
+      }),
+    );
     const models = done.filter((model): model is number => model !== null);
     if (!this.isConnected) return;
     if (files.length === 1 && models.length === 1) navigate(path_of_model(models[0]!));

@@ -87,7 +87,7 @@ export class ModelSession {
           this.saving = state;
           this.changed();
         },
-        applied: () => {},
+        applied: () => this.pick_again(),
         saved: () => {},
         layer: (event) => this.on_layer(event),
         model: (event) => this.on_model(event),
@@ -250,6 +250,11 @@ export class ModelSession {
   private pick_at(sample: PointerSample, take: boolean): void {
     this.pick_waiting_ = { sample, take: take || (this.pick_waiting_?.take ?? false) };
     this.send_pick();
+  }
+
+  /** What is under the resting pointer may have changed. */
+  private pick_again(): void {
+    if (this.pointer && !this.pick_waiting_) this.pick_at(this.pointer, false);
   }
 
   private send_pick(): void {
@@ -543,6 +548,7 @@ export class ModelSession {
       this.layers = this.layers.map((layer) =>
         layer.id === event.layer_id ? { ...layer, sequence: event.sequence ?? layer.sequence } : layer,
       );
+      this.pick_again();
     }
     this.changed();
   }

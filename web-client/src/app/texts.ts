@@ -47,6 +47,7 @@ export const texts = {
     uploading: (share: string) => `Uploading ${share}`,
     queued: "Waiting for its turn",
     running: "Preparing",
+    unfolding: "Laying the surface out flat",
     done: "Ready",
     failed: "Not imported",
     cancelled: "Cancelled",
