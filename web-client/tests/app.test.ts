@@ -1,8 +1,9 @@
-import { describe, expect, it } from "vitest";
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { BrushSettings, describe_value, value_problem } from "../src/app/brush-settings";
 import { choose_scans } from "../src/app/imports";
 import { notices } from "../src/app/notices";
+import { PickProbe } from "../src/app/pick-probe";
 import { route_of } from "../src/app/routes";
 import { texts } from "../src/app/texts";
 import { class_palette, measurement_palette, presence_palette } from "../src/core/palette";
@@ -89,5 +90,62 @@ describe("the page's words", () => {
     : ""; // prettier-ignore
   it("are those of people who study objects", () => {
     expect(all(texts)).not.toMatch(/texel|atlas|\bu8\b|\bf32\b|shader|websocket/i);
+  });
+});
+
+describe("the probe under the pointer", () => {
+  beforeEach(() => void vi.useFakeTimers());
+  afterEach(() => void vi.useRealTimers());
+
+  const setup = () => {
+    const asked: { id: string; x: number }[] = [];
+    const answered: [number | undefined, boolean][] = [];
+    const probe = new PickProbe({
+      ready: () => true,
+      ask: (id, { x }) => void asked.push({ id, x }),
+      answered: (message, take) => void answered.push([message.position?.[0], take]),
+    });
+    const answer = (id: string, x: number): void => probe.answer({ op: "picked", id, hit: true, position: [x, 0, 0] });
+    return { asked, answered, probe, answer };
+  };
+
+  it("asks one question at a time, and the newest place next", () => {
+    const { asked, probe, answer } = setup();
+    for (const x of [1, 2, 3]) probe.ask({ x, y: 0 });
+    vi.advanceTimersByTime(500);
+    expect(asked.map(({ x }) => x)).toEqual([1]);
+    answer(asked[0]!.id, 1);
+    expect(asked.map(({ x }) => x)).toEqual([1, 3]);
+  });
+  it("asks no more often than every 60 ms", () => {
+    const { asked, probe, answer } = setup();
+    probe.ask({ x: 1, y: 0 });
+    answer(asked[0]!.id, 1);
+    probe.ask({ x: 2, y: 0 });
+    expect(asked.length).toBe(1);
+    vi.advanceTimersByTime(70);
+    expect(asked.length).toBe(2);
+  });
+  it("a press is not forgotten when the pointer moves on before the question leaves", () => {
+    const { asked, answered, probe, answer } = setup();
+    probe.ask({ x: 1, y: 0 });
+    probe.ask({ x: 2, y: 0 }, true);
+    probe.ask({ x: 3, y: 0 });
+    vi.advanceTimersByTime(70);
+    answer(asked[0]!.id, 1);
+    answer("another's question", 9);
+    answer(asked[1]!.id, 3);
+    expect(answered).toEqual([[1, false], [3, true]]); // prettier-ignore
+  });
+  it("an answer that never comes, or a refusal, does not stop it", () => {
+    const { asked, probe } = setup();
+    probe.ask({ x: 1, y: 0 });
+    vi.advanceTimersByTime(2100);
+    probe.ask({ x: 2, y: 0 });
+    expect(probe.refused("something else")).toBe(false);
+    expect(probe.refused(asked[1]!.id)).toBe(true);
+    vi.advanceTimersByTime(70);
+    probe.ask({ x: 3, y: 0 });
+    expect(asked.map(({ x }) => x)).toEqual([1, 2, 3]);
   });
 });

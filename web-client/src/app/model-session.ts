@@ -16,6 +16,7 @@ import type { ToolName } from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
 import { BrushSettings, describe_value, value_problem } from "./brush-settings";
 import { notices } from "./notices";
+import { PickProbe } from "./pick-probe";
 import { texts } from "./texts";
 
 interface Override {
@@ -24,8 +25,6 @@ interface Override {
 }
 
 const kStillAfter_ms = 120; // without input the camera counts as still
-const kPickEvery_ms = 60;
-const kPickTimeout_ms = 2000;
 const kPresenceEvery_ms = 100;
 
 export class ModelSession {
@@ -60,9 +59,11 @@ export class ModelSession {
   private was_open_ = false;
   private depth_: number | null = null; // of the last surface point seen under the pointer
   private still_timer_: ReturnType<typeof setTimeout> | null = null;
-  private pick_sent_: { id: string; at_ms: number; take: boolean } | null = null;
-  private pick_waiting_: { sample: PointerSample; take: boolean } | null = null;
-  private pick_timer_: ReturnType<typeof setTimeout> | null = null;
+  private readonly probe_ = new PickProbe({
+    ready: () => this.connection_state === "open",
+    ask: (id, { x, y }) => this.connection_.pick(id, x, y),
+    answered: (message, take) => this.on_picked(message, take),
+  });
   private presence_timer_: ReturnType<typeof setTimeout> | null = null;
 
   constructor(
@@ -87,7 +88,7 @@ export class ModelSession {
           this.saving = state;
           this.changed();
         },
-        applied: () => this.pick_again(),
+        applied: () => this.probe_.ask_again(this.pointer),
         saved: () => {},
         layer: (event) => this.on_layer(event),
         model: (event) => this.on_model(event),
@@ -96,7 +97,7 @@ export class ModelSession {
           this.users = message.users;
           this.changed();
         },
-        picked: (message) => this.on_picked(message),
+        picked: (message) => this.probe_.answer(message),
         problem: (problem) => this.on_problem(problem),
       },
     );
@@ -115,7 +116,7 @@ export class ModelSession {
         new PanTool(this.gestures),
         new BrushTool("brush", brush_host),
         new BrushTool("eraser", brush_host),
-        new PickTool((sample) => this.pick_at(sample, true)),
+        new PickTool((sample) => this.probe_.ask(sample, true)),
       ],
       "orbit",
       () => this.changed(),
@@ -147,7 +148,8 @@ export class ModelSession {
   }
 
   close(): void {
-    for (const timer of [this.still_timer_, this.pick_timer_, this.presence_timer_]) if (timer) clearTimeout(timer);
+    for (const timer of [this.still_timer_, this.presence_timer_]) if (timer) clearTimeout(timer);
+    this.probe_.stop();
     this.connection_.close();
     this.listeners_.clear();
   }
@@ -216,7 +218,7 @@ export class ModelSession {
       this.still_timer_ = setTimeout(() => {
         this.still_timer_ = null;
         this.connection_.set_camera(this.camera.message(), false);
-        if (this.pointer) this.pick_at(this.pointer, false);
+        this.probe_.ask_again(this.pointer);
       }, kStillAfter_ms);
     }
     this.changed();
@@ -232,7 +234,7 @@ export class ModelSession {
 
   private hover(sample: PointerSample | null): void {
     this.pointer = sample;
-    if (sample) this.pick_at(sample, false);
+    if (sample) this.probe_.ask(sample);
     else this.picked = null;
     this.schedule_presence();
     this.changed();
@@ -246,43 +248,14 @@ export class ModelSession {
     }, kPresenceEvery_ms);
   }
 
-  /** `take`: the selected layer's value goes onto the brush. */
-  private pick_at(sample: PointerSample, take: boolean): void {
-    this.pick_waiting_ = { sample, take: take || (this.pick_waiting_?.take ?? false) };
-    this.send_pick();
-  }
-
-  /** What is under the resting pointer may have changed. */
-  private pick_again(): void {
-    if (this.pointer && !this.pick_waiting_) this.pick_at(this.pointer, false);
-  }
-
-  private send_pick(): void {
-    const waiting = this.pick_waiting_;
-    if (!waiting || this.pick_timer_ || this.connection_state !== "open") return;
-    const now_ms = performance.now();
-    const sent = this.pick_sent_;
-    if (sent && now_ms - sent.at_ms < kPickTimeout_ms) return; // its answer sends the next
-    this.pick_waiting_ = null;
-    this.pick_sent_ = { id: new_id(), at_ms: now_ms, take: waiting.take };
-    this.connection_.pick(this.pick_sent_.id, waiting.sample.x, waiting.sample.y);
-    this.pick_timer_ = setTimeout(() => {
-      this.pick_timer_ = null;
-      this.send_pick();
-    }, kPickEvery_ms);
-  }
-
-  private on_picked(message: Picked): void {
-    const sent = this.pick_sent_;
-    if (!sent || message.id !== sent.id) return;
-    this.pick_sent_ = null;
-    if (this.pointer || sent.take) this.picked = message;
+  private on_picked(message: Picked, take: boolean): void {
+    if (this.pointer || take) this.picked = message;
     if (message.hit && message.position) this.depth_ = this.camera.depth_of(message.position);
-    if (sent.take) this.take_picked(message);
-    this.send_pick();
+    if (take) this.take_picked(message);
     this.changed();
   }
 
+  /** The selected layer's value goes onto the brush. */
   private take_picked(message: Picked): void {
     const layer = this.selected_layer;
     if (!layer || !message.hit) return;
@@ -519,7 +492,7 @@ export class ModelSession {
     this.connection_state = state;
     if (state !== "open") {
       this.users = [];
-      this.pick_sent_ = null;
+      this.probe_.reset();
       this.on_reset_frames();
     }
     this.changed();
@@ -548,7 +521,7 @@ export class ModelSession {
       this.layers = this.layers.map((layer) =>
         layer.id === event.layer_id ? { ...layer, sequence: event.sequence ?? layer.sequence } : layer,
       );
-      this.pick_again();
+      this.probe_.ask_again(this.pointer);
     }
     this.changed();
   }
@@ -564,10 +537,6 @@ export class ModelSession {
   }
 
   private on_problem(problem: Omit<ProblemMessage, "op">): void {
-    if (problem.ref !== undefined && problem.ref === this.pick_sent_?.id) {
-      this.pick_sent_ = null;
-      return; // the next move of the pointer asks again
-    }
-    notices.problem(problem);
+    if (!this.probe_.refused(problem.ref)) notices.problem(problem);
   }
 }

@@ -1,0 +1,73 @@
+// Asks the server what is under the pointer: one question at a time, the newest place wins, and not too often.
+
+import { new_id } from "../core/api";
+import type { PointerSample } from "../core/input";
+import type { Picked } from "../core/protocol.gen";
+
+const kAskEvery_ms = 60;
+const kGiveUpAfter_ms = 2000;
+
+export interface PickProbeHost {
+  ready(): boolean;
+  ask(id: string, sample: PointerSample): void;
+  /** `take`: somebody pressed here to take the value. */
+  answered(message: Picked, take: boolean): void;
+}
+
+export class PickProbe {
+  private asked_: { id: string; at_ms: number; take: boolean } | null = null;
+  private waiting_: { sample: PointerSample; take: boolean } | null = null;
+  private timer_: ReturnType<typeof setTimeout> | null = null;
+
+  constructor(private readonly host_: PickProbeHost) {}
+
+  ask(sample: PointerSample, take = false): void {
+    this.waiting_ = { sample, take: take || (this.waiting_?.take ?? false) };
+    this.send();
+  }
+
+  /** The surface may have changed under a pointer that rests. */
+  ask_again(sample: PointerSample | null): void {
+    if (sample && !this.waiting_) this.ask(sample);
+  }
+
+  answer(message: Picked): void {
+    const asked = this.asked_;
+    if (!asked || message.id !== asked.id) return;
+    this.asked_ = null;
+    this.host_.answered(message, asked.take);
+    this.send();
+  }
+
+  /** True when the refusal is of this probe's question; the next move of the pointer asks anew. */
+  refused(ref: string | undefined): boolean {
+    if (ref === undefined || ref !== this.asked_?.id) return false;
+    this.asked_ = null;
+    return true;
+  }
+
+  /** The connection is gone, and the answer with it. */
+  reset(): void {
+    this.asked_ = null;
+  }
+
+  stop(): void {
+    if (this.timer_) clearTimeout(this.timer_);
+    this.timer_ = null;
+    this.waiting_ = this.asked_ = null;
+  }
+
+  private send(): void {
+    const waiting = this.waiting_;
+    if (!waiting || this.timer_ || !this.host_.ready()) return;
+    const now_ms = performance.now();
+    if (this.asked_ && now_ms - this.asked_.at_ms < kGiveUpAfter_ms) return; // its answer sends the next
+    this.waiting_ = null;
+    this.asked_ = { id: new_id(), at_ms: now_ms, take: waiting.take };
+    this.host_.ask(this.asked_.id, waiting.sample);
+    this.timer_ = setTimeout(() => {
+      this.timer_ = null;
+      this.send();
+    }, kAskEvery_ms);
+  }
+}
