@@ -107,6 +107,9 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
     if (!sent) return give_up(sent.error());
   }
 
+  edit.bytes_up = sizeof uniforms + blocks.size() * sizeof(shader::EditBlock) + path.segments.size() * sizeof(shader::EditSegment) +
+                  candidates.segment_lists.size() * sizeof(std::uint32_t);
+
   const gl::Program& program = programs_[width_index(layer.pool().texel_bytes())];
   program.use();
   uniforms_.bind_uniform(0);

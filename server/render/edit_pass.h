@@ -17,9 +17,9 @@ namespace strata::render {
 
 // The slope-aware bias lets a texel pass that lies behind the depth buffer by this share of the model's diagonal (scan noise
 // within a pixel), plus the depth that the surface's own slope makes within half a pixel, up to so many times the first.
-constexpr double kDepthBiasOfDiagonal = 1e-4;
-constexpr double kDepthBiasSlopeFactor = 1.0;
-constexpr double kDepthBiasSlopeLimit = 24.0;
+constexpr double kDepthBiasOfDiagonal = 1.5e-4;
+constexpr double kDepthBiasSlopeFactor = 1.5;
+constexpr double kDepthBiasSlopeLimit = 64.0;
 // The paper's "small bias", in window depth; used where the options ask for it.
 constexpr double kPaperDepthBias = 2e-4;
 
@@ -29,6 +29,7 @@ DepthBias slope_aware_bias(const Camera& camera, double model_diagonal);
 struct DispatchedEdit {
   gl::Readback rows;
   std::vector<CandidateBlock> blocks;
+  std::size_t bytes_up = 0;
   std::vector<TileAddress> fresh_tiles;  // pages were made for these
 };
 

@@ -108,6 +108,7 @@ Result<void> PaintJob::dispatch(GpuScene& scene, GpuScene::Layer& layer) {
                                          *layer.textures, scene.tables());
   if (!edit) return tl::unexpected(edit.error());
   edit_ = std::move(*edit);
+  outcome_.bytes_up = edit_.bytes_up;
   outcome_.dispatch_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   return {};
 }

@@ -50,6 +50,7 @@ struct StrokeOutcome {
   double gpu_ms = 0;       // of the dispatch, by timer query
   double cull_ms = 0;      // choosing the blocks, on the CPU
   double dispatch_ms = 0;  // from the start of culling until the commands were given
+  std::size_t bytes_up = 0;  // blocks and parameters sent for the dispatch
 };
 
 struct TileUpload {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace strata::bench {
+
+using Command = std::function<int()>;
+Command add_edit(CLI::App& app);
+Command add_import(CLI::App& app);
+Command add_query(CLI::App& app);
+Command add_stream(CLI::App& app);
+
+}  // namespace strata::bench

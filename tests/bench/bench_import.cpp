@@ -1,0 +1,92 @@
+// From a file to the first frame, and from a stopped server with a painted site to the first frame.
+#include <iostream>
+
+#include "bench/bench_commands.h"
+#include "bench/harness.h"
+#include "jobs/import_job.h"
+
+namespace strata::bench {
+namespace {
+
+struct Options {
+  std::string model = "excavation", cache = "build/bench", json;
+  int layers = 3, resolution = 4096;
+};
+
+render::Frame first_frame(Site& site, const std::string& model) {
+  auto room = must(site.rooms->open(model));
+  const Model info = room->model();
+  mesh::Geometry box;
+  box.origin = (info.bounds_min + info.bounds_max) * 0.5;
+  box.box_min = glm::vec3(info.bounds_min - box.origin);
+  box.box_max = glm::vec3(info.bounds_max - box.origin);
+  return must(room->picture(look_at(box, {0.4, -1, 0.6}, 1280, 720), {}));
+}
+
+int run(const Options& options) {
+  Site site;
+  jobs::ImportRequest request;
+  request.file = mesh_file(options.model, options.cache);
+  request.filename = request.file.filename().string();
+  Progress progress;
+
+  double start = now_ms();
+  const Model model = must(jobs::import_model(*site.store, request, progress));
+  const double import_ms = now_ms() - start;
+  first_frame(site, model.slug);
+  const double import_to_frame_ms = now_ms() - start;
+
+  // Paint every layer, so that a restart has something to load.
+  auto room = must(site.rooms->open(model.slug));
+  for (int i = 0; i < options.layers; ++i) {
+    Layer layer;
+    layer.name = layer.slug = "layer-" + std::to_string(i);
+    layer.type = ValueType::u8;
+    layer.resolution = options.resolution;
+    layer.palette = default_palette(layer.type, false);
+    layer.opacity = 0.6;
+    layer = must(room->create_layer(layer));
+    edit_and_wait(*room, {random_uuid(), "bench", layer.id, room::FillEdit{false, std::uint32_t(20 + 30 * i)}, {{"op", "fill"}}});
+  }
+  room.reset();
+
+  start = now_ms();
+  site.restart();
+  const double ready_ms = now_ms() - start;
+  first_frame(site, model.slug);
+  const double restart_ms = now_ms() - start;
+
+  const auto gpu = site.renderer->info();
+  const nlohmann::json result{{"method", "import"},
+                              {"model", options.model},
+                              {"triangles", model.triangles},
+                              {"atlas", to_json(model.atlas, model.metres())},
+                              {"import_ms", import_ms},
+                              {"import_to_first_frame_ms", import_to_frame_ms},
+                              {"layers", options.layers},
+                              {"texture", options.resolution},
+                              {"restart_ready_ms", ready_ms},
+                              {"restart_to_first_frame_ms", restart_ms}};
+  std::printf("%s: %llu triangles, %d charts, %.1f %% of texels used\n", options.model.c_str(),
+              static_cast<unsigned long long>(model.triangles), model.atlas.charts, model.atlas.coverage * 100);
+  std::printf("import %.2f s, to the first frame %.2f s\n", import_ms / 1000, import_to_frame_ms / 1000);
+  std::printf("restart with %d painted %d² layers: ready %.2f s, first frame %.2f s\n", options.layers, options.resolution,
+              ready_ms / 1000, restart_ms / 1000);
+  write_result(options.json, machine(&gpu), nlohmann::json::array({result}));
+  return 0;
+}
+
+}  // namespace
+
+Command add_import(CLI::App& app) {
+  auto* command = app.add_subcommand("import", "Import to first frame, and restart with painted layers to first frame");
+  auto options = std::make_shared<Options>();
+  command->add_option("--model", options->model, "vessel, excavation, amazon, thai, or a file")->capture_default_str();
+  command->add_option("--layers", options->layers, "Painted layers at the restart")->capture_default_str();
+  command->add_option("--texture", options->resolution, "Their resolution")->capture_default_str();
+  command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();
+  command->add_option("--json", options->json, "Write the results here");
+  return [options] { return run(*options); };
+}
+
+}  // namespace strata::bench

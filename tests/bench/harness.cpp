@@ -1,0 +1,192 @@
+#include "bench/harness.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <future>
+#include <glm/gtc/matrix_transform.hpp>
+#include <iostream>
+#include <thread>
+
+#include "mesh/demo_pot.h"
+#include "mesh/load.h"
+
+namespace strata::bench {
+namespace {
+
+std::string first_line_of(const char* command) {
+  std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command, "r"), &pclose);
+  char line[256] = "";
+  if (pipe && std::fgets(line, sizeof line, pipe.get())) {
+    std::string text = line;
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    return text;
+  }
+  return "";
+}
+
+std::string cpu_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+[[noreturn]] void stop(const std::string& why) {
+  std::cerr << "strata-bench: " << why << std::endl;
+  std::exit(1);
+}
+
+bool is_preset(const std::string& name) {
+  return name == "vessel" || name == "excavation" || name == "amazon" || name == "thai";
+}
+
+mesh::TriangleMesh pot_of(const std::string& name) {
+  const auto colon = name.find(':');
+  if (colon == std::string::npos) return mesh::make_demo_pot();
+  const double wanted = std::stod(name.substr(colon + 1));
+  const double at_one = double(mesh::make_demo_pot().triangle_count());
+  return mesh::make_demo_pot(wanted / at_one);
+}
+
+}  // namespace
+
+double now_ms() {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double Samples::quantile(double share) const {
+  auto sorted = values_;
+  std::sort(sorted.begin(), sorted.end());
+  return sorted.at(std::min(sorted.size() - 1, static_cast<std::size_t>(share * double(sorted.size()))));
+}
+
+nlohmann::json Samples::json() const {
+  return {{"ms_median", median()},
+          {"ms_min", quantile(0)},
+          {"ms_max", quantile(1)},
+          {"ms_p95", quantile(0.95)},
+          {"runs", values_.size()}};
+}
+
+nlohmann::json machine(const render::GpuInfo* gpu) {
+  nlohmann::json json{{"cpu", cpu_name()}, {"cores", std::thread::hardware_concurrency()}};
+  const char* commit = std::getenv("STRATA_COMMIT");
+  json["commit"] = commit ? commit : first_line_of("git rev-parse --short HEAD 2>/dev/null");
+  if (gpu) {
+    json["gl_renderer"] = gpu->renderer;
+    json["driver"] = gpu->version;
+  }
+  return json;
+}
+
+void write_result(const std::string& json_file, const nlohmann::json& machine, const nlohmann::json& results) {
+  if (json_file.empty()) return;
+  std::ofstream out(json_file);
+  out << nlohmann::json{{"machine", machine}, {"results", results}}.dump(2) << "\n";
+  if (!out) stop("cannot write " + json_file);
+}
+
+std::filesystem::path mesh_file(const std::string& name, const std::filesystem::path& cache) {
+  if (!is_preset(name)) {
+    if (!std::filesystem::exists(name)) stop("no such file or model: " + name + " (pot, pot:N, vessel, excavation, amazon, thai, or a file)");
+    return name;
+  }
+  const auto file = cache / (name + ".ply");
+  if (std::filesystem::exists(file)) return file;
+  const std::filesystem::path maker = std::filesystem::path(STRATA_TEST_DATA) / "make_big_mesh.py";
+  if (!std::filesystem::exists(maker)) stop("the preset " + name + " needs " + maker.string() + "; use pot:N or a file instead");
+  std::filesystem::create_directories(cache);
+  const std::string command = "python3 '" + maker.string() + "' --preset " + name + " -o '" + file.string() + "' >&2";
+  if (std::system(command.c_str()) != 0) stop("could not make the preset " + name + " (it needs python3 with numpy)");
+  return file;
+}
+
+BenchMesh load_bench_mesh(const std::string& name, const std::filesystem::path& cache) {
+  BenchMesh bench{name, {}, nullptr, 0};
+  Progress progress;
+  mesh::TriangleMesh mesh;
+  if (name == "pot" || name.starts_with("pot:")) {
+    mesh = pot_of(name);
+  } else {
+    bench.file = mesh_file(name, cache);
+    mesh = must(mesh::load_mesh(bench.file, bench.file.filename().string(), progress)).mesh;
+  }
+  mesh::Atlas atlas;
+  if (auto kept = mesh.corner_uvs.empty() ? fail(0, "", "") : mesh::keep_uvs(mesh, 2048, progress))
+    atlas = std::move(*kept);
+  else
+    atlas = must(mesh::make_atlas(mesh, 2048, progress));
+  bench.area = mesh::surface_area(mesh);
+  bench.geometry = std::make_shared<const mesh::Geometry>(mesh::build_geometry(mesh, atlas));
+  return bench;
+}
+
+std::unique_ptr<render::Renderer> start_renderer() {
+  render::RendererOptions options;
+  const char* shaders = std::getenv("STRATA_SHADERS");
+  options.shader_dir = shaders ? shaders : STRATA_SHADER_DIR;
+  return must(render::Renderer::start(options));
+}
+
+Camera look_at(const mesh::Geometry& geometry, glm::dvec3 from, int width, int height) {
+  const glm::dvec3 center = geometry.origin + glm::dvec3(geometry.box_min + geometry.box_max) * 0.5;
+  const double radius = glm::length(glm::dvec3(geometry.box_max - geometry.box_min)) * 0.5;
+  const glm::dvec3 direction = glm::normalize(from);
+  const glm::dvec3 up = std::abs(direction.z) > 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+  const double distance = radius * 2.4;
+  return {glm::lookAt(center + direction * distance, center, up),
+          glm::perspective(glm::radians(45.0), double(width) / height, distance - radius * 1.2, distance + radius * 1.2), width, height};
+}
+
+Site::Site() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "strata-bench-XXXXXX").string();
+  if (!mkdtemp(pattern.data())) stop("cannot make a temporary folder");
+  folder = pattern;
+  std::filesystem::permissions(folder, std::filesystem::perms::owner_all | std::filesystem::perms::others_exec |
+                                           std::filesystem::perms::group_exec);
+  cluster = must(store::Cluster::start(folder / "data"));
+  restart();
+}
+
+Site::~Site() {
+  rooms.reset();
+  encoder.reset();
+  renderer.reset();
+  store.reset();
+  cluster.reset();
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
+}
+
+void Site::restart() {
+  rooms.reset();
+  encoder.reset();
+  renderer.reset();
+  store.reset();
+  store = must(store::Store::open({cluster->dsn(), 8}, STRATA_MIGRATIONS_DIR));
+  renderer = start_renderer();
+  encoder = std::make_unique<stream::JpegPool>(std::max(1, int(std::thread::hardware_concurrency()) - 1));
+  rooms = std::make_unique<room::Rooms>(*store, *renderer, stream::StreamContext{renderer.get(), encoder.get()}, room::RoomOptions{});
+}
+
+room::EditAnswer edit_and_wait(room::Room& room, room::EditRequest request) {
+  auto promise = std::make_shared<std::promise<Result<room::EditAnswer>>>();
+  auto future = promise->get_future();
+  room.edit(std::move(request), {}, [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
+  return must(future.get());
+}
+
+room::EditRequest stroke_request(const Layer& layer, const Camera& camera, std::vector<glm::dvec2> path, double radius_px,
+                                 double value) {
+  room::StrokeEdit stroke;
+  stroke.batch.camera = camera;
+  stroke.batch.path = std::move(path);
+  stroke.batch.radius_px = radius_px;
+  stroke.batch.value_bits = must(encode_value(layer.type, value));
+  stroke.stroke = random_uuid();
+  return {random_uuid(), "bench", layer.id, stroke, {{"op", "stroke"}}};
+}
+
+}  // namespace strata::bench

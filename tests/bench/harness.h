@@ -1,0 +1,80 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "render/renderer.h"
+#include "room/room.h"
+#include "store/cluster.h"
+#include "stream/jpeg_pool.h"
+
+namespace strata::bench {
+
+// Times of one kind of work, in milliseconds.
+class Samples {
+ public:
+  void add(double ms) { values_.push_back(ms); }
+  bool empty() const { return values_.empty(); }
+  double quantile(double share) const;
+  double median() const { return quantile(0.5); }
+  nlohmann::json json() const;  // {ms_median, ms_min, ms_max, ms_p95, runs}
+
+ private:
+  std::vector<double> values_;
+};
+
+double now_ms();
+
+// {cpu, cores, gl_renderer, driver, commit}
+nlohmann::json machine(const render::GpuInfo* gpu);
+void write_result(const std::string& json_file, const nlohmann::json& machine, const nlohmann::json& results);
+
+// A mesh by name: `pot` or `pot:TRIANGLES` (generated here), a file, or a preset of the data folder's make_big_mesh.py
+// (vessel, excavation, amazon, thai), made once into `cache`. Exits with a message where it cannot be had.
+struct BenchMesh {
+  std::string name;
+  std::filesystem::path file;                       // empty for `pot`
+  std::shared_ptr<const mesh::Geometry> geometry;   // with an atlas
+  double area = 0;
+};
+std::filesystem::path mesh_file(const std::string& name, const std::filesystem::path& cache);
+BenchMesh load_bench_mesh(const std::string& name, const std::filesystem::path& cache);
+
+std::unique_ptr<render::Renderer> start_renderer();
+template <class T>
+T must(Result<T> result) {
+  if (!result) {
+    std::fprintf(stderr, "strata-bench: %s: %s\n", result.error().title.c_str(), result.error().detail.c_str());
+    std::exit(1);
+  }
+  if constexpr (!std::is_void_v<T>) return std::move(*result);
+}
+
+// Looks at a model from a direction, so that it fills the window.
+Camera look_at(const mesh::Geometry& geometry, glm::dvec3 from, int width, int height);
+
+// A whole server without sockets, on a database of its own in a temporary folder.
+class Site {
+ public:
+  Site();
+  ~Site();
+  void restart();  // everything above the database anew
+  std::filesystem::path folder;
+  std::unique_ptr<store::Cluster> cluster;
+  std::unique_ptr<store::Store> store;
+  std::unique_ptr<render::Renderer> renderer;
+  std::unique_ptr<stream::JpegPool> encoder;
+  std::unique_ptr<room::Rooms> rooms;
+};
+
+// Waits for an edit to be durable.
+room::EditAnswer edit_and_wait(room::Room& room, room::EditRequest request);
+room::EditRequest stroke_request(const Layer& layer, const Camera& camera, std::vector<glm::dvec2> path, double radius_px,
+                                 double value);
+
+}  // namespace strata::bench

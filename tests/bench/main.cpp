@@ -1,0 +1,19 @@
+#include <map>
+
+#include "bench/bench_commands.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"strata-bench: how fast Strata is, beside the methods it is compared with"};
+  app.set_version_flag("--version", "strata-bench " STRATA_VERSION);
+  app.require_subcommand(1);
+  const std::map<std::string, strata::bench::Command> commands{{"edit", strata::bench::add_edit(app)},
+                                                               {"import", strata::bench::add_import(app)},
+                                                               {"query", strata::bench::add_query(app)},
+                                                               {"stream", strata::bench::add_stream(app)}};
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return commands.at(app.get_subcommands().front()->get_name())();
+}
