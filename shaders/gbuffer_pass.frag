@@ -14,15 +14,16 @@ void main() {
   uvec2 q = uvec2(clamp(surface_uv, 0.0, 1.0) * 65536.0);
   packed_uv = min(q.x, 65535u) | (min(q.y, 65534u) << 16);  // never kBackground
 
-  // Two-sided: scans are open and their windings are not always right.
+  // Two-sided: scans are open and their windings are not always right. Smooth normals lean away at silhouettes without the
+  // surface being seen from behind, so only those that clearly do are turned.
   vec3 n = normalize(surface_normal.xyz);
-  if (surface_normal.w < 0.0) n = -n;
+  if (surface_normal.w < -0.3) n = -n;
   // Museum light: a soft key from the upper left, a weak fill from the camera's right, and a sky that is brighter above.
   float key = dot(n, mesh.key_light.xyz);
   float wrapped = max(0.0, key * 0.8 + 0.2);
   float fill = max(0.0, dot(n, mesh.fill_light.xyz));
   float sky = 0.5 + 0.5 * dot(n, mesh.up.xyz);
-  float light = 0.20 + 0.16 * sky + 0.56 * wrapped * wrapped + 0.16 * fill;
+  float light = 0.22 + 0.18 * sky + 0.56 * wrapped * wrapped + 0.16 * fill;
   light = min(light, 1.0);
   lit = vec4(surface_color * light, light);
 }

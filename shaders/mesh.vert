@@ -9,12 +9,12 @@ layout(std140, binding = 0) uniform MeshBlock { MeshUniforms mesh; };
 
 invariant gl_Position;
 layout(location = 0) out vec2 surface_uv;
-layout(location = 1) out vec4 surface_normal;  // w: cosine to the eye, times distance
+layout(location = 1) out vec4 surface_normal;  // w: cosine to the eye
 layout(location = 2) out vec3 surface_color;
 
 void main() {
   gl_Position = mesh.clip_from_model * vec4(position, 1.0);
   surface_uv = uv;
-  surface_normal = vec4(normal.xyz, dot(normal.xyz, mesh.eye.xyz - position * mesh.eye.w));
+  surface_normal = vec4(normal.xyz, dot(normal.xyz, normalize(mesh.eye.xyz - position * mesh.eye.w)));
   surface_color = color.rgb;
 }

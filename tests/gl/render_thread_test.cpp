@@ -104,7 +104,9 @@ TEST_F(Lanes, an_edit_runs_between_the_slices_of_a_long_background_job) {
   thread_->post(Lane::ordered, gate.job());
   thread_->post(Lane::background, {[this, left = std::make_shared<int>(3)] {
                                      note("slice");
-                                     if (*left == 3) EXPECT_TRUE(thread_->post(Lane::ordered, noted("edit")));
+                                     if (*left == 3) {
+                                       EXPECT_TRUE(thread_->post(Lane::ordered, noted("edit")));
+                                     }
                                      return --*left > 0 ? Step::more : Step::done;
                                    },
                                    [](const Problem&) {}});
@@ -305,7 +307,7 @@ TEST(Order, strokes_are_answered_in_the_order_they_were_given) {
       // `after` is what this stroke left, whatever came behind it.
       for (const auto& tile : outcome->tiles) {
         for (int t = 0; t < kTexelsPerTile; ++t) {
-          if (tile.written.test(t)) ASSERT_EQ(tile.after.bits(t), i);
+          ASSERT_TRUE(!tile.written.test(t) || tile.after.bits(t) == i);
         }
       }
       if (i == 39) all.set_value();
