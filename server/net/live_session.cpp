@@ -40,7 +40,7 @@ LiveSession::Work LiveSession::on_text(const std::string& text) {
       if (auto socket = socket_.lock()) socket->close(kClosePolicy, "too many messages");
     return {};
   }
-  refusals_ = 0;
+  refusals_ = std::max(0, refusals_ - 1);
   if (!message) {
     refuse(message.error(), ref);
     return {};

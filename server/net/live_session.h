@@ -34,7 +34,7 @@ struct LiveLimits {
   std::size_t message_bytes = 256 * 1024;
   double messages_per_second = 500;
   double burst = 1000;
-  int max_refusals = 2000;   // in a row for speed, then the connection is closed
+  int max_refusals = 2000;   // more refused for speed than taken, then the connection is closed
   int views = 4;             // as many as a room draws for one connection
   std::chrono::milliseconds presence_every{50};
 };

@@ -27,8 +27,8 @@ struct ServerOptions {
   std::uint64_t max_raster_bytes = 1ull << 30;
   std::uint64_t max_json_bytes = 1u << 20;
   std::uint64_t max_positions_bytes = 16u << 20;
-  double requests_per_second = 200;          // of one connection
-  double request_burst = 400;
+  double requests_per_second = 1000;         // of one connection
+  double request_burst = 2000;
   LiveLimits live;
 };
 
