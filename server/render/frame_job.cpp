@@ -94,15 +94,17 @@ Result<void> FrameJob::shade(GpuScene& scene, View& view) {
   frame_.width = request.width;
   frame_.height = request.height;
   frame_.rect = {0, 0, request.width, request.height};
+  auto model = scene.model(view.model);
+  if (!model) return tl::unexpected(model.error());
+  const mesh::Geometry& geometry = (*model)->mesh->geometry();
+  const glm::dmat4 clip = request.camera.projection * request.camera.view * glm::translate(glm::dmat4(1.0), geometry.origin);
   if (request.changed && view.shows(request)) {
-    auto model = scene.model(view.model);
-    if (!model) return tl::unexpected(model.error());
-    const glm::dmat4 clip = request.camera.projection * request.camera.view *
-                            glm::translate(glm::dmat4(1.0), (*model)->mesh->geometry().origin);
     frame_.rect = screen_rect(*request.changed, clip, request.width, request.height, request.align_to_16);
     if (frame_.rect.width == 0) return {};
   }
-  ShadeInput input{view.uv, view.light, view.picture, frame_.rect, request.background_top, request.background_bottom, {}};
+  const FrameRequest::Box box{geometry.box_min, geometry.box_max};
+  const PixelRect surface = intersection(frame_.rect, screen_rect({&box, 1}, clip, request.width, request.height, false));
+  ShadeInput input{view.uv, view.light, view.picture, frame_.rect, surface, request.background_top, request.background_bottom, {}};
   for (const LayerStyle& style : request.layers) {
     auto layer = scene.layer(style.layer);
     if (!layer) return tl::unexpected(layer.error());

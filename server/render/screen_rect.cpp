@@ -49,4 +49,11 @@ PixelRect screen_rect(std::span<const FrameRequest::Box> boxes, const glm::dmat4
   return {left, top, right - left, bottom - top};
 }
 
+PixelRect intersection(const PixelRect& a, const PixelRect& b) {
+  const int x0 = std::max(a.x, b.x), x1 = std::min(a.x + a.width, b.x + b.width);
+  const int y0 = std::max(a.y, b.y), y1 = std::min(a.y + a.height, b.y + b.height);
+  if (x0 >= x1 || y0 >= y1) return {};
+  return {x0, y0, x1 - x0, y1 - y0};
+}
+
 }  // namespace strata::render

@@ -11,4 +11,7 @@ namespace strata::render {
 PixelRect screen_rect(std::span<const FrameRequest::Box> boxes, const glm::dmat4& clip_from_model, int width, int height,
                       bool align_to_16);
 
+// Empty (all zero) when they do not meet.
+PixelRect intersection(const PixelRect& a, const PixelRect& b);
+
 }  // namespace strata::render

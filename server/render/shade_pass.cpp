@@ -24,6 +24,11 @@ std::uint32_t mode_of(PaletteMode mode) {
   return shader::kPaletteLinear;
 }
 
+double area(const PixelRect& rect) { return static_cast<double>(rect.width) * rect.height; }
+
+// Where the background is most of the picture, it is worth a dispatch of its own that spares the layers those pixels.
+constexpr double kMostlySurface = 0.8;
+
 void set_unit(shader::ShadeLayer& layer, int chunk, std::uint32_t unit) {
   auto& units = chunk < 8 ? layer.units_low : layer.units_high;
   const int shift = (chunk % 8) * 4;
@@ -85,6 +90,7 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
 // Batches in drawing order. A layer whose chunks do not all fit spans several: each of its texels is in one of them.
 std::vector<ShadePass::Batch> ShadePass::plan(const ShadeInput& input) {
   std::vector<Batch> batches(1);
+  if (one_layer_per_dispatch_ && area(input.surface_rect) < area(input.rect) * kMostlySurface) batches.emplace_back();
   for (const ShadeInput::Layer& layer : input.layers) {
     const auto described = describe(layer);
     const std::uint32_t mode = 1u << described.mode;
@@ -113,20 +119,24 @@ Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables)
   const auto batches = plan(input);
   dispatches_ = 0;
   for (const Batch& batch : batches) {
-    if (auto done = dispatch(input, batch, dispatches_ == 0, tables); !done) return done;
+    const bool first = dispatches_ == 0;
+    if (!first && batch.layers.empty()) continue;
+    if (auto done = dispatch(input, batch, first ? input.rect : input.surface_rect, first, tables); !done) return done;
     ++dispatches_;
   }
   return {};
 }
 
-Result<void> ShadePass::dispatch(const ShadeInput& input, const Batch& batch, bool first, const PageTables& tables) {
+Result<void> ShadePass::dispatch(const ShadeInput& input, const Batch& batch, const PixelRect& rect, bool first,
+                                 const PageTables& tables) {
+  if (rect.width == 0 || rect.height == 0) return {};
   shader::ShadeUniforms uniforms{};
   uniforms.background_top = color(input.background_top);
   uniforms.background_bottom = color(input.background_bottom);
-  uniforms.x = static_cast<std::uint32_t>(input.rect.x);
-  uniforms.y = static_cast<std::uint32_t>(input.rect.y);
-  uniforms.width = static_cast<std::uint32_t>(input.rect.width);
-  uniforms.height = static_cast<std::uint32_t>(input.rect.height);
+  uniforms.x = static_cast<std::uint32_t>(rect.x);
+  uniforms.y = static_cast<std::uint32_t>(rect.y);
+  uniforms.width = static_cast<std::uint32_t>(rect.width);
+  uniforms.height = static_cast<std::uint32_t>(rect.height);
   uniforms.picture_width = static_cast<std::uint32_t>(input.picture.width());
   uniforms.picture_height = static_cast<std::uint32_t>(input.picture.height());
   uniforms.layer_count = static_cast<std::uint32_t>(batch.layers.size());

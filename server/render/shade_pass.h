@@ -24,6 +24,7 @@ struct ShadeInput {
   const gl::Texture& light;
   const gl::Texture& picture;  // RGBA8, row 0 on top
   PixelRect rect;
+  PixelRect surface_rect;      // holds all pixels of `rect` that may show surface
   Rgba background_top, background_bottom;
   std::vector<Layer> layers;   // bottom to top
 };
@@ -54,7 +55,7 @@ class ShadePass {
   bool can_take(const Batch& batch, const Chunk& chunk) const;
   Result<const gl::Program*> program(std::size_t chunks, std::uint32_t modes);
   std::vector<Batch> plan(const ShadeInput& input);
-  Result<void> dispatch(const ShadeInput& input, const Batch& batch, bool first, const PageTables& tables);
+  Result<void> dispatch(const ShadeInput& input, const Batch& batch, const PixelRect& rect, bool first, const PageTables& tables);
   shader::ShadeLayer describe(const ShadeInput::Layer& layer);
 
   std::filesystem::path shader_dir_;
