@@ -11,6 +11,7 @@ layout(std430, binding = 0) readonly buffer Blocks { EditBlock blocks[]; };
 layout(std430, binding = 1) readonly buffer Segments { EditSegment segments[]; };
 layout(std430, binding = 2) readonly buffer SegmentLists { uint segment_lists[]; };
 layout(std430, binding = 3) writeonly buffer WrittenRows { uint written_rows[]; };
+layout(std430, binding = 4) readonly buffer PackedBoxes { float packed_boxes[]; };  // a slot: min x y z, step x y z
 layout(binding = 0) uniform usampler2DArray positions;
 layout(binding = 1) uniform sampler2D depth;
 layout(TEXEL_FORMAT, binding = 0) uniform writeonly uimage2DArray values;
@@ -76,10 +77,10 @@ float depth_bias(ivec2 pixel, float here, float w) {
   return base + min(edit.bias.z * slope, edit.bias.w * base);
 }
 
-bool painted(uvec2 packed_position, uint first, uint count) {
+bool painted(uvec2 packed_position, vec3 box_min, vec3 box_step, uint first, uint count) {
   vec3 q = vec3(packed_position.x & 0x1fffffu, (packed_position.x >> 21) | ((packed_position.y & 0x3ffu) << 11),
                 packed_position.y >> 10);
-  vec4 clip = edit.clip_from_model * vec4(edit.box_min.xyz + q * edit.box_scale.xyz, 1.0);
+  vec4 clip = edit.clip_from_model * vec4(box_min + q * box_step, 1.0);
   if (clip.w <= 0.0 || abs(clip.z) > clip.w) return false;
   vec3 ndc = clip.xyz / clip.w;
   vec2 window = (ndc.xy * 0.5 + 0.5) * edit.window.xy;
@@ -104,10 +105,13 @@ void main() {
   ivec3 target = page_origin(block.page) + ivec3((block.place & 15u) * 8u, ((block.place >> 4) & 15u) * 8u + row, 0);
   uint value = (edit.flags & kEditErase) != 0u ? 0u : edit.value;
   uint flag = (edit.flags & kEditErase) != 0u ? 0u : 1u;
+  uint box = block.slot * 6u;
+  vec3 box_min = vec3(packed_boxes[box], packed_boxes[box + 1u], packed_boxes[box + 2u]);
+  vec3 box_step = vec3(packed_boxes[box + 3u], packed_boxes[box + 4u], packed_boxes[box + 5u]);
   uint written = 0u;
   for (int x = 0; x < 8; ++x) {
     uvec2 position = texelFetch(positions, source + ivec3(x, 0, 0), 0).rg;
-    if (position != uvec2(0xffffffffu) && painted(position, block.segments, block.place >> 8)) {
+    if (position != uvec2(0xffffffffu) && painted(position, box_min, box_step, block.segments, block.place >> 8)) {
       if (block.page != kNoPage) {  // erasing where nothing is stored only counts as written
         imageStore(values, target + ivec3(x, 0, 0), uvec4(value));
         imageStore(valid, target + ivec3(x, 0, 0), uvec4(flag));

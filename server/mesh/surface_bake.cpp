@@ -8,7 +8,6 @@
 #include <optional>
 #include <thread>
 
-#include "mesh/packed_position.h"
 #include "mesh/parallel.h"
 
 namespace strata::mesh {
@@ -42,8 +41,6 @@ SurfaceBake::SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& m
     : geometry_(geometry), map_(map), resolution_(resolution) {
   map.resolution = resolution;
   map.blocks_per_side = resolution / kBlockSize;
-  map.box_min = geometry.box_min;
-  map.box_extent = geometry.box_max - geometry.box_min;
   snapped_.reserve(geometry.vertices.size());
   for (const Vertex& v : geometry.vertices)
     snapped_.push_back(snap_to_subtexels(inside_unit(v.uv.x) * resolution, inside_unit(v.uv.y) * resolution));
@@ -60,6 +57,7 @@ SurfaceBake::SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& m
   surface_of_block_.assign(blocks, 0);
   gutter_of_block_.assign(blocks, 0);
   bin_triangles();
+  borrowed_.resize(band_count());
   claims_.resize(band_count());
   leftovers_.resize(band_count());
   overlaps_of_band_.assign(band_count(), 0);
@@ -214,26 +212,28 @@ void SurfaceBake::assign_slots(int threads) {
   parallel_for(threads, 2, [&](int half) {
     if (half == 0) {
       map_.packed_position.assign(slots * 64, kNoPosition);
+      position_.reset(new glm::vec3[slots * 64]);
     } else {
       map_.area.assign(slots * 64, 0.f);
       owner_.reset(new std::uint32_t[slots * 64]);
       std::fill_n(owner_.get(), slots * 64, kNobody);
     }
   });
+  map_.packed_box.resize(slots);
   map_.bounds_8.resize(slots);
   box_of_slot_.resize(slots);
 }
 
 namespace {
 
-// Surface positions over a triangle as a function of texel coordinates, in quantised units of the model's box.
+// Surface positions over a triangle as a function of texel coordinates, in model space.
 class PositionPlane {
  public:
-  PositionPlane(const std::array<glm::dvec2, 3>& uv, const std::array<glm::dvec3, 3>& quantised)
+  PositionPlane(const std::array<glm::dvec2, 3>& uv, const std::array<glm::dvec3, 3>& corners)
       : origin_(uv[0]),
-        base_(quantised[0]),
-        along_1_(quantised[1] - quantised[0]),
-        along_2_(quantised[2] - quantised[0]) {
+        base_(corners[0]),
+        along_1_(corners[1] - corners[0]),
+        along_2_(corners[2] - corners[0]) {
     const glm::dvec2 e1 = uv[1] - uv[0], e2 = uv[2] - uv[0];
     const double twice = e1.x * e2.y - e1.y * e2.x;
     is_line_ = std::abs(twice) <= 1e-12 * (glm::dot(e1, e1) + glm::dot(e2, e2));
@@ -266,19 +266,14 @@ class PositionPlane {
 
 void SurfaceBake::place_surface(int band) {
   const int y_low = first_row(band), y_high = first_row(band + 1);
-  const glm::dvec3 extent(map_.box_extent);
-  const glm::dvec3 largest(kLargestPackedX, kLargestPackedY, kLargestPackedZ);
-  glm::dvec3 scale(0);
-  for (int axis = 0; axis < 3; ++axis)
-    if (extent[axis] > 0) scale[axis] = largest[axis] / extent[axis];
   const auto plane_of = [&](std::uint32_t t) {
     std::array<glm::dvec2, 3> uv;
-    std::array<glm::dvec3, 3> quantised;
+    std::array<glm::dvec3, 3> corners;
     for (int k = 0; k < 3; ++k) {
       uv[k] = texels_at(t, k);
-      quantised[k] = (glm::dvec3(geometry_.vertices[vertex(t, k)].position) - glm::dvec3(map_.box_min)) * scale;
+      corners[k] = geometry_.vertices[vertex(t, k)].position;
     }
-    return PositionPlane(uv, quantised);
+    return PositionPlane(uv, corners);
   };
   std::vector<std::uint32_t> shared;
   for (auto i = band_first_[band]; i < band_first_[band + 1]; ++i) {
@@ -296,7 +291,7 @@ void SurfaceBake::place_surface(int band) {
           if (triangle_area_[present] >= triangle_area_[t]) continue;
         }
         present = t;
-        map_.packed_position[texel] = pack_quantised(plane->at(x + 0.5, y + 0.5));
+        position_[texel] = plane->at(x + 0.5, y + 0.5);
       }
       return true;
     });
@@ -307,7 +302,7 @@ void SurfaceBake::place_surface(int band) {
     const int x = static_cast<int>(claim.texel % resolution_), y = static_cast<int>(claim.texel / resolution_);
     const std::size_t texel = texel_index(x, y);
     owner_[texel] = claim.triangle;
-    map_.packed_position[texel] = pack_quantised(plane_of(claim.triangle).at(x + 0.5, y + 0.5));
+    position_[texel] = plane_of(claim.triangle).at(x + 0.5, y + 0.5);
   }
 }
 
@@ -320,7 +315,9 @@ void SurfaceBake::place_gutter(int band) {
         const int i = std::countr_zero(rest), x = bx * 8 + i % 8, y = by * 8 + i / 8;
         for (const Offset o : kRingOffsets) {
           if (!is_surface(x + o.x, y + o.y)) continue;
-          map_.packed_position[texel_index(x, y)] = map_.packed_position[texel_index(x + o.x, y + o.y)];
+          const Borrowed borrowed{texel_index(x, y), texel_index(x + o.x, y + o.y)};
+          position_[borrowed.gutter] = position_[borrowed.owner];
+          borrowed_[band].push_back(borrowed);
           break;
         }
       }

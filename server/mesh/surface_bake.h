@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -25,16 +26,21 @@ class SurfaceBake {
   void assign_slots(int threads);  // after mark_gutter of all bands
   void place_surface(int band);    // owners and positions of surface texels
   void place_gutter(int band);     // after place_surface of all bands
+  void box_slots(int band);        // after place_gutter of all bands
+  void share_grids();              // after box_slots of all bands
   void credit_areas(int band);     // after place_surface of all bands
   void credit_leftovers();         // after credit_areas of all bands
-  void bound_slots(int band);      // after place_gutter of all bands
-  void bound_tiles();              // after bound_slots of all bands
+  void pack_slots(int band);       // packed positions and bounds; after share_grids
+  void bound_tiles();              // after pack_slots of all bands
 
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffu;
 
   struct Claim {  // of a triangle that covers no texel centre on the texel that holds its centroid
     std::uint32_t texel, triangle;
+  };
+  struct Borrowed {  // a gutter texel that has the position of a surface texel; indices into the per-slot arrays
+    std::size_t gutter, owner;
   };
   struct Leftover {  // area that lies on a texel which its own island does not own
     std::uint32_t texel, triangle;
@@ -48,6 +54,8 @@ class SurfaceBake {
   int first_block_row(int band) const { return band * map_.blocks_per_side / band_count(); }
   int first_row(int band) const { return first_block_row(band) * kBlockSize; }
   void bin_triangles();
+  template <class Visit>
+  void for_each_slot(int band, Visit visit);
 
   std::uint64_t block_mask(const std::vector<std::uint64_t>& masks, int block_x, int block_y) const;
   bool is_surface(int x, int y) const;
@@ -65,13 +73,15 @@ class SurfaceBake {
   std::vector<std::uint32_t> band_first_, band_triangles_;
   std::vector<std::uint64_t> surface_of_block_, gutter_of_block_;
   std::vector<std::vector<Claim>> claims_;
+  std::vector<std::vector<Borrowed>> borrowed_;
   std::vector<std::vector<Leftover>> leftovers_;
   std::vector<std::uint64_t> overlaps_of_band_;
-  std::unique_ptr<std::uint32_t[]> owner_;  // 64 a slot
+  std::unique_ptr<std::uint32_t[]> owner_;      // 64 a slot
+  std::unique_ptr<glm::vec3[]> position_;       // 64 a slot, until they are packed; undefined where nothing is owned
   struct Box {
-    glm::uvec3 low{0xffffffffu}, high{0};
+    glm::vec3 low{INFINITY}, high{-INFINITY};
   };
-  std::vector<Box> box_of_slot_;  // quantised
+  std::vector<Box> box_of_slot_;
 };
 
 }  // namespace strata::mesh

@@ -32,7 +32,7 @@ TileMask gather(const SurfaceMap& map, TileAddress tile, BitsOf&& bits_of) {
 }  // namespace
 
 glm::vec3 SurfaceMap::position(std::uint32_t slot, int texel) const {
-  return unpack_position(packed_position[std::size_t{slot} * 64 + texel], box_min, box_extent);
+  return unpack_position(packed_position[std::size_t{slot} * 64 + texel], packed_box[slot]);
 }
 
 TileMask SurfaceMap::owned_in_tile(TileAddress tile) const {
@@ -57,7 +57,7 @@ float SurfaceMap::area_of(TileAddress tile, int texel) const {
 
 std::size_t SurfaceMap::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return of(slot_of_block) + of(block_of_slot) + of(packed_position) + of(surface_mask) + of(area) + of(bounds_8) +
+  return of(slot_of_block) + of(block_of_slot) + of(packed_position) + of(packed_box) + of(surface_mask) + of(area) + of(bounds_8) +
          of(bounds_32) + of(bounds_128);
 }
 

@@ -30,10 +30,15 @@ struct SurfaceMap {
   std::vector<std::uint32_t> slot_of_block;    // blocks_per_side², row-major; kNoSlot when nothing is in the block
   std::vector<std::uint32_t> block_of_slot;    // y * blocks_per_side + x
   std::vector<std::uint64_t> packed_position;  // 64 a slot, row-major in the block: x 21 bits, y 21 << 21, z 22 << 42
-                                               // of the model's box; kNoPosition: neither surface nor gutter
+                                               // of the slot's box; kNoPosition: neither surface nor gutter
+  // A position is min + (x, y, z) * step, exactly: steps are powers of two. A box of each block's own keeps positions about
+  // as fine as floats of model space, and a gutter texel has the very position of its owner, whichever blocks they lie in.
+  struct PackedBox {
+    glm::vec3 min{0}, step{0};
+  };
+  std::vector<PackedBox> packed_box;           // a slot
   std::vector<std::uint64_t> surface_mask;     // a slot: bit (y*8+x) set where the texel is surface (not gutter)
   std::vector<float> area;                     // 64 a slot, unit²; 0 on gutter
-  glm::vec3 box_min{0}, box_extent{1};         // unpack: box_min + q / (2^21-2, 2^21-2, 2^22-2) * box_extent
 
   struct Bounds {
     glm::vec3 center{0};

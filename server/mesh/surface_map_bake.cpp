@@ -30,7 +30,9 @@ Result<SurfaceMap> bake_surface_map(const Geometry& geometry, int resolution, Pr
   run(&SurfaceBake::place_gutter, 0.6);
   run(&SurfaceBake::credit_areas, 0.9);
   if (!progress.cancelled()) bake.credit_leftovers();
-  run(&SurfaceBake::bound_slots, 0.98);
+  run(&SurfaceBake::box_slots, 0.93);
+  if (!progress.cancelled()) bake.share_grids();
+  run(&SurfaceBake::pack_slots, 0.98);
   if (progress.cancelled()) return cancelled_problem();
   bake.bound_tiles();
   progress.report(1, "Surface map ready");

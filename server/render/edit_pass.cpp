@@ -10,12 +10,9 @@
 namespace strata::render {
 namespace {
 
-shader::EditUniforms make_uniforms(const StrokeBatch& stroke, const glm::mat4& clip_from_model, const DepthBias& bias,
-                                   const mesh::SurfaceMap& map) {
+shader::EditUniforms make_uniforms(const StrokeBatch& stroke, const glm::mat4& clip_from_model, const DepthBias& bias) {
   shader::EditUniforms uniforms{};
   uniforms.clip_from_model = clip_from_model;
-  uniforms.box_min = glm::vec4(map.box_min, 0);
-  uniforms.box_scale = glm::vec4(glm::dvec3(map.box_extent) / glm::dvec3((1 << 21) - 2, (1 << 21) - 2, (1 << 22) - 2), 0);
   uniforms.window = glm::vec4(stroke.camera.width, stroke.camera.height, 0, 0);
   uniforms.bias = glm::vec4(bias.fixed, bias.scale, bias.slope_factor, bias.slope_limit);
   uniforms.value = stroke.value_bits;
@@ -98,7 +95,7 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
   for (const CandidateBlock& block : edit.blocks) {
     blocks.push_back({block.slot, layer.page(block.tile), block.segments, block.block_in_tile | block.segment_count << 8});
   }
-  const auto uniforms = make_uniforms(stroke, clip_from_model, bias, map.map());
+  const auto uniforms = make_uniforms(stroke, clip_from_model, bias);
   auto rows = readback_->begin(blocks.size() * shader::kEditRowsPerBlock * sizeof(std::uint32_t));
   if (!rows) return give_up(rows.error());
   for (auto sent : {uniforms_.replace(std::span(&uniforms, 1)), blocks_.replace(std::span<const shader::EditBlock>(blocks)),
@@ -117,6 +114,7 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
   segments_.bind_storage(1);
   lists_.bind_storage(2);
   rows->buffer().bind_storage(3);
+  map.boxes().bind_storage(4);
   map.positions().bind(0);
   if (depth) depth->bind(1);
   timer_.begin();

@@ -10,6 +10,8 @@ namespace {
 constexpr std::size_t kRow = shader::kPositionRow;
 constexpr std::size_t kRowsPerSlice = 2048;
 constexpr std::size_t kRowsPerUpload = 256;  // 4 MiB
+constexpr std::size_t kBoxesPerUpload = (4u << 20) / sizeof(mesh::SurfaceMap::PackedBox);
+static_assert(sizeof(mesh::SurfaceMap::PackedBox) == 24, "six floats, as shaders/edit_pass.comp reads them");
 
 }  // namespace
 
@@ -21,17 +23,28 @@ Result<std::unique_ptr<SurfaceMapTextures>> SurfaceMapTextures::create(std::shar
   textures->total_rows_ = (texels + kRow - 1) / kRow;
   const std::size_t height = std::clamp<std::size_t>(textures->total_rows_, 1, kRowsPerSlice);
   const std::size_t layers = std::max<std::size_t>(1, (textures->total_rows_ + kRowsPerSlice - 1) / kRowsPerSlice);
-  auto share = memory.reserve(kRow * height * layers * sizeof(std::uint64_t), "a surface map");
+  const std::size_t box_bytes = std::max<std::size_t>(1, textures->map_->packed_box.size()) * sizeof(mesh::SurfaceMap::PackedBox);
+  auto share = memory.reserve(kRow * height * layers * sizeof(std::uint64_t) + box_bytes, "a surface map");
   if (!share) return tl::unexpected(share.error());
   auto positions = gl::Texture::create_array(GL_RG32UI, static_cast<int>(kRow), static_cast<int>(height),
                                              static_cast<int>(layers), "surface positions");
   if (!positions) return tl::unexpected(positions.error());
+  auto boxes = gl::Buffer::create(box_bytes, gl::Buffer::Use::fixed, "surface position boxes");
+  if (!boxes) return tl::unexpected(boxes.error());
+  textures->boxes_ = std::move(*boxes);
   textures->share_ = std::move(*share);
   textures->positions_ = std::move(*positions);
   return textures;
 }
 
 bool SurfaceMapTextures::upload_slice() {
+  if (const std::size_t left = map_->packed_box.size() - uploaded_boxes_; left > 0) {
+    const std::size_t count = std::min(left, kBoxesPerUpload);
+    boxes_.upload_values(uploaded_boxes_ * sizeof(mesh::SurfaceMap::PackedBox),
+                         std::span(map_->packed_box).subspan(uploaded_boxes_, count));
+    uploaded_boxes_ += count;
+    return complete();
+  }
   const std::size_t row = uploaded_rows_ % kRowsPerSlice, layer = uploaded_rows_ / kRowsPerSlice;
   const std::size_t rows = std::min({kRowsPerUpload, kRowsPerSlice - row, total_rows_ - uploaded_rows_});
   if (rows == 0) return true;

@@ -24,8 +24,6 @@ const uint kEditFixedBias = 8u;
 
 struct EditUniforms {
   mat4 clip_from_model;
-  vec4 box_min;       // of the packed positions
-  vec4 box_scale;     // model units per packed step
   vec4 window;        // width, height in pixels; then 0
   vec4 bias;          // fixed; scale of 1/w^2; slope factor; limit of the slope part, in units of the scaled part
   uint value;
@@ -42,6 +40,6 @@ STRATA_SHARED_END
 #include <cstddef>
 static_assert(sizeof(strata::shader::EditSegment) == 32);
 static_assert(sizeof(strata::shader::EditBlock) == 16);
-static_assert(sizeof(strata::shader::EditUniforms) == 144);
-static_assert(offsetof(strata::shader::EditUniforms, value) == 128);
+static_assert(sizeof(strata::shader::EditUniforms) == 112);
+static_assert(offsetof(strata::shader::EditUniforms, value) == 96);
 #endif

@@ -101,8 +101,14 @@ int run(const Options& options) {
   std::uniform_real_distribution<double> x(440, 840), y(200, 520);
   Samples to_pixels, to_durable;
   std::uint64_t changed_bytes = 0;
+  const auto on_the_model = [&] {
+    while (true) {
+      const glm::dvec2 point{x(random), y(random)};
+      if (must(room->pick(still, point.x, point.y, {})).hit) return point;
+    }
+  };
   for (int i = 0; i < options.strokes + 20; ++i) {
-    const glm::dvec2 from{x(random), y(random)};
+    const glm::dvec2 from = on_the_model();
     const double start = now_ms();
     std::atomic<double> durable{0};
     auto request = stroke_request(layers.back(), still, {from, from + glm::dvec2(12, 5)}, options.radius, 1 + i % 200);

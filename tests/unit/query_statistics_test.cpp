@@ -7,6 +7,7 @@
 #include <iostream>
 #include <random>
 
+#include "mesh/packed_position.h"
 #include "query/json.h"
 
 namespace strata::query {
@@ -20,8 +21,6 @@ mesh::SurfaceMap make_map(int resolution, double share, unsigned seed) {
   mesh::SurfaceMap map;
   map.resolution = resolution;
   map.blocks_per_side = resolution / kBlockSize;
-  map.box_min = {-1, -2, -3};
-  map.box_extent = {2, 4, 6};
   const auto blocks = static_cast<std::uint32_t>(map.blocks_per_side * map.blocks_per_side);
   map.slot_of_block.assign(blocks, mesh::kNoSlot);
   for (std::uint32_t block = 0; block < blocks; ++block) {
@@ -37,6 +36,7 @@ mesh::SurfaceMap make_map(int resolution, double share, unsigned seed) {
       map.area.push_back(kind >= 2 ? 0.5f + static_cast<float>(random() % 1000) / 1000.0f : 0.0f);
     }
     map.surface_mask.push_back(surface);
+    map.packed_box.push_back(mesh::packed_box_of({-1, -2, -3}, {1, 2, 3}));
   }
   return map;
 }
