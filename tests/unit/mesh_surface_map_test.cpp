@@ -226,7 +226,8 @@ TEST_P(EveryGeometry, places_surface_texels_on_their_triangle) {
       if (t < 0 || oracle.is_line(t)) continue;
       const auto [slot, index] = texel_at(map, x, y);
       const glm::dvec3 difference = glm::dvec3(map.position(slot, index)) - oracle.position(t, x + 0.5, y + 0.5);
-      ASSERT_LT(glm::length(difference), glm::length(map.packed_box[slot].step) + 3e-7 * size) << x << " " << y;
+      // A texel whose position is borrowed by another block's gutter lies on that block's grid, at most 2^-20 of the model.
+      ASSERT_LT(glm::length(difference), 2e-6 * size) << x << " " << y;
     }
 }
 
