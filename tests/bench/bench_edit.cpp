@@ -9,6 +9,7 @@
 #include "render/depth_buffers.h"
 #include "render/edit_pass.h"
 #include "render/mesh_buffers.h"
+#include "support/shader_dirs.h"
 
 namespace strata::bench {
 namespace {
@@ -56,7 +57,7 @@ class PaperPeer {
       editor_ = must(PaperEditor::create(*scene.mesh.geometry, resolution));
       readback_ = std::make_unique<gl::ReadbackPool>();
       depths_ = std::make_unique<render::DepthBuffers>(
-          must(render::DepthBuffers::create(shader_dir(), std::size_t{1} << 26, memory_, *readback_)));
+          must(render::DepthBuffers::create(test::shader_dir(), std::size_t{1} << 26, memory_, *readback_)));
       buffers_ = must(render::MeshBuffers::create(scene.mesh.geometry, memory_));
       while (!buffers_->upload_slice()) {
       }
@@ -102,10 +103,6 @@ class PaperPeer {
   }
 
  private:
-  static std::string shader_dir() {
-    const char* shaders = std::getenv("STRATA_SHADERS");
-    return shaders ? shaders : STRATA_SHADER_DIR;
-  }
   render::Renderer& renderer_;
   const Scene& scene_;
   render::GpuMemory memory_{std::uint64_t{1} << 40};
@@ -240,8 +237,7 @@ void bench_texture(const Options& options, render::Renderer& renderer, const Sce
 
 int run(const Options& options) {
   render::RendererOptions renderer_options;
-  const char* shaders = std::getenv("STRATA_SHADERS");
-  renderer_options.shader_dir = shaders ? shaders : STRATA_SHADER_DIR;
+  renderer_options.shader_dir = test::shader_dir().string();
   renderer_options.paper_depth_bias = true;  // so that both paint the same
   auto renderer = must(render::Renderer::start(renderer_options));
   const auto gpu = renderer->info();

@@ -11,6 +11,7 @@
 
 #include "mesh/demo_pot.h"
 #include "mesh/load.h"
+#include "support/shader_dirs.h"
 
 namespace strata::bench {
 namespace {
@@ -125,8 +126,7 @@ BenchMesh load_bench_mesh(const std::string& name, const std::filesystem::path& 
 
 std::unique_ptr<render::Renderer> start_renderer() {
   render::RendererOptions options;
-  const char* shaders = std::getenv("STRATA_SHADERS");
-  options.shader_dir = shaders ? shaders : STRATA_SHADER_DIR;
+  options.shader_dir = test::shader_dir().string();
   return must(render::Renderer::start(options));
 }
 

@@ -10,6 +10,7 @@
 #include "gl/egl_context.h"
 #include "gl/program.h"
 #include "gl/shader_source.h"
+#include "support/shader_dirs.h"
 
 namespace strata::gl {
 namespace {
@@ -39,12 +40,12 @@ TEST(Shaders, every_file_belongs_to_a_program_and_every_program_builds) {
   std::set<std::string> built;
   for (const auto& [files, variants] : kPrograms) {
     for (const auto& defines : variants) {
-      const auto program = Program::load(STRATA_SHADER_DIR, files, defines);
+      const auto program = Program::load(test::shader_dir(), files, defines);
       EXPECT_TRUE(program) << program.error().detail;
     }
     built.insert(files.begin(), files.end());
   }
-  for (const auto& entry : fs::directory_iterator(STRATA_SHADER_DIR)) {
+  for (const auto& entry : fs::directory_iterator(test::shader_dir())) {
     if (!entry.is_regular_file()) continue;
     EXPECT_TRUE(built.contains(entry.path().filename().string())) << entry.path();
   }

@@ -14,6 +14,7 @@
 #include "gl/texture.h"
 #include "gl/timer_query.h"
 #include "gl/vertex_array.h"
+#include "support/shader_dirs.h"
 
 namespace strata::gl {
 namespace {
@@ -113,7 +114,7 @@ TEST_F(GlWrapper, a_vertex_array_moves) {
 }
 
 TEST_F(GlWrapper, a_program_moves) {
-  const auto make = [] { return std::move(*Program::load(STRATA_SHADER_DIR, {"depth_gather_pass.comp"})); };
+  const auto make = [] { return std::move(*Program::load(test::shader_dir(), {"depth_gather_pass.comp"})); };
   expect_moves(make(), make(), glIsProgram);
 }
 

@@ -12,6 +12,7 @@
 #include "render/depth_buffers.h"
 #include "render/edit_pass.h"
 #include "support/gl_scene.h"
+#include "support/shader_dirs.h"
 
 namespace strata::test {
 namespace {
@@ -130,7 +131,7 @@ TEST(Paper, surface_texels_are_those_of_the_papers_algorithms_on_random_cameras_
     renderer->run_on_gpu_thread_for_test([&] {
       render::GpuMemory memory(std::uint64_t{1} << 32);
       gl::ReadbackPool readback;
-      auto depths = std::move(*render::DepthBuffers::create(STRATA_SHADER_DIR, std::size_t{1} << 20, memory, readback));
+      auto depths = std::move(*render::DepthBuffers::create(shader_dir(), std::size_t{1} << 20, memory, readback));
       auto mesh = std::move(*render::MeshBuffers::create(scene->geometry, memory));
       while (!mesh->upload_slice()) {
       }

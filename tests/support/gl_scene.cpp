@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "render/depth_buffers.h"
+#include "support/shader_dirs.h"
 
 namespace strata::test {
 namespace {
@@ -105,7 +106,7 @@ Scene make_scene(const mesh::TriangleMesh& mesh, int resolution) {
 }
 
 TestRenderer::TestRenderer(render::RendererOptions options) {
-  options.shader_dir = STRATA_SHADER_DIR;
+  options.shader_dir = shader_dir().string();
   options.debug = true;
   renderer_ = expect(render::Renderer::start(options));
 }
@@ -148,7 +149,7 @@ std::vector<float> TestRenderer::depth(const Scene& scene, const Camera& camera)
   renderer_->run_on_gpu_thread_for_test([&] {
     render::GpuMemory memory(std::uint64_t{1} << 32);
     gl::ReadbackPool readback;
-    auto depths = expect(render::DepthBuffers::create(STRATA_SHADER_DIR, std::size_t{1} << 16, memory, readback));
+    auto depths = expect(render::DepthBuffers::create(shader_dir(), std::size_t{1} << 16, memory, readback));
     auto mesh = expect(render::MeshBuffers::create(scene.geometry, memory));
     while (!mesh->upload_slice()) {
     }

@@ -5,6 +5,7 @@
 
 #include "mesh/demo_pot.h"
 #include "mesh/geometry.h"
+#include "support/shader_dirs.h"
 
 namespace strata::test {
 
@@ -57,7 +58,7 @@ void RoomTest::restart() {
   store_ = open_store(dsn_);
   ASSERT_TRUE(store_);
   render::RendererOptions options;
-  options.shader_dir = STRATA_SHADER_DIR;
+  options.shader_dir = shader_dir().string();
   options.debug = true;
   auto renderer = render::Renderer::start(options);
   ASSERT_TRUE(renderer) << renderer.error().detail;

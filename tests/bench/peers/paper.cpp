@@ -1,20 +1,14 @@
 #include "bench/peers/paper.h"
+#include "support/shader_dirs.h"
 
 #include <array>
 #include <cstddef>
-#include <cstdlib>
-#include <filesystem>
 #include <glm/gtc/type_ptr.hpp>
 #include <span>
 
 namespace strata::bench {
 namespace {
 
-// Beside the sources, or where a bundle has put them.
-std::filesystem::path shader_dir() {
-  const char* bundled = std::getenv("STRATA_PEER_SHADERS");
-  return bundled ? bundled : STRATA_SOURCE_DIR "/tests/bench/peers/shaders";
-}
 constexpr float kBias = 2e-4f;
 
 // A texture's whole content to one number.
@@ -50,7 +44,7 @@ Result<std::unique_ptr<PaperEditor>> PaperEditor::create(const mesh::Geometry& g
                   {editor->texture_editing_, {"texture_space.vert", "texture_editing.frag"}},
                   {editor->texture_padding_, {"whole_texture.vert", "texture_padding.frag"}}};
   for (const auto& [program, files] : programs) {
-    auto loaded = gl::Program::load(shader_dir(), files);
+    auto loaded = gl::Program::load(test::peer_shader_dir(), files);
     if (!loaded) return tl::unexpected(loaded.error());
     program = std::move(*loaded);
   }
