@@ -1,0 +1,189 @@
+#!/usr/bin/env python3
+"""The server is killed in mid-load again and again, then its PostgreSQL is: whatever was reported saved is there, once and whole.
+
+The oracle is the server itself without faults: at the end all edits are painted anew, in their order, on fresh layers,
+and every texel must be equal. Meanwhile states at old sequences are read before and after each kill."""
+import os
+import random
+import signal
+import sys
+import threading
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.cameras import camera_from
+from support.meshes import folded_grid
+from support.npy import Raster
+from support.painters import Book, HttpPainter, LivePainter
+from support.strata_server import StrataServer, wait_for
+
+KILLS = int(os.environ.get("STRATA_CRASH_KILLS", "20"))  # of each kind
+LAYERS = [("marks", "u8", 2048, [1, 2, 3, 255]), ("depth", "f32", 2048, [0.0, 1.5, -2.25, 3e7]),
+          ("shift", "i16", 2048, [-32768, -5, 12, 32767])]
+# What the log may say while PostgreSQL is being killed.
+FAULT_WORDS = ["PostgreSQL stopped", "a commit failed and is tried again", "took back", "could not be kept for repeats"]
+
+
+class Crashes:
+    def __init__(self, server):
+        self.server = server
+        self.model = server.import_model(folded_grid(), "grid.ply", unit="mm", name="Grid")
+        self.path = f"/models/{self.model['id']}"
+        self.make_layers("")
+        self.book = Book()
+        self.random = random.Random(1)
+        self.known = {}  # (layer, sequence) -> digest of its texels
+
+    def make_layers(self, suffix):
+        for name, kind, resolution, _ in LAYERS:
+            self.server.ok("POST", self.path + "/layers", {"name": name + suffix, "type": kind, "resolution": resolution})
+
+    def texels(self, layer, at=None):
+        query = "" if at is None else f"?at={at}"
+        answer = wait_for(lambda: (lambda a: a if a.status != 503 else None)(
+            self.server.get(f"{self.path}/layers/{layer}/texels.npy{query}")), "texels")
+        assert answer.status == 200, answer
+        return Raster(answer.body)
+
+    def painters(self):
+        cameras = [camera_from(self.model, direction) for direction in ([0, -0.2, 1], [0.8, 0.3, 0.6], [-0.7, -0.9, 0.5])]
+        layers = [(name, values) for name, _, _, values in LAYERS]
+        kinds = [HttpPainter] * 4 + [LivePainter] * 2
+        return [kind(self.server, self.model["id"], layers, cameras, self.book, seed) for seed, kind in enumerate(kinds)]
+
+    def history(self):
+        found = {}
+        for name, *_ in LAYERS:
+            offset = 0
+            while True:
+                page = self.server.ok("GET", f"{self.path}/layers/{name}/edits?limit=1000&offset={offset}").json()
+                for row in page["edits"]:
+                    assert row["sequence"] not in found, f"sequence {row['sequence']} is in the history twice"
+                    found[row["sequence"]] = (name, row)
+                offset += len(page["edits"])
+                if not page["edits"] or offset >= page["total"]:
+                    break
+        return found
+
+    def remember(self):
+        """Digests of the texels at some acknowledged sequences, the newest among them."""
+        with self.book.lock:
+            sequences = sorted(self.book.edits)
+        for at in {sequences[-1], self.random.choice(sequences)}:
+            layer = self.book.edits[at][0]
+            digest = self.texels(layer, at).digest
+            assert self.known.setdefault((layer, at), digest) == digest, f"{layer} at {at} changed"
+
+    def check_known(self):
+        for layer, at in self.random.sample(sorted(self.known), min(2, len(self.known))):
+            assert self.texels(layer, at).digest == self.known[layer, at], f"{layer} at {at} is not what it was before the kill"
+
+    def check_repeats(self):
+        """Edits that were saved, sent again: the first answer, and nothing new in the history."""
+        with self.book.lock:
+            sample = self.random.sample(self.book.repeats, min(3, len(self.book.repeats)))
+        for path, edit, key, first in sample:
+            answer = wait_for(lambda: (lambda a: a if a.status != 503 else None)(
+                self.server.post(path, edit, headers={"Idempotency-Key": key})), "a repeat")
+            assert (answer.status, answer.json()) == (200, first), (answer, first)
+
+    def check_history(self):
+        found = self.history()
+        with self.book.lock:
+            acknowledged = dict(self.book.edits)
+        for sequence, (layer, _, answer) in acknowledged.items():
+            assert sequence in found, f"edit {sequence} was reported saved and is gone"
+            name, row = found[sequence]
+            assert name == layer and row["texels_changed"] == answer["texels_changed"], (row, answer)
+        assert sorted(found) == list(range(1, len(found) + 1)), "the sequences have gaps"
+        return found
+
+    def check_whole(self, sequence):
+        """One edit is in its layer wholly: the texels that it changed are as many as it said, and of its value."""
+        layer, edit, answer = self.book.edits[sequence]
+        changes = self.texels(layer, sequence).differences(self.texels(layer, sequence - 1))
+        # The raster holds the gutter, too, which the count leaves out.
+        assert len(changes) >= answer["texels_changed"], (sequence, len(changes), answer)
+        assert bool(changes) == (answer["texels_changed"] > 0) or edit, sequence
+        wanted = (0, False) if edit.get("erase") else (edit["value"], True)
+        wrong = [now for now, _ in changes if now != wanted]
+        assert not wrong, f"edit {sequence} left {wrong[:3]} beside {wanted}"
+
+    def kill_server(self):
+        self.server.kill()
+        self.server.start()
+
+    def kill_database(self):
+        pid = wait_for(self.server.postmaster, "a postmaster")
+        os.kill(pid, signal.SIGKILL)
+        wait_for(lambda: self.server.postmaster() not in (None, pid), "PostgreSQL to be started again")
+
+    def run(self):
+        painters = self.painters()
+        for painter in painters:
+            painter.start()
+        for name, kill in (("server", self.kill_server), ("database", self.kill_database)):
+            begun = time.monotonic()
+            for _ in range(KILLS):
+                self.book.wait_for_more(self.random.randint(8, 40))
+                self.remember()
+                kill()
+                self.book.wait_for_more(1)
+                self.check_known()
+                self.check_repeats()
+            print(f"{KILLS} kills of the {name}: {time.monotonic() - begun:.1f} s, {len(self.book.edits)} edits saved", flush=True)
+        self.book.stopping.set()
+        for painter in painters:
+            painter.join(180)
+            assert not painter.is_alive(), f"{painter.name} still waits for an answer"
+        assert not self.book.faults, self.book.faults[:5]
+
+        found = self.check_history()
+        assert sorted(found) == sorted(self.book.edits), "an edit is in the history that nobody sent"
+        for sequence in self.random.sample(sorted(self.book.edits), 12):
+            self.check_whole(sequence)
+        newest = {name: self.texels(name) for name, *_ in LAYERS}
+        for name, raster in newest.items():
+            assert raster.digest == self.texels(name, max(found)).digest, f"{name}: now is not the newest sequence"
+        self.compare_with_replay(newest)
+
+    def compare_with_replay(self, newest):
+        """All edits anew and in order, on fresh layers and without faults: the same texels."""
+        self.make_layers(" replayed")
+        edits = [self.book.edits[sequence][:2] for sequence in sorted(self.book.edits)]
+
+        def replay(layer):
+            connection = self.server.connect()
+            for name, edit in edits:
+                if name == layer:
+                    self.server.ok("POST", f"{self.path}/layers/{name}-replayed/edits", edit, connection=connection)
+
+        failures = []
+
+        def work(layer):
+            try:
+                replay(layer)
+                wrong = newest[layer].differences(self.texels(layer + "-replayed"))
+                assert not wrong, f"{layer}: {len(wrong)} texels differ from the replay, for example {wrong[:3]}"
+            except BaseException as error:  # pylint: disable=broad-except
+                failures.append(error)
+
+        workers = [threading.Thread(target=work, args=(name,)) for name, *_ in LAYERS]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+        if failures:
+            raise failures[0]
+
+
+def main():
+    with StrataServer() as server:
+        crashes = Crashes(server)
+        crashes.run()
+        assert server.stop() == 0, "SIGTERM did not end the server well"
+        server.assert_clean_log(FAULT_WORDS)
+    print(f"{len(crashes.book.edits)} edits survived {2 * KILLS} kills; {len(crashes.known)} old states were compared")
+
+
+main()

@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""The README's tour with curl, word for word, and whether its figures agree with one another."""
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.meshes import bumpy_ball
+from support.strata_server import StrataServer
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+
+
+def tour_of_readme():
+    with open(os.path.join(ROOT, "README.md"), encoding="utf-8") as file:
+        block = re.search(r"## The same with curl\n+```\n(.*?)```", file.read(), re.S).group(1)
+    kept = []
+    for line in block.splitlines():
+        # The server of this test runs already; the rest stays as it is written.
+        if line.startswith(("export STRATA_OWNER_TOKEN=", "STRATA_NO_BROWSER=1 ./run")):
+            continue
+        kept.append(re.sub(r"^S=http://127.0.0.1:8080", "S=$STRATA_URL", line))
+    assert any(line.startswith("S=$STRATA_URL") for line in kept), "the README no longer sets S"
+    return "set -euo pipefail\n" + "\n".join(kept) + "\n"
+
+
+def json_values(text):
+    """The JSON values that stand one after the other in a text."""
+    decoder, found, at = json.JSONDecoder(), [], 0
+    while at < len(text):
+        if text[at] in " \n":
+            at += 1
+            continue
+        value, at = decoder.raw_decode(text, at)
+        found.append(value)
+    return found
+
+
+def main():
+    with StrataServer() as server, tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "scan.ply"), "wb") as file:
+            file.write(bumpy_ball())
+        os.symlink(os.path.join(ROOT, "scripts"), os.path.join(folder, "scripts"))
+        done = subprocess.run(["bash", "-c", tour_of_readme()], cwd=folder, capture_output=True, text=True, check=False,
+                              env={**server.environment(), "STRATA_URL": server.url})
+        assert done.returncode == 0, f"the tour ended with {done.returncode}:\n{done.stdout}\n{done.stderr}"
+        model, layer, edit, point, statistics = json_values(done.stdout)
+
+        assert (model["slug"], model["unit"], model["unit_assumed"]) == ("scan", "mm", False), model
+        assert (layer["slug"], layer["type"], layer["resolution"]) == ("cracks", "u8", 4096), layer
+        assert edit["sequence"] == 1 and edit["texels_changed"] > 1000, edit
+        assert point["hit"] and point["values"]["cracks"] == {"valid": True, "value": 7}, point
+        assert abs(statistics["area_m2"] - edit["area_m2"]) <= 0.02 * edit["area_m2"], (statistics["area_m2"], edit)
+        assert statistics["texels"] == edit["texels_changed"], (statistics["texels"], edit)
+        assert [key["key"] for key in statistics["keys"]] == [7] and statistics["mean"] == 7, statistics
+        # 80 pixels of path with a radius of 20 are 4457 pixels of 0.21 mm, on a surface that faces the camera.
+        assert 1.8e-4 < edit["area_m2"] < 2.2e-4, edit
+
+        check_files(folder, server)
+        history = server.get("/models/scan/layers/cracks/edits").json()["edits"]
+        assert [edit["op"] for edit in history] == ["import", "stroke"], history
+        assert server.stop() == 0
+        server.assert_clean_log()
+    print(f"the tour painted {edit['area_m2'] * 1e6:.0f} mm²; the statistics say {statistics['area_m2'] * 1e6:.0f} mm²")
+
+
+def check_files(folder, server):
+    with open(os.path.join(folder, "picture.png"), "rb") as file:
+        picture = file.read()
+    assert picture.startswith(b"\x89PNG\r\n") and len(picture) > 10000, picture[:20]
+    with open(os.path.join(folder, "cracks.tif"), "rb") as file:
+        raster = file.read()
+    assert raster[:4] in (b"II*\0", b"MM\0*", b"II+\0"), raster[:8]
+    for ending, magic in (("png", b"\x89PNG\r\n"), ("npy", b"\x93NUMPY")):
+        answer = server.get(f"/models/scan/layers/cracks/texels.{ending}")
+        assert answer.status == 200 and answer.body.startswith(magic), (ending, answer.status)
+    again = server.request("PUT", "/models/scan/layers/cracks/texels.tif", raster, headers={"Content-Type": "image/tiff"})
+    assert again.status == 200 and again.json()["texels_changed"] == 0, "what was exported changes nothing when it is imported"
+
+
+main()

@@ -1,0 +1,282 @@
+#!/usr/bin/env python3
+"""What the HTTP interface answers to everything but good requests: one table, then the cases that need several steps."""
+import json
+import os
+import socket
+import sys
+import uuid
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.cameras import camera_from
+from support.meshes import bumpy_ball, folded_grid
+from support.strata_server import StrataServer, wait_for
+
+M, L = "/models/grid", "/models/grid/layers/marks"
+FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
+
+
+def table(camera):
+    """(what, method, path, body, headers, status, field)"""
+    stroke = {"op": "stroke", "value": 1, "camera": camera, "radius_px": 5, "path": [[320, 240]]}
+    pick = {"camera": camera, "x": 10, "y": 10}
+
+    def without(body, name):
+        return {k: v for k, v in body.items() if k != name}
+
+    singular = {**camera, "view": [0] * 16}
+    json_type = {"Content-Type": "application/json"}
+    return [
+        ("unknown model", "GET", "/models/nothing", None, {}, 404, None),
+        ("unknown layer", "GET", M + "/layers/nothing", None, {}, 404, None),
+        ("unknown layer to paint", "POST", M + "/layers/nothing/edits", FILL, {}, 404, None),
+        ("unknown job", "GET", "/jobs/999", None, {}, 404, None),
+        ("a job that is no number", "GET", "/jobs/first", None, {}, 404, None),
+        ("unknown address of the API", "GET", "/nothing", None, {}, 404, None),
+        ("unknown source file", "GET", M + "/source/other.ply", None, {}, 404, None),
+        ("unknown raster format", "GET", L + "/texels.bmp", None, {}, 404, None),
+        ("a huge id", "GET", "/models/99999999999999999999999", None, {}, 404, None),
+        ("an empty name", "GET", "/models//layers", None, {}, 404, None),
+
+        ("wrong method on a list", "PUT", "/models", None, {}, 405, None),
+        ("wrong method on an edit", "DELETE", L + "/edits", None, {}, 405, None),
+        ("wrong method on a query", "GET", M + "/pick", None, {}, 405, None),
+
+        ("live without upgrade", "GET", M + "/live", None, {}, 426, None),
+
+        ("no JSON", "POST", L + "/edits", b"{", json_type, 400, None),
+        ("nothing at all", "POST", L + "/edits", b"", json_type, 400, None),
+        ("two JSON values", "POST", L + "/edits", b"{} {}", json_type, 400, None),
+        ("NaN", "POST", M + "/pick", b'{"x":NaN}', json_type, 400, None),
+        ("not UTF-8", "POST", M + "/layers", b'{"name":"\xff"}', json_type, 400, None),
+        ("a NUL in a name", "POST", M + "/layers", b'{"name":"a\\u0000b"}', json_type, (400, 422), None),
+        ("nested without end", "POST", L + "/edits", b"[" * 100000, json_type, (400, 422), None),
+        ("a list instead of an object", "POST", L + "/edits", [], {}, 422, None),
+        ("limit of zero", "GET", "/models?limit=0", None, {}, (400, 422), "limit"),
+        ("limit too large", "GET", "/models?limit=100000", None, {}, (400, 422), "limit"),
+        ("negative offset", "GET", L + "/edits?offset=-1", None, {}, (400, 422), "offset"),
+        ("unknown query parameter", "GET", "/models?colour=red", None, {}, (400, 422), "colour"),
+
+        ("unknown op", "POST", L + "/edits", {"op": "wash"}, {}, 422, "op"),
+        ("no op", "POST", L + "/edits", without(FILL, "op"), {}, 422, "op"),
+        ("value too large for u8", "POST", L + "/edits", {**FILL, "value": 256}, {}, 422, "value"),
+        ("value negative for u8", "POST", L + "/edits", {**FILL, "value": -1}, {}, 422, "value"),
+        ("value with a fraction", "POST", L + "/edits", {**FILL, "value": 1.5}, {}, 422, "value"),
+        ("value as text", "POST", L + "/edits", {**FILL, "value": "1"}, {}, 422, "value"),
+        ("value missing", "POST", L + "/edits", without(FILL, "value"), {}, 422, None),
+        ("unknown member", "POST", L + "/edits", {**FILL, "sql": "DROP TABLE edits"}, {}, 422, "sql"),
+        ("expression not known", "POST", L + "/edits", {**FILL, "where": "1=1; DROP TABLE edits"}, {}, 422, "where"),
+        ("two radii", "POST", L + "/edits", {**stroke, "radius_mm": 3}, {}, 422, None),
+        ("no radius", "POST", L + "/edits", without(stroke, "radius_px"), {}, 422, None),
+        ("radius of zero", "POST", L + "/edits", {**stroke, "radius_px": 0}, {}, 422, "radius_px"),
+        ("empty path", "POST", L + "/edits", {**stroke, "path": []}, {}, 422, "path"),
+        ("a point of three", "POST", L + "/edits", {**stroke, "path": [[1, 2, 3]]}, {}, 422, "path[0]"),
+        ("a path too long", "POST", L + "/edits", {**stroke, "path": [[1, 2]] * 4097}, {}, 422, "path"),
+        ("a matrix of fifteen", "POST", L + "/edits", {**stroke, "camera": {**camera, "view": camera["view"][:15]}}, {}, 422, "camera.view"),
+        ("a singular matrix", "POST", L + "/edits", {**stroke, "camera": singular}, {}, 422, "camera.view"),
+        ("a window of no width", "POST", L + "/edits", {**stroke, "camera": {**camera, "width": 0}}, {}, 422, "camera.width"),
+        ("unknown shape", "POST", L + "/edits", {**stroke, "shape": "star"}, {}, 422, "shape"),
+        ("pick without y", "POST", M + "/pick", without(pick, "y"), {}, 422, "y"),
+        ("pick through a singular matrix", "POST", M + "/pick", {**pick, "camera": singular}, {}, 422, "camera.view"),
+        ("frame of another format", "POST", M + "/frame", {"camera": camera, "format": "gif"}, {}, 422, "format"),
+        ("frame too large", "POST", M + "/frame", {"camera": {**camera, "width": 100000}}, {}, 422, "camera.width"),
+        ("frame of an unknown layer", "POST", M + "/frame", {"camera": camera, "layers": ["nothing"]}, {}, 404, None),
+        ("frame of the future", "POST", M + "/frame", {"camera": camera, "at": 10**9}, {}, 422, "at"),
+        ("position that is no text of a point", "GET", M + "/position?coords=POINT(1)", None, {}, (400, 422), "coords"),
+        ("position without a place", "GET", M + "/position", None, {}, (400, 422), "coords"),
+        ("no positions", "POST", M + "/positions", {"points": []}, {}, 422, "points"),
+        ("restore of the future", "POST", L + "/restore", {"sequence": 10**9}, {}, 422, "sequence"),
+        ("texels of the future", "GET", L + "/texels.npy?at=1000000000", None, {}, 422, "at"),
+        ("a raster that is none", "PUT", L + "/texels.npy", b"\x93NUMPY nonsense", {"Content-Type": "application/x-npy"}, 422, None),
+        ("a picture that is none", "PUT", L + "/texels.png", b"\x89PNG\r\n\x1a\n nonsense", {"Content-Type": "image/png"}, 422, None),
+
+        ("layer without a name", "POST", M + "/layers", {}, {}, 422, "name"),
+        ("layer with an empty name", "POST", M + "/layers", {"name": ""}, {}, 422, "name"),
+        ("layer of an unknown type", "POST", M + "/layers", {"name": "x", "type": "f64"}, {}, 422, "type"),
+        ("layer of an odd resolution", "POST", M + "/layers", {"name": "x", "resolution": 3000}, {}, 422, "resolution"),
+        ("layer too coarse for the atlas", "POST", M + "/layers", {"name": "x", "resolution": 256}, {}, 422, "resolution"),
+        ("layer with a path as slug", "POST", M + "/layers", {"name": "x", "slug": "../x"}, {}, 422, "slug"),
+        ("colour that is none", "POST", M + "/layers",
+         {"name": "x", "palette": {"mode": "step", "points": [{"at": 0, "color": "red"}]}}, {}, 422, "palette.points[0].color"),
+        ("nothing to undo", "POST", M + "/layers/other/undo", None, {}, 409, None),
+        ("nothing to redo", "POST", M + "/layers/other/redo", None, {}, 409, None),
+        ("project in use", "DELETE", "/projects/default", None, {}, 409, None),
+        ("empty change", "PATCH", M, {}, {}, 422, None),
+        ("unknown unit", "PATCH", M, {"unit": "ell"}, {}, 422, "unit"),
+        ("opacity above one", "PATCH", L, {"opacity": 1.5}, {}, 422, "opacity"),
+        ("a change of what somebody changed", "PATCH", M, {"unit": "mm"}, {"If-Match": '"v999"'}, 412, None),
+        ("a layer that somebody changed", "PATCH", L, {"opacity": 0.5}, {"If-Match": '"v999"'}, 412, None),
+        ("deletion of what somebody changed", "DELETE", L, None, {"If-Match": '"v999"'}, 412, None),
+
+        ("an edit too large", "POST", L + "/edits", b" " * (1 << 20) + b"{}", json_type, 413, "body"),
+        ("a key too long", "POST", L + "/edits", FILL, {"Idempotency-Key": "k" * 256}, 400, "Idempotency-Key"),
+
+        ("a scan of another format", "POST", "/models?filename=scan.stl", b"solid", {}, 415, "filename"),
+        ("a scan without a file name", "POST", "/models", b"ply\n", {}, 422, "filename"),
+        ("a scan in an unknown unit", "POST", "/models?filename=a.ply&unit=inch", b"ply\n", {}, 422, "unit"),
+        ("a scan for an unknown project", "POST", "/models?filename=a.ply&project=nothing", b"ply\n", {}, 404, "project"),
+        ("a scan on its side", "POST", "/models?filename=a.ply&up=w", b"ply\n", {}, 422, "up"),
+        ("a coordinate system that is none", "POST", "/models?filename=a.ply&crs=here", b"ply\n", {}, 422, "crs"),
+    ]
+
+
+def check_table(server, camera):
+    failures = []
+    for what, method, path, body, headers, status, field in table(camera):
+        answer = server.request(method, path, body, headers)
+        statuses = status if isinstance(status, tuple) else (status,)
+        try:
+            problem = answer.json() if answer.body else {}
+        except ValueError:
+            problem = {}
+        right = (answer.status in statuses and answer.headers.get("Content-Type") == "application/problem+json"
+                 and problem.get("status") == answer.status and problem.get("title") and problem.get("detail")
+                 and (field is None or problem.get("field") == field))
+        if not right:
+            failures.append(f"{what}: {method} {path} wanted {status} {field or ''}, got {answer}")
+    assert not failures, f"{len(failures)} cases:\n" + "\n".join(failures)
+    assert server.get(L).json()["sequence"] == 0, "a refused edit painted"
+
+
+def check_sign_in(server):
+    for token in (False, "x" * 48, "x" * 5000):
+        for method, path in (("GET", "/models"), ("POST", L + "/edits"), ("GET", "/me"), ("GET", L + "/texels.npy"), ("GET", "/jobs")):
+            answer = server.request(method, path, FILL if method == "POST" else None, token=token)
+            assert answer.status in (401, 431) and (answer.status == 401 or len(str(token)) > 4000), (method, path, answer)
+    for path in ("//livez", "//readyz", "//api/v1/openapi.json", "//"):
+        assert server.get(path, token=False).status == 200, path
+    # The cookie is for this server's own page only.
+    login = server.post("/login", {"token": server.token}, token=False, headers={"Origin": server.url})
+    assert login.status == 200 and "HttpOnly" in login.headers["Set-Cookie"] and "SameSite" in login.headers["Set-Cookie"], login.headers
+    cookie = {"Cookie": login.headers["Set-Cookie"].split(";")[0]}
+    assert server.get("/me", token=False, headers=cookie).json()["role"] == "owner"
+    for origin in ({}, {"Origin": "https://elsewhere.example"}, {"Origin": "null"}, {"Origin": server.url + ".elsewhere.example"}):
+        answer = server.post(L + "/undo", None, token=False, headers={**cookie, **origin})
+        assert answer.status == 403, (origin, answer)
+    assert server.post(L + "/undo", None, token=False, headers={**cookie, "Origin": server.url}).status == 409
+    assert server.post("/logout", None, token=False, headers={**cookie, "Origin": server.url}).status == 204
+    assert server.get("/me", token=False, headers=cookie).status == 401
+    assert server.post("/login", {"token": "wrong"}, token=False).status == 401
+
+
+def raw_request(server, text):
+    with socket.create_connection((server.host, server.port), timeout=60) as link:
+        link.sendall(text)
+        link.shutdown(socket.SHUT_WR)
+        answer = b""
+        while part := link.recv(65536):
+            answer += part
+        return answer
+
+
+def check_paths(server):
+    """No address leads out of the page's folder, however it is written."""
+    secret = os.path.join(server.data, "secret.txt")
+    with open(secret, "w", encoding="ascii") as file:
+        file.write("the secret of this test")
+    dots = ["..", "%2e%2e", ".%2e", "%2E%2E", "..%00", "%252e%252e", "..\\", "..%5c"]
+    targets = ["/" + "/".join([dot] * 12) + path for dot in dots for path in (secret, "/etc/passwd")]
+    targets += ["/assets/" + target.lstrip("/") for target in targets] + ["/assets/" + secret, "//" + secret, "/%2f" + secret]
+    targets += [f"/api/v1/models/grid/source/..%2f..%2f..%2f..{secret.replace('/', '%2f')}", "/api/v1/models/grid/source/..%2fgrid.ply"]
+    for target in targets:
+        answer = raw_request(server, f"GET {target} HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer {server.token}\r\nConnection: close\r\n\r\n".encode())
+        assert b"the secret of" not in answer and b"root:" not in answer, (target, answer[:300])
+        status = int(answer.split(b" ")[1])
+        assert status in (400, 404) or (status == 200 and b"<strata-app" in answer), (target, answer[:300])
+    for broken in (b"nonsense\r\n\r\n", b"GET\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",
+                   b"GET / HTTP/1.1\r\nContent-Length: -1\r\n\r\n", b"POST /api/v1/login HTTP/1.1\r\nContent-Length: 10\r\n\r\n{",
+                   b"GET / HTTP/1.1\r\n" + b"X: " + b"y" * 20000 + b"\r\n\r\n"):
+        answer = raw_request(server, broken)
+        assert not answer or answer.split(b" ")[1][:1] == b"4", (broken[:40], answer[:200])
+    assert server.get("//livez").status == 200
+
+
+def check_repeats(server, camera):
+    """An edit with a key is done once; the key belongs to its address."""
+    stroke = {"op": "stroke", "value": 9, "camera": camera, "radius_px": 30, "path": [[320, 240]]}
+    key = {"Idempotency-Key": str(uuid.uuid4())}
+    first = server.ok("POST", L + "/edits", stroke, headers=key).json()
+    assert first["texels_changed"] > 0
+    for _ in range(3):
+        assert server.ok("POST", L + "/edits", stroke, headers=key).json() == first
+    other = server.ok("POST", M + "/layers/other/edits", stroke, headers=key).json()
+    assert other["sequence"] == first["sequence"] + 1, (first, other)
+    assert server.get(L + "/edits").json()["total"] == 1
+    again = server.ok("POST", L + "/edits", stroke).json()  # without a key: a new edit, which changes nothing
+    assert again["sequence"] == other["sequence"] + 1 and again["texels_changed"] == 0, again
+    # The same for what is no edit.
+    key = {"Idempotency-Key": "layer once"}
+    made = server.ok("POST", M + "/layers", {"name": "Once"}, headers=key)
+    assert server.ok("POST", M + "/layers", {"name": "Once"}, headers=key).json()["id"] == made.json()["id"]
+    names = [layer["name"] for layer in server.get(M + "/layers").json()["layers"]]
+    assert names.count("Once") == 1, names
+
+
+def check_versions(server):
+    model = server.get(M)
+    tag = {"If-Match": model.headers["ETag"]}
+    changed = server.ok("PATCH", M, {"unit": "cm", "scale_verified": True}, headers=tag)
+    assert changed.json()["unit"] == "cm" and changed.headers["ETag"] != model.headers["ETag"]
+    assert server.request("PATCH", M, {"unit": "m"}, headers=tag).status == 412
+    assert server.get(M).json()["unit"] == "cm"
+    server.ok("PATCH", M, {"unit": "mm"}, headers={"If-Match": changed.headers["ETag"]})
+
+
+def things(server):
+    return ([model["slug"] for model in server.get("/models").json()["models"]], sorted(os.listdir(os.path.join(server.data, "uploads"))))
+
+
+def check_bad_files(server):
+    """A file that cannot be used leaves nothing behind."""
+    before = things(server)
+    good = folded_grid()
+    head, _, body = good.partition(b"end_header\n")
+    files = [("empty.ply", b""), ("text.ply", b"hello"), ("head.ply", head), ("short.ply", good[:len(good) // 2]),
+             ("lies.ply", head.replace(b"element vertex 441", b"element vertex 2000000000") + b"end_header\n" + body),
+             ("lists.ply", good[:-13] + b"\xff" + good[-12:]), ("empty.obj", b""), ("text.obj", b"f 1 2 3\n"),
+             ("nan.obj", b"v nan nan nan\nv 0 0 inf\nv 1 0 0\nf 1 2 3\n"), ("point.obj", b"v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n"),
+             ("binary.obj", bytes(range(256)) * 100)]
+    for name, content in files:
+        started = server.post(f"/models?filename={name}", content)
+        if started.status == 202:
+            job = server.wait_for_job(started.json()["id"])
+            assert job["state"] == "failed" and job["problem"]["detail"] and "model" not in job, (name, job)
+        else:
+            assert started.status in (400, 422), (name, started)
+    assert things(server) == before, (before, things(server))
+
+
+def check_cancel(server):
+    """Imports are cancelled while they wait and while they run; nothing is left of them."""
+    before = things(server)
+    large = bumpy_ball(300, 600)
+    first, second = [server.ok("POST", f"/models?filename={name}.ply", large).json()["id"] for name in ("first", "second")]
+    for job in (second, first):  # the second waits for the first
+        server.ok("DELETE", f"/jobs/{job}")
+    for job in (second, first):
+        state = server.wait_for_job(job)
+        assert state["state"] == "cancelled" and "model" not in state, state
+        assert server.request("DELETE", f"/jobs/{job}").status == 409
+    wait_for(lambda: things(server) == before, f"the uploads to go: {before} {things(server)}")
+
+
+def main():
+    with StrataServer() as server:
+        model = server.import_model(folded_grid(), "grid.ply", unit="mm", name="Grid")
+        assert model["slug"] == "grid"
+        for name in ("Marks", "Other"):
+            server.ok("POST", M + "/layers", {"name": name, "type": "u8"})
+        camera = camera_from(model, [0, 0, 1], up=(0, 1, 0))
+        check_table(server, camera)
+        check_sign_in(server)
+        check_paths(server)
+        check_repeats(server, camera)
+        check_versions(server)
+        check_bad_files(server)
+        check_cancel(server)
+        assert json.loads(server.get("//readyz").body)["ready"] is True
+        assert server.stop() == 0
+        server.assert_clean_log()
+    print(f"{len(table(camera))} refusals, and sign-in, paths, repeats, versions, bad files and cancelled jobs")
+
+
+main()

@@ -1,0 +1,193 @@
+#!/usr/bin/env python3
+"""The live connection against bad clients, slow clients, and the server's orderly end."""
+import glob
+import json
+import os
+import signal
+import sys
+import threading
+import uuid
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.cameras import camera_from
+from support.live_client import LAST_RECTANGLE, Closed, LiveClient, Refused
+from support.meshes import folded_grid
+from support.strata_server import StrataServer, wait_for
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+M, L = "/models/grid", "/models/grid/layers/marks"
+
+
+def new_id():
+    return str(uuid.uuid4())
+
+
+def check_upgrade(server):
+    for what, model, more, status in (
+            ("no token", "grid", {"token": ""}, 401), ("unknown token", "grid", {"token": "x" * 48}, 401),
+            ("unknown model", "nothing", {}, 404), ("foreign origin", "grid", {"origin": "https://elsewhere.example"}, 403),
+            ("another subprotocol", "grid", {"subprotocol": "strata.v9"}, 400),
+            ("null origin", "grid", {"origin": "null"}, 403), ("like our origin", "grid", {"origin": server.url + ".example"}, 403)):
+        try:
+            LiveClient(server, model, **more)
+        except Refused as refused:
+            assert refused.status == status, (what, refused)
+            assert json.loads(refused.body)["status"] == status, (what, refused)
+        else:
+            raise AssertionError(f"{what}: the upgrade was not refused")
+    with LiveClient(server, "grid", origin=server.url) as live:
+        assert live.hello()["model"]["slug"] == "grid"
+
+
+def check_bad_messages(server):
+    """Every invalid fixture of the protocol gets a problem that names the field, and the connection lives on."""
+    fixtures = sorted(glob.glob(os.path.join(ROOT, "protocol", "fixtures", "invalid", "*.json")))
+    with LiveClient(server, "grid") as live:
+        live.send({"op": "camera", "seq": 1})
+        assert live.receive_until("problem")["status"] == 422
+        live.send({"op": "ack", "frame": 1})
+        assert live.receive_until("problem")["title"] == "Say hello first"
+        live.hello()
+        tried = 0
+        for file in fixtures:
+            with open(file, encoding="utf-8") as opened:
+                fixture = json.load(opened)
+            if os.path.basename(file).startswith("http_"):
+                continue
+            live.send(fixture["text"] if "text" in fixture else json.dumps(fixture["json"]))
+            problem = live.receive_until("problem")
+            assert problem["status"] == fixture["status"], (file, problem)
+            assert problem.get("field", "") == fixture["field"], (file, problem)
+            tried += 1
+        assert tried > 40, tried
+
+        for what, raw, status in (("binary", (2, b"\0\1\2"), 415), ("too large", (1, b" " * (300 * 1024)), 413),
+                                  ("too large and whole", (1, json.dumps({"op": "hello", "client": "x" * 300000}).encode()), 413)):
+            live.send_raw(*raw)
+            problem = live.receive_until("problem")
+            assert problem["status"] == status, (what, problem)
+        camera = camera_from(server.get(M).json(), [0, 0, 1], up=(0, 1, 0))
+        stroke = {"op": "stroke.begin", "id": new_id(), "stroke": new_id(), "layer": "marks", "camera": camera, "radius_px": 5, "value": 3}
+        for what, message, status in (
+                ("hello twice", {"op": "hello"}, 409),
+                ("a stroke that was not begun", {"op": "stroke.extend", "id": new_id(), "stroke": new_id(), "n": 0, "path": [[1, 1]]}, 404),
+                ("the end of none", {"op": "stroke.end", "id": new_id(), "stroke": new_id()}, 404),
+                ("an unknown layer", {**stroke, "layer": "nothing"}, 404), ("a layer that is a number", {**stroke, "layer": 999999}, 404),
+                ("a value too large", {**stroke, "value": 256}, 422), ("an undo of nothing", {"op": "undo", "id": new_id(), "layer": "marks"}, 409),
+                ("a view too many", {"op": "camera", "view_id": 15, "seq": 1, **camera}, 422),
+                ("settings of an unknown layer", {"op": "layers", "layers": [{"layer": "nothing"}]}, 404)):
+            live.send(message)
+            problem = live.receive_until("problem")
+            assert problem["status"] == status and problem.get("ref", message.get("id")) == message.get("id"), (what, problem)
+        # It still works.
+        live.send({"op": "pick", "id": "p", "camera": camera, "x": 320, "y": 240})
+        assert live.receive_until("picked")["hit"]
+    with LiveClient(server, "grid") as live:
+        live.hello()
+        try:
+            live.send_raw(1, b" " * (5 << 20))
+            while True:
+                live.receive()
+        except (Closed, OSError):
+            pass
+    assert server.get(L).json()["sequence"] == 0, "a refused message painted"
+
+
+def wait_for_picture(live, seq):
+    while True:
+        frame = live.receive_until("frame")
+        if frame["flags"] & LAST_RECTANGLE and frame["camera_seq"] >= seq:
+            return
+
+
+def check_slow_client(server):
+    """Two people who never read do not hold up a third: pictures and saved edits go on."""
+    model = server.get(M).json()
+    cameras = [camera_from(model, [0.05 * turn, 0.2, 1], width=1280, height=720, up=(0, 1, 0)) for turn in range(12)]
+    slow = [LiveClient(server, "grid", receive_buffer=4096) for _ in range(2)]
+    for live in slow:
+        live.send({"op": "hello"})
+        for view in range(4):
+            live.send({"op": "camera", "view_id": view, "seq": 1, **cameras[0]})
+    with LiveClient(server, "grid") as live:
+        live.hello()
+        for turn, camera in enumerate(cameras):
+            for index, lazy in enumerate(slow):
+                lazy.send({"op": "camera", "seq": turn + 2, "moving": True, **camera})
+                lazy.send({"op": "pick", "id": f"{index}", "x": 640, "y": 360})
+            live.send({"op": "camera", "seq": turn + 1, "moving": True, **camera})
+            wait_for_picture(live, turn + 1)
+            for value in range(5):
+                identity = new_id()
+                live.send({"op": "edit", "id": identity, "layer": "marks",
+                           "edit": {"op": "stroke", "value": value + 1, "camera": camera, "radius_px": 30, "path": [[400 + 40 * turn, 300], [640, 360]]}})
+                assert live.receive_until("saved", "unsaved", "problem")["op"] == "saved"
+    for live in slow:
+        live.socket.close()
+    assert server.get("//livez").status == 200
+
+
+def check_end(server):
+    """SIGTERM in mid-load: what was answered is kept, what is refused is not there, and the exit status is 0."""
+    answered, refused = [], []
+    go_on = threading.Event()
+
+    def paint(seed):
+        for number in range(10000):
+            key = f"{seed} {number}"
+            edit = {"op": "fill", "mode": "where", "where": "true", "value": (seed * 40 + number) % 250 + 1}
+            try:
+                answer = server.post(M + "/layers/other/edits", edit, headers={"Idempotency-Key": key})
+            except OSError:
+                return
+            except Exception as broken:  # pylint: disable=broad-except
+                refused.append(broken)
+                return
+            if answer.status != 200:
+                refused.append(answer)
+                return
+            answered.append(answer.json()["sequence"])
+            if len(answered) > 20:
+                go_on.set()
+
+    painters = [threading.Thread(target=paint, args=(seed,)) for seed in range(4)]
+    for painter in painters:
+        painter.start()
+    assert go_on.wait(120)
+    with LiveClient(server, "grid") as live:
+        live.hello()
+        server.process.send_signal(signal.SIGTERM)
+        try:
+            while True:
+                live.receive()
+        except Closed as closed:
+            assert closed.code in (1001, None), closed.code  # "going away", when it came through
+        except OSError:
+            pass
+    assert server.process.wait(120) == 0
+    for painter in painters:
+        painter.join(120)
+        assert not painter.is_alive()
+    wait_for(lambda: server.postmaster() is None, "PostgreSQL to end with the server")
+    assert all(getattr(answer, "status", 503) in (429, 503) for answer in refused), refused
+    server.start()
+    kept = {row["sequence"] for row in server.get(M + "/layers/other/edits?limit=1000").json()["edits"]}
+    assert set(answered) <= kept, sorted(set(answered) - kept)
+    return len(answered)
+
+
+def main():
+    with StrataServer() as server:
+        server.import_model(folded_grid(), "grid.ply", unit="mm", name="Grid")
+        for name in ("Marks", "Other"):
+            server.ok("POST", M + "/layers", {"name": name, "type": "u8"})
+        check_upgrade(server)
+        check_bad_messages(server)
+        check_slow_client(server)
+        answered = check_end(server)
+        assert server.stop() == 0
+        server.assert_clean_log()
+    print(f"upgrades, messages, slow clients; {answered} edits were answered before the end and are kept")
+
+
+main()

@@ -1,0 +1,197 @@
+"""A Strata server of the test's own: real PostgreSQL, real GL, any free port, a temporary data folder.
+
+Reads STRATA_BINARY. Nothing here waits for a time: everything waits for a condition, up to LONG_S.
+"""
+import ctypes
+import http.client
+import json
+import os
+import secrets
+import shutil
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+import urllib.parse
+
+LONG_S = 180
+
+
+def wait_for(condition, what, limit_s=LONG_S, every_s=0.02):
+    """The first true result of `condition`."""
+    end = time.monotonic() + limit_s
+    while True:
+        found = condition()
+        if found:
+            return found
+        if time.monotonic() > end:
+            raise AssertionError(f"waited {limit_s} s for {what}")
+        time.sleep(every_s)
+
+
+def _end_with_parent():
+    """A test that is killed (by CTest's time limit) takes its server with it."""
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+
+
+class Answer:
+    """One HTTP answer."""
+
+    def __init__(self, status, headers, body):
+        self.status, self.headers, self.body = status, headers, body
+
+    def json(self):
+        return json.loads(self.body)
+
+    def __repr__(self):
+        return f"<{self.status} {self.body[:400]!r}>"
+
+
+class StrataServer:
+    def __init__(self, demo=False):
+        self.binary = os.environ["STRATA_BINARY"]
+        self.token = secrets.token_hex(24)
+        # Under /tmp and open to all: PostgreSQL does not run as root, so its user must reach the folder.
+        self.data = tempfile.mkdtemp(prefix="strata-e2e-", dir="/tmp")
+        os.chmod(self.data, 0o755)
+        self.process = None
+        self.host, self.port, self.link = "127.0.0.1", None, None
+        self.log = []
+        self.changed = threading.Condition()
+        if demo:
+            done = subprocess.run([self.binary, "demo", "--data", self.data], capture_output=True, text=True, check=False)
+            if done.returncode != 0:
+                raise AssertionError(f"strata demo failed: {done.stderr}")
+
+    def __enter__(self):
+        try:
+            return self.start()
+        except BaseException:
+            self.remove()
+            raise
+
+    def __exit__(self, *failure):
+        if self.process and self.process.poll() is None:
+            self.kill()
+        if failure[0]:
+            print("--- log of the server\n" + "\n".join(self.log[-200:]), flush=True)
+        self.remove()
+
+    def remove(self):
+        # The kernel ends PostgreSQL with its server; it writes until then.
+        wait_for(lambda: self.postmaster() is None, "the private PostgreSQL to end")
+        shutil.rmtree(self.data, ignore_errors=True)
+
+    def environment(self):
+        return {**os.environ, "STRATA_OWNER_TOKEN": self.token}
+
+    def start(self):
+        """Starts it (again) and returns once it listens."""
+        self.process = subprocess.Popen([self.binary, "serve", "--data", self.data, "--listen", "127.0.0.1:0"],
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=self.environment(),
+                                        preexec_fn=_end_with_parent)
+        threading.Thread(target=self._read_log, args=(self.process.stderr,), daemon=True).start()
+        port = link = None
+        for line in self.process.stdout:
+            if line.startswith("listening on "):
+                port = urllib.parse.urlsplit(line.split()[-1]).port
+            if line.startswith("owner link: "):
+                link = line.split()[-1]
+                break
+        if not port or not link:
+            raise AssertionError(f"the server ended with {self.process.wait()}:\n" + "\n".join(self.log[-50:]))
+        with self.changed:
+            self.port, self.link = port, link
+            self.changed.notify_all()
+        return self
+
+    def _read_log(self, stream):
+        for line in stream:
+            self.log.append(line.rstrip("\n"))
+
+    @property
+    def url(self):
+        return f"http://{self.host}:{self.port}"
+
+    def kill(self):
+        """kill -9, and waits for the end."""
+        with self.changed:
+            self.port = None
+        self.process.kill()
+        self.process.wait()
+
+    def stop(self):
+        """SIGTERM; the exit status."""
+        self.process.send_signal(signal.SIGTERM)
+        return self.process.wait(LONG_S)
+
+    def postmaster(self):
+        """Process id of the private PostgreSQL, or None."""
+        try:
+            with open(os.path.join(self.data, "postgres", "pgdata", "postmaster.pid"), encoding="ascii") as file:
+                pid = int(file.readline())
+            with open(f"/proc/{pid}/stat", encoding="ascii") as file:
+                return None if file.read().rsplit(")", 1)[1].split()[0] == "Z" else pid
+        except (OSError, ValueError):
+            return None
+
+    def assert_clean_log(self, warnings=()):
+        """No errors, and only those warnings that contain one of the given words (of a fault that the test made)."""
+        bad = []
+        for line in self.log:
+            level = line.split(" ")[1:2]
+            if level == ["E"] or (level == ["W"] and not any(word in line for word in warnings)):
+                bad.append(line)
+            elif level and level[0] not in ("I", "D", "W"):
+                bad.append(line)  # not a line of the log: a crash, a sanitizer, a library
+        assert not bad, "the log of the server is not clean:\n" + "\n".join(bad[:50])
+
+    # --- HTTP
+
+    def connect(self):
+        port = self.port
+        if port is None:
+            raise ConnectionRefusedError("the server is down")
+        return http.client.HTTPConnection(self.host, port, timeout=LONG_S)
+
+    def request(self, method, path, body=None, headers=None, token=True, connection=None):
+        """One request. `path` after /api/v1 unless it starts with //; a dict or list as body is sent as JSON."""
+        target = path[1:] if path.startswith("//") else "/api/v1" + path
+        sent = {}
+        if token:
+            sent["Authorization"] = "Bearer " + (token if isinstance(token, str) else self.token)
+        if isinstance(body, (dict, list)):
+            body = json.dumps(body).encode()
+            sent["Content-Type"] = "application/json"
+        sent.update(headers or {})
+        link = connection or self.connect()
+        try:
+            link.request(method, target, body=body, headers=sent)
+            answer = link.getresponse()
+            return Answer(answer.status, answer.headers, answer.read())
+        finally:
+            if connection is None:
+                link.close()
+
+    def get(self, path, **more):
+        return self.request("GET", path, **more)
+
+    def post(self, path, body=None, **more):
+        return self.request("POST", path, body, **more)
+
+    def ok(self, method, path, body=None, expect=(200, 201, 202, 204), **more):
+        answer = self.request(method, path, body, **more)
+        assert answer.status in expect, f"{method} {path}: {answer}"
+        return answer
+
+    def wait_for_job(self, job):
+        return wait_for(lambda: (lambda now: now if now["state"] not in ("queued", "running") else None)(
+            self.ok("GET", f"/jobs/{job}").json()), f"job {job}")
+
+    def import_model(self, content, filename, **query):
+        """Imports and returns the model."""
+        asked = urllib.parse.urlencode({"filename": filename, **query})
+        job = self.wait_for_job(self.ok("POST", "/models?" + asked, content).json()["id"])
+        assert job["state"] == "done", job
+        return self.ok("GET", f"/models/{job['model']}").json()
