@@ -1,6 +1,5 @@
 #include <signal.h>
 #include <sys/stat.h>
-#include <time.h>
 
 #include <iostream>
 #include <thread>
@@ -71,13 +70,9 @@ sigset_t block_signals() {
   return ending;
 }
 
-// Until asked to end; meanwhile a private database that died is started again (from this thread: its life hangs on it).
-void wait_for_end(const sigset_t& ending, store::Cluster* cluster) {
-  const timespec second{1, 0};
-  while (sigtimedwait(&ending, nullptr, &second) < 0) {
-    if (!cluster) continue;
-    if (auto running = cluster->ensure_running(); !running)
-      log::error(running.error().title + ": " + running.error().detail);
+void wait_for_end(const sigset_t& ending) {
+  int signal = 0;
+  while (sigwait(&ending, &signal) != 0) {
   }
 }
 
@@ -123,7 +118,8 @@ int run(const ServeOptions& options) {
   if (!link) return report(link.error());
   std::cout << "owner link: " << url << "/login?link=" << *link << std::endl;
 
-  wait_for_end(ending, (*database)->cluster.get());
+  if ((*database)->cluster) (*database)->cluster->watch();
+  wait_for_end(ending);
   log::info("stopping: no new edits, saving what is under way");
   (*server)->stop();
   rooms.drain();

@@ -138,7 +138,7 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
   // should one ever not, the report says what overlaps.
   for (int round = 0; round < kMostMendingRounds; ++round) {
     if (progress.cancelled()) return cancelled_problem();
-    progress.report(0.85, "Verifying the atlas");
+    progress.report(0.85, "Checking that nothing overlaps");
     atlas.corner_uvs = lay_out(surface, charts, outlines, packing, lowest_resolution);
     const auto conflicts = faces_in_conflict(mesh, atlas.corner_uvs, lowest_resolution);
     if (conflicts.empty()) break;
@@ -148,12 +148,12 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
     if (!repacked) return no_room(charts.size(), lowest_resolution);
     packing = std::move(*repacked);
   }
-  progress.report(0.95, "Measuring the atlas");
+  progress.report(0.95, "Measuring the unfolded surface");
   atlas.report = to_report(count_owners(mesh, atlas.corner_uvs, lowest_resolution),
                            measure_areas(mesh, atlas.corner_uvs, lowest_resolution), lowest_resolution);
   atlas.report.source = "made";
   atlas.report.charts = static_cast<int>(charts.size());
-  progress.report(1, "Atlas made");
+  progress.report(1, "Surface unfolded");
   return atlas;
 }
 

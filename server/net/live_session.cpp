@@ -356,7 +356,12 @@ void LiveSession::layer_changed(LayerChange change, const Layer& layer) {
   send(event);
 }
 
-void LiveSession::model_changed(const Model&) {}  // strata.v1 has no message for it; the page reads the model again when it shows it
+void LiveSession::model_changed(const Model& model) {
+  protocol::ModelEvent event;
+  event.event = protocol::ModelEventEvent::changed;
+  event.model = to_json(model, project_slug_);
+  send(event);
+}
 
 void LiveSession::presence_changed() {
   auto socket = socket_.lock();

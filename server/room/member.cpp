@@ -54,12 +54,11 @@ Result<void> RoomMember::layers(std::uint32_t view_id, std::vector<LayerView> la
   std::lock_guard lock(mutex_);
   View* v = view(view_id, true);
   if (!v) return fail(422, "Too many views", "One connection has at most " + std::to_string(kMaxViews) + " views.", "view_id");
+  v->overrides.clear();
+  v->palettes.clear();
   for (auto& own : layers) {
     if (own.palette) v->palettes[own.layer_id] = std::make_shared<const Palette>(*own.palette);
-    LayerView& kept = v->overrides[own.layer_id];
-    kept.layer_id = own.layer_id;
-    if (own.visible) kept.visible = own.visible;
-    if (own.opacity) kept.opacity = own.opacity;
+    v->overrides[own.layer_id] = std::move(own);
   }
   v->viewer->set_layers(styles(*v));
   return {};

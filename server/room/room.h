@@ -59,6 +59,7 @@ class Member {
   virtual ~Member() = default;
   virtual Uuid session() const = 0;
   virtual void camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) = 0;
+  // Replaces everything that was set before for this view.
   virtual Result<void> layers(std::uint32_t view_id, std::vector<LayerView> layers) = 0;
   virtual void ack(std::uint32_t view_id, std::uint64_t frame) = 0;
   virtual void pointer(std::optional<glm::dvec3> world) = 0;
