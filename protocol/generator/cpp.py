@@ -100,7 +100,7 @@ class Writer:
         out.append("};\nconstexpr int kSchemaCount = " + str(len(self.protocol.definitions)) + ";\n"
                    "using strata::name;  // of the core's types\nstd::string_view name(Schema schema);\n"
                    "std::string_view schema_bundle();  // JSON text: {\"definitions\": {name: schema}}\n\n"
-                   "template <class T>\nextern const Schema schema_of;\n\n")
+                   "template <class T>\nextern const Schema kSchemaOf;\n\n")
         for definition in self.order:
             if self.is_named(definition):
                 out.append(self.declare(definition))
@@ -125,7 +125,7 @@ class Writer:
             text = f"{comment}using {name} = std::variant<{', '.join(type_.values)}>;\n" + self.functions(name)
             if self.has_camera(name):
                 text += f"Result<void> check(const {name}& value, const std::string& field);\n"
-            return text + f"template <>\ninline constexpr Schema schema_of<{name}> = Schema::{name};\n\n"
+            return text + f"template <>\ninline constexpr Schema kSchemaOf<{name}> = Schema::{name};\n\n"
         if type_.kind != "object":
             return f"{comment}using {name} = {self.spell(type_)};\n\n"
         text = ""
@@ -149,7 +149,7 @@ class Writer:
             text += f"strata::Camera camera_of(const {name}& value);\n"
         if self.has_check(name):
             text += f"Result<void> check(const {name}& value, const std::string& field);\n"
-        return text + f"template <>\ninline constexpr Schema schema_of<{name}> = Schema::{name};\n\n"
+        return text + f"template <>\ninline constexpr Schema kSchemaOf<{name}> = Schema::{name};\n\n"
 
     def declare_enum(self, name: str, values: list) -> str:
         self.enums[name] = values

@@ -21,17 +21,17 @@
 namespace strata::protocol {
 
 template <class T>
-struct is_vector : std::false_type {};
+struct IsVector : std::false_type {};
 template <class T>
-struct is_vector<std::vector<T>> : std::true_type {};
+struct IsVector<std::vector<T>> : std::true_type {};
 template <class T>
-struct is_string_map : std::false_type {};
+struct IsStringMap : std::false_type {};
 template <class T>
-struct is_string_map<std::map<std::string, T>> : std::true_type {};
+struct IsStringMap<std::map<std::string, T>> : std::true_type {};
 template <class T>
-struct is_optional : std::false_type {};
+struct IsOptional : std::false_type {};
 template <class T>
-struct is_optional<std::optional<T>> : std::true_type {};
+struct IsOptional<std::optional<T>> : std::true_type {};
 
 using IdOrSlug = std::variant<std::int64_t, std::string>;
 
@@ -63,13 +63,13 @@ void read_value(const nlohmann::json& json, T& value) {
     value = json;
   } else if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
     json.get_to(value);
-  } else if constexpr (is_vector<T>::value) {
+  } else if constexpr (IsVector<T>::value) {
     value.clear();
     value.reserve(json.size());
     for (const auto& item : json) read_value(item, value.emplace_back());
-  } else if constexpr (is_string_map<T>::value) {
+  } else if constexpr (IsStringMap<T>::value) {
     for (const auto& [key, item] : json.items()) read_value(item, value[key]);
-  } else if constexpr (is_optional<T>::value) {
+  } else if constexpr (IsOptional<T>::value) {
     if (json.is_null())
       value.reset();
     else
@@ -85,15 +85,15 @@ template <class T>
 nlohmann::json write_value(const T& value) {
   if constexpr (std::is_same_v<T, nlohmann::json> || std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
     return value;
-  } else if constexpr (is_vector<T>::value) {
+  } else if constexpr (IsVector<T>::value) {
     nlohmann::json json = nlohmann::json::array();
     for (const auto& item : value) json.push_back(write_value(item));
     return json;
-  } else if constexpr (is_string_map<T>::value) {
+  } else if constexpr (IsStringMap<T>::value) {
     nlohmann::json json = nlohmann::json::object();
     for (const auto& [key, item] : value) json[key] = write_value(item);
     return json;
-  } else if constexpr (is_optional<T>::value) {
+  } else if constexpr (IsOptional<T>::value) {
     return value ? write_value(*value) : nlohmann::json(nullptr);
   } else if constexpr (requires { write_core(value); }) {
     return write_core(value);
@@ -111,7 +111,7 @@ template <class T>
 void read_optional_member(const nlohmann::json& json, const char* name, T& value) {
   const auto member = json.find(name);
   if (member == json.end()) return;
-  if constexpr (is_optional<T>::value) {
+  if constexpr (IsOptional<T>::value) {
     if (member->is_null())
       value.reset();
     else

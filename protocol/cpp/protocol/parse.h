@@ -14,7 +14,7 @@ namespace strata::protocol {
 // From JSON already parsed (for example a part of a larger object); `field` is where it stands.
 template <class T>
 Result<T> from_json(const nlohmann::json& json, const std::string& field = {}) {
-  if (auto ok = validate(schema_of<T>, json, field); !ok) return tl::unexpected<Problem>(ok.error());
+  if (auto ok = validate(kSchemaOf<T>, json, field); !ok) return tl::unexpected<Problem>(ok.error());
   T value;
   read(json, value);
   if constexpr (requires { check(value, field); })

@@ -77,7 +77,7 @@ std::string expectation(const json& schema) {
     for (const auto& choice : node["oneOf"]) text += (text.empty() ? "" : ", or ") + expectation(choice);
     return text;
   }
-  const std::string type = node.value("type", std::string("value"));
+  std::string type = node.value("type", std::string("value"));
   if (type == "integer" || type == "number") {
     std::string text = type == "integer" ? "a whole number" : "a number";
     if (node.contains("exclusiveMinimum")) text += " above " + number(node["exclusiveMinimum"]);

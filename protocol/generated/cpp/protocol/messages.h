@@ -114,7 +114,7 @@ std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
 
 template <class T>
-extern const Schema schema_of;
+extern const Schema kSchemaOf;
 
 // Pointer path. Pixels of the camera's window; consecutive points are joined, one point is a dab.
 using Path = std::vector<glm::dvec2>;
@@ -143,7 +143,7 @@ void read(const nlohmann::json& json, EditStroke& value);
 nlohmann::json to_json(const EditStroke& value);
 Result<void> check(const EditStroke& value, const std::string& field);
 template <>
-inline constexpr Schema schema_of<EditStroke> = Schema::EditStroke;
+inline constexpr Schema kSchemaOf<EditStroke> = Schema::EditStroke;
 
 enum class EditFillWhere { true_ };
 std::string_view name(EditFillWhere value);
@@ -162,7 +162,7 @@ void read(const nlohmann::json& json, EditFill& value);
 nlohmann::json to_json(const EditFill& value);
 Result<void> check(const EditFill& value, const std::string& field);
 template <>
-inline constexpr Schema schema_of<EditFill> = Schema::EditFill;
+inline constexpr Schema kSchemaOf<EditFill> = Schema::EditFill;
 
 // Edit. The same object over HTTP and the WebSocket.
 using Edit = std::variant<EditStroke, EditFill>;
@@ -170,7 +170,7 @@ void read(const nlohmann::json& json, Edit& value);
 nlohmann::json to_json(const Edit& value);
 Result<void> check(const Edit& value, const std::string& field);
 template <>
-inline constexpr Schema schema_of<Edit> = Schema::Edit;
+inline constexpr Schema kSchemaOf<Edit> = Schema::Edit;
 
 // Control point of a palette.
 struct PalettePoint {
@@ -182,7 +182,7 @@ struct PalettePoint {
 void read(const nlohmann::json& json, PalettePoint& value);
 nlohmann::json to_json(const PalettePoint& value);
 template <>
-inline constexpr Schema schema_of<PalettePoint> = Schema::PalettePoint;
+inline constexpr Schema kSchemaOf<PalettePoint> = Schema::PalettePoint;
 
 using ValueType = strata::ValueType;
 
@@ -205,7 +205,7 @@ struct Bounds {
 void read(const nlohmann::json& json, Bounds& value);
 nlohmann::json to_json(const Bounds& value);
 template <>
-inline constexpr Schema schema_of<Bounds> = Schema::Bounds;
+inline constexpr Schema kSchemaOf<Bounds> = Schema::Bounds;
 
 enum class AtlasSource { file, made };
 std::string_view name(AtlasSource value);
@@ -227,7 +227,7 @@ struct Atlas {
 void read(const nlohmann::json& json, Atlas& value);
 nlohmann::json to_json(const Atlas& value);
 template <>
-inline constexpr Schema schema_of<Atlas> = Schema::Atlas;
+inline constexpr Schema kSchemaOf<Atlas> = Schema::Atlas;
 
 // What was mended at import.
 struct Repair {
@@ -238,7 +238,7 @@ struct Repair {
 void read(const nlohmann::json& json, Repair& value);
 nlohmann::json to_json(const Repair& value);
 template <>
-inline constexpr Schema schema_of<Repair> = Schema::Repair;
+inline constexpr Schema kSchemaOf<Repair> = Schema::Repair;
 
 // Uploaded file, kept bit for bit.
 struct SourceFile {
@@ -250,7 +250,7 @@ struct SourceFile {
 void read(const nlohmann::json& json, SourceFile& value);
 nlohmann::json to_json(const SourceFile& value);
 template <>
-inline constexpr Schema schema_of<SourceFile> = Schema::SourceFile;
+inline constexpr Schema kSchemaOf<SourceFile> = Schema::SourceFile;
 
 // What a layer holds at a point.
 struct SurfaceValue {
@@ -261,7 +261,7 @@ struct SurfaceValue {
 void read(const nlohmann::json& json, SurfaceValue& value);
 nlohmann::json to_json(const SurfaceValue& value);
 template <>
-inline constexpr Schema schema_of<SurfaceValue> = Schema::SurfaceValue;
+inline constexpr Schema kSchemaOf<SurfaceValue> = Schema::SurfaceValue;
 
 // Values by the layers' slugs.
 using SurfaceValues = std::map<std::string, SurfaceValue>;
@@ -283,7 +283,7 @@ struct Hello {
 void read(const nlohmann::json& json, Hello& value);
 nlohmann::json to_json(const Hello& value);
 template <>
-inline constexpr Schema schema_of<Hello> = Schema::Hello;
+inline constexpr Schema kSchemaOf<Hello> = Schema::Hello;
 
 // Newest camera of a view. Only the newest counts; frames echo `seq`.
 struct CameraUpdate {
@@ -302,7 +302,7 @@ nlohmann::json to_json(const CameraUpdate& value);
 strata::Camera camera_of(const CameraUpdate& value);
 Result<void> check(const CameraUpdate& value, const std::string& field);
 template <>
-inline constexpr Schema schema_of<CameraUpdate> = Schema::CameraUpdate;
+inline constexpr Schema kSchemaOf<CameraUpdate> = Schema::CameraUpdate;
 
 // How this viewer shows a layer. An absent member is the layer's own default.
 struct LayerOverride {
@@ -315,7 +315,7 @@ struct LayerOverride {
 void read(const nlohmann::json& json, LayerOverride& value);
 nlohmann::json to_json(const LayerOverride& value);
 template <>
-inline constexpr Schema schema_of<LayerOverride> = Schema::LayerOverride;
+inline constexpr Schema kSchemaOf<LayerOverride> = Schema::LayerOverride;
 
 // Personal layer settings of a view. Replaces all overrides of the view; layers not listed show their defaults.
 struct LayersUpdate {
@@ -327,7 +327,7 @@ struct LayersUpdate {
 void read(const nlohmann::json& json, LayersUpdate& value);
 nlohmann::json to_json(const LayersUpdate& value);
 template <>
-inline constexpr Schema schema_of<LayersUpdate> = Schema::LayersUpdate;
+inline constexpr Schema kSchemaOf<LayersUpdate> = Schema::LayersUpdate;
 
 // Start of a stroke. Fixes layer, value, camera and brush. Needs a value unless it erases, and one radius.
 struct StrokeBegin {
@@ -348,7 +348,7 @@ void read(const nlohmann::json& json, StrokeBegin& value);
 nlohmann::json to_json(const StrokeBegin& value);
 Result<void> check(const StrokeBegin& value, const std::string& field);
 template <>
-inline constexpr Schema schema_of<StrokeBegin> = Schema::StrokeBegin;
+inline constexpr Schema kSchemaOf<StrokeBegin> = Schema::StrokeBegin;
 
 // Next batch of a stroke's points. The brush is swept from the last point of the batch before.
 struct StrokeExtend {
@@ -362,7 +362,7 @@ struct StrokeExtend {
 void read(const nlohmann::json& json, StrokeExtend& value);
 nlohmann::json to_json(const StrokeExtend& value);
 template <>
-inline constexpr Schema schema_of<StrokeExtend> = Schema::StrokeExtend;
+inline constexpr Schema kSchemaOf<StrokeExtend> = Schema::StrokeExtend;
 
 // End of a stroke.
 struct StrokeEnd {
@@ -374,7 +374,7 @@ struct StrokeEnd {
 void read(const nlohmann::json& json, StrokeEnd& value);
 nlohmann::json to_json(const StrokeEnd& value);
 template <>
-inline constexpr Schema schema_of<StrokeEnd> = Schema::StrokeEnd;
+inline constexpr Schema kSchemaOf<StrokeEnd> = Schema::StrokeEnd;
 
 // A whole edit.
 struct EditRequest {
@@ -388,7 +388,7 @@ void read(const nlohmann::json& json, EditRequest& value);
 nlohmann::json to_json(const EditRequest& value);
 Result<void> check(const EditRequest& value, const std::string& field);
 template <>
-inline constexpr Schema schema_of<EditRequest> = Schema::EditRequest;
+inline constexpr Schema kSchemaOf<EditRequest> = Schema::EditRequest;
 
 // Take back the caller's last stroke on the layer.
 struct Undo {
@@ -400,7 +400,7 @@ struct Undo {
 void read(const nlohmann::json& json, Undo& value);
 nlohmann::json to_json(const Undo& value);
 template <>
-inline constexpr Schema schema_of<Undo> = Schema::Undo;
+inline constexpr Schema kSchemaOf<Undo> = Schema::Undo;
 
 // Put back what the caller took back last.
 struct Redo {
@@ -412,7 +412,7 @@ struct Redo {
 void read(const nlohmann::json& json, Redo& value);
 nlohmann::json to_json(const Redo& value);
 template <>
-inline constexpr Schema schema_of<Redo> = Schema::Redo;
+inline constexpr Schema kSchemaOf<Redo> = Schema::Redo;
 
 // A frame was drawn. Sent after a frame's last rectangle is on the screen; gives the server credit for the next.
 struct Ack {
@@ -424,7 +424,7 @@ struct Ack {
 void read(const nlohmann::json& json, Ack& value);
 nlohmann::json to_json(const Ack& value);
 template <>
-inline constexpr Schema schema_of<Ack> = Schema::Ack;
+inline constexpr Schema kSchemaOf<Ack> = Schema::Ack;
 
 // Where this viewer's pointer is.
 struct PresenceUpdate {
@@ -436,7 +436,7 @@ struct PresenceUpdate {
 void read(const nlohmann::json& json, PresenceUpdate& value);
 nlohmann::json to_json(const PresenceUpdate& value);
 template <>
-inline constexpr Schema schema_of<PresenceUpdate> = Schema::PresenceUpdate;
+inline constexpr Schema kSchemaOf<PresenceUpdate> = Schema::PresenceUpdate;
 
 // What is at a pixel.
 struct Pick {
@@ -452,7 +452,7 @@ void read(const nlohmann::json& json, Pick& value);
 nlohmann::json to_json(const Pick& value);
 Result<void> check(const Pick& value, const std::string& field);
 template <>
-inline constexpr Schema schema_of<Pick> = Schema::Pick;
+inline constexpr Schema kSchemaOf<Pick> = Schema::Pick;
 
 // Last saved batch of an unfinished stroke.
 struct StrokeProgress {
@@ -463,7 +463,7 @@ struct StrokeProgress {
 void read(const nlohmann::json& json, StrokeProgress& value);
 nlohmann::json to_json(const StrokeProgress& value);
 template <>
-inline constexpr Schema schema_of<StrokeProgress> = Schema::StrokeProgress;
+inline constexpr Schema kSchemaOf<StrokeProgress> = Schema::StrokeProgress;
 
 // What the server takes.
 struct Limits {
@@ -478,7 +478,7 @@ struct Limits {
 void read(const nlohmann::json& json, Limits& value);
 nlohmann::json to_json(const Limits& value);
 template <>
-inline constexpr Schema schema_of<Limits> = Schema::Limits;
+inline constexpr Schema kSchemaOf<Limits> = Schema::Limits;
 
 // Answer to the first message.
 struct Welcome {
@@ -495,7 +495,7 @@ struct Welcome {
 void read(const nlohmann::json& json, Welcome& value);
 nlohmann::json to_json(const Welcome& value);
 template <>
-inline constexpr Schema schema_of<Welcome> = Schema::Welcome;
+inline constexpr Schema kSchemaOf<Welcome> = Schema::Welcome;
 
 // An edit is done and visible, not yet durable. `stroke` and `n` name a stroke's batch, `id` any other message.
 struct Applied {
@@ -511,7 +511,7 @@ struct Applied {
 void read(const nlohmann::json& json, Applied& value);
 nlohmann::json to_json(const Applied& value);
 template <>
-inline constexpr Schema schema_of<Applied> = Schema::Applied;
+inline constexpr Schema kSchemaOf<Applied> = Schema::Applied;
 
 // An edit is durable. `stroke` and `n` name a stroke's batch, `id` any other message.
 struct Saved {
@@ -527,7 +527,7 @@ struct Saved {
 void read(const nlohmann::json& json, Saved& value);
 nlohmann::json to_json(const Saved& value);
 template <>
-inline constexpr Schema schema_of<Saved> = Schema::Saved;
+inline constexpr Schema kSchemaOf<Saved> = Schema::Saved;
 
 // Edits that could not be saved and were taken back.
 struct Unsaved {
@@ -539,7 +539,7 @@ struct Unsaved {
 void read(const nlohmann::json& json, Unsaved& value);
 nlohmann::json to_json(const Unsaved& value);
 template <>
-inline constexpr Schema schema_of<Unsaved> = Schema::Unsaved;
+inline constexpr Schema kSchemaOf<Unsaved> = Schema::Unsaved;
 
 enum class LayerEventEvent { created, changed, deleted, edited };
 std::string_view name(LayerEventEvent value);
@@ -559,7 +559,7 @@ struct LayerEvent {
 void read(const nlohmann::json& json, LayerEvent& value);
 nlohmann::json to_json(const LayerEvent& value);
 template <>
-inline constexpr Schema schema_of<LayerEvent> = Schema::LayerEvent;
+inline constexpr Schema kSchemaOf<LayerEvent> = Schema::LayerEvent;
 
 enum class ModelEventEvent { changed, deleted };
 std::string_view name(ModelEventEvent value);
@@ -576,7 +576,7 @@ struct ModelEvent {
 void read(const nlohmann::json& json, ModelEvent& value);
 nlohmann::json to_json(const ModelEvent& value);
 template <>
-inline constexpr Schema schema_of<ModelEvent> = Schema::ModelEvent;
+inline constexpr Schema kSchemaOf<ModelEvent> = Schema::ModelEvent;
 
 enum class RecordEventEvent { created, changed, deleted };
 std::string_view name(RecordEventEvent value);
@@ -595,7 +595,7 @@ struct RecordEvent {
 void read(const nlohmann::json& json, RecordEvent& value);
 nlohmann::json to_json(const RecordEvent& value);
 template <>
-inline constexpr Schema schema_of<RecordEvent> = Schema::RecordEvent;
+inline constexpr Schema kSchemaOf<RecordEvent> = Schema::RecordEvent;
 
 // Where a pointer touches the surface. World coordinates.
 struct PresencePointer {
@@ -606,7 +606,7 @@ struct PresencePointer {
 void read(const nlohmann::json& json, PresencePointer& value);
 nlohmann::json to_json(const PresencePointer& value);
 template <>
-inline constexpr Schema schema_of<PresencePointer> = Schema::PresencePointer;
+inline constexpr Schema kSchemaOf<PresencePointer> = Schema::PresencePointer;
 
 // One viewer.
 struct PresenceUser {
@@ -619,7 +619,7 @@ struct PresenceUser {
 void read(const nlohmann::json& json, PresenceUser& value);
 nlohmann::json to_json(const PresenceUser& value);
 template <>
-inline constexpr Schema schema_of<PresenceUser> = Schema::PresenceUser;
+inline constexpr Schema kSchemaOf<PresenceUser> = Schema::PresenceUser;
 
 // Who is here. Everyone on the model, the receiver too; not stored.
 struct Presence {
@@ -630,7 +630,7 @@ struct Presence {
 void read(const nlohmann::json& json, Presence& value);
 nlohmann::json to_json(const Presence& value);
 template <>
-inline constexpr Schema schema_of<Presence> = Schema::Presence;
+inline constexpr Schema kSchemaOf<Presence> = Schema::Presence;
 
 // What is at the pixel. Off the model only `hit` and `id` are there.
 struct Picked {
@@ -647,7 +647,7 @@ struct Picked {
 void read(const nlohmann::json& json, Picked& value);
 nlohmann::json to_json(const Picked& value);
 template <>
-inline constexpr Schema schema_of<Picked> = Schema::Picked;
+inline constexpr Schema kSchemaOf<Picked> = Schema::Picked;
 
 // Something was refused or failed. RFC 9457 members and `ref`, the id of the message.
 struct ProblemMessage {
@@ -663,7 +663,7 @@ struct ProblemMessage {
 void read(const nlohmann::json& json, ProblemMessage& value);
 nlohmann::json to_json(const ProblemMessage& value);
 template <>
-inline constexpr Schema schema_of<ProblemMessage> = Schema::ProblemMessage;
+inline constexpr Schema kSchemaOf<ProblemMessage> = Schema::ProblemMessage;
 
 // Sign-in by a token or by the secret of an owner link.
 struct Login {
@@ -673,7 +673,7 @@ struct Login {
 void read(const nlohmann::json& json, Login& value);
 nlohmann::json to_json(const Login& value);
 template <>
-inline constexpr Schema schema_of<Login> = Schema::Login;
+inline constexpr Schema kSchemaOf<Login> = Schema::Login;
 
 // Who is signed in.
 struct Me {
@@ -684,7 +684,7 @@ struct Me {
 void read(const nlohmann::json& json, Me& value);
 nlohmann::json to_json(const Me& value);
 template <>
-inline constexpr Schema schema_of<Me> = Schema::Me;
+inline constexpr Schema kSchemaOf<Me> = Schema::Me;
 
 // New project.
 struct ProjectCreate {
@@ -696,7 +696,7 @@ struct ProjectCreate {
 void read(const nlohmann::json& json, ProjectCreate& value);
 nlohmann::json to_json(const ProjectCreate& value);
 template <>
-inline constexpr Schema schema_of<ProjectCreate> = Schema::ProjectCreate;
+inline constexpr Schema kSchemaOf<ProjectCreate> = Schema::ProjectCreate;
 
 // Changes to a project.
 struct ProjectPatch {
@@ -707,7 +707,7 @@ struct ProjectPatch {
 void read(const nlohmann::json& json, ProjectPatch& value);
 nlohmann::json to_json(const ProjectPatch& value);
 template <>
-inline constexpr Schema schema_of<ProjectPatch> = Schema::ProjectPatch;
+inline constexpr Schema kSchemaOf<ProjectPatch> = Schema::ProjectPatch;
 
 // Changes to a model's description. None of them touches paint. Stating the unit clears `unit_assumed`.
 struct ModelPatch {
@@ -732,7 +732,7 @@ struct ModelPatch {
 void read(const nlohmann::json& json, ModelPatch& value);
 nlohmann::json to_json(const ModelPatch& value);
 template <>
-inline constexpr Schema schema_of<ModelPatch> = Schema::ModelPatch;
+inline constexpr Schema kSchemaOf<ModelPatch> = Schema::ModelPatch;
 
 enum class JobState { queued, running, done, failed, cancelled };
 std::string_view name(JobState value);
@@ -752,7 +752,7 @@ struct Job {
 void read(const nlohmann::json& json, Job& value);
 nlohmann::json to_json(const Job& value);
 template <>
-inline constexpr Schema schema_of<Job> = Schema::Job;
+inline constexpr Schema kSchemaOf<Job> = Schema::Job;
 
 // Jobs, newest first.
 struct JobList {
@@ -763,7 +763,7 @@ struct JobList {
 void read(const nlohmann::json& json, JobList& value);
 nlohmann::json to_json(const JobList& value);
 template <>
-inline constexpr Schema schema_of<JobList> = Schema::JobList;
+inline constexpr Schema kSchemaOf<JobList> = Schema::JobList;
 
 // New layer.
 struct LayerCreate {
@@ -784,7 +784,7 @@ struct LayerCreate {
 void read(const nlohmann::json& json, LayerCreate& value);
 nlohmann::json to_json(const LayerCreate& value);
 template <>
-inline constexpr Schema schema_of<LayerCreate> = Schema::LayerCreate;
+inline constexpr Schema kSchemaOf<LayerCreate> = Schema::LayerCreate;
 
 // Changes to a layer's description and defaults.
 struct LayerPatch {
@@ -800,7 +800,7 @@ struct LayerPatch {
 void read(const nlohmann::json& json, LayerPatch& value);
 nlohmann::json to_json(const LayerPatch& value);
 template <>
-inline constexpr Schema schema_of<LayerPatch> = Schema::LayerPatch;
+inline constexpr Schema kSchemaOf<LayerPatch> = Schema::LayerPatch;
 
 // What an edit did; it is durable.
 struct EditResult {
@@ -812,7 +812,7 @@ struct EditResult {
 void read(const nlohmann::json& json, EditResult& value);
 nlohmann::json to_json(const EditResult& value);
 template <>
-inline constexpr Schema schema_of<EditResult> = Schema::EditResult;
+inline constexpr Schema kSchemaOf<EditResult> = Schema::EditResult;
 
 enum class HistoryEntryOp { stroke, fill, import, undo, redo, restore };
 std::string_view name(HistoryEntryOp value);
@@ -835,7 +835,7 @@ struct HistoryEntry {
 void read(const nlohmann::json& json, HistoryEntry& value);
 nlohmann::json to_json(const HistoryEntry& value);
 template <>
-inline constexpr Schema schema_of<HistoryEntry> = Schema::HistoryEntry;
+inline constexpr Schema kSchemaOf<HistoryEntry> = Schema::HistoryEntry;
 
 // History of a layer, newest first.
 struct EditList {
@@ -846,7 +846,7 @@ struct EditList {
 void read(const nlohmann::json& json, EditList& value);
 nlohmann::json to_json(const EditList& value);
 template <>
-inline constexpr Schema schema_of<EditList> = Schema::EditList;
+inline constexpr Schema kSchemaOf<EditList> = Schema::EditList;
 
 // Empty object. Undo and redo take no members; no body is the same.
 struct Empty {
@@ -855,7 +855,7 @@ struct Empty {
 void read(const nlohmann::json& json, Empty& value);
 nlohmann::json to_json(const Empty& value);
 template <>
-inline constexpr Schema schema_of<Empty> = Schema::Empty;
+inline constexpr Schema kSchemaOf<Empty> = Schema::Empty;
 
 // Whole layer back to a revision.
 struct Restore {
@@ -865,7 +865,7 @@ struct Restore {
 void read(const nlohmann::json& json, Restore& value);
 nlohmann::json to_json(const Restore& value);
 template <>
-inline constexpr Schema schema_of<Restore> = Schema::Restore;
+inline constexpr Schema kSchemaOf<Restore> = Schema::Restore;
 
 // Point on the surface and the values there. Off the model only `hit` is there.
 struct SurfacePoint {
@@ -880,7 +880,7 @@ struct SurfacePoint {
 void read(const nlohmann::json& json, SurfacePoint& value);
 nlohmann::json to_json(const SurfacePoint& value);
 template <>
-inline constexpr Schema schema_of<SurfacePoint> = Schema::SurfacePoint;
+inline constexpr Schema kSchemaOf<SurfacePoint> = Schema::SurfacePoint;
 
 // Values at many points.
 struct PositionsRequest {
@@ -891,7 +891,7 @@ struct PositionsRequest {
 void read(const nlohmann::json& json, PositionsRequest& value);
 nlohmann::json to_json(const PositionsRequest& value);
 template <>
-inline constexpr Schema schema_of<PositionsRequest> = Schema::PositionsRequest;
+inline constexpr Schema kSchemaOf<PositionsRequest> = Schema::PositionsRequest;
 
 // One entry per asked point, in their order.
 struct PositionsResponse {
@@ -902,7 +902,7 @@ struct PositionsResponse {
 void read(const nlohmann::json& json, PositionsResponse& value);
 nlohmann::json to_json(const PositionsResponse& value);
 template <>
-inline constexpr Schema schema_of<PositionsResponse> = Schema::PositionsResponse;
+inline constexpr Schema kSchemaOf<PositionsResponse> = Schema::PositionsResponse;
 
 // What is at a pixel.
 struct PickRequest {
@@ -915,7 +915,7 @@ void read(const nlohmann::json& json, PickRequest& value);
 nlohmann::json to_json(const PickRequest& value);
 Result<void> check(const PickRequest& value, const std::string& field);
 template <>
-inline constexpr Schema schema_of<PickRequest> = Schema::PickRequest;
+inline constexpr Schema kSchemaOf<PickRequest> = Schema::PickRequest;
 
 enum class FrameRequestFormat { jpeg, png };
 std::string_view name(FrameRequestFormat value);
@@ -934,7 +934,7 @@ void read(const nlohmann::json& json, FrameRequest& value);
 nlohmann::json to_json(const FrameRequest& value);
 Result<void> check(const FrameRequest& value, const std::string& field);
 template <>
-inline constexpr Schema schema_of<FrameRequest> = Schema::FrameRequest;
+inline constexpr Schema kSchemaOf<FrameRequest> = Schema::FrameRequest;
 
 // Bar of a histogram. Values from `from` (included) to `to`; the last bin includes `to`.
 struct HistogramBin {
@@ -946,7 +946,7 @@ struct HistogramBin {
 void read(const nlohmann::json& json, HistogramBin& value);
 nlohmann::json to_json(const HistogramBin& value);
 template <>
-inline constexpr Schema schema_of<HistogramBin> = Schema::HistogramBin;
+inline constexpr Schema kSchemaOf<HistogramBin> = Schema::HistogramBin;
 
 // Where one key lies.
 struct KeyStatistics {
@@ -960,7 +960,7 @@ struct KeyStatistics {
 void read(const nlohmann::json& json, KeyStatistics& value);
 nlohmann::json to_json(const KeyStatistics& value);
 template <>
-inline constexpr Schema schema_of<KeyStatistics> = Schema::KeyStatistics;
+inline constexpr Schema kSchemaOf<KeyStatistics> = Schema::KeyStatistics;
 
 // Statistics of a layer, weighted by surface area. Of valid texels on the surface. `min`, `max`, `mean` and `std` are absent while the layer is empty; `keys` is empty for fractions and for more than 4096 different values.
 struct Statistics {
@@ -977,7 +977,7 @@ struct Statistics {
 void read(const nlohmann::json& json, Statistics& value);
 nlohmann::json to_json(const Statistics& value);
 template <>
-inline constexpr Schema schema_of<Statistics> = Schema::Statistics;
+inline constexpr Schema kSchemaOf<Statistics> = Schema::Statistics;
 
 // Whether the server can work.
 struct Readiness {
@@ -988,7 +988,7 @@ struct Readiness {
 void read(const nlohmann::json& json, Readiness& value);
 nlohmann::json to_json(const Readiness& value);
 template <>
-inline constexpr Schema schema_of<Readiness> = Schema::Readiness;
+inline constexpr Schema kSchemaOf<Readiness> = Schema::Readiness;
 
 using ClientMessage = std::variant<Hello, CameraUpdate, LayersUpdate, StrokeBegin, StrokeExtend, StrokeEnd, EditRequest, Undo, Redo, Ack, PresenceUpdate, Pick>;
 // The schema of the message with this `op`; nothing when the op is unknown.
