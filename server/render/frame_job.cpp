@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "render/screen_rect.h"
@@ -104,7 +103,7 @@ Result<void> FrameJob::shade(GpuScene& scene, View& view) {
   }
   const FrameRequest::Box box{geometry.box_min, geometry.box_max};
   const PixelRect surface = intersection(frame_.rect, screen_rect({&box, 1}, clip, request.width, request.height, false));
-  ShadeInput input{view.uv, view.light, view.picture, frame_.rect, surface, request.background_top, request.background_bottom, {}};
+  ShadeInput input{view.uv, view.light, view.shading, frame_.rect, surface, request.background_top, request.background_bottom, {}};
   for (const LayerStyle& style : request.layers) {
     auto layer = scene.layer(style.layer);
     if (!layer) return tl::unexpected(layer.error());
@@ -118,8 +117,8 @@ Result<void> FrameJob::shade(GpuScene& scene, View& view) {
   auto pixels = scene.readback().begin(bytes);
   if (!pixels) return tl::unexpected(pixels.error());
   glBindBuffer(GL_PIXEL_PACK_BUFFER, pixels->buffer().id());
-  glGetTextureSubImage(view.picture.id(), 0, rect.x, rect.y, 0, rect.width, rect.height, 1, GL_RGBA, GL_UNSIGNED_BYTE,
-                       static_cast<GLsizei>(bytes), nullptr);
+  glGetTextureSubImage(view.picture.id(), 0, rect.x, request.height - rect.y - rect.height, 0, rect.width, rect.height, 1, GL_RGBA,
+                       GL_UNSIGNED_BYTE, static_cast<GLsizei>(bytes), nullptr);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   pixels->submit();
   pixels_ = std::move(*pixels);
@@ -132,9 +131,14 @@ Result<void> FrameJob::shade(GpuScene& scene, View& view) {
 
 void FrameJob::finish() {
   if (pixels_) {
+    // Textures have their lowest row first, pictures their highest.
     const auto data = pixels_.data();
-    frame_.pixels.resize(data.size());
-    std::memcpy(frame_.pixels.data(), data.data(), data.size());
+    const std::size_t row_bytes = std::size_t{4} * static_cast<std::size_t>(frame_.rect.width);
+    frame_.pixels.reserve(data.size());
+    for (std::size_t end = data.size(); end > 0; end -= row_bytes) {
+      const auto* row = reinterpret_cast<const std::uint8_t*>(data.data() + end - row_bytes);
+      frame_.pixels.insert(frame_.pixels.end(), row, row + row_bytes);
+    }
     pixels_ = {};
   }
   frame_.render_ms = busy_ms_;

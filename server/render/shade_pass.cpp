@@ -11,7 +11,8 @@ namespace strata::render {
 namespace {
 
 constexpr GLuint kUvUnit = 0, kLightUnit = 1, kPaletteUnit = 2, kValuesUnit = 3, kValidUnit = 9;
-constexpr GLuint kGroupWidth = 16, kGroupHeight = 4;
+// A room shows few combinations of layers, but painting adds chunks to them.
+constexpr std::size_t kMaxPrograms = 64;
 
 glm::vec4 color(const Rgba& c) { return glm::vec4(c[0], c[1], c[2], c[3]) / 255.0f; }
 
@@ -24,11 +25,6 @@ std::uint32_t mode_of(PaletteMode mode) {
   return shader::kPaletteLinear;
 }
 
-double area(const PixelRect& rect) { return static_cast<double>(rect.width) * rect.height; }
-
-// Where the background is most of the picture, it is worth a dispatch of its own that spares the layers those pixels.
-constexpr double kMostlySurface = 0.8;
-
 void set_unit(shader::ShadeLayer& layer, int chunk, std::uint32_t unit) {
   auto& units = chunk < 8 ? layer.units_low : layer.units_high;
   const int shift = (chunk % 8) * 4;
@@ -37,34 +33,42 @@ void set_unit(shader::ShadeLayer& layer, int chunk, std::uint32_t unit) {
 
 }  // namespace
 
-Result<ShadePass> ShadePass::create(const std::filesystem::path& shader_dir, bool one_layer_per_dispatch) {
+Result<ShadePass> ShadePass::create(const std::filesystem::path& shader_dir, bool program_per_kinds) {
   ShadePass pass;
   pass.shader_dir_ = shader_dir;
-  pass.one_layer_per_dispatch_ = one_layer_per_dispatch;
+  pass.program_per_kinds_ = program_per_kinds;
   auto palettes = PaletteTextures::create();
   if (!palettes) return tl::unexpected(palettes.error());
   pass.palettes_ = std::move(*palettes);
-  // The usual ones at once, so that the first strokes and frames do not wait for the compiler.
-  for (const auto& [chunks, modes] : {std::pair{0, 0u}, {1, 1u}, {1, 2u}, {1, 4u}}) {
-    if (auto built = pass.program(static_cast<std::size_t>(chunks), modes); !built) return tl::unexpected(built.error());
-  }
+  auto background = gl::Program::load(shader_dir, {"picture.vert", "background_pass.frag"});
+  if (!background) return tl::unexpected(background.error());
+  pass.background_ = std::move(*background);
+  if (auto built = pass.program({}); !built) return tl::unexpected(built.error());
   return pass;
 }
 
-Result<const gl::Program*> ShadePass::program(std::size_t chunks, std::uint32_t modes) {
-  const auto built = programs_.find({chunks, modes});
+Result<const gl::Program*> ShadePass::program(const Batch& batch) {
+  std::string kinds;
+  for (std::size_t i = 0; program_per_kinds_ && i < batch.layers.size(); ++i) {
+    const auto& layer = batch.layers[i];
+    kinds += "SHADE_LAYER(" + std::to_string(i) + "u, " + std::to_string(layer.mode) + "u, " + std::to_string(layer.type) + "u, " +
+             std::to_string(batch.units[i]) + "u) ";
+  }
+  const std::pair key{batch.chunks.size(), kinds};
+  const auto built = programs_.find(key);
   if (built != programs_.end()) return &built->second;
-  auto program = gl::Program::load(shader_dir_, {"shade_pass.comp"},
-                                   {"CHUNK_COUNT " + std::to_string(chunks), "MODES " + std::to_string(modes),
-                                    std::string("SINGLE_LAYER ") + (one_layer_per_dispatch_ ? "1" : "0")});
+  std::vector<std::string> defines{"CHUNK_COUNT " + std::to_string(batch.chunks.size())};
+  if (!kinds.empty()) defines.push_back("LAYERS " + kinds);
+  auto program = gl::Program::load(shader_dir_, {"picture.vert", "shade_pass.frag"}, defines);
   if (!program) return tl::unexpected(program.error());
-  return &programs_.insert_or_assign({chunks, modes}, std::move(*program)).first->second;
+  if (programs_.size() >= kMaxPrograms) programs_.clear();
+  return &programs_.insert_or_assign(key, std::move(*program)).first->second;
 }
 
-bool ShadePass::can_take(const Batch& batch, const Chunk& chunk) const {
+bool ShadePass::can_take(const Batch& batch, const Chunk& chunk, bool listed) const {
+  if (program_per_kinds_ && !listed && batch.layers.size() >= kLayersPerProgram) return false;
   const bool bound = std::find(batch.chunks.begin(), batch.chunks.end(), chunk) != batch.chunks.end();
-  if (one_layer_per_dispatch_) return batch.chunks.empty();
-  return bound || batch.chunks.size() < kChunksPerDispatch;
+  return bound || batch.chunks.size() < kChunksPerDraw;
 }
 
 shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
@@ -90,25 +94,27 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
 // Batches in drawing order. A layer whose chunks do not all fit spans several: each of its texels is in one of them.
 std::vector<ShadePass::Batch> ShadePass::plan(const ShadeInput& input) {
   std::vector<Batch> batches(1);
-  if (one_layer_per_dispatch_ && area(input.surface_rect) < area(input.rect) * kMostlySurface) batches.emplace_back();
   for (const ShadeInput::Layer& layer : input.layers) {
     const auto described = describe(layer);
-    const std::uint32_t mode = 1u << described.mode;
     bool listed = false;  // in the last batch
     for (int i = 0; i < layer.textures->pool().chunk_count(); ++i) {
       if (!(layer.textures->chunks() >> i & 1u)) continue;
       const Chunk chunk{&layer.textures->pool(), i};
-      if (!can_take(batches.back(), chunk)) {
+      if (!can_take(batches.back(), chunk, listed)) {
         batches.emplace_back();
         listed = false;
       }
       Batch& batch = batches.back();
-      if (!listed) batch.layers.push_back(described);
+      if (!listed) {
+        batch.layers.push_back(described);
+        batch.units.push_back(0);
+      }
       listed = true;
-      batch.modes |= mode;
       auto bound = std::find(batch.chunks.begin(), batch.chunks.end(), chunk);
       if (bound == batch.chunks.end()) bound = batch.chunks.insert(bound, chunk);
-      set_unit(batch.layers.back(), chunk.index, static_cast<std::uint32_t>(bound - batch.chunks.begin()));
+      const auto unit = static_cast<std::uint32_t>(bound - batch.chunks.begin());
+      batch.units.back() |= 1u << unit;
+      set_unit(batch.layers.back(), chunk.index, unit);
     }
   }
   return batches;
@@ -117,37 +123,57 @@ std::vector<ShadePass::Batch> ShadePass::plan(const ShadeInput& input) {
 Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables) {
   palettes_.make_room(input.layers.size());
   const auto batches = plan(input);
-  dispatches_ = 0;
-  for (const Batch& batch : batches) {
-    const bool first = dispatches_ == 0;
-    if (!first && batch.layers.empty()) continue;
-    if (auto done = dispatch(input, batch, first ? input.rect : input.surface_rect, first, tables); !done) return done;
-    ++dispatches_;
-  }
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, input.target.id());
+  no_vertices_.bind();
+  glViewport(0, 0, input.uv.width(), input.uv.height());
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glDisable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_SCISSOR_TEST);
+  const auto draw_all = [&]() -> Result<void> {
+    if (auto drawn = draw_background(input); !drawn) return drawn;
+    glDepthFunc(GL_GREATER);
+    glEnable(GL_DEPTH_TEST);
+    for (const Batch& batch : batches) {
+      const bool first = &batch == &batches.front();
+      if (auto drawn = draw_surface(input, batch, first, tables); !drawn) return drawn;
+      // What the next draws is `colour + alpha * what is there`; the picture stays opaque.
+      glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_ONE);
+      glEnable(GL_BLEND);
+    }
+    return {};
+  };
+  auto drawn = draw_all();
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+  return drawn;
+}
+
+Result<void> ShadePass::draw(const ShadeInput& input, const gl::Program& program, const PixelRect& rect,
+                             const shader::ShadeUniforms& uniforms) {
+  if (auto sent = uniforms_.replace(std::span<const shader::ShadeUniforms>(&uniforms, 1)); !sent) return sent;
+  uniforms_.bind_uniform(0);
+  program.use();
+  glScissor(rect.x, input.uv.height() - rect.y - rect.height, rect.width, rect.height);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
   return {};
 }
 
-Result<void> ShadePass::dispatch(const ShadeInput& input, const Batch& batch, const PixelRect& rect, bool first,
-                                 const PageTables& tables) {
-  if (rect.width == 0 || rect.height == 0) return {};
+Result<void> ShadePass::draw_background(const ShadeInput& input) {
   shader::ShadeUniforms uniforms{};
   uniforms.background_top = color(input.background_top);
   uniforms.background_bottom = color(input.background_bottom);
-  uniforms.x = static_cast<std::uint32_t>(rect.x);
-  uniforms.y = static_cast<std::uint32_t>(rect.y);
-  uniforms.width = static_cast<std::uint32_t>(rect.width);
-  uniforms.height = static_cast<std::uint32_t>(rect.height);
-  uniforms.picture_width = static_cast<std::uint32_t>(input.picture.width());
-  uniforms.picture_height = static_cast<std::uint32_t>(input.picture.height());
-  uniforms.layer_count = static_cast<std::uint32_t>(batch.layers.size());
-  uniforms.first_pass = first ? 1 : 0;
-  if (auto sent = uniforms_.replace(std::span<const shader::ShadeUniforms>(&uniforms, 1)); !sent) return sent;
-  if (auto sent = layers_.replace(std::span<const shader::ShadeLayer>(batch.layers)); !sent) return sent;
+  uniforms.picture_height = static_cast<std::uint32_t>(input.uv.height());
+  return draw(input, background_, input.rect, uniforms);
+}
 
-  auto built = program(batch.chunks.size(), batch.modes);
+Result<void> ShadePass::draw_surface(const ShadeInput& input, const Batch& batch, bool first, const PageTables& tables) {
+  if (input.surface_rect.width == 0) return {};
+  auto built = program(batch);
   if (!built) return tl::unexpected(built.error());
-  (*built)->use();
-  uniforms_.bind_uniform(0);
+  if (auto sent = layers_.replace(std::span<const shader::ShadeLayer>(batch.layers)); !sent) return sent;
   layers_.bind_uniform(1);
   tables.bind(0);
   palettes_.bind(kPaletteUnit, 1);
@@ -158,11 +184,10 @@ Result<void> ShadePass::dispatch(const ShadeInput& input, const Batch& batch, co
     chunk.pool->values(chunk.index).bind(kValuesUnit + static_cast<GLuint>(i));
     chunk.pool->valid(chunk.index).bind(kValidUnit + static_cast<GLuint>(i));
   }
-  glBindImageTexture(0, input.picture.id(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA8);
-  glDispatchCompute((uniforms.width + kGroupWidth - 1) / kGroupWidth, (uniforms.height + kGroupHeight - 1) / kGroupHeight, 1);
-  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT |
-                  GL_TEXTURE_FETCH_BARRIER_BIT);
-  return {};
+  shader::ShadeUniforms uniforms{};
+  uniforms.layer_count = static_cast<std::uint32_t>(batch.layers.size());
+  uniforms.first_pass = first ? 1 : 0;
+  return draw(input, **built, input.surface_rect, uniforms);
 }
 
 }  // namespace strata::render

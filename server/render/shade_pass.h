@@ -2,11 +2,13 @@
 
 #include <filesystem>
 #include <map>
-#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "gl/framebuffer.h"
 #include "gl/program.h"
+#include "gl/vertex_array.h"
 #include "render/layer_textures.h"
 #include "render/palette_textures.h"
 #include "render/renderer.h"
@@ -22,24 +24,25 @@ struct ShadeInput {
   };
   const gl::Texture& uv;
   const gl::Texture& light;
-  const gl::Texture& picture;  // RGBA8, row 0 on top
-  PixelRect rect;
+  const gl::Framebuffer& target;  // RGBA8 picture and the g-buffer's depth; row 0 lowest
+  PixelRect rect;                 // origin top left, as all rectangles of pictures
   PixelRect surface_rect;      // holds all pixels of `rect` that may show surface
   Rgba background_top, background_bottom;
   std::vector<Layer> layers;   // bottom to top
 };
 
-// Colours a rectangle of a view's picture from its g-buffer (shaders/shade_pass.comp). Layers share a dispatch as long as the
-// chunks that hold them fit into the texture units; else there are several, each on top of the last.
+// Colours a rectangle of a view's picture from its g-buffer (shaders/shade_pass.frag): the background, then the surface, which
+// the depth test finds. Layers share a draw as long as the chunks that hold them fit into the texture units; else there are
+// several, each over the last. Sets all state it needs, and leaves neither scissor nor blending behind.
 class ShadePass {
  public:
-  static constexpr std::size_t kChunksPerDispatch = 6;  // pairs; with 3 more, 15 of the 16 units every driver has
+  static constexpr std::size_t kChunksPerDraw = 6;  // pairs; with 3 more, 15 of the 16 units every driver has
+  static constexpr std::size_t kLayersPerProgram = 4;
 
-  // `one_layer_per_dispatch`: of one kind of palette and one chunk. CPUs run every side of a branch in every lane, so that
-  // is faster there; GPUs are better off with fewer dispatches.
-  static Result<ShadePass> create(const std::filesystem::path& shader_dir, bool one_layer_per_dispatch);
+  // `program_per_kinds`: a program for each combination of the layers' palettes, types and chunks, which are then constants in
+  // it. CPUs run every side of a branch in every lane; GPUs are better off with one program.
+  static Result<ShadePass> create(const std::filesystem::path& shader_dir, bool program_per_kinds);
   Result<void> shade(const ShadeInput& input, const PageTables& tables);
-  int dispatches() const { return dispatches_; }  // of the last call
 
  private:
   struct Chunk {
@@ -49,21 +52,25 @@ class ShadePass {
   };
   struct Batch {
     std::vector<shader::ShadeLayer> layers;
+    std::vector<std::uint32_t> units;  // of each layer: bits of the units that hold its chunks
     std::vector<Chunk> chunks;
-    std::uint32_t modes = 0;  // bits: 1 linear, 2 step, 4 categorical
   };
-  bool can_take(const Batch& batch, const Chunk& chunk) const;
-  Result<const gl::Program*> program(std::size_t chunks, std::uint32_t modes);
+  bool can_take(const Batch& batch, const Chunk& chunk, bool listed) const;
+  Result<const gl::Program*> program(const Batch& batch);
   std::vector<Batch> plan(const ShadeInput& input);
-  Result<void> dispatch(const ShadeInput& input, const Batch& batch, const PixelRect& rect, bool first, const PageTables& tables);
+  Result<void> draw_background(const ShadeInput& input);
+  Result<void> draw_surface(const ShadeInput& input, const Batch& batch, bool first, const PageTables& tables);
+  Result<void> draw(const ShadeInput& input, const gl::Program& program, const PixelRect& rect,
+                    const shader::ShadeUniforms& uniforms);
   shader::ShadeLayer describe(const ShadeInput::Layer& layer);
 
   std::filesystem::path shader_dir_;
-  bool one_layer_per_dispatch_ = false;
-  std::map<std::pair<std::size_t, std::uint32_t>, gl::Program> programs_;  // by chunks and modes, built when first used
+  bool program_per_kinds_ = false;
+  gl::Program background_;
+  std::map<std::pair<std::size_t, std::string>, gl::Program> programs_;  // by chunks and kinds, built when first used
+  gl::VertexArray no_vertices_{"picture"};
   PaletteTextures palettes_;
   StreamBuffer uniforms_{"shade uniforms"}, layers_{"shade layers"};
-  int dispatches_ = 0;
 };
 
 }  // namespace strata::render

@@ -6,6 +6,7 @@ namespace strata::render {
 
 void View::drop_buffers() {
   gbuffer = {};
+  shading = {};
   uv = {};
   light = {};
   picture = {};
@@ -45,6 +46,7 @@ Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& dept
     if (!depth) return tl::unexpected(depth.error());
     view.depth = std::move(*depth);
     view.gbuffer = gl::Framebuffer({&view.uv, &view.light}, &view.depth->texture, "view g-buffer");
+    view.shading = gl::Framebuffer({&view.picture}, &view.depth->texture, "view shading");
   }
   view.depth->start(key);
   view.key = key;

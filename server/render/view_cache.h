@@ -19,6 +19,7 @@ struct View {
   std::shared_ptr<DepthBuffer> depth;
   gl::Texture uv, light, picture;
   gl::Framebuffer gbuffer;
+  gl::Framebuffer shading;  // the picture and the g-buffer's depth
   GpuMemory::Share share;
 
   bool picture_complete = false;

@@ -34,16 +34,16 @@ struct PalettePoint {
 struct ShadeUniforms {
   vec4 background_top;
   vec4 background_bottom;
-  uint x, y, width, height;       // rectangle to shade, origin top left
-  uint picture_width, picture_height;
+  uint picture_height;
   uint layer_count;
-  uint first_pass;                // 1: start from the surface; 0: on top of what earlier dispatches made
+  uint first_pass;  // 1: start from the surface; 0: over what earlier draws made
+  uint unused;
 };
 STRATA_SHARED_END
 #ifdef __cplusplus
 #include <cstddef>
 static_assert(sizeof(strata::shader::ShadeLayer) == 48);
 static_assert(sizeof(strata::shader::PalettePoint) == 8);
-static_assert(sizeof(strata::shader::ShadeUniforms) == 64);
-static_assert(offsetof(strata::shader::ShadeUniforms, picture_width) == 48);
+static_assert(sizeof(strata::shader::ShadeUniforms) == 48);
+static_assert(offsetof(strata::shader::ShadeUniforms, picture_height) == 32);
 #endif

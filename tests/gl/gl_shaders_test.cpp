@@ -26,10 +26,12 @@ const std::map<std::vector<std::string>, Variants> kPrograms{
     {{"depth_gather_pass.comp"}, {{}}},
     {{"edit_pass.comp"}, {{"TEXEL_FORMAT r8ui"}, {"TEXEL_FORMAT r16ui"}, {"TEXEL_FORMAT r32ui"}}},
     {{"tile_read_pass.comp"}, {{"TEXEL_BYTES 1"}, {"TEXEL_BYTES 2"}, {"TEXEL_BYTES 4"}}},
-    {{"shade_pass.comp"},
-     {{"CHUNK_COUNT 0", "MODES 0", "SINGLE_LAYER 0"}, {"CHUNK_COUNT 1", "MODES 1", "SINGLE_LAYER 1"}, {"CHUNK_COUNT 1", "MODES 2", "SINGLE_LAYER 0"}, {"CHUNK_COUNT 1", "MODES 4", "SINGLE_LAYER 0"},
-      {"CHUNK_COUNT 2", "MODES 3", "SINGLE_LAYER 0"}, {"CHUNK_COUNT 3", "MODES 5", "SINGLE_LAYER 0"}, {"CHUNK_COUNT 4", "MODES 6", "SINGLE_LAYER 0"}, {"CHUNK_COUNT 5", "MODES 7", "SINGLE_LAYER 0"},
-      {"CHUNK_COUNT 6", "MODES 7", "SINGLE_LAYER 0"}}},
+    {{"picture.vert", "background_pass.frag"}, {{}}},
+    {{"picture.vert", "shade_pass.frag"},
+     {{"CHUNK_COUNT 0"}, {"CHUNK_COUNT 1"}, {"CHUNK_COUNT 2"}, {"CHUNK_COUNT 3"}, {"CHUNK_COUNT 4"}, {"CHUNK_COUNT 5"},
+      {"CHUNK_COUNT 6"},
+      {"CHUNK_COUNT 1", "LAYERS SHADE_LAYER(0u, 0u, 0u, 1u)"},
+      {"CHUNK_COUNT 6", "LAYERS SHADE_LAYER(0u, 0u, 7u, 1u) SHADE_LAYER(1u, 1u, 4u, 6u) SHADE_LAYER(2u, 2u, 6u, 63u)"}}},
 };
 
 TEST(Shaders, every_file_belongs_to_a_program_and_every_program_builds) {

@@ -2,11 +2,10 @@
 #include "shared/mesh.h"
 #include "shared/pages.h"
 #include "shared/shade.h"
-// Colours a rectangle of a view: background, lit surface, and the layers bottom to top, sampled by texture coordinate.
-// CHUNK_COUNT (0…6) pairs of value and valid textures are bound; a texel whose chunk is not bound is left to another dispatch.
-// With SINGLE_LAYER the dispatch has one layer, which spares CPUs the lookup of its settings in each lane.
-// MODES has the bits 1 (linear), 2 (step), 4 (categorical) of the palettes that occur: CPUs run every side of a branch.
-layout(local_size_x = 16, local_size_y = 4) in;
+// Colours the surface of a picture: its lit base colour and the layers bottom to top, sampled by texture coordinate.
+// CHUNK_COUNT (0…6) pairs of value and valid textures are bound; a texel whose chunk is not bound is left to another draw.
+// LAYERS, where defined, says what the layers are, as SHADE_LAYER(index, mode, type, bits of the units that may hold it) each:
+// CPUs run every side of a branch, so each layer gets code of its own kind alone. Else there is a loop over layer_count.
 layout(std140, binding = 0) uniform ShadeUniformBlock { ShadeUniforms shade; };
 layout(std430, binding = 0) readonly buffer Tables { uint page_tables[]; };
 layout(std430, binding = 1) readonly buffer Points { PalettePoint points[]; };
@@ -18,7 +17,8 @@ layout(binding = 2) uniform sampler2D palettes;
 layout(binding = 3) uniform usampler2DArray chunk_values[CHUNK_COUNT];
 layout(binding = 9) uniform usampler2DArray chunk_valid[CHUNK_COUNT];
 #endif
-layout(rgba8, binding = 0) uniform image2D picture;
+// The first draw replaces what is there; later ones lie over it: alpha is how much of it stays to be seen.
+layout(location = 0) out vec4 picture;
 
 const uint kTypeU8 = 0u, kTypeU16 = 1u, kTypeU32 = 2u, kTypeI8 = 3u, kTypeI16 = 4u, kTypeI32 = 5u, kTypeF16 = 6u, kTypeF32 = 7u;
 
@@ -59,7 +59,7 @@ vec4 step_color(ShadeLayer layer, float value) {
   return unpackUnorm4x8(points[layer.points + max(low, 1u) - 1u].color);
 }
 
-vec4 category_color(ShadeLayer layer, uint bits) {
+vec4 category_color(ShadeLayer layer, uint type, uint bits) {
   uint low = 0u, high = layer.point_count;
   while (low < high) {
     uint middle = (low + high) / 2u;
@@ -69,7 +69,7 @@ vec4 category_color(ShadeLayer layer, uint bits) {
   if (low < layer.point_count && points[layer.points + low].key == bits) {
     return unpackUnorm4x8(points[layer.points + low].color);
   }
-  return generated_color(key_of(bits, layer.type));
+  return generated_color(key_of(bits, type));
 }
 
 vec4 linear_color(ShadeLayer layer, float value) {
@@ -77,24 +77,16 @@ vec4 linear_color(ShadeLayer layer, float value) {
   return texelFetch(palettes, ivec2(int(position * float(kPaletteWidth - 1u) + 0.5), int(layer.row)), 0);
 }
 
-vec4 color_of(ShadeLayer layer, uint bits) {
-#if MODES == 1
-  return linear_color(layer, number_of(bits, layer.type));
-#elif MODES == 2
-  return step_color(layer, clamp(number_of(bits, layer.type), layer.palette_min, layer.palette_max));
-#elif MODES == 4
-  return category_color(layer, bits);
-#else
-  if (layer.mode == kPaletteCategorical) return category_color(layer, bits);
-  float value = number_of(bits, layer.type);
-  if (layer.mode == kPaletteStep) return step_color(layer, clamp(value, layer.palette_min, layer.palette_max));
+vec4 color_of(ShadeLayer layer, uint mode, uint type, uint bits) {
+  if (mode == kPaletteCategorical) return category_color(layer, type, bits);
+  float value = number_of(bits, type);
+  if (mode == kPaletteStep) return step_color(layer, clamp(value, layer.palette_min, layer.palette_max));
   return linear_color(layer, value);
-#endif
 }
 
 #if CHUNK_COUNT > 0
 // x: bits, y: 1 when the texel holds a value.
-uvec2 texel_of(ShadeLayer layer, uint q) {
+uvec2 texel_of(ShadeLayer layer, uint units, uint q) {
   uint shift = 16u - layer.resolution_bits;
   uvec2 texel = uvec2(q & 0xffffu, q >> 16) >> shift;
   uvec2 tile = texel / kTileTexels;
@@ -103,48 +95,40 @@ uvec2 texel_of(ShadeLayer layer, uint q) {
   if (page == kNoPage) return uvec2(0u);
   uint chunk = page >> kPageChunkShift;
   uint unit = ((chunk < 8u ? layer.units_low : layer.units_high) >> ((chunk & 7u) * 4u)) & 15u;
-  if (unit == kNoChunkUnit) return uvec2(0u);
   ivec3 place = page_origin(page) + ivec3(texel % kTileTexels, 0);
-#if CHUNK_COUNT == 1
-  return uvec2(texelFetch(chunk_values[0], place, 0).r, texelFetch(chunk_valid[0], place, 0).r);
-#else
+  uvec2 found = uvec2(0u);
   for (int i = 0; i < CHUNK_COUNT; ++i) {
-    if (unit == uint(i)) return uvec2(texelFetch(chunk_values[i], place, 0).r, texelFetch(chunk_valid[i], place, 0).r);
+    if ((units >> i & 1u) != 0u && unit == uint(i)) {
+      found = uvec2(texelFetch(chunk_values[i], place, 0).r, texelFetch(chunk_valid[i], place, 0).r);
+    }
   }
-  return uvec2(0u);
-#endif
+  return found;
+}
+
+// `below` with the layer over it.
+vec4 add_layer(vec4 below, ShadeLayer layer, uint mode, uint type, uint units, uint q, float light) {
+  uvec2 texel = texel_of(layer, units, q);
+  if (texel.y == 0u) return below;
+  vec4 paint = color_of(layer, mode, type, texel.x);
+  float cover = paint.a * layer.opacity;
+  return vec4(mix(below.rgb, paint.rgb * light, cover), below.a * (1.0 - cover));
 }
 #endif
 
 void main() {
-  if (gl_GlobalInvocationID.x >= shade.width || gl_GlobalInvocationID.y >= shade.height) return;
-  ivec2 pixel = ivec2(shade.x, shade.y) + ivec2(gl_GlobalInvocationID.xy);          // origin top left, as the picture
-  ivec2 source = ivec2(pixel.x, int(shade.picture_height) - 1 - pixel.y);            // origin lower left, as the g-buffer
-  uint q = texelFetch(surface_uv, source, 0).r;
-  vec4 surface = texelFetch(surface_light, source, 0);
-  vec3 color = surface.rgb;
-  if (shade.first_pass == 0u) {
-    color = imageLoad(picture, pixel).rgb;
-  } else if (q == kBackground) {
-    float down = (float(pixel.y) + 0.5) / float(shade.picture_height);
-    color = mix(shade.background_top.rgb, shade.background_bottom.rgb, down);
-  }
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec4 surface = texelFetch(surface_light, pixel, 0);
+  vec4 color = vec4(shade.first_pass != 0u ? surface.rgb : vec3(0.0), 1.0);
 #if CHUNK_COUNT > 0
-  if (q != kBackground) {
-#if SINGLE_LAYER
-    const uint i = 0u;
-    {
+  uint q = texelFetch(surface_uv, pixel, 0).r;
+#ifdef LAYERS
+#define SHADE_LAYER(index, mode, type, units) color = add_layer(color, layers[index], mode, type, units, q, surface.a);
+  LAYERS
 #else
-    for (uint i = 0u; i < shade.layer_count; ++i) {
-#endif
-      ShadeLayer layer = layers[i];
-      uvec2 texel = texel_of(layer, q);
-      if (texel.y != 0u) {
-        vec4 paint = color_of(layer, texel.x);
-        color = mix(color, paint.rgb * surface.a, paint.a * layer.opacity);
-      }
-    }
+  for (uint i = 0u; i < shade.layer_count; ++i) {
+    color = add_layer(color, layers[i], layers[i].mode, layers[i].type, 0x3fu, q, surface.a);
   }
 #endif
-  imageStore(picture, pixel, vec4(color, 1.0));
+#endif
+  picture = vec4(color.rgb, shade.first_pass != 0u ? 1.0 : color.a);
 }
