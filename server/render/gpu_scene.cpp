@@ -6,8 +6,8 @@
 namespace strata::render {
 namespace {
 
-// A slice of a long drawing takes about 4 ms: llvmpipe needs 27 to 59 ns a triangle.
-constexpr std::size_t kTrianglesPerSliceSoftware = 64 * 1024;
+// A slice of a long drawing takes 1 to 2 ms: llvmpipe needs 27 to 59 ns a triangle, and draws a slice while the next is prepared.
+constexpr std::size_t kTrianglesPerSliceSoftware = 32 * 1024;
 constexpr std::size_t kTrianglesPerSliceHardware = 2 * 1024 * 1024;
 constexpr int kLowestResolution = kTileSize, kHighestResolution = 16384;
 constexpr std::uint64_t kDefaultBudget = std::uint64_t{4} << 30;

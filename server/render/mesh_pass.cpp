@@ -45,6 +45,7 @@ bool MeshPass::draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& u
   const std::size_t count = std::min(triangles_per_slice_, mesh.triangle_count() - progress.next_triangle);
   const std::size_t first_byte = progress.next_triangle * 3 * sizeof(std::uint32_t);
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * 3), GL_UNSIGNED_INT, reinterpret_cast<const void*>(first_byte));
+  glFlush();  // lets the driver draw this slice while the next is prepared
   progress.next_triangle += count;
   return progress.next_triangle == mesh.triangle_count();
 }
