@@ -26,7 +26,7 @@ std::shared_ptr<LiveShared> make_shared_state(const ServerOptions& options, stor
 }  // namespace
 
 const Headers& security_headers() {
-  static const Headers kHeaders = {
+  static const Headers headers = {
       {"Content-Security-Policy",
        "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"},
       {"X-Content-Type-Options", "nosniff"},
@@ -34,7 +34,7 @@ const Headers& security_headers() {
       {"Cross-Origin-Opener-Policy", "same-origin"},
       {"Cross-Origin-Resource-Policy", "same-origin"},
   };
-  return kHeaders;
+  return headers;
 }
 
 App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs, render::Renderer& renderer)

@@ -26,7 +26,7 @@ namespace http = beast::http;
 using asio::ip::tcp;
 using std::chrono::seconds;
 
-constexpr auto use_result = asio::as_tuple(asio::use_awaitable);
+constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 constexpr seconds kFirstHead{10};        // from connecting to the end of the first head
 constexpr seconds kIdle{60};             // between requests
 constexpr seconds kStall{60};            // a body that does not move
@@ -86,7 +86,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       head.header_limit(kMaxHead);
       head.body_limit(boost::none);
       stream_.expires_after(first ? kFirstHead : kIdle);
-      auto [error, size] = co_await http::async_read_header(stream_, buffer_, head, use_result);
+      auto [error, size] = co_await http::async_read_header(stream_, buffer_, head, kUseResult);
       if (error) {
         co_await refuse_head(error);
         break;
@@ -196,7 +196,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   asio::awaitable<bool> send_continue() {
     static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
     stream_.expires_after(kStall);
-    auto [error, size] = co_await asio::async_write(stream_, asio::buffer(kContinue), use_result);
+    auto [error, size] = co_await asio::async_write(stream_, asio::buffer(kContinue), kUseResult);
     co_return !error;
   }
 
@@ -207,7 +207,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     parser.body_limit(boost::none);
     while (!parser.is_done()) {
       stream_.expires_after(kStall);
-      auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, use_result);
+      auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, kUseResult);
       if (error) {
         problem = body_problem(error);
         co_return false;
@@ -236,7 +236,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     while (!parser.is_done()) {
       stream_.expires_after(kStall);
-      auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, use_result);
+      auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, kUseResult);
       if (error) {
         problem = error == boost::system::errc::no_space_on_device
                       ? Problem{507, "Disk full", "The upload does not fit on the server's disk.", "body"}
@@ -280,7 +280,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     http::response_serializer<Body> serializer(message);
     while (!serializer.is_done()) {
       stream_.expires_after(kStall);
-      auto [error, size] = co_await http::async_write_some(stream_, serializer, use_result);
+      auto [error, size] = co_await http::async_write_some(stream_, serializer, kUseResult);
       if (error) co_return false;
     }
     co_return message.keep_alive();
@@ -386,7 +386,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     stream_.expires_after(seconds(2));
     std::array<char, 4096> rest;
     for (std::uint64_t total = 0; total < (1u << 20);) {
-      auto [error, size] = co_await stream_.async_read_some(asio::buffer(rest), use_result);
+      auto [error, size] = co_await stream_.async_read_some(asio::buffer(rest), kUseResult);
       if (error) break;
       total += size;
     }

@@ -34,7 +34,7 @@ std::string etag_of(const fs::path& file) {
 }  // namespace
 
 std::string_view media_type(const fs::path& file) {
-  static const std::map<std::string, std::string_view, std::less<>> kTypes = {
+  static const std::map<std::string, std::string_view, std::less<>> types = {
       {".html", "text/html; charset=utf-8"},
       {".js", "text/javascript; charset=utf-8"},
       {".mjs", "text/javascript; charset=utf-8"},
@@ -51,8 +51,8 @@ std::string_view media_type(const fs::path& file) {
       {".woff2", "font/woff2"},
       {".wasm", "application/wasm"},
       {".txt", "text/plain; charset=utf-8"}};
-  auto found = kTypes.find(to_lower(file.extension().string()));
-  return found == kTypes.end() ? "application/octet-stream" : found->second;
+  auto found = types.find(to_lower(file.extension().string()));
+  return found == types.end() ? "application/octet-stream" : found->second;
 }
 
 StaticFiles::StaticFiles(fs::path folder) {

@@ -22,7 +22,7 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 using std::chrono::seconds;
 
-constexpr auto use_result = asio::as_tuple(asio::use_awaitable);
+constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 constexpr seconds kHandshake{10};
 constexpr seconds kIdle{60};    // with pings in between
 constexpr seconds kStalled{60}; // one message that cannot be sent: the client does not read
@@ -43,7 +43,7 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
   asio::awaitable<void> run(http::request<http::empty_body> request, App::LiveEntry entry) {
     auto self = shared_from_this();  // the frame keeps the session
     prepare();
-    auto [accept_error] = co_await ws_.async_accept(request, use_result);
+    auto [accept_error] = co_await ws_.async_accept(request, kUseResult);
     if (!accept_error) {
       live_ = connections_->app.make_session(std::move(entry), weak_from_this());
       connections_->live.add(weak_from_this());
@@ -92,7 +92,7 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
   asio::awaitable<void> read() {
     beast::flat_buffer buffer;
     for (;;) {
-      auto [error, size] = co_await ws_.async_read(buffer, use_result);
+      auto [error, size] = co_await ws_.async_read(buffer, kUseResult);
       if (error) co_return;
       if (closing_) {
         // Until the other side closes, too.

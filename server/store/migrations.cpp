@@ -80,7 +80,7 @@ Result<std::int64_t> migrate_locked(PgConnection& connection, const std::vector<
   for (int i = 0; i < rows->rows(); ++i) applied[rows->text(i, 0)] = rows->null(i, 1) ? "" : rows->text(i, 1);
 
   for (const auto& [version, sum] : applied) {
-    const auto ours = std::find_if(known.begin(), known.end(), [&](const Migration& m) { return m.version == version; });
+    const auto ours = std::ranges::find(known, version, &Migration::version);
     if (ours == known.end())
       return fail(409, "Schema too new",
                   "The database has migration " + version + ", which this version of Strata does not know. "

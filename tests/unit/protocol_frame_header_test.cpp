@@ -70,7 +70,8 @@ TEST(FrameHeader, every_broken_header_is_refused_with_the_member_it_breaks) {
 }
 
 TEST(FrameHeader, a_message_cut_anywhere_is_refused) {
-  for (const auto& vector : golden()["valid"]) {
+  const json vectors = golden()["valid"];
+  for (const auto& vector : vectors) {
     const auto bytes = from_hex(vector["hex"]);
     for (std::size_t length = 0; length < bytes.size(); ++length)
       EXPECT_FALSE(decode_frame_header(std::span(bytes).first(length))) << vector["name"] << " cut to " << length;
