@@ -1,0 +1,196 @@
+// The page and the streamed picture compared with checked-in pictures of tests/golden (generated models only).
+// STRATA_UPDATE_GOLDEN=1 writes them anew: look at what you check in. On failure the picture and a difference image
+// (red: what differs) lie in the build folder.
+import assert from "node:assert/strict";
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { Browser, has_hue, kRoot } from "../support/browser.mjs";
+import { decode_png, encode_png } from "../support/png.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kGolden = join(kRoot, "tests", "golden");
+const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-golden";
+const is_update = process.env.STRATA_UPDATE_GOLDEN === "1";
+
+// A pixel differs when a channel is off by more than `kStep`: less is what other versions of Mesa, libjpeg and FreeType make
+// of the same picture. `share` is how many may: edges of the pot move by a pixel with another rasteriser, letters with another
+// FreeType. `mean` holds the whole to account: a wrong colour on a small patch is allowed by neither.
+const kStep = 40;
+const kPageLimits = { share: 0.012, mean: 1.6 };
+const kPictureLimits = { share: 0.004, mean: 0.8 };
+
+const failures = [];
+
+function compare(name, shot, limits) {
+  mkdirSync(kOutput, { recursive: true });
+  const file = join(kGolden, `${name}.png`);
+  if (is_update || !existsSync(file)) {
+    assert.ok(is_update, `there is no ${file}: make it with STRATA_UPDATE_GOLDEN=1`);
+    writeFileSync(file, encode_png(decode_png(shot)));
+    console.log(`${name}: written`);
+    return;
+  }
+  const [now, golden] = [decode_png(shot), decode_png(readFileSync(file))];
+  if (now.width !== golden.width || now.height !== golden.height) {
+    failures.push(`${name}: ${now.width} × ${now.height} instead of ${golden.width} × ${golden.height}`);
+    return;
+  }
+  const difference = { ...now, data: new Uint8Array(now.data.length) };
+  let [off, sum] = [0, 0];
+  for (let at = 0; at < now.data.length; at += 4) {
+    const steps = [0, 1, 2].map((c) => Math.abs(now.data[at + c] - golden.data[at + c]));
+    const differs = Math.max(...steps) > kStep;
+    if (differs) ++off;
+    sum += steps[0] + steps[1] + steps[2];
+    const grey = 128 + (golden.data[at] + golden.data[at + 1] + golden.data[at + 2]) / 6;
+    difference.data.set(differs ? [220, 0, 0, 255] : [grey, grey, grey, 255], at);
+  }
+  const pixels = now.width * now.height;
+  const [share, mean] = [off / pixels, sum / pixels / 3];
+  const text = `${name}: ${(share * 100).toFixed(3)} % of pixels differ (at most ${limits.share * 100} %), mean ${mean.toFixed(3)} (at most ${limits.mean})`;
+  console.log(text);
+  if (share <= limits.share && mean <= limits.mean) return;
+  writeFileSync(join(kOutput, `${name}.png`), shot);
+  writeFileSync(join(kOutput, `${name}.diff.png`), encode_png(difference));
+  failures.push(`${text}; see ${join(kOutput, name)}.diff.png`);
+}
+
+/** The page's own screens, at the size of a laptop and of a phone. */
+async function compare_page(server) {
+  const laptop = await Browser.open();
+  try {
+    const { page } = laptop;
+    await page.goto(server.link);
+    await page.getByRole("heading", { name: "Models", exact: true }).waitFor();
+    await page.locator("strata-thumbnail canvas.drawn").waitFor();
+    compare("gallery", await laptop.settled(), kPageLimits);
+    await page.getByRole("link", { name: /Demo pot/ }).click();
+    await laptop.drawn();
+    await page.keyboard.press("b");
+    await page.getByRole("radio", { name: "Open crack" }).click();
+    await laptop.point(0.5, 0.6);
+    await page.locator("strata-value-readout").getByText(/Position/).waitFor();
+    compare("model", await laptop.settled(), kPageLimits);
+    await page.getByRole("button", { name: "New layer" }).click();
+    await page.getByRole("radio", { name: /^Class/ }).click();
+    compare("new_layer", await laptop.settled(), kPageLimits);
+    if (is_update) await write_readme_picture(laptop);
+    laptop.assert_no_complaints();
+  } finally {
+    await laptop.close();
+  }
+  const phone = await Browser.open({ viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true });
+  try {
+    await phone.sign_in(server, server.token);
+    await phone.page.goto(`${server.url}/models/1`);
+    await phone.drawn();
+    compare("phone", await phone.settled(), kPageLimits);
+    phone.assert_no_complaints();
+  } finally {
+    await phone.close();
+  }
+}
+
+const frame = async (server, request) => Buffer.from(await (await server.request("POST", "/models/demo-pot/frame", request)).arrayBuffer());
+
+/** docs/demo.png: the page at work, a little nearer. */
+async function write_readme_picture(browser) {
+  const { page } = browser;
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("v");
+  const box = await browser.stage_box();
+  await page.mouse.click(box.x + 20, box.y + 20); // away from the button that opened the dialog
+  await page.keyboard.press("+");
+  await browser.point(0.6265, 0.597); // a wide crack
+  await page.locator("strata-value-readout").getByText("Open crack").waitFor();
+  mkdirSync(join(kRoot, "docs"), { recursive: true });
+  const picture = decode_png(await browser.settled());
+  picture.data.forEach((value, at) => (picture.data[at] = Math.min(254, Math.round(value / 2) * 2))); // a quarter smaller, looks the same
+  writeFileSync(join(kRoot, "docs", "demo.png"), encode_png(picture));
+}
+
+/** Distance of a point to a path of straight pieces. */
+function distance_to(path, x, y) {
+  let least = Infinity;
+  for (let i = 0; i + 1 < path.length; ++i) {
+    const [[ax, ay], [bx, by]] = [path[i], path[i + 1]];
+    const [dx, dy] = [bx - ax, by - ay];
+    const along = Math.min(1, Math.max(0, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy)));
+    least = Math.min(least, Math.hypot(x - ax - along * dx, y - ay - along * dy));
+  }
+  return least;
+}
+
+/** painting across a chart seam shows no visible seam */
+async function compare_seam(server) {
+  const camera = pot_camera(960, 720);
+  const path = [[300, 400], [420, 470], [540, 470], [660, 400]];
+  const radius = 30;
+  const palette = { mode: "categorical", points: [{ at: 1, color: "#ff00ff" }] };
+  // Finer than a pixel: a coarser texel on a surface seen edge-on may show a corner while its middle is hidden, and is not painted.
+  await server.json("POST", "/models/demo-pot/layers", { name: "Seam", type: "u8", resolution: 8192, palette });
+  const edit = await server.json("POST", "/models/demo-pot/layers/seam/edits", { op: "stroke", value: 1, camera, radius_px: radius, path });
+  assert.ok(edit.texels_changed > 10_000, JSON.stringify(edit));
+
+  // The stroke does cross seams: neighbours on the surface lie far apart in the texture.
+  let seams = 0;
+  let last = null;
+  for (let x = path[0][0]; x <= path.at(-1)[0]; x += 4) {
+    const i = path.findIndex(([right]) => right >= x);
+    const [[ax, ay], [bx, by]] = i > 0 ? [path[i - 1], path[i]] : [path[0], path[1]];
+    const hit = await server.json("POST", "/models/demo-pot/pick", { camera, x: x + 0.5, y: ay + ((by - ay) * (x - ax)) / (bx - ax) + 0.5 });
+    assert.ok(hit.hit && hit.values.seam.valid, `the middle of the stroke at x = ${x} is not painted: ${JSON.stringify(hit)}`);
+    if (last && Math.hypot(hit.uv[0] - last.uv[0], hit.uv[1] - last.uv[1]) > 0.05) ++seams;
+    last = hit;
+  }
+  assert.ok(seams >= 2, `the stroke crosses ${seams} seams only: choose another path`);
+
+  const shot = await frame(server, { camera, layers: ["seam"], format: "png" });
+  const { width, height, data } = decode_png(shot);
+  const [holes, spills] = [[], []];
+  for (let y = 0; y < height; ++y) {
+    for (let x = 0; x < width; ++x) {
+      const distance = distance_to(path, x + 0.5, y + 0.5);
+      const painted = has_hue(data, (y * width + x) * 4, [255, 0, 255]);
+      if (distance < radius - 1.5 && !painted) holes.push([x, y]);
+      if (distance > radius + 1.5 && painted) spills.push([x, y]);
+    }
+  }
+  console.log(`seam: ${seams} seams crossed, ${holes.length} pixels unpainted inside, ${spills.length} painted outside`);
+  if (holes.length + spills.length > 0) {
+    writeFileSync(join(kOutput, "seam.png"), shot);
+    failures.push(`seam: unpainted inside ${JSON.stringify(holes.slice(0, 10))}, painted outside ${JSON.stringify(spills.slice(0, 10))}`);
+  }
+  compare("seam", shot, kPictureLimits);
+  compare("seam_aside", await frame(server, { camera: pot_camera(960, 720, 0.9), layers: ["seam"], format: "png" }), kPictureLimits);
+}
+
+/** Looks at the pot (105 × 99 × 91 mm, up is z) from a little above, turned by an angle. */
+function pot_camera(width, height, angle = 0) {
+  const [distance, elevation, center] = [240, 0.25, [0, 0, 45]];
+  const back = [-Math.sin(angle) * Math.cos(elevation), -Math.cos(angle) * Math.cos(elevation), Math.sin(elevation)];
+  const right = [Math.cos(angle), -Math.sin(angle), 0];
+  const top = [back[1] * right[2] - back[2] * right[1], back[2] * right[0] - back[0] * right[2], back[0] * right[1] - back[1] * right[0]];
+  const eye = center.map((c, i) => c + distance * back[i]);
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const view = [0, 1, 2].flatMap((i) => [right[i], top[i], back[i], 0]).concat([-dot(right, eye), -dot(top, eye), -dot(back, eye), 1]);
+  const [near, far, focal] = [120, 380, 1 / Math.tan((30 * Math.PI) / 360)];
+  const projection = [(focal * height) / width, 0, 0, 0, 0, focal, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, (2 * far * near) / (near - far), 0];
+  return { view, projection, width, height };
+}
+
+const server = new StrataServer({ demo: true });
+try {
+  await server.start();
+  await compare_page(server);
+  await compare_seam(server);
+  await wait_for(async () => (await fetch(`${server.url}/readyz`)).ok, "the server to be well");
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+  assert.deepEqual(failures, []);
+} catch (error) {
+  console.log(`--- log of the server\n${server.log.slice(-50).join("\n")}`);
+  throw error;
+} finally {
+  await server.remove();
+}

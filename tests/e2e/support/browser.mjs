@@ -1,0 +1,131 @@
+// Real Chromium on the real page. Without Chromium or playwright-core the tests are skipped loudly by hand and fail in CI.
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { decode_png } from "./png.mjs";
+import { kLong_ms, wait_for } from "./strata-server.mjs";
+
+export const kRoot = dirname(dirname(dirname(dirname(fileURLToPath(import.meta.url)))));
+const kChromium = process.env.CHROMIUM ?? "/usr/bin/chromium";
+const kFlags = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+  "--disable-component-update", "--disable-sync", "--force-color-profile=srgb", "--font-render-hinting=none", "--disable-lcd-text"];
+
+function missing(what) {
+  console.log(`${process.env.CI === "true" ? "FAILED" : "SKIPPED"}: ${what}`);
+  process.exit(process.env.CI === "true" ? 1 : 77);
+}
+
+function load_playwright() {
+  if (!existsSync(kChromium)) missing(`there is no ${kChromium} (Debian's package chromium)`);
+  if (!existsSync(join(kRoot, "web-client", "dist", "index.html"))) missing("the page is not built: npm run build in web-client");
+  try {
+    return createRequire(join(kRoot, "web-client", "package.json"))("playwright-core");
+  } catch {
+    return missing("playwright-core is not installed: npm ci in web-client");
+  }
+}
+
+export class Browser {
+  static async open(options = {}) {
+    const { chromium } = load_playwright();
+    const browser = new Browser();
+    browser.folder = mkdtempSync(join(tmpdir(), "strata-browser-"));
+    browser.complaints = [];
+    browser.context = await chromium.launchPersistentContext(browser.folder, {
+      executablePath: kChromium, headless: true, args: kFlags, viewport: { width: 1280, height: 800 }, locale: "en-GB", timezoneId: "UTC",
+      colorScheme: "light", reducedMotion: "reduce", ...options,
+    });
+    browser.page = browser.context.pages()[0] ?? (await browser.context.newPage());
+    browser.page.setDefaultTimeout(kLong_ms);
+    browser.page.on("console", (message) => ["error", "warning"].includes(message.type()) && browser.complaints.push(message.text()));
+    browser.page.on("pageerror", (error) => browser.complaints.push(String(error.stack ?? error)));
+    return browser;
+  }
+
+  async close() {
+    await this.context.close();
+    rmSync(this.folder, { recursive: true, force: true });
+  }
+
+  /** `expected`: parts of console messages that the test's own faults cause. */
+  assert_no_complaints(expected = []) {
+    const bad = this.complaints.filter((text) => !expected.some((part) => text.includes(part)));
+    if (bad.length > 0) throw new Error(`the page complained:\n${bad.join("\n")}`);
+  }
+
+  async sign_in(server, token) {
+    await this.page.goto(server.url);
+    await this.page.getByLabel("Token").fill(token);
+    await this.page.getByRole("button", { name: "Sign in" }).click();
+    await this.page.getByRole("heading", { name: "Models", exact: true }).waitFor();
+    this.complaints = this.complaints.filter((text) => !text.includes("401")); // what a visitor without a session gets
+  }
+
+  /** The model page with its first picture. */
+  async drawn() {
+    await wait_for(() => this.frames().then((count) => count > 0), "the first picture");
+  }
+  frames() {
+    return this.page.locator("strata-stage canvas").first().evaluate((canvas) => Number(canvas.dataset.frames ?? 0));
+  }
+
+  saved() {
+    return this.page.locator('.saving[data-state="saved"]').waitFor();
+  }
+
+  async stage_box() {
+    return this.page.locator("strata-stage").boundingBox();
+  }
+
+  async picture(clip) {
+    return decode_png(await this.page.screenshot(clip ? { clip } : {}));
+  }
+
+  /** A screenshot of what no longer changes: two in a row are the same. */
+  async settled(take = () => this.page.screenshot()) {
+    let last = null;
+    return wait_for(async () => {
+      const now = await take();
+      const same = last !== null && now.equals(last);
+      last = now;
+      return same ? now : null;
+    }, "the picture to settle", 300);
+  }
+
+  /** Drags from point to point, in shares of the stage. */
+  async drag(points) {
+    const box = await this.stage_box();
+    const [first, ...rest] = points.map(([x, y]) => [box.x + x * box.width, box.y + y * box.height]);
+    await this.page.mouse.move(...first);
+    await this.page.mouse.down();
+    for (const point of rest) await this.page.mouse.move(...point, { steps: 6 });
+    await this.page.mouse.up();
+  }
+
+  async point(x, y) {
+    const box = await this.stage_box();
+    await this.page.mouse.move(box.x + x * box.width, box.y + y * box.height);
+  }
+
+  /** Pixels of the stage that have the hue of a colour, however it is lit. */
+  async count(color) {
+    return count_hue(await this.picture(await this.stage_box()), color);
+  }
+}
+
+export function has_hue(data, at, color) {
+  const brightest = Math.max(data[at], data[at + 1], data[at + 2], 1);
+  if (brightest < 24) return false;
+  const wanted = Math.max(...color);
+  return [0, 1, 2].every((c) => Math.abs(data[at + c] / brightest - color[c] / wanted) < 0.13);
+}
+
+export function count_hue({ data }, color) {
+  let count = 0;
+  for (let at = 0; at < data.length; at += 4) if (has_hue(data, at, color)) ++count;
+  return count;
+}
+
+export const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));

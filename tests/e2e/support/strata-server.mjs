@@ -1,0 +1,101 @@
+// A Strata server of the test's own, for the tests in JavaScript: see strata_server.py, which does the same.
+import { execFileSync, spawn } from "node:child_process";
+import { randomBytes } from "node:crypto";
+import { chmodSync, existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+
+export const kLong_ms = 120_000;
+
+export async function wait_for(condition, what, every_ms = 50) {
+  const end = Date.now() + kLong_ms;
+  for (;;) {
+    const found = await condition();
+    if (found) return found;
+    if (Date.now() > end) throw new Error(`waited ${kLong_ms / 1000} s for ${what}`);
+    await new Promise((resolve) => setTimeout(resolve, every_ms));
+  }
+}
+
+export class StrataServer {
+  constructor({ demo = false } = {}) {
+    this.binary = process.env.STRATA_BINARY;
+    if (!this.binary) throw new Error("STRATA_BINARY names the server");
+    this.token = randomBytes(24).toString("hex");
+    // Under /tmp and open to all: PostgreSQL does not run as root, so its user must reach the folder.
+    this.data = mkdtempSync("/tmp/strata-e2e-");
+    chmodSync(this.data, 0o755);
+    this.log = [];
+    this.port = 0;
+    process.on("exit", () => this.process?.kill("SIGKILL"));
+    if (demo) execFileSync(this.binary, ["demo", "--data", this.data], { stdio: ["ignore", "ignore", "pipe"] });
+  }
+
+  /** Starts it (again, on the port that it had) and returns once it listens. */
+  async start() {
+    this.process = spawn(this.binary, ["serve", "--data", this.data, "--listen", `127.0.0.1:${this.port}`], {
+      env: { ...process.env, STRATA_OWNER_TOKEN: this.token },
+      stdio: ["ignore", "pipe", "pipe"],
+    });
+    this.ended = new Promise((resolve) => this.process.once("exit", (code, signal) => resolve(code ?? signal)));
+    createInterface({ input: this.process.stderr }).on("line", (line) => this.log.push(line));
+    const started = new Promise((resolve) => {
+      createInterface({ input: this.process.stdout }).on("line", (line) => {
+        if (line.startsWith("listening on ")) this.url = line.split(" ").at(-1);
+        if (line.startsWith("owner link: ")) resolve((this.link = line.split(" ").at(-1)));
+      });
+    });
+    const early = await Promise.race([started, this.ended]);
+    if (early !== this.link) throw new Error(`the server ended with ${early}:\n${this.log.slice(-50).join("\n")}`);
+    this.port = Number(new URL(this.url).port);
+    return this;
+  }
+
+  /** `SIGSTOP` freezes it, `SIGKILL` ends it without warning. */
+  async signal(name) {
+    this.process.kill(name);
+    if (name === "SIGKILL" || name === "SIGTERM") return this.ended;
+  }
+
+  postmaster_runs() {
+    const file = join(this.data, "postgres", "pgdata", "postmaster.pid");
+    return existsSync(file) && existsSync(`/proc/${parseInt(readFileSync(file, "latin1"), 10)}`);
+  }
+
+  async remove() {
+    if (this.process?.exitCode === null && this.process.signalCode === null) await this.signal("SIGKILL");
+    await wait_for(() => !this.postmaster_runs(), "the private PostgreSQL to end");
+    rmSync(this.data, { recursive: true, force: true });
+  }
+
+  /** No errors, and only those warnings that contain one of the words (of a fault that the test made). */
+  assert_clean_log(words = []) {
+    const bad = this.log.filter((line) => {
+      const level = line.split(" ")[1];
+      return !(["I", "D"].includes(level) || (level === "W" && words.some((word) => line.includes(word))));
+    });
+    if (bad.length > 0) throw new Error(`the log of the server is not clean:\n${bad.slice(0, 50).join("\n")}`);
+  }
+
+  /** A person beside the owner: there is no address for it yet, so it is written into the database. Returns the token. */
+  add_person(name, role) {
+    const token = randomBytes(24).toString("hex");
+    const sql = `INSERT INTO users (name, role) VALUES ('${name}', '${role}');
+      INSERT INTO tokens (hash, kind, user_name, role) VALUES (sha256('${token}'), 'script', '${name}', '${role}')`;
+    execFileSync("psql", ["-h", join(this.data, "postgres"), "-U", "strata", "-d", "strata", "-q", "-v", "ON_ERROR_STOP=1", "-c", sql]);
+    return token;
+  }
+
+  async request(method, path, body) {
+    const answer = await fetch(`${this.url}/api/v1${path}`, {
+      method,
+      headers: { Authorization: `Bearer ${this.token}`, ...(body === undefined ? {} : { "Content-Type": "application/json" }) },
+      ...(body === undefined ? {} : { body: JSON.stringify(body) }),
+    });
+    if (!answer.ok) throw new Error(`${method} ${path}: ${answer.status} ${await answer.text()}`);
+    return answer;
+  }
+  async json(method, path, body) {
+    return (await this.request(method, path, body)).json();
+  }
+}
