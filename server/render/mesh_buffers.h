@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "gl/buffer.h"
 #include "gl/vertex_array.h"
@@ -12,6 +14,8 @@ namespace strata::render {
 // A model's vertices and indices on the GPU, filled in slices.
 class MeshBuffers {
  public:
+  static constexpr std::size_t kTrianglesPerCluster = 4096;
+
   static Result<std::unique_ptr<MeshBuffers>> create(std::shared_ptr<const mesh::Geometry> geometry, GpuMemory& memory);
 
   // Uploads the next few megabytes; true when everything is there.
@@ -22,11 +26,16 @@ class MeshBuffers {
   const gl::VertexArray& vertex_array() const { return vertex_array_; }
   std::size_t triangle_count() const { return geometry_->triangle_count(); }
 
+  // Clusters are runs of triangles, which are neighbours; the last may be shorter. These are their numbers, nearest first, as
+  // seen from `eye` (a point where w is 1, a direction towards the eye where it is 0; model space).
+  std::vector<std::uint32_t> clusters_from(const glm::vec4& eye) const;
+
  private:
   std::size_t vertex_bytes() const { return geometry_->vertices.size() * sizeof(mesh::Vertex); }
   std::size_t index_bytes() const { return geometry_->indices.size() * sizeof(std::uint32_t); }
 
   std::shared_ptr<const mesh::Geometry> geometry_;
+  std::vector<glm::vec3> cluster_centers_;
   gl::Buffer vertices_, indices_;
   gl::VertexArray vertex_array_;
   GpuMemory::Share share_;

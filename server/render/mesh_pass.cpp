@@ -15,7 +15,7 @@ Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader
   pass.kind_ = kind;
   pass.program_ = std::move(*program);
   pass.uniforms_ = std::move(*uniforms);
-  pass.triangles_per_slice_ = triangles_per_slice;
+  pass.clusters_per_slice_ = std::max<std::size_t>(1, triangles_per_slice / MeshBuffers::kTrianglesPerCluster);
   return pass;
 }
 
@@ -30,6 +30,7 @@ bool MeshPass::draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& u
       glClearNamedFramebufferuiv(target.id(), GL_COLOR, 0, background.data());
       glClearNamedFramebufferfv(target.id(), GL_COLOR, 1, dark.data());
     }
+    progress.clusters = mesh.clusters_from(uniforms.eye);
     progress.cleared = true;
   }
   uniforms_.upload_values(0, std::span(&uniforms, 1));
@@ -42,12 +43,17 @@ bool MeshPass::draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& u
   glDepthFunc(GL_LESS);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
-  const std::size_t count = std::min(triangles_per_slice_, mesh.triangle_count() - progress.next_triangle);
-  const std::size_t first_byte = progress.next_triangle * 3 * sizeof(std::uint32_t);
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * 3), GL_UNSIGNED_INT, reinterpret_cast<const void*>(first_byte));
+  const std::size_t end = std::min(progress.next_cluster + clusters_per_slice_, progress.clusters.size());
+  std::vector<GLsizei> counts;
+  std::vector<const void*> offsets;
+  for (; progress.next_cluster < end; ++progress.next_cluster) {
+    const std::size_t first = progress.clusters[progress.next_cluster] * MeshBuffers::kTrianglesPerCluster;
+    counts.push_back(static_cast<GLsizei>(3 * std::min(MeshBuffers::kTrianglesPerCluster, mesh.triangle_count() - first)));
+    offsets.push_back(reinterpret_cast<const void*>(3 * first * sizeof(std::uint32_t)));
+  }
+  glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(), static_cast<GLsizei>(counts.size()));
   glFlush();  // lets the driver draw this slice while the next is prepared
-  progress.next_triangle += count;
-  return progress.next_triangle == mesh.triangle_count();
+  return progress.next_cluster == progress.clusters.size();
 }
 
 shader::MeshUniforms mesh_uniforms(const Camera& camera, const glm::dvec3& origin) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "core/camera.h"
 #include "gl/buffer.h"
@@ -13,11 +15,12 @@ namespace strata::render {
 
 // Position in a drawing of a mesh that is done in slices.
 struct MeshProgress {
-  std::size_t next_triangle = 0;
+  std::vector<std::uint32_t> clusters;  // in drawing order
+  std::size_t next_cluster = 0;
   bool cleared = false;
 };
 
-// Draws the full mesh: depth alone, or the g-buffer. Both use one vertex stage, so their depths are equal. Each call sets
+// Draws the full mesh, near parts first, which spares hidden ones their shading: depth alone, or the g-buffer. Both use one vertex stage, so their depths are equal. Each call sets
 // all state it needs: other passes may run between slices. Nothing is culled by facing, because scans are open.
 class MeshPass {
  public:
@@ -32,7 +35,7 @@ class MeshPass {
   Kind kind_ = Kind::depth;
   gl::Program program_;
   mutable gl::Buffer uniforms_;
-  std::size_t triangles_per_slice_ = 0;
+  std::size_t clusters_per_slice_ = 0;
 };
 
 // Matrices and lights of a camera for a model whose coordinates are relative to `origin`.
