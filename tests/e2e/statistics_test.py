@@ -33,7 +33,7 @@ def main():
         check(server, server.get("/models/demo-pot").json())
         if has_scans:
             check(server, server.import_model(read("statue_nefertiti_70k.ply"), "statue_nefertiti_70k.ply", unit="mm"))
-            mask = server.import_model(read("mask_bali/mask.obj"), "mask.obj", unit="mm")
+            mask = server.import_model(read("mask_bali/mask.obj"), "mask.obj", unit="m")
             assert mask["atlas"]["source"] == "file", mask["atlas"]  # its own texture coordinates are kept
             assert 0 <= mask["atlas"]["overlap"] < 0.005, mask["atlas"]
             check(server, mask)

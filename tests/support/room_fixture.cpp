@@ -9,15 +9,35 @@
 
 namespace strata::test {
 
+namespace {
+
+struct Pot {
+  double area;
+  AtlasReport report;
+  mesh::Geometry geometry;
+};
+
+// Unwrapped once for all tests of the process.
+const Result<Pot>& pot() {
+  static const Result<Pot> made = []() -> Result<Pot> {
+    Progress progress;
+    const mesh::TriangleMesh mesh = mesh::make_demo_pot(0.2);
+    auto atlas = mesh::make_atlas(mesh, 2048, progress);
+    if (!atlas) return tl::unexpected(atlas.error());
+    return Pot{mesh::surface_area(mesh), atlas->report, mesh::build_geometry(mesh, *atlas)};
+  }();
+  return made;
+}
+
+}  // namespace
+
 void RoomTest::SetUp() {
   dsn_ = fresh_database();
   store_ = open_store(dsn_);
   ASSERT_TRUE(store_);
-  Progress progress;
-  const mesh::TriangleMesh pot = mesh::make_demo_pot(0.2);
-  auto atlas = mesh::make_atlas(pot, 2048, progress);
-  ASSERT_TRUE(atlas) << atlas.error().detail;
-  const mesh::Geometry geometry = mesh::build_geometry(pot, *atlas);
+  const auto& made_pot = pot();
+  ASSERT_TRUE(made_pot) << made_pot.error().detail;
+  const mesh::Geometry& geometry = made_pot->geometry;
   store::Store::NewModel made;
   made.model.name = "Pot";
   made.model.slug = "pot";
@@ -30,8 +50,8 @@ void RoomTest::SetUp() {
   made.model.vertices = geometry.positions.size();
   made.model.bounds_min = geometry.origin + glm::dvec3(geometry.box_min);
   made.model.bounds_max = geometry.origin + glm::dvec3(geometry.box_max);
-  made.model.area = mesh::surface_area(pot);
-  made.model.atlas = atlas->report;
+  made.model.area = made_pot->area;
+  made.model.atlas = made_pot->report;
   made.geometry = mesh::encode_geometry(geometry);
   auto model = store_->create_model(made, [] { return false; });
   ASSERT_TRUE(model) << model.error().detail;

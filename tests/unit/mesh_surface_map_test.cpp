@@ -13,6 +13,7 @@
 #include "mesh/load.h"
 #include "mesh/uv_islands.h"
 #include "support/meshes.h"
+#include "support/scan_atlas.h"
 
 namespace strata::mesh {
 namespace {
@@ -410,11 +411,11 @@ TEST(mesh_surface_map, of_real_scans_credits_their_whole_area_at_every_resolutio
     Progress progress;
     const auto scan = load_mesh(data / name, name, progress);
     ASSERT_TRUE(scan) << scan.error().detail;
-    auto atlas = keep_uvs(scan->mesh, 2048, progress);
-    const bool is_made = !atlas;
-    if (is_made) atlas = make_atlas(scan->mesh, 2048, progress);
-    ASSERT_TRUE(atlas) << atlas.error().detail;
-    const Geometry geometry = build_geometry(scan->mesh, *atlas);
+    const auto kept = keep_uvs(scan->mesh, 2048, progress);
+    const bool is_made = !kept;
+    const auto* const made = is_made ? &test::scan_with_made_atlas(name) : nullptr;
+    ASSERT_TRUE(!is_made || made->has_value()) << made->error().detail;
+    const Geometry geometry = build_geometry(scan->mesh, is_made ? made->value().atlas : *kept);
     for (const int resolution : {2048, 4096}) {
       const SurfaceMap map = bake(geometry, resolution);
       EXPECT_NEAR(area_sum(map) / surface_area(scan->mesh), 1, 1e-5) << name;

@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { Browser, has_hue, kRoot } from "../support/browser.mjs";
+import { Browser, has_hue, kRoot, require_browser } from "../support/browser.mjs";
 import { decode_png, encode_png } from "../support/png.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
@@ -179,6 +179,7 @@ function pot_camera(width, height, angle = 0) {
   return { view, projection, width, height };
 }
 
+require_browser();
 const server = new StrataServer({ demo: true });
 try {
   await server.start();

@@ -27,6 +27,9 @@ function load_playwright() {
   }
 }
 
+/** Call it first: nothing is left behind then when something is missing. */
+export const require_browser = () => void load_playwright();
+
 export class Browser {
   static async open(options = {}) {
     const { chromium } = load_playwright();

@@ -72,9 +72,11 @@ class StrataServer:
             raise
 
     def __exit__(self, *failure):
-        if self.process and self.process.poll() is None:
+        ended = self.process and self.process.poll()
+        if self.process and ended is None:
             self.kill()
         if failure[0]:
+            print("the server " + (f"had ended with {ended}" if ended is not None else "was running"))
             print("--- log of the server\n" + "\n".join(self.log[-200:]), flush=True)
         self.remove()
 

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "core/problem.h"
+#include "mesh/atlas.h"
+#include "mesh/triangle_mesh.h"
+
+namespace strata::test {
+
+struct ScanAtlas {
+  mesh::TriangleMesh mesh;
+  mesh::Atlas atlas;  // made, never the file's own
+};
+
+// A real scan of STRATA_TEST_DATA with an atlas made at 2048², which takes seconds: every test of a process shares it.
+const Result<ScanAtlas>& scan_with_made_atlas(const std::string& name);
+
+}  // namespace strata::test
