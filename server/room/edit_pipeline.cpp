@@ -279,6 +279,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, Computed computed,
   store::JournalEntry entry;
   EditAnswer answer{sequence, 0, 0, false};
   TileMap tiles;
+  auto& since_key_tile = since_key_tile_[layer.layer.id];
   for (const TileChange& change : computed.changes) {
     if (map) {
       const ChangeCount count = count_changes(change, *map);
@@ -289,7 +290,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, Computed computed,
     store::JournalEntry::Revision revision{
         change.address, encode_revision(make_revision(change.address, *change.before, *change.after, change.written)), {}};
     // The first revision in this room is stored whole: chains stay short however often rooms open and close.
-    auto [since, first] = layer.since_key_tile.try_emplace(change.address, 0);
+    auto [since, first] = since_key_tile.try_emplace(change.address, 0);
     if (first || ++since->second >= kKeyTileEvery) {
       revision.key_tile = encode_tile(*change.after);
       since->second = 0;
@@ -297,7 +298,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, Computed computed,
     entry.revisions.push_back(std::move(revision));
   }
   layer.mirror->put(tiles, sequence);
-  layer.layer.sequence = sequence;
+  host_->set_sequence(layer, sequence);
 
   const auto* stroke = std::get_if<StrokeEdit>(&item.request.edit);
   entry.model_id = model.id;
@@ -377,8 +378,8 @@ void EditPipeline::roll_back_when_answered() {
     for (const auto& [address, data] : tiles) uploads.push_back({address, data});
     parts_.renderer.write_tiles(layer->handle, std::move(uploads), [](Result<void>) {});
     layer->mirror->put(tiles, durable_);
-    layer->layer.sequence = std::min(layer->layer.sequence, durable_);
-    layer->since_key_tile.clear();  // the whole copies may be among what was not saved
+    host_->set_sequence(*layer, std::min(layer->layer.sequence, durable_));
+    since_key_tile_.erase(layer_id);  // the whole copies may be among what was not saved
     host_->content_changed(*layer, std::nullopt, durable_);
   }
   log::warning("took back " + std::to_string(events.size()) + " edits that could not be saved: " + why.title + ": " + why.detail);
@@ -406,6 +407,7 @@ void EditPipeline::pause() { paused_ = true; }
 
 void EditPipeline::resume(std::int64_t last_sequence) {
   paused_ = false;
+  since_key_tile_.clear();
   sequence_ = last_sequence;
   if (pending_.empty()) durable_ = last_sequence;
   step();

@@ -3,6 +3,7 @@
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <deque>
+#include <map>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -25,6 +26,7 @@ class PipelineHost {
   virtual ~PipelineHost() = default;
   virtual LayerState* find_layer(std::int64_t id) = 0;
   virtual const Model& pipeline_model() const = 0;
+  virtual void set_sequence(LayerState& layer, std::int64_t sequence) = 0;  // other threads may be reading it
   virtual void content_changed(const LayerState& layer, const std::optional<render::FrameRequest::Box>& box,
                                std::int64_t sequence) = 0;  // no box: everywhere
   virtual void edit_applied(const Listener::Edit& edit) = 0;
@@ -109,6 +111,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   bool verify_ = false;              // after failed commits: compare with the journal before the next edit
   std::optional<Problem> failure_;   // commits failed: everything pending is taken back once it is answered
   std::deque<Pending> pending_;      // sequence order
+  // By layer: revisions since the last whole tile was stored, in this room.
+  std::map<std::int64_t, std::unordered_map<TileAddress, int>> since_key_tile_;
   std::unordered_map<Uuid, std::vector<Room::Saved>> running_;  // waiting and pending edits, with who repeated them
 };
 

@@ -135,7 +135,6 @@ Result<void> OpenRoom::add_to_gpu(bool from_store) {
     for (const LayerState& old : layer_states()) {
       auto state = put_on_gpu(old.layer, old.mirror, *handle);
       if (!state) return undo(state.error());
-      state->since_key_tile = old.since_key_tile;
       states.emplace(old.layer.id, std::move(*state));
     }
   }
@@ -339,6 +338,11 @@ void OpenRoom::edit(EditRequest request, Applied applied, Saved saved) {
 LayerState* OpenRoom::find_layer(std::int64_t id) {
   auto found = layers_.find(id);
   return found == layers_.end() ? nullptr : &found->second;
+}
+
+void OpenRoom::set_sequence(LayerState& layer, std::int64_t sequence) {
+  std::lock_guard lock(mutex_);
+  layer.layer.sequence = sequence;
 }
 
 void OpenRoom::content_changed(const LayerState& layer, const std::optional<render::FrameRequest::Box>& box,

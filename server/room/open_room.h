@@ -56,6 +56,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   // --- PipelineHost (on the strand)
   LayerState* find_layer(std::int64_t id) override;
   const Model& pipeline_model() const override { return model_; }
+  void set_sequence(LayerState& layer, std::int64_t sequence) override;
   void content_changed(const LayerState& layer, const std::optional<render::FrameRequest::Box>& box,
                        std::int64_t sequence) override;
   void edit_applied(const Listener::Edit& edit) override;
