@@ -68,8 +68,8 @@ Command add_import(CLI::App& app) {
   command->add_option("--resolution", options->request.resolution, "Default resolution of new layers")
       ->check(CLI::IsMember({2048, 4096, 8192, 16384}));
   command->add_flag("--strict", options->request.strict, "Refuse a file that needs repair");
-  auto* server = command->add_option("--server", options->server, "A running server: http://host:port")->envname("STRATA_SERVER");
-  command->add_option("--token", options->token, "Token for --server")->envname("STRATA_OWNER_TOKEN")->needs(server);
+  command->add_option("--server", options->server, "A running server: http://host:port")->envname("STRATA_SERVER");
+  command->add_option("--token", options->token, "Token for --server")->envname("STRATA_OWNER_TOKEN");
   return [options] { return run(*options); };
 }
 

@@ -331,8 +331,6 @@ void LiveSession::edit_applied(const Edit& edit) {
   send(event);
 }
 
-void LiveSession::edit_saved(const Edit&) {}  // the author is told by the edit's own answer; nobody else waits for it
-
 void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Problem&) {
   // Others see the layer go back; the authors hear of each id by the edit's own answer.
   std::map<std::int64_t, std::int64_t> sequences;

@@ -69,7 +69,6 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
 
   // --- room::Listener
   void edit_applied(const Edit& edit) override;
-  void edit_saved(const Edit& edit) override;
   void edits_unsaved(const std::vector<Edit>& edits, const Problem& why) override;
   void layer_changed(LayerChange change, const Layer& layer) override;
   void model_changed(const Model& model) override;

@@ -15,6 +15,11 @@ StrokeBook::Stroke* StrokeBook::find(const Owner& owner, const Uuid& stroke) {
   return const_cast<Stroke*>(std::as_const(*this).find(owner, stroke));
 }
 
+int StrokeBook::Stroke::saved_through() const {
+  const auto gap = std::find_if_not(batches.begin(), batches.end(), [](const PastBatch& batch) { return batch.is_saved; });
+  return first_n - 1 + static_cast<int>(gap - batches.begin());
+}
+
 void StrokeBook::forget_old(Clock::time_point now) {
   for (auto strokes = owners_.begin(); strokes != owners_.end();) {
     std::erase_if(strokes->second, [&](const auto& item) { return now - item.second.touched > kKeepFor; });
@@ -95,7 +100,9 @@ Result<StrokeBook::Batch> StrokeBook::extend(const Owner& owner, const Uuid& str
 
 void StrokeBook::saved(const Owner& owner, const Uuid& stroke, int n) {
   std::lock_guard lock(mutex_);
-  if (Stroke* known = find(owner, stroke)) known->last_saved = std::max(known->last_saved, n);
+  Stroke* known = find(owner, stroke);
+  if (!known || n < known->first_n || n >= known->first_n + static_cast<int>(known->batches.size())) return;
+  known->batches[static_cast<std::size_t>(n - known->first_n)].is_saved = true;
 }
 
 Result<void> StrokeBook::end(const Owner& owner, const Uuid& stroke) {
@@ -112,7 +119,7 @@ std::vector<StrokeBook::Progress> StrokeBook::open_strokes(const Owner& owner) c
   auto strokes = owners_.find(owner);
   if (strokes == owners_.end()) return open;
   for (const auto& [id, stroke] : strokes->second)
-    if (!stroke.ended) open.push_back({id, stroke.last_saved});
+    if (!stroke.ended) open.push_back({id, stroke.saved_through()});
   return open;
 }
 

@@ -61,7 +61,7 @@ class StrokeBook {
 
   struct Progress {
     Uuid stroke;
-    int n = -1;  // last saved batch; -1: none
+    int n = -1;  // every batch up to this one is saved; -1: none
   };
   std::vector<Progress> open_strokes(const Owner& owner) const;
   std::optional<StrokeTool> tool(const Owner& owner, const Uuid& stroke) const;
@@ -70,15 +70,16 @@ class StrokeBook {
   struct PastBatch {
     Uuid id;
     std::optional<glm::dvec2> start;  // where the batch before ended
+    bool is_saved = false;
   };
   struct Stroke {
     StrokeTool tool;
     int first_n = 0;                 // number of batches.front()
     std::deque<PastBatch> batches;
     std::optional<glm::dvec2> last;  // where the newest batch ended
-    int last_saved = -1;
     bool ended = false;
     Clock::time_point touched;
+    int saved_through() const;  // a later batch can be saved while an earlier one was refused and waits to be sent again
   };
   using Strokes = std::unordered_map<Uuid, Stroke>;
   Stroke* find(const Owner& owner, const Uuid& stroke);

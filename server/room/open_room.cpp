@@ -12,7 +12,6 @@
 namespace strata::room {
 namespace {
 
-constexpr auto kStrokeKept = std::chrono::minutes(10);  // a client that lost its connection may come back for it
 constexpr std::array<const char*, 8> kColors{"#d55e00", "#0072b2", "#009e73", "#cc79a7",
                                              "#e69f00", "#56b4e9", "#7b5ea7", "#5c7a29"};
 
@@ -110,7 +109,7 @@ Result<LayerState> OpenRoom::put_on_gpu(const Layer& layer, std::shared_ptr<Tile
         [&](auto done) { parts_.renderer.write_tiles(*handle, std::move(uploads), std::move(done)); });
     if (!written) return tl::unexpected(written.error());
   }
-  return LayerState{layer, *handle, std::move(mirror), std::make_shared<const Palette>(layer.palette), {}};
+  return LayerState{layer, *handle, std::move(mirror), std::make_shared<const Palette>(layer.palette)};
 }
 
 Result<void> OpenRoom::add_to_gpu(bool from_store) {
@@ -356,30 +355,11 @@ void OpenRoom::edit_applied(const Listener::Edit& edit) {
   tell([&](Listener& l) { l.edit_applied(edit); });
 }
 
-void OpenRoom::edit_saved(const Listener::Edit& edit) {
-  durable_ = edit.sequence;
-  if (edit.is_stroke) {
-    std::lock_guard lock(mutex_);
-    const auto now = std::chrono::steady_clock::now();
-    strokes_[edit.stroke] = {edit.n, now};
-    if (strokes_.size() > 1024)
-      std::erase_if(strokes_, [&](const auto& entry) { return now - entry.second.at > kStrokeKept; });
-  }
-  tell([&](Listener& l) { l.edit_saved(edit); });
-}
+void OpenRoom::edit_saved(const Listener::Edit& edit) { durable_ = edit.sequence; }
 
 void OpenRoom::edits_unsaved(const std::vector<Listener::Edit>& edits, const Problem& why) {
   sequence_ = pipeline_->sequence();
   tell([&](Listener& l) { l.edits_unsaved(edits, why); });
-}
-
-std::vector<Room::OpenStroke> OpenRoom::open_strokes() const {
-  std::lock_guard lock(mutex_);
-  const auto now = std::chrono::steady_clock::now();
-  std::vector<OpenStroke> open;
-  for (const auto& [stroke, recent] : strokes_)
-    if (now - recent.at <= kStrokeKept) open.push_back({stroke, recent.n});
-  return open;
 }
 
 // ------------------------------------------------------------------------------------------------------ people

@@ -39,7 +39,6 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void edit(EditRequest request, Applied applied, Saved saved) override;
   std::unique_ptr<Member> join(std::string user, Listener* listener, stream::Viewer::Send send) override;
   std::vector<Presence> presence() const override;
-  std::vector<OpenStroke> open_strokes() const override;
   Result<Layer> create_layer(Layer layer) override;
   Result<Layer> update_layer(Layer layer) override;
   Result<void> delete_layer(std::int64_t id) override;
@@ -101,7 +100,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   const std::shared_ptr<SurfaceMaps> maps_;
   std::shared_ptr<EditPipeline> pipeline_;
 
-  mutable std::mutex mutex_;                 // model_, layers_, model_handle_, tree_, last_used_, strokes_
+  mutable std::mutex mutex_;                 // model_, layers_, model_handle_, tree_, last_used_
   Model model_;
   std::map<std::int64_t, LayerState> layers_;  // changed on the strand only
   render::ModelHandle model_handle_ = 0;
@@ -109,11 +108,6 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   std::once_flag tree_once_;
   std::chrono::steady_clock::time_point last_used_;
   std::atomic<std::int64_t> sequence_{0}, durable_{0};
-  struct RecentStroke {
-    int n = 0;
-    std::chrono::steady_clock::time_point at;
-  };
-  std::unordered_map<Uuid, RecentStroke> strokes_;
 
   mutable std::recursive_mutex members_mutex_;  // recursive: a listener may ask for presence while it is told
   std::vector<RoomMember*> members_;

@@ -29,7 +29,6 @@ class Listener {
     EditAnswer answer;
   };
   virtual void edit_applied(const Edit& edit) = 0;                        // visible, not yet durable
-  virtual void edit_saved(const Edit& edit) = 0;                          // durable
   virtual void edits_unsaved(const std::vector<Edit>& edits, const Problem& why) = 0;  // rolled back
   enum class LayerChange { created, changed, deleted };
   virtual void layer_changed(LayerChange change, const Layer& layer) = 0;
@@ -84,9 +83,6 @@ class Room {
 
   virtual std::unique_ptr<Member> join(std::string user, Listener* listener, stream::Viewer::Send send) = 0;
   virtual std::vector<Presence> presence() const = 0;
-  // Last saved batch of strokes that are not ended and touched in the last minutes, for `welcome`.
-  struct OpenStroke { Uuid stroke; int n; };
-  virtual std::vector<OpenStroke> open_strokes() const = 0;
 
   // Metadata; blocking (database), announced to the listeners.
   virtual Result<Layer> create_layer(Layer layer) = 0;

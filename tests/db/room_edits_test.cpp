@@ -160,7 +160,6 @@ struct UnsavedEars : room::Listener {
   std::mutex mutex;
   std::vector<Uuid> unsaved;
   void edit_applied(const Edit&) override {}
-  void edit_saved(const Edit&) override {}
   void edits_unsaved(const std::vector<Edit>& edits, const Problem&) override {
     std::lock_guard lock(mutex);
     for (const auto& edit : edits) unsaved.push_back(edit.id);

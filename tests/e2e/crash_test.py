@@ -104,7 +104,7 @@ class Crashes:
         changes = self.texels(layer, sequence).differences(self.texels(layer, sequence - 1))
         # The raster holds the gutter, too, which the count leaves out.
         assert len(changes) >= answer["texels_changed"], (sequence, len(changes), answer)
-        assert bool(changes) == (answer["texels_changed"] > 0) or edit, sequence
+        assert bool(changes) == (answer["texels_changed"] > 0), sequence
         wanted = (0, False) if edit.get("erase") else (edit["value"], True)
         wrong = [now for now, _ in changes if now != wanted]
         assert not wrong, f"edit {sequence} left {wrong[:3]} beside {wanted}"

@@ -75,7 +75,6 @@ class FakeRoom final : public room::Room {
     return std::make_unique<FakeMember>(random_uuid());
   }
   std::vector<room::Presence> presence() const override { return {{random_uuid(), "anna", "#112233", glm::dvec3(1, 2, 3)}}; }
-  std::vector<OpenStroke> open_strokes() const override { return {}; }
   Result<Layer> create_layer(Layer layer) override { return layer; }
   Result<Layer> update_layer(Layer layer) override { return layer; }
   Result<void> delete_layer(std::int64_t) override { return {}; }

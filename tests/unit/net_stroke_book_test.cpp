@@ -87,6 +87,24 @@ TEST_F(Book, an_ended_stroke_takes_repeats_but_nothing_new) {
   EXPECT_TRUE(book.extend(kAnna, stroke, ids[1], 1, {{2, 2}}));
 }
 
+TEST_F(Book, welcome_does_not_count_a_saved_batch_behind_one_that_is_not) {
+  ASSERT_TRUE(book.begin(kAnna, stroke, tool()));
+  ASSERT_TRUE(book.extend(kAnna, stroke, ids[0], 0, {{1, 1}}));
+  ASSERT_TRUE(book.extend(kAnna, stroke, ids[1], 1, {{2, 2}}));
+  book.saved(kAnna, stroke, 1);
+  EXPECT_EQ(book.open_strokes(kAnna)[0].n, -1);
+  book.saved(kAnna, stroke, 0);
+  EXPECT_EQ(book.open_strokes(kAnna)[0].n, 1);
+}
+
+TEST_F(Book, welcome_counts_on_from_the_first_batch_after_a_restart) {
+  ASSERT_TRUE(book.begin(kAnna, stroke, tool()));
+  ASSERT_TRUE(book.extend(kAnna, stroke, ids[0], 7, {{1, 1}}));
+  EXPECT_EQ(book.open_strokes(kAnna)[0].n, 6) << "the journal holds what came before";
+  book.saved(kAnna, stroke, 7);
+  EXPECT_EQ(book.open_strokes(kAnna)[0].n, 7);
+}
+
 TEST_F(Book, welcome_names_the_last_saved_batch_of_open_strokes) {
   ASSERT_TRUE(book.begin(kAnna, stroke, tool()));
   ASSERT_EQ(book.open_strokes(kAnna).size(), 1u);

@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
-#include <iostream>
 #include <random>
 
 #include "mesh/packed_position.h"
@@ -214,16 +212,10 @@ TEST(QueryStatistics, as_json_they_have_the_names_of_the_interface) {
   EXPECT_EQ(json["keys"][1]["bounds"]["min"].size(), 3u);
 }
 
-// Prints what a full layer of 4096² costs; the limit is loose, because test machines are busy.
-TEST(QueryStatistics, a_full_layer_of_4096_takes_about_a_second_at_most) {
+TEST(QueryStatistics, a_full_layer_of_4096_is_counted_whole) {
   const mesh::SurfaceMap map = make_map(4096, 1.0, 3);
   const LayerView view = make_layer(ValueType::u8, map, 30, 1, true);
-  const auto start = std::chrono::steady_clock::now();
-  const auto got = statistics(view, map, kOrigin, 1);
-  const std::chrono::duration<double, std::milli> elapsed_ms = std::chrono::steady_clock::now() - start;
-  std::cout << got.texels << " texels in " << elapsed_ms.count() << " ms\n";
-  EXPECT_GT(got.texels, 12'000'000u);
-  EXPECT_LT(elapsed_ms.count(), 30'000);
+  EXPECT_GT(statistics(view, map, kOrigin, 1).texels, 12'000'000u);
 }
 
 }  // namespace
