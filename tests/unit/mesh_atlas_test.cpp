@@ -204,7 +204,7 @@ TEST(mesh_atlas, stops_when_cancelled) {
 
 TEST(mesh_atlas, refuses_more_pieces_than_texels_can_hold_apart) {
   Progress progress;
-  const auto atlas = make_atlas(test::separate_triangles(1000), 128, progress);
+  const auto atlas = make_atlas(test::separate_triangles(3000), 128, progress);
   ASSERT_FALSE(atlas);
   EXPECT_EQ(atlas.error().status, 422);
   EXPECT_THAT(atlas.error().detail, testing::HasSubstr("higher lowest resolution"));
