@@ -40,20 +40,26 @@ def perspective(angle, aspect, near, far):
     return [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0]
 
 
+def camera_from(model, direction, width, height, up):
+    """Sees the whole model from a direction."""
+    low, high = model["bounds"]["min"], model["bounds"]["max"]
+    center = [(a + b) / 2 for a, b in zip(low, high)]
+    radius = math.dist(low, high) / 2
+    distance = 2.7 * radius
+    eye = [c + distance * d for c, d in zip(center, unit(direction))]
+    return {"view": look_at(eye, center, up),
+            "projection": perspective(math.radians(45), width / height, distance - 1.2 * radius, distance + 1.2 * radius),
+            "width": width, "height": height}
+
+
 def main():
     request = urllib.request.Request(sys.argv[1], headers={"Authorization": "Bearer " + os.environ["STRATA_OWNER_TOKEN"]})
     model = json.load(urllib.request.urlopen(request))
     width, height = (int(sys.argv[2]), int(sys.argv[3])) if len(sys.argv) > 3 else (1280, 720)
-    low, high = model["bounds"]["min"], model["bounds"]["max"]
-    center = [(a + b) / 2 for a, b in zip(low, high)]
-    radius = math.dist(low, high) / 2
     up = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1]}[model["up"]]
     front = [0, 0, 1] if model["up"] == "y" else [0, -1, 0]
-    distance = radius * 2.6
-    eye = [c + distance * f for c, f in zip(center, front)]
-    print(json.dumps({"view": look_at(eye, center, up),
-                      "projection": perspective(math.radians(45), width / height, distance - radius * 1.2, distance + radius * 1.2),
-                      "width": width, "height": height}))
+    print(json.dumps(camera_from(model, front, width, height, up)))
 
 
-main()
+if __name__ == "__main__":
+    main()
