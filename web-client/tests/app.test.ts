@@ -2,11 +2,13 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { BrushSettings, describe_value, value_problem } from "../src/app/brush-settings";
 import { choose_scans } from "../src/app/imports";
+import { arrow_step } from "../src/app/keyboard";
+import { layer_changes } from "../src/app/layer-changes";
 import { notices } from "../src/app/notices";
 import { PickProbe } from "../src/app/pick-probe";
 import { route_of } from "../src/app/routes";
 import { texts } from "../src/app/texts";
-import { class_palette, measurement_palette, presence_palette } from "../src/core/palette";
+import { class_palette, measurement_palette, presence_palette, record_palette } from "../src/core/palette";
 import type { Layer, Palette, ValueType } from "../src/core/types";
 
 const layer = (type: ValueType, palette: Palette, unit = ""): Layer => ({
@@ -57,6 +59,34 @@ describe("the brush's value", () => {
     brush.set_width("mm", 10);
     brush.step_width(-1);
     expect(brush.width.mm).toBeLessThan(10);
+  });
+});
+
+describe("records", () => {
+  it("are painted by number, and told by it", () => {
+    const finds: Layer = { ...layer("u32", record_palette()), kind: "database" };
+    expect(new BrushSettings().value_of(finds)).toBe(1);
+    expect(describe_value(finds, 4711)).toBe("Record 4711");
+    expect(value_problem(finds, 4_294_967_296)).not.toBeNull();
+  });
+});
+
+describe("a changed layer", () => {
+  const old = layer("u8", classes);
+  const same = { name: "L", unit: "", description: "", palette: class_palette(classes.points as never) };
+  it("sends only what was changed", () => {
+    expect(layer_changes(old, same)).toEqual({});
+    expect(layer_changes(old, { ...same, description: "by eye" })).toEqual({ description: "by eye" });
+    const palette = class_palette([{ at: 2, label: "Lime", color: "#ffffffff" }]);
+    expect(layer_changes(old, { ...same, name: "M", palette })).toEqual({ name: "M", palette });
+  });
+});
+
+describe("radio buttons", () => {
+  it("the arrow keys go round, other keys are not theirs", () => {
+    expect(["ArrowRight", "ArrowDown", "ArrowLeft", "ArrowUp"].map((key) => arrow_step(key, 0, 3))).toEqual([1, 1, 2, 2]);
+    expect(arrow_step("ArrowRight", 2, 3)).toBe(0);
+    expect(arrow_step("Home", 0, 3)).toBeNull();
   });
 });
 

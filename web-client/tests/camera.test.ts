@@ -81,16 +81,14 @@ describe("matrices", () => {
       }
     });
 
-    it(`a ${kind} ray through a pixel and the projection of its points agree`, () => {
+    it(`the point under a ${kind} pixel is projected onto it`, () => {
       const camera = camera_on();
       camera.perspective = perspective;
       camera.orbit(0.7, 0.3);
-      const ray = camera.ray_through(200.5, 611.25);
-      const point = add(ray.origin, scale(ray.direction, 37));
-      const seen = camera.project(point)!;
+      const seen = camera.project(camera.point_on_focus_plane(200.5, 611.25))!;
       expect(seen.x).toBeCloseTo(200.5, 5);
       expect(seen.y).toBeCloseTo(611.25, 5);
-      expect(seen.depth).toBeCloseTo(camera.depth_of(point), 5);
+      expect(seen.depth).toBeCloseTo(camera.distance, 5);
     });
 
     it(`one ${kind} window pixel is unit_per_pixel wide at its depth`, () => {

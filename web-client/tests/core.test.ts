@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 
 import { Api, ApiError, name_of_file, new_id, problem_of_text } from "../src/core/api";
 import { detail_choices, format_area, format_length, format_number, format_size, likely_unit, scale_bar, ticks } from "../src/core/measure";
-import { class_palette, color_of, css_gradient, measurement_palette, presence_palette, purpose_of } from "../src/core/palette";
+import { class_palette, color_of, css_gradient, measurement_palette, presence_palette, purpose_of, same_palette } from "../src/core/palette";
 import { complete_palette } from "../src/core/types";
 
 describe("numbers as people write them", () => {
@@ -37,7 +37,7 @@ describe("numbers as people write them", () => {
   });
   it("an object without a unit is likely in millimetres, a site in metres", () => {
     const model = (size: number, from: number, more = {}) => ({
-      unit: "m" as const, unit_assumed: true, crs: "", ...more,
+      unit: "m" as const, unit_assumed: true, scale_verified: false, crs: "", ...more,
       bounds: { min: [from, from, 0] as [number, number, number], max: [from + size, from + size / 2, 3] as [number, number, number] },
     }); // prettier-ignore
     expect(likely_unit(model(239, -100))).toBe("mm");
@@ -45,6 +45,7 @@ describe("numbers as people write them", () => {
     expect(likely_unit(model(40, 500_000))).toBe("m");
     expect(likely_unit(model(40, 0, { crs: "EPSG:25830" }))).toBe("m");
     expect(likely_unit(model(239, 0, { unit_assumed: false, unit: "cm" }))).toBe("cm");
+    expect(likely_unit(model(239, 0, { scale_verified: true }))).toBe("m");
   });
   it("the smallest detail halves with each doubling of the layer", () => {
     const choices = detail_choices({ lowest_resolution: 2048, texel_area_max_m2: 6.4e-7 });
@@ -52,6 +53,8 @@ describe("numbers as people write them", () => {
     expect(choices.map((choice) => format_length(choice.detail_m))).toEqual(["0.8 mm", "0.4 mm", "0.2 mm"]);
   });
 });
+
+const classes_without_points = complete_palette({ mode: "categorical" });
 
 describe("palettes", () => {
   it("a linear palette blends, a stepped one holds the point below, both keep to their limits", () => {
@@ -61,10 +64,12 @@ describe("palettes", () => {
     expect(color_of(linear, 99)).toBe("#ff800000");
     expect(color_of({ ...linear, mode: "step" }, 9.9)).toBe("#000000ff");
   });
-  it("a class without a colour in the palette has none", () => {
+  it("a class that the palette does not list has the colour that the server makes", () => {
     const classes = class_palette([{ at: 2, label: "b", color: "#0000ffff" }, { at: 1, label: "a", color: "#ff0000ff" }]);
     expect(classes.points.map((point) => point.at)).toEqual([1, 2]);
-    expect([color_of(classes, 2), color_of(classes, 9)]).toEqual(["#0000ffff", null]);
+    expect(color_of(classes, 2)).toBe("#0000ffff");
+    const colors = [0, 1, 2, 7, 300, 70_000, 4_294_967_295].map((key) => color_of(classes_without_points, key));
+    expect(colors).toEqual(["#d96262ff", "#3c6ad9ff", "#9ed94dff", "#3bd934ff", "#4bd98cff", "#4ad971ff", "#51d978ff"]); // of generated_color() in server/core/palette.cpp
   });
   it("the purpose of a layer is read from its palette", () => {
     const purpose = (palette: Parameters<typeof complete_palette>[0]) =>
@@ -73,6 +78,13 @@ describe("palettes", () => {
     expect(purpose(measurement_palette(0, 1))).toBe("measurement");
     expect(purpose(measurement_palette(0, 1, "step"))).toBe("measurement");
     expect(purpose({ mode: "categorical" })).toBe("classes");
+  });
+  it("palettes are the same when they show and call every value alike", () => {
+    const one = class_palette([{ at: 1, label: "", color: "#ff0000ff" }]);
+    expect(same_palette(one, { ...one, points: [{ at: 1, color: "#ff0000ff" }] })).toBe(true);
+    expect(same_palette(one, { ...one, points: [{ at: 1, color: "#ff0000fe" }] })).toBe(false);
+    expect(same_palette(one, { ...one, points: [] })).toBe(false);
+    expect(same_palette(one, { ...one, max: 2 })).toBe(false);
   });
   it("a stepped gradient has hard edges", () => {
     const palette = complete_palette({ mode: "step", min: 0, max: 2, points: [{ at: 0, color: "#000000" }, { at: 1, color: "#ffffff" }] });
@@ -107,6 +119,9 @@ describe("HTTP", () => {
     const changed = await api.change_layer(1, 7, { name: "x" });
     expect(calls).toEqual([["GET", "/api/v1/models/1/layers/7", undefined], ["PATCH", "/api/v1/models/1/layers/7", '"3"']]); // prettier-ignore
     expect(changed.palette.points).toEqual([]);
+    calls.length = 0;
+    await api.change_layer(1, 7, { name: "y" }, '"2"'); // the version that somebody looked at, even if it is old by now
+    expect(calls).toEqual([["PATCH", "/api/v1/models/1/layers/7", '"2"']]);
   });
   it("every POST that changes something has a key of its own", async () => {
     const keys = new Set<string>();

@@ -9,6 +9,7 @@ import { describe_value, kWidths, value_problem, type WidthUnit } from "./brush-
 import { ask } from "./dialog";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
+import { radio_group } from "./radio-group";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -63,7 +64,7 @@ export class StrataBrushPanel extends LitElement {
       }
       .classes {
         display: grid;
-        grid-template-columns: repeat(auto-fill, minmax(118px, 1fr));
+        grid-template-columns: repeat(auto-fit, minmax(118px, 1fr));
         gap: 6px;
         max-height: 208px;
         overflow: auto;
@@ -126,26 +127,23 @@ export class StrataBrushPanel extends LitElement {
       </div>`;
     }
     if (purpose === "classes" && points.length > 0) {
-      return html`<div class="classes" role="radiogroup" aria-label=${texts.brush.class} @keydown=${this.on_class_key}>
-        ${points.map(
-          (point) =>
-            html`<button
-              role="radio"
-              aria-checked=${point.at === value}
-              tabindex=${point.at === value ? 0 : -1}
-              title=${describe_value(layer, point.at)}
-              @click=${() => this.set_value(layer, point.at)}
-            >
-              <span class="swatch" ${styled({ background: css_color(point.color) })}></span>
-              <span class="ellipsis">${describe_value(layer, point.at)}</span>
-            </button>`,
-        )}
-      </div>`;
+      return radio_group({
+        label: texts.brush.class,
+        class: "classes",
+        choices: points.map(({ at, color }) => ({
+          value: at,
+          content: html`<span class="swatch" ${styled({ background: css_color(color) })}></span>
+            <span class="ellipsis">${describe_value(layer, at)}</span>`,
+          title: describe_value(layer, at),
+        })),
+        chosen: value,
+        choose: (at) => this.set_value(layer, at),
+      });
     }
     const steps = layer.type.startsWith("f") ? "any" : "1";
     return html`<div class="value">
       <label class="field">
-        <span>${texts.brush.value}</span>
+        <span>${purpose === "records" ? texts.brush.record : texts.brush.value}</span>
         <span class="number">
           <input
             type="number"
@@ -208,16 +206,26 @@ export class StrataBrushPanel extends LitElement {
       </div>
       <p class="hint numeric">${this.equivalent(unit)}</p>
       <div class="pair">
-        <div class="segments" role="radiogroup" aria-label=${texts.brush.fixed_on}>
-          ${this.choice(unit === "px", texts.brush.on_screen, () => this.set_unit("px"))}
-          ${this.choice(unit === "mm", texts.brush.on_object, () => this.set_unit("mm"))}
-        </div>
-        <div class="segments" role="radiogroup" aria-label=${texts.brush.shape}>
-          ${this.choice(shape === "disc", texts.brush.disc, () => session.set_brush((brush) => (brush.shape = "disc")))}
-          ${this.choice(shape === "square", texts.brush.square, () =>
-            session.set_brush((brush) => (brush.shape = "square")),
-          )}
-        </div>
+        ${radio_group<WidthUnit>({
+          label: texts.brush.fixed_on,
+          class: "segments",
+          choices: [
+            { value: "px", content: texts.brush.on_screen },
+            { value: "mm", content: texts.brush.on_object },
+          ],
+          chosen: unit,
+          choose: (chosen) => this.set_unit(chosen),
+        })}
+        ${radio_group<typeof shape>({
+          label: texts.brush.shape,
+          class: "segments",
+          choices: [
+            { value: "disc", content: texts.brush.disc },
+            { value: "square", content: texts.brush.square },
+          ],
+          chosen: shape,
+          choose: (chosen) => session.set_brush((brush) => (brush.shape = chosen)),
+        })}
       </div>`;
   }
 
@@ -229,10 +237,6 @@ export class StrataBrushPanel extends LitElement {
     if (unit === "mm") return `≈ ${format_number((2 * radius_px) / session.scale, 2)} ${texts.brush.width_px} ${texts.brush.on_screen}`;
     const metres = 2 * radius_px * session.camera.unit_per_pixel(session.surface_depth()) * metres_per(session.model.unit);
     return `≈ ${format_length(metres)} ${texts.brush.on_object}`;
-  }
-
-  private choice(checked: boolean, label: string, choose: () => void): TemplateResult {
-    return html`<button role="radio" aria-checked=${checked} @click=${choose}>${label}</button>`;
   }
 
   /** Keeps the brush as wide as it looks now. */
@@ -262,18 +266,6 @@ export class StrataBrushPanel extends LitElement {
     const value = layer.type.startsWith("f") ? Number(number.toPrecision(6)) : number;
     this.wrong_value_ = value_problem(layer, value) ?? "";
     if (!this.wrong_value_) this.set_value(layer, value);
-  }
-
-  private on_class_key(event: KeyboardEvent): void {
-    const step = { ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1 }[event.key];
-    if (!step) return;
-    event.preventDefault();
-    event.stopPropagation();
-    const buttons = [...(event.currentTarget as HTMLElement).querySelectorAll("button")];
-    const at = buttons.findIndex((button) => button.getAttribute("aria-checked") === "true");
-    const next = buttons[(at + step + buttons.length) % buttons.length];
-    next?.click();
-    next?.focus();
   }
 
   private async fill(layer: Layer): Promise<void> {

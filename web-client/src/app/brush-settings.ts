@@ -62,6 +62,7 @@ export function value_problem(layer: Layer, value: number): string | null {
 export function describe_value(layer: Layer, value: number): string {
   const label = layer.palette.mode === "categorical" ? layer.palette.points.find((p) => p.at === value)?.label : "";
   if (label) return label;
+  if (layer.kind === "database") return texts.layers.record_number(value);
   if (layer.palette.mode === "categorical") return texts.layers.class_number(value);
   return `${format_number(value, 4)}${layer.unit ? ` ${layer.unit}` : ""}`;
 }

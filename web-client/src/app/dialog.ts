@@ -6,6 +6,11 @@ import { icon } from "./icons";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
+const open_dialogs = new Set<HTMLDialogElement>();
+
+/** Keys that reach the page while a dialog is open, because nothing in it has the focus, are not for the page. */
+export const modal_is_open = (): boolean => open_dialogs.size > 0;
+
 @customElement("strata-dialog")
 export class StrataDialog extends LitElement {
   @property() heading = "";
@@ -55,6 +60,8 @@ export class StrataDialog extends LitElement {
         flex: 1;
         padding-top: 3px;
         font-size: 1.3rem;
+        text-wrap: balance;
+        overflow-wrap: anywhere;
       }
       .content {
         display: grid;
@@ -91,6 +98,12 @@ export class StrataDialog extends LitElement {
 
   override firstUpdated(): void {
     this.dialog_.showModal();
+    open_dialogs.add(this.dialog_);
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    open_dialogs.delete(this.dialog_);
   }
 
   /** Closes and tells: the owner removes the element on "closed". */
@@ -117,6 +130,7 @@ export class StrataDialog extends LitElement {
   }
 
   private on_close(): void {
+    open_dialogs.delete(this.dialog_);
     this.dispatchEvent(new CustomEvent("closed"));
   }
 

@@ -1,25 +1,24 @@
-// <strata-home-page>: the project's models, and import by button or drag and drop.
+// <strata-home-page>: the project's models and the imports under way.
 
-import { html, LitElement, nothing, type TemplateResult } from "lit";
+import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../core/api";
 import { format_area, format_size, metres_per } from "../core/measure";
-import type { Me, Model } from "../core/types";
+import { may_curate, type Me, type Model } from "../core/types";
 import "./blank";
 import { ask } from "./dialog";
 import { icon, logo } from "./icons";
-import { choose_scans, Imports, type ImportEntry } from "./imports";
+import type { ImportEntry, Imports } from "./imports";
 import "./menu";
 import { notices } from "./notices";
-import { follow, navigate, path_of_model } from "./routes";
+import { follow, path_of_model } from "./routes";
+import { discard_unsaved, unsaved_changes } from "./sessions";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
 import { home_styles } from "./home-styles";
 import { texts } from "./texts";
 import "./thumbnail";
-
-let imports: Imports | null = null;
 
 /** The server's name of a step of the import, where it is one that people know. */
 const plain_step = (message: string): string =>
@@ -28,36 +27,34 @@ const plain_step = (message: string): string =>
 @customElement("strata-home-page")
 export class StrataHomePage extends LitElement {
   @property({ attribute: false }) api!: Api;
-  @property({ attribute: false }) me: Me | null = null;
+  @property({ attribute: false }) me!: Me;
+  @property({ attribute: false }) imports!: Imports;
+  /** Counts imports that ended: the list is read again. */
+  @property({ attribute: false }) imported = 0;
   @state() private models_: Model[] | null = null;
   @state() private problem_ = "";
-  @state() private dropping_ = false;
   @query("input[type=file]") private file_input_!: HTMLInputElement;
-  private imports_!: Imports;
   private unsubscribe_: (() => void) | null = null;
-  private drag_depth_ = 0;
 
   static override styles = [shared_styles, home_styles];
 
   override connectedCallback(): void {
     super.connectedCallback();
     document.title = texts.product;
-    this.imports_ = imports ??= new Imports(this.api);
-    this.unsubscribe_ = this.imports_.subscribe(() => this.requestUpdate());
-    addEventListener("dragenter", this.on_drag_enter);
-    addEventListener("dragover", this.on_drag_over);
-    addEventListener("dragleave", this.on_drag_leave);
-    addEventListener("drop", this.on_drop);
-    void this.load();
+    this.unsubscribe_ = this.imports.subscribe(() => this.requestUpdate());
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     this.unsubscribe_?.();
-    removeEventListener("dragenter", this.on_drag_enter);
-    removeEventListener("dragover", this.on_drag_over);
-    removeEventListener("dragleave", this.on_drag_leave);
-    removeEventListener("drop", this.on_drop);
+  }
+
+  override willUpdate(changed: PropertyValues<this>): void {
+    if (changed.has("imported")) void this.load();
+  }
+
+  private get can_curate(): boolean {
+    return may_curate(this.me.role);
   }
 
   private async load(): Promise<void> {
@@ -75,32 +72,29 @@ export class StrataHomePage extends LitElement {
     return html`<header>
         <a class="brand" href="/" @click=${follow}>${logo()}<b>${texts.product}</b></a>
         <span class="grow tagline">${texts.tagline}</span>
-        ${this.me?.user ? html`<span class="who ellipsis">${this.me.user}</span>` : nothing}
+        ${this.me.user ? html`<span class="who ellipsis">${this.me.user}</span>` : nothing}
         <button class="quiet" @click=${this.sign_out}>${texts.home.sign_out}</button>
       </header>
       <main>
         <div class="title">
           <h1>${texts.home.title}</h1>
           <span class="hint grow">${this.models_ ? texts.home.count(this.models_.length) : ""}</span>
-          <button class="primary" @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
-          <input type="file" accept=".ply,.obj" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />
+          ${this.can_curate
+            ? html`<button class="primary" @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
+                <input type="file" accept=".ply,.obj" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
+            : nothing}
         </div>
-        ${this.imports_.entries.length > 0
+        ${this.imports.entries.length > 0
           ? html`<section class="imports" aria-live="polite">
               ${repeat(
-                this.imports_.entries,
+                this.imports.entries,
                 (entry) => entry.key,
                 (entry) => this.import_row(entry),
               )}
             </section>`
           : nothing}
         ${this.content()}
-      </main>
-      ${this.dropping_
-        ? html`<div class="drop-target">
-            <div>${icon("upload")}<b>${texts.home.drop_title}</b><span>${texts.home.drop_lead}</span></div>
-          </div>`
-        : nothing}`;
+      </main>`;
   }
 
   private content(): TemplateResult {
@@ -115,8 +109,10 @@ export class StrataHomePage extends LitElement {
       return html`<div class="empty">
         ${logo()}
         <h2>${texts.home.empty_title}</h2>
-        <p>${texts.home.empty_lead}</p>
-        <button class="primary" @click=${() => this.file_input_.click()}>${texts.home.choose_file}</button>
+        <p>${this.can_curate ? texts.home.empty_lead : texts.home.empty_viewer}</p>
+        ${this.can_curate
+          ? html`<button class="primary" @click=${() => this.file_input_.click()}>${texts.home.choose_file}</button>`
+          : nothing}
       </div>`;
     }
     return html`<ul class="gallery">
@@ -141,11 +137,13 @@ export class StrataHomePage extends LitElement {
           ${model.scale_verified ? nothing : html`<span class="chip">${texts.home.scale_open}</span>`}
         </div>
       </a>
-      <strata-menu class="options" label=${texts.home.options(model.name)} .quiet=${false}>
-        <button class="quiet" role="menuitem" @click=${() => void this.delete_model(model)}>
-          ${icon("trash")}${texts.layers.delete}
-        </button>
-      </strata-menu>
+      ${this.can_curate
+        ? html`<strata-menu class="options" label=${texts.home.options(model.name)} .quiet=${false}>
+            <button class="quiet" role="menuitem" @click=${() => void this.delete_model(model)}>
+              ${icon("trash")}${texts.layers.delete}
+            </button>
+          </strata-menu>`
+        : nothing}
     </li>`;
   }
 
@@ -157,7 +155,7 @@ export class StrataHomePage extends LitElement {
         ? words.uploading(`${Math.round(entry.progress * 100)} %`)
         : entry.state === "failed"
           ? [entry.problem?.title ?? words.failed, entry.problem?.detail].filter(Boolean).join(". ")
-          : plain_step(entry.message) || words[entry.state];
+          : plain_step(entry.message) || (entry.state === "queued" ? words.queued : words.running);
     return html`<div class="import ${entry.state}">
       <div class="grow">
         <b class="ellipsis">${entry.name}</b>
@@ -180,7 +178,7 @@ export class StrataHomePage extends LitElement {
         : html`<button
             class="icon quiet"
             aria-label=${words.dismiss(entry.name)}
-            @click=${() => this.imports_.dismiss(entry.key)}
+            @click=${() => this.imports.dismiss(entry.key)}
           >
             ${icon("close")}
           </button>`}
@@ -188,51 +186,14 @@ export class StrataHomePage extends LitElement {
   }
 
   private async cancel(entry: ImportEntry): Promise<void> {
-    await this.imports_.cancel(entry.key).catch((error: unknown) => notices.error(error));
-  }
-
-  private async import_files(dropped: File[]): Promise<void> {
-    const files = choose_scans(dropped);
-    const done = await Promise.all(
-      files.map(async (file) => {
-        const model = await this.imports_.start(file);
-        if (model !== null && files.length > 1 && this.isConnected) await this.load();
-        return model;
-      }),
-    );
-    const models = done.filter((model): model is number => model !== null);
-    if (!this.isConnected) return;
-    if (files.length === 1 && models.length === 1) navigate(path_of_model(models[0]!));
-    else await this.load();
+    await this.imports.cancel(entry.key).catch((error: unknown) => notices.error(error));
   }
 
   private on_files(): void {
     const files = [...(this.file_input_.files ?? [])];
     this.file_input_.value = "";
-    void this.import_files(files);
+    this.dispatchEvent(new CustomEvent<File[]>("import-files", { detail: files }));
   }
-
-  private readonly on_drag_enter = (event: DragEvent): void => {
-    if (!event.dataTransfer?.types.includes("Files")) return;
-    event.preventDefault();
-    this.drag_depth_ += 1;
-    this.dropping_ = true;
-  };
-  private readonly on_drag_over = (event: DragEvent): void => {
-    if (event.dataTransfer?.types.includes("Files")) event.preventDefault();
-  };
-  private readonly on_drag_leave = (): void => {
-    this.drag_depth_ = Math.max(0, this.drag_depth_ - 1);
-    if (this.drag_depth_ === 0) this.dropping_ = false;
-  };
-  private readonly on_drop = (event: DragEvent): void => {
-    this.drag_depth_ = 0;
-    this.dropping_ = false;
-    const files = [...(event.dataTransfer?.files ?? [])];
-    if (files.length === 0) return;
-    event.preventDefault();
-    void this.import_files(files);
-  };
 
   private async delete_model(model: Model): Promise<void> {
     const words = texts.home;
@@ -247,6 +208,10 @@ export class StrataHomePage extends LitElement {
   }
 
   private async sign_out(): Promise<void> {
+    const lost = unsaved_changes();
+    const question = { heading: texts.home.sign_out_title, lead: texts.home.sign_out_lead(lost), yes: texts.home.sign_out };
+    if (lost > 0 && !(await ask({ ...question, danger: true }))) return;
+    discard_unsaved();
     await this.api.logout().catch((error: unknown) => notices.error(error));
     this.dispatchEvent(new CustomEvent("signed-out"));
   }

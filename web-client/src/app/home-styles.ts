@@ -171,31 +171,6 @@ export const home_styles = css`
     background: var(--accent);
     transition: width 200ms;
   }
-  .drop-target {
-    position: fixed;
-    inset: 0;
-    z-index: 40;
-    display: grid;
-    padding: 20px;
-    background: color-mix(in srgb, var(--paper) 82%, transparent);
-    pointer-events: none;
-  }
-  .drop-target > div {
-    display: grid;
-    place-content: center;
-    justify-items: center;
-    gap: 6px;
-    border: 2px dashed var(--accent);
-    border-radius: 18px;
-    color: var(--accent);
-  }
-  .drop-target b {
-    font: 600 1.6rem var(--serif);
-  }
-  .drop-target svg.glyph {
-    width: 44px;
-    height: 44px;
-  }
   @media (max-width: 620px) {
     .tagline,
     .who {

@@ -23,6 +23,12 @@ const kMostFailedPolls = 20;
 const kFileKinds = /\.(ply|obj)$/i;
 const kCompanions = /\.(mtl|png|jpe?g|tiff?|bmp|tga)$/i; // materials and pictures that lie beside an OBJ
 
+/** How an import ended; neither where it was cancelled, or refused before it began. */
+export interface ImportResult {
+  model: number | null;
+  problem: ProblemBody | null;
+}
+
 /** The scans among dropped files. What belongs to an OBJ is left out, and the person is told. */
 export function choose_scans(files: readonly File[]): File[] {
   const has_obj = files.some((file) => /\.obj$/i.test(file.name));
@@ -45,8 +51,7 @@ export class Imports {
     return () => this.listeners_.delete(listener);
   }
 
-  /** Resolves with the model's id, or null when it failed or was cancelled. */
-  async start(file: File): Promise<number | null> {
+  async start(file: File): Promise<ImportResult> {
     const refusal = !kFileKinds.test(file.name)
       ? texts.import.wrong_kind(file.name)
       : file.size === 0
@@ -54,7 +59,7 @@ export class Imports {
         : null;
     if (refusal) {
       notices.show("problem", refusal);
-      return null;
+      return { model: null, problem: null };
     }
     const key = this.next_key_++;
     const entry: ImportEntry = {
@@ -91,16 +96,15 @@ export class Imports {
     this.tell();
   }
 
-  private async follow(key: number, first: Job): Promise<number | null> {
+  private async follow(key: number, first: Job): Promise<ImportResult> {
     let job = first;
     let failed_polls = 0;
     for (;;) {
       this.change(key, { state: job.state, progress: job.progress, message: job.message, problem: job.problem ?? null });
-      if (job.state === "done") return this.finish(key, job);
-      if (job.state === "failed") return null;
-      if (job.state === "cancelled") {
+      if (job.state === "failed") return { model: null, problem: job.problem ?? { status: 500, title: texts.import.failed } };
+      if (job.state === "done" || job.state === "cancelled") {
         this.dismiss(key);
-        return null;
+        return { model: job.model ?? null, problem: null };
       }
       await new Promise((resolve) => setTimeout(resolve, kPoll_ms));
       try {
@@ -113,19 +117,15 @@ export class Imports {
     }
   }
 
-  private finish(key: number, job: Job): number | null {
-    const name = this.entries.find((entry) => entry.key === key)?.name ?? "";
-    this.dismiss(key);
-    notices.show("success", texts.import.ready(name));
-    return job.model ?? null;
-  }
-
-  private fail(key: number, error: unknown): null {
+  private fail(key: number, error: unknown): ImportResult {
     if (!(error instanceof ApiError)) throw error;
     this.uploads_.delete(key);
-    if (error.status === 499) this.dismiss(key);
-    else this.change(key, { state: "failed", problem: error.problem });
-    return null;
+    if (error.status === 499) {
+      this.dismiss(key);
+      return { model: null, problem: null };
+    }
+    this.change(key, { state: "failed", problem: error.problem });
+    return { model: null, problem: error.problem };
   }
 
   private change(key: number, change: Partial<ImportEntry>): void {

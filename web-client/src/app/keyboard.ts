@@ -1,4 +1,4 @@
-// Keys of the model page. A key that someone types into a field, or that a dialog is open for, is not one of these.
+// Keys of the model page, and of choices. A key that someone types into a field, or that a dialog is open for, is not one of these.
 
 import type { StandardView } from "../core/camera";
 import type { ToolName } from "../tools/tool";
@@ -14,11 +14,12 @@ const kArrows: Record<string, [number, number]> = {
 };
 const kArrowStep = 0.04; // share of the window per key press
 
-/** Whether the event's innermost target takes typed text or has its own use for keys. */
+/** Whether the event's innermost target takes typed text or has its own use for keys, or lies in something open. */
 export function is_for_field(event: KeyboardEvent): boolean {
-  const target = event.composedPath()[0];
+  const path = event.composedPath(); // across shadow roots, which closest() does not leave
+  const [target] = path;
   if (!(target instanceof HTMLElement)) return false;
-  if (target.closest("dialog, [popover]")) return true;
+  if (path.some((each) => each instanceof HTMLElement && each.matches("dialog, [popover]"))) return true;
   if (target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement) return true;
   if (target instanceof HTMLInputElement) return target.type !== "range" || event.key.startsWith("Arrow");
   return target.getAttribute("role") === "separator" || target.isContentEditable;
@@ -79,4 +80,10 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
   if (!view) return false;
   session.standard_view(view);
   return true;
+}
+
+/** Where an arrow key leads from the choice `at` of `count`; null for other keys. */
+export function arrow_step(key: string, at: number, count: number): number | null {
+  const step = { ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1 }[key];
+  return step === undefined || count === 0 ? null : (at + step + count) % count;
 }

@@ -3,6 +3,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
+import { keyed } from "lit/directives/keyed.js";
 import { detail_choices, format_length } from "../core/measure";
 import {
   class_palette,
@@ -11,19 +12,20 @@ import {
   opaque_color,
   presence_palette,
   purpose_of,
+  record_palette,
   type LayerPurpose,
 } from "../core/palette";
-import type { Layer, LayerCreate, Palette, Resolution } from "../core/types";
+import type { Layer, LayerCreate, Palette, Resolution, ValueType } from "../core/types";
 import { ApiError } from "../core/api";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
 import { icon } from "./icons";
+import { layer_changes, type LayerWanted } from "./layer-changes";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { radio_group } from "./radio-group";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
-
-type Purpose = Exclude<LayerPurpose, "records">;
 
 interface ClassRow {
   at: number;
@@ -32,6 +34,7 @@ interface ClassRow {
 }
 
 const kMostClasses = 255;
+const kTypes: Record<LayerPurpose, ValueType> = { presence: "u8", classes: "u8", measurement: "f32", records: "u32" };
 const words = texts.layer_dialog;
 
 @customElement("strata-layer-dialog")
@@ -39,7 +42,10 @@ export class StrataLayerDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) layer: Layer | null = null;
 
-  @state() private purpose_: Purpose = "presence";
+  /** The layer as it was when the person began to change it, and its version. */
+  @state() private base_: { layer: Layer; etag: string } | null = null;
+  @state() private stale_ = false; // somebody else changed it since
+  @state() private purpose_: LayerPurpose = "presence";
   @state() private color_ = "#d55e00ff";
   @state() private classes_: ClassRow[] = [];
   @state() private stepped_ = false;
@@ -58,12 +64,13 @@ export class StrataLayerDialog extends LitElement {
       }
       .kinds {
         display: grid;
-        grid-template-columns: repeat(3, 1fr);
+        grid-template-columns: repeat(2, 1fr);
         gap: 10px;
+        margin-top: 6px;
       }
       .kinds button {
         display: grid;
-        align-content: start;
+        place-content: start stretch;
         justify-items: start;
         gap: 3px;
         height: auto;
@@ -144,16 +151,24 @@ export class StrataLayerDialog extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    const { layer } = this;
-    if (!layer) {
-      this.classes_ = [1, 2, 3].map((at) => new_class(at));
-      return;
+    if (this.layer) void this.read(this.layer);
+    else this.classes_ = [1, 2, 3].map((at) => new_class(at));
+  }
+
+  private async read(layer: Layer): Promise<void> {
+    this.refuse("", "");
+    try {
+      const { value, etag } = await this.session.api.layer(this.session.model_id, layer.id);
+      const purpose = purpose_of(value);
+      this.purpose_ = purpose === "presence" ? "classes" : purpose; // it can have a second class one day
+      this.classes_ = value.palette.points.map(({ at, label, color }) => ({ at, label: label ?? "", color }));
+      this.stepped_ = value.palette.mode === "step";
+      this.base_ = { layer: value, etag };
+      this.stale_ = false;
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.refuse("", error.message);
     }
-    const purpose = purpose_of(layer);
-    this.purpose_ = purpose === "records" ? "classes" : purpose;
-    this.color_ = layer.palette.points[0]?.color ?? this.color_;
-    this.classes_ = layer.palette.points.map(({ at, label, color }) => ({ at, label: label ?? "", color }));
-    this.stepped_ = layer.palette.mode === "step";
   }
 
   override render(): TemplateResult {
@@ -163,7 +178,25 @@ export class StrataLayerDialog extends LitElement {
       heading=${layer ? words.edit_title(layer.name) : words.create_title}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
-      <form id="form" novalidate @submit=${this.on_submit}>
+      ${layer && !this.base_ ? html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>` : this.form()}
+      <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
+      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
+      ${layer && (this.stale_ || !this.base_)
+        ? html`<button slot="actions" class="primary" @click=${() => void this.read(layer)}>
+            ${this.stale_ ? words.reload : texts.try_again}
+          </button>`
+        : html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>
+            ${layer ? texts.save : words.create}
+          </button>`}
+    </strata-dialog>`;
+  }
+
+  /** Made anew for every version of the layer that is read. */
+  private form(): unknown {
+    const layer = this.base_?.layer;
+    return keyed(
+      this.base_?.etag,
+      html`<form id="form" novalidate @submit=${this.on_submit}>
         ${layer ? nothing : this.kinds()}
         <div class="two">
           <label class="field">
@@ -195,36 +228,26 @@ export class StrataLayerDialog extends LitElement {
           <span>${words.description}</span>
           <textarea name="description" maxlength="10000" placeholder=${words.description_hint} .value=${layer?.description ?? ""}></textarea>
         </label>
-        <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      </form>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
-      <button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>
-        ${layer ? texts.save : words.create}
-      </button>
-    </strata-dialog>`;
+      </form>`,
+    );
   }
 
   private kinds(): TemplateResult {
-    const kinds: [Purpose, string, string][] = [
+    const kinds: [LayerPurpose, string, string][] = [
       ["presence", words.presence, words.presence_lead],
       ["classes", words.classes, words.classes_lead],
       ["measurement", words.measurement, words.measurement_lead],
+      ["records", words.records, words.records_lead],
     ];
     return html`<div>
       <p class="caption" id="question">${words.question}</p>
-      <div class="kinds" role="radiogroup" aria-labelledby="question">
-        ${kinds.map(
-          ([purpose, title, lead]) =>
-            html`<button
-              type="button"
-              role="radio"
-              aria-checked=${this.purpose_ === purpose}
-              @click=${() => (this.purpose_ = purpose)}
-            >
-              <b>${title}</b><span>${lead}</span>
-            </button>`,
-        )}
-      </div>
+      ${radio_group<LayerPurpose>({
+        label: { id: "question" },
+        class: "kinds",
+        choices: kinds.map(([value, title, lead]) => ({ value, content: html`<b>${title}</b><span>${lead}</span>` })),
+        chosen: this.purpose_,
+        choose: (purpose) => (this.purpose_ = purpose),
+      })}
     </div>`;
   }
 
@@ -269,7 +292,7 @@ export class StrataLayerDialog extends LitElement {
   }
 
   private measurement(): TemplateResult {
-    const palette = this.layer?.palette;
+    const palette = this.base_?.layer.palette;
     return html`<div class="range">
         <label class="field">
           <span>${words.range}</span>
@@ -288,7 +311,7 @@ export class StrataLayerDialog extends LitElement {
         </label>
         <label class="field">
           <span>${words.unit}</span>
-          <input type="text" name="unit" maxlength="50" autocomplete="off" .value=${this.layer?.unit ?? ""} placeholder=${words.unit_hint} />
+          <input type="text" name="unit" maxlength="50" autocomplete="off" .value=${this.base_?.layer.unit ?? ""} placeholder=${words.unit_hint} />
         </label>
       </div>
       <label class="check">
@@ -309,19 +332,13 @@ export class StrataLayerDialog extends LitElement {
     const chosen = this.chosen_resolution_ ?? preferred?.resolution;
     return html`<div class="details">
       <p class="caption" id="detail">${words.detail}</p>
-      <div class="segments" role="radiogroup" aria-labelledby="detail">
-        ${choices.map(
-          (choice) =>
-            html`<button
-              type="button"
-              role="radio"
-              aria-checked=${choice.resolution === chosen}
-              @click=${() => (this.chosen_resolution_ = choice.resolution)}
-            >
-              ${format_length(choice.detail_m)}
-            </button>`,
-        )}
-      </div>
+      ${radio_group({
+        label: { id: "detail" },
+        class: "segments",
+        choices: choices.map(({ resolution, detail_m }) => ({ value: resolution, content: format_length(detail_m) })),
+        chosen: chosen ?? null,
+        choose: (resolution) => (this.chosen_resolution_ = resolution),
+      })}
       <p class="hint">${words.detail_hint}</p>
     </div>`;
   }
@@ -352,11 +369,13 @@ export class StrataLayerDialog extends LitElement {
     if (!palette) return;
     this.busy_ = true;
     try {
-      await this.send(name, text("unit"), text("description"), palette);
+      const unit = this.purpose_ === "measurement" ? text("unit") : (this.base_?.layer.unit ?? "");
+      await this.send({ name, unit, description: text("description"), palette });
       this.dialog_.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.refuse(error.problem.field ?? "", error.message);
+      this.stale_ = error.status === 412;
+      this.refuse(error.problem.field ?? "", this.stale_ ? words.changed : error.message);
     } finally {
       this.busy_ = false;
     }
@@ -369,20 +388,18 @@ export class StrataLayerDialog extends LitElement {
 
   private palette(name: string, min: number, max: number): Palette | null {
     switch (this.purpose_) {
-      case "presence": {
-        const point = this.layer?.palette.points[0];
-        return point
-          ? { ...this.layer!.palette, points: [{ ...point, color: this.color_, label: point.label || name }] }
-          : presence_palette(name, this.color_);
-      }
+      case "presence":
+        return presence_palette(name, this.color_);
+      case "records":
+        return this.base_?.layer.palette ?? record_palette();
       case "classes": {
         if (!this.layer && this.classes_.every((row) => !row.label.trim())) {
           this.refuse("classes", words.classes_missing);
           return null;
         }
-        return class_palette(
-          this.classes_.map((row) => ({ ...row, label: row.label.trim() || words.class_default(row.at) })),
-        );
+        const palette = class_palette(this.classes_.map((row) => ({ ...row, label: row.label.trim() })));
+        const old = this.base_?.layer.palette;
+        return old ? { ...old, points: palette.points } : palette;
       }
       case "measurement": {
         if (!(max > min)) {
@@ -390,30 +407,28 @@ export class StrataLayerDialog extends LitElement {
           return null;
         }
         const mode = this.stepped_ ? "step" : "linear";
-        const old = this.layer?.palette;
+        const old = this.base_?.layer.palette;
         const same = old && old.min === min && old.max === max && old.mode === mode;
         return same ? old : measurement_palette(min, max, mode);
       }
     }
   }
 
-  private async send(name: string, unit: string, description: string, palette: Palette): Promise<void> {
-    const { session, layer } = this;
-    if (layer) {
-      await session.change_layer(layer, { name, unit: this.purpose_ === "measurement" ? unit : layer.unit, description, palette });
+  private async send(wanted: LayerWanted): Promise<void> {
+    const { session, base_: base } = this;
+    if (base) {
+      const change = layer_changes(base.layer, wanted);
+      if (Object.keys(change).length > 0) await session.change_layer(base.layer, change, base.etag);
       return;
     }
-    const wanted: LayerCreate = {
-      name,
-      kind: "numeric",
-      type: this.purpose_ === "measurement" ? "f32" : "u8",
-      unit: this.purpose_ === "measurement" ? unit : "",
-      description,
-      palette,
+    const created: LayerCreate = {
+      ...wanted,
+      kind: this.purpose_ === "records" ? "database" : "numeric",
+      type: kTypes[this.purpose_],
       ...(this.chosen_resolution_ ? { resolution: this.chosen_resolution_ as Resolution } : {}),
     };
-    session.add_created(await session.api.create_layer(session.model_id, wanted));
-    notices.show("success", texts.layers.created(name));
+    session.add_created(await session.api.create_layer(session.model_id, created));
+    notices.show("success", texts.layers.created(wanted.name));
   }
 }
 

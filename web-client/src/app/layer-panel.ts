@@ -171,7 +171,7 @@ export class StrataLayerPanel extends LitElement {
     const shown = this.shown;
     return html`<div class="heading">
         <h2>${words.title}</h2>
-        ${session.can_edit
+        ${session.can_curate
           ? html`<button @click=${() => this.request({ dialog: "create" })}>${icon("plus")}${words.new}</button>`
           : nothing}
       </div>
@@ -187,10 +187,12 @@ export class StrataLayerPanel extends LitElement {
               (layer, index) => this.row(layer, index),
             )}
           </ul>`}
-      ${session.has_overrides && session.can_edit
+      ${session.has_overrides
         ? html`<div class="personal">
             <span>${words.personal}</span>
-            <button class="link" @click=${() => void this.save_default()}>${words.save_default}</button>
+            ${session.can_curate
+              ? html`<button class="link" @click=${() => void this.save_default()}>${words.save_default}</button>`
+              : nothing}
             <button class="link" @click=${() => session.reset_overrides()}>${words.reset_default}</button>
           </div>`
         : nothing}`;
@@ -209,7 +211,7 @@ export class StrataLayerPanel extends LitElement {
       @dragover=${(event: DragEvent) => this.on_row_over(event, index)}
     >
       <div class="line">
-        ${session.can_edit && count > 1
+        ${session.can_curate && count > 1
           ? html`<span
               class="grip"
               draggable="true"
@@ -238,7 +240,7 @@ export class StrataLayerPanel extends LitElement {
           ${layer_chip(layer)}<span class="ellipsis">${layer.name}</span>
         </button>
         <strata-menu label=${words.options(layer.name)}>
-          ${session.can_edit
+          ${session.can_curate
             ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "edit", layer })}>
                 ${icon("edit")}${words.edit}
               </button>`
@@ -246,7 +248,7 @@ export class StrataLayerPanel extends LitElement {
           <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "statistics", layer })}>
             ${icon("chart")}${words.statistics}
           </button>
-          ${session.can_edit
+          ${session.can_curate
             ? html`<button
                   class="quiet"
                   role="menuitem"

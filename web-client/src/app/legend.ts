@@ -4,6 +4,7 @@ import { css, html, type TemplateResult } from "lit";
 import { format_number, ticks } from "../core/measure";
 import { css_color, css_gradient } from "../core/palette";
 import type { Layer } from "../core/types";
+import { describe_value } from "./brush-settings";
 import { styled } from "./styled";
 import { texts } from "./texts";
 
@@ -67,13 +68,15 @@ export const legend_styles = css`
 export function legend(layer: Layer): TemplateResult {
   const { palette, unit } = layer;
   if (palette.mode === "categorical") {
-    if (palette.points.length === 0) return html`<p class="hint">${texts.layers.no_labels}</p>`;
+    if (palette.points.length === 0) {
+      return html`<p class="hint">${layer.kind === "database" ? texts.layers.no_records : texts.layers.no_labels}</p>`;
+    }
     return html`<ul class="legend-classes">
       ${palette.points.map(
         (point) =>
           html`<li>
             <span class="swatch" ${styled({ background: css_color(point.color) })}></span>
-            <span class="ellipsis">${point.label || texts.layers.class_number(point.at)}</span>
+            <span class="ellipsis">${describe_value(layer, point.at)}</span>
           </li>`,
       )}
     </ul>`;

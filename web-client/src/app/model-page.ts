@@ -7,6 +7,7 @@ import { ApiError, type Api } from "../core/api";
 import type { Layer } from "../core/types";
 import "./blank";
 import "./brush-panel";
+import { modal_is_open } from "./dialog";
 import { icon, logo } from "./icons";
 import { handle_key, is_for_field } from "./keyboard";
 import "./layer-dialog";
@@ -14,7 +15,6 @@ import type { LayerPanelRequest } from "./layer-panel";
 import "./layer-panel";
 import { model_styles } from "./model-styles";
 import { ModelSession } from "./model-session";
-import { notices } from "./notices";
 import { follow } from "./routes";
 import "./scale-dialog";
 import "./sheets";
@@ -31,6 +31,7 @@ type OpenDialog = LayerPanelRequest | { dialog: "scale" | "help" | "about" } | n
 
 const kPanelWidth = { least: 270, first: 330, most: 620 };
 const kPanelKey = "strata.panel_width";
+const kNotFound = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
 
 @customElement("strata-model-page")
 export class StrataModelPage extends LitElement {
@@ -50,16 +51,14 @@ export class StrataModelPage extends LitElement {
     super.connectedCallback();
     addEventListener("keydown", this.on_key_down);
     addEventListener("keyup", this.on_key_up);
-    addEventListener("beforeunload", this.on_before_unload);
-    addEventListener("online", this.on_online);
+    addEventListener("blur", this.on_blur);
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     removeEventListener("keydown", this.on_key_down);
     removeEventListener("keyup", this.on_key_up);
-    removeEventListener("beforeunload", this.on_before_unload);
-    removeEventListener("online", this.on_online);
+    removeEventListener("blur", this.on_blur);
     this.session_?.close();
     this.session_ = null;
   }
@@ -80,37 +79,21 @@ export class StrataModelPage extends LitElement {
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
-      else if (error.status === 404) {
-        this.missing_ = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
-      } else {
-        this.missing_ = { heading: error.problem.title, lead: error.problem.detail ?? "" };
-      }
+      else if (error.status === 404) this.missing_ = kNotFound;
+      else this.missing_ = { heading: error.problem.title, lead: error.problem.detail ?? "" };
     }
   }
 
-  private last_state_ = "";
   private on_session(session: ModelSession): void {
     if (session !== this.session_) return;
-    if (session.deleted) this.missing_ = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
+    if (session.deleted) this.missing_ = kNotFound;
+    if (session.signed_out) this.dispatchEvent(new CustomEvent("signed-out"));
     if (session.model) document.title = `${session.model.name} – ${texts.product}`;
-    if (session.model && !session.model.scale_verified && session.can_edit && session.frames_drawn > 0 && !this.asked_scale_) {
+    if (session.model && !session.model.scale_verified && session.can_curate && session.frames_drawn > 0 && !this.asked_scale_) {
       this.asked_scale_ = true;
       this.dialog_ ??= { dialog: "scale" };
     }
-    if (session.connection_state === "lost" && this.last_state_ !== "lost") void this.find_why_lost();
-    this.last_state_ = session.connection_state;
     this.requestUpdate();
-  }
-
-  /** A refused socket does not say why; the same question over HTTP does. */
-  private async find_why_lost(): Promise<void> {
-    try {
-      await this.api.model(this.model_id);
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
-      if (error.status === 404) this.missing_ = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
-    }
   }
 
   override render(): TemplateResult {
@@ -121,9 +104,13 @@ export class StrataModelPage extends LitElement {
       </strata-blank>`;
     }
     if (!session) return html``;
-    return html`<div class="page ${this.panel_shown_ ? "" : "without-panel"}" ${styled({ "--panel": `${this.panel_width_}px` })}>
+    return html`<div
+        class="page ${this.panel_shown_ ? "" : "without-panel"}"
+        ${styled({ "--panel": `${this.panel_width_}px` })}
+        @click=${{ handleEvent: give_back_keyboard, capture: true }}
+      >
         ${this.header(session)}
-        <strata-tool-rail .session=${session}></strata-tool-rail>
+        <strata-tool-rail role="toolbar" aria-label=${texts.model.tools} .session=${session}></strata-tool-rail>
         <main>
           <strata-stage .session=${session}></strata-stage>
           ${this.banner(session)}
@@ -137,7 +124,7 @@ export class StrataModelPage extends LitElement {
   private header(session: ModelSession): TemplateResult {
     const { model } = session;
     return html`<header>
-      <a class="home" href="/" title=${texts.model.back} aria-label=${texts.model.back} @click=${this.on_leave}>${logo()}</a>
+      <a class="home" href="/" title=${texts.model.back} aria-label=${texts.model.back} @click=${follow}>${logo()}</a>
       <h1 class="ellipsis">${model?.name ?? ""}</h1>
       <button
         class="icon quiet"
@@ -148,7 +135,7 @@ export class StrataModelPage extends LitElement {
       >
         ${icon("info")}
       </button>
-      ${model && !model.scale_verified && session.can_edit
+      ${model && !model.scale_verified && session.can_curate
         ? html`<button class="scale-chip" @click=${() => (this.dialog_ = { dialog: "scale" })}>${texts.model.check_size}</button>`
         : nothing}
       <span class="grow"></span>
@@ -209,7 +196,7 @@ export class StrataModelPage extends LitElement {
     return html`<div class="banner" role="alert">
       ${icon("warning")}
       <span class="grow">${texts.connection.lost} ${waiting > 0 ? texts.connection.kept(waiting) : ""}</span>
-      <button @click=${() => session.retry_connection()}>${texts.connection.retry}</button>
+      <button @click=${() => session.check_connection()}>${texts.connection.retry}</button>
     </div>`;
   }
 
@@ -264,14 +251,19 @@ export class StrataModelPage extends LitElement {
         return html`<strata-help-sheet @closed=${closed}></strata-help-sheet>`;
       case "about":
         return session.model
-          ? html`<strata-about-sheet .model=${session.model} @closed=${closed}></strata-about-sheet>`
+          ? html`<strata-about-sheet
+              .model=${session.model}
+              .correctable=${session.can_curate}
+              @closed=${closed}
+              @correct=${() => (this.dialog_ = { dialog: "scale" })}
+            ></strata-about-sheet>`
           : html``;
     }
   }
 
   private readonly on_key_down = (event: KeyboardEvent): void => {
     const session = this.session_;
-    if (!session || this.dialog_ || event.defaultPrevented || is_for_field(event)) return;
+    if (!session || modal_is_open() || event.defaultPrevented || is_for_field(event)) return;
     if (event.key === " ") {
       const on_button = (event.composedPath()[0] as HTMLElement).tagName === "BUTTON";
       if (on_button) return;
@@ -286,21 +278,10 @@ export class StrataModelPage extends LitElement {
     if (event.key === " " && this.stage_) this.stage_.orbit_held = false;
   };
 
-  private readonly on_before_unload = (event: BeforeUnloadEvent): void => {
-    if ((this.session_?.saving.waiting ?? 0) > 0) event.preventDefault();
+  /** The key may come up in another window. */
+  private readonly on_blur = (): void => {
+    if (this.stage_) this.stage_.orbit_held = false;
   };
-
-  private readonly on_online = (): void => this.session_?.retry_connection();
-
-  private on_leave(event: MouseEvent): void {
-    const waiting = this.session_?.saving.waiting ?? 0;
-    if (waiting > 0) {
-      event.preventDefault();
-      notices.show("problem", texts.saving.not_saved(waiting), texts.saving.not_saved_hint);
-      return;
-    }
-    follow(event);
-  }
 
   private on_splitter_down(event: PointerEvent): void {
     const splitter = event.currentTarget as HTMLElement;
@@ -328,6 +309,13 @@ export class StrataModelPage extends LitElement {
     this.panel_width_ = Math.round(Math.min(most, Math.max(kPanelWidth.least, width)));
     localStorage.setItem(kPanelKey, String(this.panel_width_));
   }
+}
+
+/** A button that was pressed with the pointer does not keep the keyboard: Space would press it again instead of turning
+ *  the model. One that was pressed by a key does. */
+function give_back_keyboard(event: MouseEvent): void {
+  if (event.detail === 0) return;
+  for (const element of event.composedPath()) if (element instanceof HTMLButtonElement) element.blur();
 }
 
 /** The layer as it is now: the request may be older. */

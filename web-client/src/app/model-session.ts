@@ -1,14 +1,14 @@
 // One open model on this page: joins the connection, the camera, the tools and what the panels show. Elements
 // subscribe and draw themselves from its state; they change it only through its methods.
 
-import { Api, new_id, type Versioned } from "../core/api";
+import { Api, ApiError, new_id, type Versioned } from "../core/api";
 import { OrbitCamera, type StandardView } from "../core/camera";
 import { Connection, type ConnectionState, type SavingState, type SocketLike, type StrokeHandle } from "../core/connection";
 import type { FrameMessage } from "../core/frame-header";
 import type { GestureHandler, PointerSample } from "../core/input";
 import { metres_per } from "../core/measure";
 import type { LayerEvent, LayerOverride, ModelEvent, Picked, PresenceUser, ProblemMessage, Welcome } from "../core/protocol.gen";
-import { complete_layer, type Layer, type LayerPatch, type Model, type ModelPatch, type Role } from "../core/types";
+import { complete_layer, may_curate, may_paint, type Layer, type LayerPatch, type Model, type ModelPatch, type Role } from "../core/types";
 import { BrushTool } from "../tools/brush";
 import { OrbitTool, PanTool } from "../tools/navigate";
 import { PickTool } from "../tools/pick";
@@ -17,6 +17,7 @@ import { ToolManager } from "../tools/tool-manager";
 import { BrushSettings, describe_value, value_problem } from "./brush-settings";
 import { notices } from "./notices";
 import { PickProbe } from "./pick-probe";
+import { forget, remember } from "./sessions";
 import { texts } from "./texts";
 
 interface Override {
@@ -32,6 +33,7 @@ export class ModelSession {
   layers: Layer[] = []; // by order: the last is on top
   selected: number | null = null;
   deleted = false;
+  signed_out = false; // the server no longer knows who this is
   role: Role = "viewer";
   session = "";
   users: PresenceUser[] = [];
@@ -57,6 +59,9 @@ export class ModelSession {
   private etag_ = "";
   private fitted_ = false;
   private was_open_ = false;
+  private closed_ = false; // its page is gone
+  private told_left_ = false;
+  private after_stroke_: (() => void)[] = [];
   private depth_: number | null = null; // of the last surface point seen under the pointer
   private still_timer_: ReturnType<typeof setTimeout> | null = null;
   private readonly probe_ = new PickProbe({
@@ -84,10 +89,7 @@ export class ModelSession {
         state: (state) => this.on_state(state),
         welcome: (message) => this.on_welcome(message),
         frame: (part) => this.on_frame(part),
-        saving: (state) => {
-          this.saving = state;
-          this.changed();
-        },
+        saving: (state) => this.on_saving(state),
         applied: () => this.probe_.ask_again(this.pointer),
         saved: () => {},
         layer: (event) => this.on_layer(event),
@@ -103,10 +105,7 @@ export class ModelSession {
     );
     const brush_host = {
       begin_stroke: (erase: boolean) => this.begin_stroke(erase),
-      stroke_ended: () => {
-        this.stroking = false;
-        this.changed();
-      },
+      stroke_ended: () => this.stroke_ended(),
       radius_px: () => this.radius_window_px(),
       next_frame: (callback: () => void) => void requestAnimationFrame(callback),
     };
@@ -143,23 +142,46 @@ export class ModelSession {
   }
 
   async open(): Promise<void> {
-    this.take_model(await this.api.model(this.model_id));
+    const model = await this.api.model(this.model_id);
+    if (this.closed_) return;
+    this.take_model(model);
+    remember(this);
     this.connection_.open();
   }
 
+  /** Its page is gone. What was painted still goes to the server: the connection lingers until all of it is saved. */
   close(): void {
+    this.closed_ = true;
+    this.tools.cancel();
     for (const timer of [this.still_timer_, this.presence_timer_]) if (timer) clearTimeout(timer);
     this.probe_.stop();
-    this.connection_.close();
     this.listeners_.clear();
+    this.on_frame = this.on_reset_frames = () => {};
+    if (this.saving.waiting === 0) {
+      this.discard();
+      return;
+    }
+    this.connection_.presence(null);
+    this.connection_.stop_viewing();
+    this.tell_left_behind();
   }
 
-  retry_connection(): void {
-    this.connection_.retry_now();
+  /** Ends the connection; what is not saved is lost. */
+  discard(): void {
+    forget(this);
+    this.saving = { waiting: 0, failing: false };
+    this.connection_.close();
   }
 
-  get can_edit(): boolean {
-    return this.role !== "viewer";
+  check_connection(): void {
+    this.connection_.check();
+  }
+
+  get can_paint(): boolean {
+    return may_paint(this.role);
+  }
+  get can_curate(): boolean {
+    return may_curate(this.role);
   }
 
   private changed(): void {
@@ -170,6 +192,10 @@ export class ModelSession {
 
   /** The stage's size in CSS pixels, and window pixels for each of them. */
   set_viewport(width: number, height: number, scale: number): void {
+    if (this.stroking) {
+      this.after_stroke_.push(() => this.set_viewport(width, height, scale));
+      return;
+    }
     this.scale = scale;
     this.camera.resize(width * scale, height * scale);
     this.fit_at_first();
@@ -185,16 +211,13 @@ export class ModelSession {
   }
 
   standard_view(view: StandardView): void {
-    this.camera.standard_view(view);
-    this.camera_moved(false);
+    this.move_camera(() => this.camera.standard_view(view), false);
   }
   fit(): void {
-    this.camera.fit();
-    this.camera_moved(false);
+    this.move_camera(() => this.camera.fit(), false);
   }
   set_perspective(perspective: boolean): void {
-    this.camera.perspective = perspective;
-    this.camera_moved(false);
+    this.move_camera(() => (this.camera.perspective = perspective), false);
   }
 
   /** Shows the model with another up direction without keeping it. */
@@ -204,10 +227,10 @@ export class ModelSession {
     this.camera_moved(false);
   }
 
-  private move_camera(move: () => void): void {
+  private move_camera(move: () => void, moving = true): void {
     if (this.stroking) return; // a stroke's pixels are of the camera that it began with
     move();
-    this.camera_moved(true);
+    this.camera_moved(moving);
   }
 
   private camera_moved(moving: boolean): void {
@@ -312,7 +335,7 @@ export class ModelSession {
       shape,
     });
     if (!stroke) {
-      notices.show("problem", texts.brush.not_connected);
+      notices.show("problem", this.connection_.full ? texts.brush.too_much_waits : texts.brush.not_connected);
       return null;
     }
     this.stroking = true;
@@ -320,8 +343,14 @@ export class ModelSession {
     return stroke;
   }
 
+  private stroke_ended(): void {
+    this.stroking = false;
+    for (const action of this.after_stroke_.splice(0)) action();
+    this.changed();
+  }
+
   private layer_to_paint(): Layer | null {
-    if (!this.can_edit) {
+    if (!this.can_paint) {
       notices.show("problem", texts.brush.viewer_only);
       return null;
     }
@@ -405,8 +434,9 @@ export class ModelSession {
     this.reset_overrides();
   }
 
-  async change_layer(layer: Layer, change: LayerPatch): Promise<void> {
-    this.put_layer(await this.api.change_layer(this.model_id, layer.id, change));
+  /** `etag`: the version that the change was thought out for. */
+  async change_layer(layer: Layer, change: LayerPatch, etag?: string): Promise<void> {
+    this.put_layer(await this.api.change_layer(this.model_id, layer.id, change, etag));
   }
 
   /** Moves the layer to the place `index` of the list, which is bottom to top. */
@@ -416,9 +446,14 @@ export class ModelSession {
     const before = this.layers;
     this.layers = wanted.map((each, order) => ({ ...each, order }));
     this.changed();
-    for (const each of this.layers) {
-      if (before.find((old) => old.id === each.id)?.order === each.order) continue;
-      await this.change_layer(each, { order: each.order });
+    try {
+      for (const each of this.layers) {
+        if (before.find((old) => old.id === each.id)?.order === each.order) continue;
+        await this.change_layer(each, { order: each.order });
+      }
+    } catch (error) {
+      this.put_layers(await this.api.layers(this.model_id).catch(() => before)); // some may have moved already
+      throw error;
     }
   }
 
@@ -440,24 +475,23 @@ export class ModelSession {
   }
 
   private send_overrides(): void {
-    const known = new Set(this.layers.map((layer) => layer.id));
-    const overrides: LayerOverride[] = [...this.overrides_]
-      .filter(([id]) => known.has(id))
-      .map(([layer, override]) => ({ layer, ...override }));
+    const overrides: LayerOverride[] = [...this.overrides_].map(([layer, override]) => ({ layer, ...override }));
     this.connection_.set_layer_overrides(overrides);
     this.changed();
   }
 
   private put_layer(layer: Layer): void {
-    this.layers = [...this.layers.filter((other) => other.id !== layer.id), layer].sort(
-      (a, b) => a.order - b.order || a.id - b.id,
-    );
+    this.put_layers([...this.layers.filter((other) => other.id !== layer.id), layer]);
+  }
+
+  private put_layers(layers: Layer[]): void {
+    this.layers = [...layers].sort((a, b) => a.order - b.order || a.id - b.id);
     this.changed();
   }
 
   private drop_layer(id: number): void {
     this.layers = this.layers.filter((layer) => layer.id !== id);
-    this.overrides_.delete(id);
+    if (this.overrides_.delete(id)) this.send_overrides();
     if (this.selected === id) this.selected = this.layers[this.layers.length - 1]?.id ?? null;
     this.changed();
   }
@@ -495,16 +529,63 @@ export class ModelSession {
       this.probe_.reset();
       this.on_reset_frames();
     }
+    if (state === "lost") {
+      if (this.closed_) this.tell_left_behind();
+      void this.find_why_lost();
+    }
     this.changed();
   }
 
+  /** A refused socket does not say why; the same question over HTTP does. */
+  private async find_why_lost(): Promise<void> {
+    try {
+      await this.api.model(this.model_id);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (error.status === 404) this.on_deleted();
+      this.signed_out = error.status === 401;
+      this.changed();
+    }
+  }
+
+  private on_deleted(): void {
+    const { waiting } = this.saving;
+    if (waiting > 0) notices.show("problem", texts.saving.lost_with_model(waiting, this.name));
+    this.deleted = true;
+    this.discard();
+    this.changed();
+  }
+
+  private on_saving(state: SavingState): void {
+    this.saving = state;
+    if (this.closed_ && state.waiting === 0) {
+      if (this.told_left_) notices.show("success", texts.saving.left_saved(this.name));
+      this.discard();
+    }
+    this.changed();
+  }
+
+  /** Once, and only when it takes long: usually all is saved in a moment. */
+  private tell_left_behind(): void {
+    if (this.told_left_ || this.connection_state === "open") return;
+    this.told_left_ = true;
+    notices.show("problem", texts.saving.left_behind(this.saving.waiting, this.name), texts.saving.left_behind_hint);
+  }
+
+  private get name(): string {
+    return this.model?.name ?? "";
+  }
+
   private on_welcome(message: Welcome): void {
-    if (this.was_open_) notices.show("success", texts.connection.back);
+    if (this.was_open_ && !this.closed_) notices.show("success", texts.connection.back);
     this.was_open_ = true;
+    this.signed_out = false;
     this.role = message.role;
     this.session = message.session;
     this.put_model(message.model);
-    this.layers = message.layers.map(complete_layer).sort((a, b) => a.order - b.order || a.id - b.id);
+    this.put_layers(message.layers.map(complete_layer));
+    const known = new Set(this.layers.map((layer) => layer.id));
+    for (const id of this.overrides_.keys()) if (!known.has(id)) this.overrides_.delete(id);
     if (!this.selected_layer) this.selected = this.layers[this.layers.length - 1]?.id ?? null;
     this.changed();
   }
@@ -527,13 +608,13 @@ export class ModelSession {
   }
 
   private on_model(event: ModelEvent): void {
-    if (event.event === "deleted") {
-      this.deleted = true;
-      this.connection_.close();
-      this.changed();
-    } else {
-      this.reload_model().catch((error: unknown) => notices.error(error)); // with the version that changes need
-    }
+    if (event.event === "deleted") this.on_deleted();
+    else if (this.stroking) this.after_stroke_.push(() => this.reload_after_change());
+    else this.reload_after_change();
+  }
+
+  private reload_after_change(): void {
+    this.reload_model().catch((error: unknown) => notices.error(error)); // with the version that changes need
   }
 
   private on_problem(problem: Omit<ProblemMessage, "op">): void {

@@ -5,6 +5,7 @@ import { customElement, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { icon } from "./icons";
 import { notices, type Notice } from "./notices";
+import { follow } from "./routes";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -99,6 +100,7 @@ export class StrataNotices extends LitElement {
         <div class="words">
           <strong>${notice.title}</strong>
           ${notice.detail ? html`<p>${notice.detail}</p>` : ""}
+          ${notice.link ? html`<a class="text" href=${notice.link.href} @click=${follow}>${notice.link.label}</a>` : ""}
         </div>
         <button
           class="icon quiet"

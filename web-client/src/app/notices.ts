@@ -11,6 +11,12 @@ export interface Notice {
   kind: NoticeKind;
   title: string;
   detail: string;
+  link: NoticeLink | null;
+}
+
+export interface NoticeLink {
+  href: string;
+  label: string;
 }
 
 type Listener = (notices: readonly Notice[]) => void;
@@ -29,10 +35,10 @@ class Notices {
     return () => this.listeners_.delete(listener);
   }
 
-  show(kind: NoticeKind, title: string, detail = ""): void {
+  show(kind: NoticeKind, title: string, detail = "", link: NoticeLink | null = null): void {
     const same = this.notices_.find((notice) => notice.title === title && notice.detail === detail);
     if (same) this.dismiss(same.id);
-    const notice = { id: this.next_id_++, kind, title, detail };
+    const notice = { id: this.next_id_++, kind, title, detail, link };
     this.notices_ = [...this.notices_, notice].slice(-kMostNotices);
     this.tell();
     setTimeout(() => this.dismiss(notice.id), kShown_ms[kind]);

@@ -10,6 +10,7 @@ import "./dialog";
 import type { StrataDialog } from "./dialog";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { radio_group } from "./radio-group";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -51,34 +52,33 @@ export class StrataScaleDialog extends LitElement {
     if (!model) return html``;
     const metres = metres_per(this.unit_);
     const sides = [0, 1, 2].map((axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres);
-    const units: [Unit, string][] = [
-      ["mm", words.mm],
-      ["cm", words.cm],
-      ["m", words.m],
-    ];
     return html`<strata-dialog aside heading=${words.title(format_size(sides))} @closed=${this.on_closed}>
       <p class="hint">${model.unit_assumed ? words.lead_assumed : words.lead}</p>
       <div class="question">
         <span class="caption" id="unit">${words.unit}</span>
-        <div class="segments" role="radiogroup" aria-labelledby="unit">
-          ${units.map(
-            ([unit, label]) =>
-              html`<button role="radio" aria-checked=${unit === this.unit_} @click=${() => (this.unit_ = unit)}>${label}</button>`,
-          )}
-        </div>
+        ${radio_group<Unit>({
+          label: { id: "unit" },
+          class: "segments",
+          choices: [
+            { value: "mm", content: words.mm },
+            { value: "cm", content: words.cm },
+            { value: "m", content: words.m },
+          ],
+          chosen: this.unit_,
+          choose: (unit) => (this.unit_ = unit),
+        })}
       </div>
       <div class="question">
         <span class="caption" id="up">${words.up}</span>
-        <div class="segments" role="radiogroup" aria-labelledby="up">
-          ${(["x", "y", "z"] as const).map(
-            (up) =>
-              html`<button role="radio" aria-checked=${up === this.up_} @click=${() => this.choose_up(up)}>
-                ${up.toUpperCase()}
-              </button>`,
-          )}
-        </div>
+        ${radio_group<Model["up"]>({
+          label: { id: "up" },
+          class: "segments",
+          choices: (["x", "y", "z"] as const).map((up) => ({ value: up, content: up.toUpperCase() })),
+          chosen: this.up_,
+          choose: (up) => this.choose_up(up),
+        })}
       </div>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.scale.later}</button>
+      <button slot="actions" @click=${() => this.dialog_.close()}>${model.scale_verified ? texts.cancel : words.later}</button>
       <button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => void this.confirm()}>${words.yes}</button>
     </strata-dialog>`;
   }

@@ -33,6 +33,11 @@ const sheet_styles = css`
     color: var(--ink);
     font-weight: 600;
   }
+  @media (max-width: 560px) {
+    dl {
+      grid-template-columns: minmax(110px, 40%) 1fr;
+    }
+  }
 `;
 
 @customElement("strata-help-sheet")
@@ -53,6 +58,8 @@ export class StrataHelpSheet extends LitElement {
 @customElement("strata-about-sheet")
 export class StrataAboutSheet extends LitElement {
   @property({ attribute: false }) model!: Model;
+  /** This person may correct the model's unit and up direction. */
+  @property({ type: Boolean }) correctable = false;
 
   static override styles = [shared_styles, sheet_styles];
 
@@ -95,6 +102,11 @@ export class StrataAboutSheet extends LitElement {
               </dd>`
           : nothing}
       </dl>
+      ${this.correctable
+        ? html`<button slot="actions" @click=${() => this.dispatchEvent(new CustomEvent("correct"))}>
+            ${texts.model.correct_size}
+          </button>`
+        : nothing}
     </strata-dialog>`;
   }
 }

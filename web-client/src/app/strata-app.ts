@@ -1,39 +1,92 @@
-// <strata-app>: who is signed in, and which page the address names.
+// <strata-app>: who is signed in, which page the address names, and what all pages share: scans dropped anywhere, and
+// changes that still wait to be saved.
 
-import { html, LitElement, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
-import { Api, ApiError } from "../core/api";
+import { keyed } from "lit/directives/keyed.js";
+import { Api, ApiError, name_of_file } from "../core/api";
+import { may_curate, type Me } from "../core/types";
 import "./home-page";
+import { icon } from "./icons";
+import { choose_scans, Imports } from "./imports";
 import "./model-page";
 import { notices } from "./notices";
 import "./notices-view";
-import { on_navigate, path_now, route_of, type Route } from "./routes";
+import { navigate, on_navigate, path_now, path_of_model, route_of, type Route } from "./routes";
+import { check_connections, discard_unsaved, unsaved_changes } from "./sessions";
 import { shared_styles } from "./styles";
 import "./sign-in";
 import { texts } from "./texts";
-import type { Me } from "../core/types";
 
 @customElement("strata-app")
 export class StrataApp extends LitElement {
   private readonly api_ = new Api();
+  private readonly imports_ = new Imports(this.api_);
   @state() private route_: Route = route_of(path_now());
   @state() private me_: Me | null = null;
   @state() private session_: "unknown" | "signed-in" | "signed-out" | "unreachable" = "unknown";
   @state() private problem_ = "";
+  @state() private dropping_ = false;
+  @state() private imported_ = 0;
+  private drag_depth_ = 0;
 
-  static override styles = shared_styles;
+  static override styles = [
+    shared_styles,
+    css`
+      .drop-target {
+        position: fixed;
+        inset: 0;
+        z-index: 40;
+        display: grid;
+        padding: 20px;
+        background: color-mix(in srgb, var(--paper) 82%, transparent);
+        pointer-events: none;
+      }
+      .drop-target > div {
+        display: grid;
+        place-content: center;
+        justify-items: center;
+        gap: 6px;
+        border: 2px dashed var(--accent);
+        border-radius: 18px;
+        color: var(--accent);
+      }
+      .drop-target b {
+        font: 600 1.6rem var(--serif);
+      }
+      .drop-target svg.glyph {
+        width: 44px;
+        height: 44px;
+      }
+    `,
+  ];
 
   override connectedCallback(): void {
     super.connectedCallback();
     on_navigate(() => (this.route_ = route_of(path_now())));
     addEventListener("unhandledrejection", (event) => notices.error(event.reason));
+    addEventListener("online", check_connections);
+    document.addEventListener("visibilitychange", () => {
+      if (document.visibilityState === "visible") check_connections();
+    });
+    addEventListener("beforeunload", (event) => {
+      if (unsaved_changes() > 0) event.preventDefault();
+    });
+    addEventListener("dragenter", this.on_drag_enter);
+    addEventListener("dragover", this.on_drag_over);
+    addEventListener("dragleave", this.on_drag_leave);
+    addEventListener("drop", this.on_drop);
     void this.check_session();
   }
 
   private async check_session(): Promise<void> {
     try {
-      this.me_ = await this.api_.me();
+      const me = await this.api_.me();
+      const lost = this.me_ && this.me_.user !== me.user ? discard_unsaved() : 0;
+      if (lost > 0) notices.show("problem", texts.saving.discarded(lost));
+      this.me_ = me;
       this.session_ = "signed-in";
+      check_connections();
     } catch (error) {
       if (error instanceof ApiError && error.status === 401) {
         this.session_ = "signed-out";
@@ -46,28 +99,89 @@ export class StrataApp extends LitElement {
   }
 
   override render(): TemplateResult {
-    return html`${this.page()}<strata-notices></strata-notices>`;
+    return html`${this.page()}
+      ${this.dropping_
+        ? html`<div class="drop-target">
+            <div>${icon("upload")}<b>${texts.home.drop_title}</b><span>${texts.home.drop_lead}</span></div>
+          </div>`
+        : nothing}
+      <strata-notices></strata-notices>`;
   }
 
-  private page(): TemplateResult {
+  private page(): unknown {
     const signed_out = (): void => {
       this.session_ = "signed-out";
     };
     switch (this.session_) {
       case "unknown":
-        return html``;
+        return nothing;
       case "signed-out":
         return html`<strata-sign-in .api=${this.api_} @signed-in=${() => void this.check_session()}></strata-sign-in>`;
       case "unreachable":
         return html`<strata-blank heading=${texts.connection.lost} lead=${this.problem_}></strata-blank>`;
       case "signed-in":
         return this.route_.page === "model"
-          ? html`<strata-model-page
+          ? keyed(
+              this.route_.model, // everything of a model page belongs to its one model
+              html`<strata-model-page .api=${this.api_} .model_id=${this.route_.model} @signed-out=${signed_out}></strata-model-page>`,
+            )
+          : html`<strata-home-page
               .api=${this.api_}
-              .model_id=${this.route_.model}
+              .me=${this.me_}
+              .imports=${this.imports_}
+              .imported=${this.imported_}
               @signed-out=${signed_out}
-            ></strata-model-page>`
-          : html`<strata-home-page .api=${this.api_} .me=${this.me_} @signed-out=${signed_out}></strata-home-page>`;
+              @import-files=${(event: CustomEvent<File[]>) => void this.import_files(event.detail)}
+            ></strata-home-page>`;
     }
   }
+
+  private get import_refusal(): string | null {
+    if (this.session_ !== "signed-in" || !this.me_) return texts.import.sign_in_first;
+    return may_curate(this.me_.role) ? null : texts.import.not_allowed;
+  }
+
+  private async import_files(dropped: File[]): Promise<void> {
+    const files = choose_scans(dropped);
+    if (this.route_.page !== "home" && files.length > 0) {
+      notices.show("info", texts.import.started, "", { href: "/", label: texts.import.watch });
+    }
+    await Promise.all(files.map((file) => this.import_file(file, files.length === 1)));
+  }
+
+  private async import_file(file: File, alone: boolean): Promise<void> {
+    const { model, problem } = await this.imports_.start(file);
+    this.imported_ += 1;
+    if (problem && this.route_.page !== "home") notices.problem(problem); // the home page lists it
+    if (model === null) return;
+    const opens = alone && this.route_.page === "home"; // a person at work on another model is not carried off
+    const link = { href: path_of_model(model), label: texts.import.open };
+    notices.show("success", texts.import.ready(name_of_file(file.name)), "", opens ? null : link);
+    if (opens) navigate(link.href);
+  }
+
+  private readonly on_drag_enter = (event: DragEvent): void => {
+    if (!has_files(event)) return;
+    event.preventDefault();
+    this.drag_depth_ += 1;
+    this.dropping_ = this.import_refusal === null;
+  };
+  private readonly on_drag_over = (event: DragEvent): void => {
+    if (has_files(event)) event.preventDefault(); // else the browser opens the file in place of the page
+  };
+  private readonly on_drag_leave = (): void => {
+    this.drag_depth_ = Math.max(0, this.drag_depth_ - 1);
+    if (this.drag_depth_ === 0) this.dropping_ = false;
+  };
+  private readonly on_drop = (event: DragEvent): void => {
+    this.drag_depth_ = 0;
+    this.dropping_ = false;
+    if (!has_files(event)) return;
+    event.preventDefault();
+    const refusal = this.import_refusal;
+    if (refusal) notices.show("problem", refusal);
+    else void this.import_files([...(event.dataTransfer?.files ?? [])]);
+  };
 }
+
+const has_files = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;

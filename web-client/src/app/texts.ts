@@ -38,6 +38,9 @@ export const texts = {
     deleted: (name: string) => `“${name}” was deleted.`,
     triangles: (n: number) => count(n, "triangle", "triangles"),
     sign_out: "Sign out",
+    sign_out_title: "Sign out now?",
+    sign_out_lead: (n: number) => `${count(n, "change is", "changes are")} not saved yet and will be lost.`,
+    empty_viewer: "Nobody has imported a scan yet.",
     count: (n: number) => count(n, "model", "models"),
     no_picture: "No picture",
     scale_open: "Size not confirmed",
@@ -48,9 +51,11 @@ export const texts = {
     queued: "Waiting for its turn",
     running: "Preparing",
     unfolding: "Laying the surface out flat",
-    done: "Ready",
     failed: "Not imported",
-    cancelled: "Cancelled",
+    started: "The import has begun.",
+    watch: "See how far it is",
+    not_allowed: "You may look at models here but not import any.",
+    sign_in_first: "Sign in first, then drop the scan again.",
     cancel: (name: string) => `Cancel the import of ${name}`,
     dismiss: (name: string) => `Remove the note about ${name}`,
     open: "Open",
@@ -93,6 +98,7 @@ export const texts = {
       smallest: "Smallest detail, standard layer",
     },
     check_size: "Check the size",
+    correct_size: "Correct size and direction…",
   },
 
   tools: {
@@ -120,10 +126,14 @@ export const texts = {
     saving: "Saving…",
     not_saved: (n: number) => `${count(n, "change", "changes")} not saved`,
     not_saved_hint: "They are kept on this page and sent again by itself. Keep the page open.",
+    left_behind: (n: number, model: string) => `${count(n, "change", "changes")} of “${model}” not saved yet`,
+    left_behind_hint: "They are kept here and sent as soon as the server takes them. Keep this page open.",
+    left_saved: (model: string) => `All changes of “${model}” are saved now.`,
+    lost_with_model: (n: number, model: string) => `“${model}” was deleted, and ${count(n, "change", "changes")} with it.`,
+    discarded: (n: number) => `${count(n, "change", "changes")} of the person before you could not be saved.`,
   },
 
   connection: {
-    connecting: "Connecting…",
     lost: "Connection lost. Trying again…",
     kept: (n: number) => `${count(n, "change is", "changes are")} kept here and will be sent.`,
     retry: "Try now",
@@ -160,6 +170,8 @@ export const texts = {
     out_of_range: (min: string, max: string) => `Give a number from ${min} to ${max}.`,
     whole_number: "This layer holds whole numbers only.",
     not_connected: "Not connected: painting waits until the server is back.",
+    too_much_waits: "Too much waits to be saved: painting goes on once the server has caught up.",
+    record: "Number of the record",
     viewer_only: "You may look at this model but not change it.",
   },
 
@@ -190,6 +202,8 @@ export const texts = {
     created: (name: string) => `Layer “${name}” is ready to paint.`,
     no_labels: "Numbered classes",
     class_number: (n: number) => `Class ${n}`,
+    record_number: (n: number) => `Record ${n}`,
+    no_records: "Each number has a colour of its own.",
   },
 
   layer_dialog: {
@@ -202,8 +216,10 @@ export const texts = {
     classes_lead: "Which of several kinds: pieces, materials, phases.",
     measurement: "Measurement",
     measurement_lead: "A number everywhere: moisture, depth, colour shift.",
+    records: "Things with records",
+    records_lead: "Single things, each with the number of its record: finds, samples, repairs.",
     name: "Name",
-    name_hint: { presence: "Cracks", classes: "Materials", measurement: "Moisture" },
+    name_hint: { presence: "Cracks", classes: "Materials", measurement: "Moisture", records: "Finds" },
     description: "Description",
     description_hint: "Optional: how it was observed, by which rules",
     color: "Colour",
@@ -220,13 +236,14 @@ export const texts = {
     range_to: "to",
     stepped: "Show in steps",
     detail: "Smallest detail",
-    detail_option: (length: string) => `${length}`,
     detail_hint: "Finer detail needs more memory on the server once it is painted. It cannot be changed later.",
     create: "Create layer",
     name_missing: "Give the layer a name.",
     range_wrong: "The second number must be larger than the first.",
     classes_missing: "Give at least one class a label.",
     too_many: "A layer holds at most 255 classes.",
+    changed: "Somebody else changed this layer meanwhile, so yours was not saved.",
+    reload: "Show the newest",
   },
 
   scale: {
@@ -245,8 +262,6 @@ export const texts = {
   },
 
   value: {
-    title: "Under the pointer",
-    off: "Point at the model to read its values.",
     nothing: "not painted",
     position: "Position",
     picked: (value: string, layer: string) => `The brush now paints ${value} in “${layer}”.`,
@@ -255,7 +270,6 @@ export const texts = {
 
   statistics: {
     title: (name: string) => `Areas of “${name}”`,
-    painted: "Painted",
     of_surface: (share: string) => `${share} of the surface`,
     nothing: "Nothing is painted in this layer yet.",
     mean: "Mean",

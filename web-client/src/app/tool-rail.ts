@@ -104,7 +104,7 @@ export class StrataToolRail extends LitElement {
   override render(): TemplateResult {
     const { session } = this;
     const words = texts.model;
-    const shown = session.can_edit ? kTools : kTools.filter(([name]) => name !== "brush" && name !== "eraser");
+    const shown = session.can_paint ? kTools : kTools.filter(([name]) => name !== "brush" && name !== "eraser");
     return html`${shown.map(
         ([name, key]) =>
           html`<button
@@ -118,7 +118,7 @@ export class StrataToolRail extends LitElement {
           </button>`,
       )}
       <hr />
-      ${session.can_edit
+      ${session.can_paint
         ? html`<button
               class="icon quiet"
               aria-label=${words.undo}

@@ -13,7 +13,6 @@ import {
   type Model,
   type ModelPatch,
   type ProblemBody,
-  type Project,
   type Statistics,
 } from "./types";
 
@@ -60,9 +59,6 @@ export class Api {
     await this.request("POST", "/logout");
   }
 
-  async projects(): Promise<Project[]> {
-    return (await this.json<wire.ProjectList>("GET", "/projects")).projects;
-  }
   async models(): Promise<Model[]> {
     return (await this.json<wire.ModelList>("GET", "/models?limit=1000")).models;
   }
@@ -120,16 +116,19 @@ export class Api {
   async create_layer(model: Id, layer: LayerCreate): Promise<Layer> {
     return complete_layer(await this.json<wire.Layer>("POST", `/models/${encodeURIComponent(model)}/layers`, layer));
   }
-  /** Reads the layer's present version and changes it; another's change in between is an ApiError of status 412. */
-  async change_layer(model: Id, layer: Id, change: LayerPatch): Promise<Layer> {
-    const path = layer_path(model, layer);
-    const { etag } = await this.versioned<wire.Layer>("GET", path);
-    return complete_layer((await this.versioned<wire.Layer>("PATCH", path, change, etag)).value);
+  async layer(model: Id, layer: Id): Promise<Versioned<Layer>> {
+    const { value, etag } = await this.versioned<wire.Layer>("GET", layer_path(model, layer));
+    return { value: complete_layer(value), etag };
+  }
+  /** With the version that the change was thought out for: another's change in between is an ApiError of status 412.
+   *  Without, the change stands on its own, and goes onto whatever the layer is now. */
+  async change_layer(model: Id, layer: Id, change: LayerPatch, etag?: string): Promise<Layer> {
+    const version = etag ?? (await this.layer(model, layer)).etag;
+    return complete_layer((await this.versioned<wire.Layer>("PATCH", layer_path(model, layer), change, version)).value);
   }
   async delete_layer(model: Id, layer: Id): Promise<void> {
-    const path = layer_path(model, layer);
-    const { etag } = await this.versioned<wire.Layer>("GET", path);
-    await this.request("DELETE", path, undefined, { "If-Match": etag });
+    const { etag } = await this.layer(model, layer);
+    await this.request("DELETE", layer_path(model, layer), undefined, { "If-Match": etag });
   }
   async statistics(model: Id, layer: Id): Promise<Statistics> {
     return this.json("GET", `${layer_path(model, layer)}/statistics`);

@@ -19,11 +19,6 @@ export interface CameraMessage {
   height: number;
 }
 
-export interface Ray {
-  origin: Vec3;
-  direction: Vec3;
-}
-
 export const kFieldOfView = (35 * Math.PI) / 180; // vertical
 const kHalfFieldTangent = Math.tan(kFieldOfView / 2);
 const kMinZoom = 1e-4; // smallest and largest distance, relative to the model's radius
@@ -172,15 +167,6 @@ export class OrbitCamera {
       this.target,
       add(scale(right, (x - this.width / 2) * unit), scale(up, (this.height / 2 - y) * unit)),
     );
-  }
-
-  ray_through(x: number, y: number): Ray {
-    const { back } = this.axes();
-    const point = this.point_on_focus_plane(x, y);
-    if (!this.perspective) return { origin: add(point, scale(back, this.distance)), direction: scale(back, -1) };
-    const origin = this.eye();
-    const towards = subtract(point, origin);
-    return { origin, direction: scale(towards, 1 / length(towards)) };
   }
 
   view_matrix(): number[] {

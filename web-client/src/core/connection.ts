@@ -54,8 +54,8 @@ export interface ConnectionCallbacks {
   record(message: RecordEvent): void;
   presence(message: Presence): void;
   picked(message: Picked): void;
-  /** A refusal; `given_up` when it was a change of this page that is now lost. */
-  problem(problem: Omit<ProblemMessage, "op">, given_up: boolean): void;
+  /** A refusal. What was refused for good is no longer waiting. */
+  problem(problem: Omit<ProblemMessage, "op">): void;
 }
 
 export interface ConnectionOptions {
@@ -81,7 +81,9 @@ export type Point = [number, number];
 
 const kFirstRetry_ms = 250;
 const kLastRetry_ms = 8000;
-const kSilence_ms = 20_000; // a change unanswered for so long: the connection is dead
+const kQuiet_ms = 10_000; // an answer is due but nothing came: ask for a sign of life
+const kSilence_ms = 10_000; // nor came one: the connection is dead
+const kOpening_ms = 30_000; // for the handshake and the welcome; the server may be reading the model
 const kBusySocket_bytes = 256 * 1024; // cameras wait while so much is unsent
 const kMostWaiting = 5000; // changes; new strokes are refused above
 
@@ -93,6 +95,7 @@ export class Connection {
   private resend_timer_: ReturnType<typeof setTimeout> | null = null;
   private slice_timer_: ReturnType<typeof setTimeout> | null = null;
   private silence_timer_: ReturnType<typeof setTimeout> | null = null;
+  private answer_due_ = false; // something was sent that the server answers
   private resend_delay_ms_ = kFirstRetry_ms;
   private failing_ = false;
   private path_points_ = 4096;
@@ -100,7 +103,7 @@ export class Connection {
   private resending_: ChangeMessage[] = []; // still to go out again; new changes queue behind them
 
   private readonly outbox_ = new Outbox();
-  private readonly silenced_ = new Set<string>(); // ids given up: later complaints about them say nothing new
+  private readonly silenced_ = new Set<string>(); // ids whose answers say nothing new: given up, or signs of life
 
   private camera_: { camera: CameraMessage; moving: boolean } | null = null;
   private camera_seq_ = 0;
@@ -117,6 +120,10 @@ export class Connection {
   }
   get waiting(): number {
     return this.outbox_.waiting;
+  }
+  /** So much waits to be saved that new strokes are refused. */
+  get full(): boolean {
+    return this.outbox_.waiting > kMostWaiting;
   }
   /** Number of the newest camera sent; frames echo it. */
   get camera_seq(): number {
@@ -146,6 +153,7 @@ export class Connection {
       if (socket === this.socket_) this.on_lost();
     };
     socket.onerror = () => {}; // a close follows
+    this.set_silence_timer(kOpening_ms, () => this.give_up_socket());
   }
 
   /** For good; what is not saved is lost. */
@@ -157,12 +165,20 @@ export class Connection {
     socket?.close(1000, "left");
   }
 
-  /** Does not wait for the next attempt: the network is back, or a person asked. */
-  retry_now(): void {
+  /** The network changed, the page came back, or a person asked: reconnects without waiting, and finds out whether a
+   *  connection that looks open still is. */
+  check(): void {
+    if (this.state_ === "open") this.ask_for_life();
     if (this.state_ !== "lost") return;
     if (this.retry_timer_) clearTimeout(this.retry_timer_);
     this.retry_timer_ = null;
     this.open();
+  }
+
+  /** Nobody looks any more: no camera goes out again after a reconnect. What is not saved still does. */
+  stop_viewing(): void {
+    this.camera_ = null;
+    this.overrides_ = [];
   }
 
   /** Latest wins: at most one camera per drawn picture leaves, always the newest. */
@@ -191,7 +207,7 @@ export class Connection {
 
   /** Null while edits cannot be taken: not connected, or too much waits to be saved. */
   begin_stroke(options: StrokeOptions): StrokeHandle | null {
-    if (this.state_ !== "open" || this.outbox_.waiting > kMostWaiting) return null;
+    if (this.state_ !== "open" || this.full) return null;
     const begin: StrokeBegin = {
       op: "stroke.begin",
       id: new_id(),
@@ -219,7 +235,7 @@ export class Connection {
     this.outbox_.add(message);
     if (this.resending_.length > 0) this.resending_.push(message);
     else if (this.state_ === "open") this.send(message);
-    this.watch_silence();
+    this.expect_answer();
     this.report_saving();
   }
 
@@ -245,10 +261,11 @@ export class Connection {
     this.camera_ = { camera, moving: false }; // after a reconnect the picture is a still one
     this.camera_seq_ += 1;
     this.send({ op: "camera", seq: this.camera_seq_, ...camera, moving });
+    this.expect_answer(); // a frame
   }
 
   private on_message(data: unknown): void {
-    if (this.silence_timer_) this.watch_silence();
+    if (this.state_ === "open") this.heard();
     if (typeof data !== "string") {
       this.on_frame(data as ArrayBuffer);
       return;
@@ -257,7 +274,7 @@ export class Connection {
     try {
       message = parse_server_message(data);
     } catch (error) {
-      this.callbacks_.problem(unreadable(String(error)), false);
+      this.callbacks_.problem(unreadable(String(error)));
       return;
     }
     this.dispatch(message);
@@ -268,7 +285,7 @@ export class Connection {
       this.callbacks_.frame(decode_frame(data));
     } catch (error) {
       if (!(error instanceof FrameError)) throw error;
-      this.callbacks_.problem(unreadable(error.message), false);
+      this.callbacks_.problem(unreadable(error.message));
     }
   }
 
@@ -298,6 +315,7 @@ export class Connection {
       case "presence":
         return this.callbacks_.presence(message);
       case "picked":
+        if (message.id !== undefined && this.silenced_.delete(message.id)) return;
         return this.callbacks_.picked(message);
       default:
         message satisfies never; // parse_server_message throws on an op it does not know
@@ -309,6 +327,9 @@ export class Connection {
     this.path_points_ = message.limits.path_points;
     this.resend_slice_ = Math.max(1, Math.floor(message.limits.messages_per_second / 2));
     this.set_state("open");
+    this.heard();
+    const layers = new Set<number | string>(message.layers.map((layer) => layer.id));
+    this.overrides_ = this.overrides_.filter(({ layer }) => layers.has(layer)); // one unknown layer refuses them all
     for (const { stroke, n } of message.strokes) this.outbox_.saved_through(stroke, n);
     this.callbacks_.welcome(message);
     if (this.overrides_.length > 0) this.send({ op: "layers", layers: this.overrides_ });
@@ -321,7 +342,7 @@ export class Connection {
     const { op: _, ...problem } = message;
     if (message.ref !== undefined && this.silenced_.delete(message.ref)) return;
     if (message.ref === undefined || !this.outbox_.has(message.ref)) {
-      this.callbacks_.problem(problem, false);
+      this.callbacks_.problem(problem);
       return;
     }
     // A batch is out of order when the one before it was refused for the moment: both go again.
@@ -331,17 +352,17 @@ export class Connection {
       const first = !this.failing_;
       this.resend_later();
       this.report_saving();
-      if (first) this.callbacks_.problem(problem, false);
+      if (first) this.callbacks_.problem(problem);
       return;
     }
     for (const id of this.outbox_.give_up(message.ref)) if (id !== message.ref) this.silenced_.add(id);
     this.report_saving();
-    this.callbacks_.problem(problem, true);
+    this.callbacks_.problem(problem);
   }
 
   private resend(): void {
     this.resending_ = this.outbox_.messages();
-    if (this.resending_.length > 0) this.watch_silence();
+    if (this.resending_.length > 0) this.expect_answer();
     this.resend_slice();
   }
 
@@ -365,9 +386,11 @@ export class Connection {
 
   private on_lost(): void {
     this.forget_timers();
+    this.silenced_.clear();
     this.socket_ = null;
     this.set_state("lost");
     this.report_saving();
+    if (this.retry_timer_ || this.state_ !== "lost") return; // a listener closed it or asked for another attempt
     const random = (this.options_.random ?? Math.random)();
     const delay_ms = Math.min(kLastRetry_ms, kFirstRetry_ms * 2 ** this.attempts_) * (0.75 + random / 2);
     this.attempts_ += 1;
@@ -377,22 +400,44 @@ export class Connection {
     }, delay_ms);
   }
 
-  private watch_silence(): void {
+  /** A dead network does not say so: the server's silence must. Before the socket is given up, the server is asked
+   *  something that it always answers, because not everything that is sent brings an answer of its own. */
+  private expect_answer(): void {
+    if (this.state_ !== "open" || this.answer_due_) return;
+    this.answer_due_ = true;
+    this.set_silence_timer(kQuiet_ms, () => this.ask_for_life());
+  }
+
+  private ask_for_life(): void {
+    const id = new_id();
+    this.silenced_.add(id);
+    this.pick(id, 0, 0);
+    this.answer_due_ = true;
+    this.set_silence_timer(kSilence_ms, () => this.give_up_socket());
+  }
+
+  private heard(): void {
+    this.answer_due_ = false;
+    this.set_silence_timer(0, null);
+    if (this.outbox_.waiting > 0) this.expect_answer();
+  }
+
+  private give_up_socket(): void {
+    const socket = this.socket_;
+    this.on_lost();
+    socket?.close(4000, "no answer");
+  }
+
+  private set_silence_timer(after_ms: number, action: (() => void) | null): void {
     if (this.silence_timer_) clearTimeout(this.silence_timer_);
-    this.silence_timer_ = null;
-    if (this.outbox_.waiting === 0) return;
-    this.silence_timer_ = setTimeout(() => {
-      const socket = this.socket_;
-      if (!socket || this.outbox_.waiting === 0) return;
-      this.on_lost();
-      socket.close(4000, "no answer");
-    }, kSilence_ms);
+    this.silence_timer_ = action ? setTimeout(action, after_ms) : null;
   }
 
   private forget_timers(): void {
     const timers = [this.retry_timer_, this.resend_timer_, this.slice_timer_, this.silence_timer_];
     for (const timer of timers) if (timer) clearTimeout(timer);
     this.retry_timer_ = this.resend_timer_ = this.slice_timer_ = this.silence_timer_ = null;
+    this.answer_due_ = false;
     this.resending_ = [];
   }
 

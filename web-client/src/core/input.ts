@@ -11,7 +11,7 @@ export interface GestureHandler {
   tool_down(sample: PointerSample): void;
   tool_move(samples: PointerSample[]): void;
   tool_up(): void;
-  /** A second finger came before the tool did anything, or the system took the pointer away. */
+  /** A second finger came, or the system took the pointer away. What the tool did so far stands. */
   tool_cancel(): void;
   orbit(dx: number, dy: number): void;
   pan(dx: number, dy: number): void;
@@ -24,7 +24,9 @@ export interface GestureHandler {
 
 type Drag = "tool" | "orbit" | "pan";
 
-const kTouchSlop = 6; // CSS pixels a finger moves before its tool starts, so that two fingers never paint a dab
+// A finger's tool starts once it has moved or rested so much: two fingers that land together then paint no dab. A second
+// one that comes later ends the stroke, which stays and can be undone.
+const kTouchSlop = 6; // CSS pixels
 const kTouchDelay_ms = 140;
 const kWheelStep = 0.0016; // per pixel of scrolling
 

@@ -47,13 +47,13 @@ export function format_size(sides_in_metres: readonly number[]): string {
  * The likeliest unit of a file that names none, for the question after import: an object "239 units" long is one of
  * millimetres, unless it lies far from zero, as surveyed sites do.
  */
-export function likely_unit(model: Pick<Model, "unit" | "unit_assumed" | "crs" | "bounds">): Unit {
+export function likely_unit(model: Pick<Model, "unit" | "unit_assumed" | "scale_verified" | "crs" | "bounds">): Unit {
   const { min, max } = model.bounds;
   const axes = [0, 1, 2];
   const longest = Math.max(...axes.map((axis) => max[axis]! - min[axis]!));
   const farthest = Math.max(...axes.map((axis) => Math.max(Math.abs(min[axis]!), Math.abs(max[axis]!))));
   const surveyed = model.crs !== "" || farthest > Math.max(10_000, 20 * longest);
-  return model.unit_assumed && !surveyed && longest > 20 ? "mm" : model.unit;
+  return model.unit_assumed && !model.scale_verified && !surveyed && longest > 20 ? "mm" : model.unit;
 }
 
 export function format_bytes(bytes: number): string {

@@ -26,11 +26,6 @@ export class Outbox {
     return this.entries_.reduce((sum, entry) => sum + (entry.kind === "stroke" ? entry.parts.length : 1), 0);
   }
 
-  /** Nothing is waiting and no stroke is being drawn. */
-  get idle(): boolean {
-    return this.entries_.length === 0;
-  }
-
   add(message: ChangeMessage): void {
     switch (message.op) {
       case "stroke.begin":

@@ -43,9 +43,22 @@ export function point_of(palette: Palette, value: number): PalettePoint | undefi
   return palette.points.find((point) => point.at === value);
 }
 
-/** The colour a value is drawn in; null where only the server knows it (a class the palette does not list). */
+/** The colour of a class that the palette does not list, the same as the server's. */
+export function generated_color(key: number): string {
+  const hash = Math.imul(key, 2654435761) >>> 0;
+  const hue = ((hash >>> 8) / 16777216) * 6;
+  const saturation = 0.55 + (0.25 * (hash & 0xff)) / 255;
+  const channel = (offset: number): string => {
+    const k = (offset + hue) % 6;
+    const value = 0.85 - 0.85 * saturation * Math.min(1, Math.max(0, Math.min(k, 4 - k)));
+    return Math.round(value * 255).toString(16).padStart(2, "0");
+  };
+  return `#${channel(5)}${channel(3)}${channel(1)}ff`;
+}
+
+/** The colour a value is drawn in; null for a palette without any. */
 export function color_of(palette: Palette, value: number): string | null {
-  if (palette.mode === "categorical") return point_of(palette, value)?.color ?? null;
+  if (palette.mode === "categorical") return point_of(palette, value)?.color ?? generated_color(value);
   const points = [...palette.points].sort((a, b) => a.at - b.at);
   const first = points[0];
   const last = points[points.length - 1];
@@ -83,6 +96,20 @@ export const presence_palette = (label: string, color: string): Palette => ({
   max: 1,
   points: [{ at: 1, color, label }],
 });
+
+/** Every key has the colour that is made from it. */
+export const record_palette = (): Palette => ({ mode: "categorical", min: 0, max: 1, points: [] });
+
+/** Whether both show every value alike and call it the same. */
+export function same_palette(a: Palette, b: Palette): boolean {
+  return (
+    [a.mode, a.min, a.max, a.column, a.points.length].join() === [b.mode, b.min, b.max, b.column, b.points.length].join() &&
+    a.points.every((point, index) => {
+      const other = b.points[index]!;
+      return point.at === other.at && point.color === other.color && (point.label ?? "") === (other.label ?? "");
+    })
+  );
+}
 
 export const class_palette = (classes: { label: string; color: string; at: number }[]): Palette => {
   const points = [...classes].sort((a, b) => a.at - b.at).map(({ at, color, label }) => ({ at, color, label }));

@@ -13,7 +13,6 @@ export type {
   Model,
   ModelPatch,
   PalettePoint,
-  Project,
   Resolution,
   Role,
   Statistics,
@@ -51,6 +50,13 @@ export function complete_palette(palette: wire.Palette): Palette {
 }
 
 export const complete_layer = (layer: wire.Layer): Layer => ({ ...layer, palette: complete_palette(layer.palette) });
+
+const kRoles: readonly wire.Role[] = ["viewer", "annotator", "curator", "administrator", "owner"];
+
+/** Who may change what layers hold. */
+export const may_paint = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("annotator");
+/** Who may change what layers and models there are, and what they are called. */
+export const may_curate = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("curator");
 
 const kRanges: Record<wire.ValueType, [number, number]> = {
   u8: [0, 255],

@@ -6,17 +6,10 @@ import type { Tool } from "./tool";
 export class PickTool implements Tool {
   readonly name = "pick";
 
-  constructor(
-    private readonly picked_: (sample: PointerSample) => void,
-    private readonly active_changed_: (active: boolean) => void = () => {},
-  ) {}
+  constructor(private readonly picked_: (sample: PointerSample) => void) {}
 
-  activate(): void {
-    this.active_changed_(true);
-  }
-  deactivate(): void {
-    this.active_changed_(false);
-  }
+  activate(): void {}
+  deactivate(): void {}
   down(sample: PointerSample): void {
     this.picked_(sample);
   }

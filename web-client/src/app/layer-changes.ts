@@ -1,0 +1,21 @@
+// What somebody changed in the dialog of a layer.
+
+import { same_palette } from "../core/palette";
+import type { Layer, LayerPatch, Palette } from "../core/types";
+
+export interface LayerWanted {
+  name: string;
+  unit: string;
+  description: string;
+  palette: Palette;
+}
+
+/** Only what differs: what this person left alone is not theirs to set. */
+export function layer_changes(layer: Layer, { name, unit, description, palette }: LayerWanted): LayerPatch {
+  const change: LayerPatch = {};
+  if (name !== layer.name) change.name = name;
+  if (unit !== layer.unit) change.unit = unit;
+  if (description !== layer.description) change.description = description;
+  if (!same_palette(palette, layer.palette)) change.palette = palette;
+  return change;
+}

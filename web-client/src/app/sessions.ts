@@ -1,0 +1,23 @@
+// Every model session that may still have something to save: the one on the page, and those that linger after their page
+// is gone.
+
+import type { ModelSession } from "./model-session";
+
+const sessions = new Set<ModelSession>();
+
+export const remember = (session: ModelSession): void => void sessions.add(session);
+export const forget = (session: ModelSession): void => void sessions.delete(session);
+
+export const unsaved_changes = (): number => [...sessions].reduce((sum, session) => sum + session.saving.waiting, 0);
+
+/** The network changed, or the page came back to the front. */
+export function check_connections(): void {
+  for (const session of sessions) session.check_connection();
+}
+
+/** Somebody else signed in, in whose name they must not go out. Returns how many changes are lost. */
+export function discard_unsaved(): number {
+  const lost = unsaved_changes();
+  for (const session of [...sessions]) session.discard();
+  return lost;
+}

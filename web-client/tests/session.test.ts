@@ -1,0 +1,221 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+
+import { ModelSession } from "../src/app/model-session";
+import { notices } from "../src/app/notices";
+import { check_connections, discard_unsaved, unsaved_changes } from "../src/app/sessions";
+import { texts } from "../src/app/texts";
+import { Api } from "../src/core/api";
+import { presence_palette } from "../src/core/palette";
+import type { Role, Welcome } from "../src/core/protocol.gen";
+import type { Layer } from "../src/core/types";
+import { FakeSocket, welcome } from "./fake-socket";
+
+const model = {
+  id: 1, name: "Pot", unit: "mm", up: "z", scale_verified: true, bounds: { min: [0, 0, 0], max: [100, 100, 100] },
+} as unknown as Welcome["model"]; // prettier-ignore
+const layer = (id: number, order: number): Layer => ({
+  id, model: 1, name: `L${id}`, slug: `l${id}`, kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "",
+  palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, order, sequence: 0,
+}); // prettier-ignore
+
+let sockets: FakeSocket[];
+let answers: Map<string, [status: number, body: unknown]>; // by method and path
+let session: ModelSession;
+let told: string[];
+let unsubscribe: () => void;
+
+const socket = (): FakeSocket => sockets[sockets.length - 1]!;
+const settle = (): Promise<unknown> => vi.advanceTimersByTimeAsync(0);
+
+async function open(role: Role = "owner"): Promise<void> {
+  await session.open();
+  session.set_viewport(800, 600, 1);
+  join(role);
+}
+function join(role: Role = "owner", layers = [layer(7, 0), layer(8, 1)]): void {
+  socket().open();
+  socket().receive({ ...welcome(), role, model, layers });
+}
+/** A dab in the newest layer, not saved yet. Returns what saves it. */
+function paint(): () => void {
+  session.choose_tool("brush");
+  session.gestures.tool_down({ x: 5, y: 5 });
+  session.gestures.tool_up();
+  const { stroke } = socket().of("stroke.begin").at(-1)!;
+  return () => socket().receive({ op: "saved", stroke, n: 0, sequence: 1 });
+}
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  vi.stubGlobal("window", { location: { protocol: "http:", host: "here" }, devicePixelRatio: 1 });
+  vi.stubGlobal("requestAnimationFrame", (callback: () => void) => setTimeout(callback, 16));
+  sockets = [];
+  answers = new Map([["GET /api/v1/models/1", [200, model]]]);
+  const api = new Api(async (path, init) => {
+    const [status, body] = answers.get(`${init!.method} ${path}`) ?? [500, { title: `no answer for ${init!.method} ${path}` }];
+    return new Response(JSON.stringify(body), { status, headers: { ETag: '"1"' } });
+  });
+  session = new ModelSession(api, "1", (url, protocol) => {
+    sockets.push(new FakeSocket(url, protocol));
+    return socket();
+  });
+  told = [];
+  unsubscribe = notices.subscribe((shown) => (told = shown.map((notice) => notice.title)));
+});
+afterEach(() => {
+  discard_unsaved();
+  vi.advanceTimersByTime(60_000); // notices go
+  unsubscribe();
+  vi.unstubAllGlobals();
+  vi.useRealTimers();
+});
+
+describe("leaving a model", () => {
+  it("with everything saved ends the connection", async () => {
+    await open();
+    paint()();
+    session.close();
+    expect(socket().closed).toBe(true);
+  });
+
+  it("before it was open does not open it afterwards", async () => {
+    const opening = session.open();
+    session.close();
+    await opening;
+    expect(sockets).toEqual([]);
+  });
+
+  it("keeps the connection until all is saved, and says nothing", async () => {
+    await open();
+    const save = paint();
+    session.close();
+    expect(socket().closed).toBe(false);
+    expect(unsaved_changes()).toBe(1);
+    save();
+    expect(socket().closed).toBe(true);
+    expect(unsaved_changes()).toBe(0);
+    expect(told).toEqual([]);
+  });
+
+  it("ends the stroke that is being drawn, and its last points go out", async () => {
+    await open();
+    session.choose_tool("brush");
+    session.gestures.tool_down({ x: 5, y: 5 });
+    session.gestures.tool_move([{ x: 90, y: 5 }]);
+    session.close();
+    expect(socket().of("stroke.extend").map((message) => message.path)).toEqual([[[5, 5]], [[90, 5]]]); // prettier-ignore
+    expect(socket().of("stroke.end").length).toBe(1);
+  });
+
+  it("without a connection: the person is told once, and the changes go out when it is back", async () => {
+    await open();
+    paint();
+    socket().lose();
+    session.close();
+    await vi.advanceTimersByTimeAsync(300);
+    socket().lose();
+    await vi.advanceTimersByTimeAsync(900);
+    expect(told).toEqual([texts.saving.left_behind(1, "Pot")]);
+    join();
+    const [begin] = socket().of("stroke.begin");
+    expect(socket().of("camera")).toEqual([]);
+    socket().receive({ op: "saved", stroke: begin!.stroke, n: 0, sequence: 1 });
+    expect(told).toContain(texts.saving.left_saved("Pot"));
+    expect(socket().closed).toBe(true);
+  });
+
+  it("signed out: what waits goes out after the next sign-in, but not in somebody else's name", async () => {
+    await open();
+    paint();
+    answers.set("GET /api/v1/models/1", [401, { title: "Not signed in" }]);
+    socket().lose();
+    await settle();
+    expect(session.signed_out).toBe(true);
+    session.close(); // the page shows the sign-in
+    check_connections();
+    join();
+    expect(session.signed_out).toBe(false);
+    expect(socket().of("stroke.extend").length).toBe(1);
+    expect(discard_unsaved()).toBe(1);
+    expect(socket().closed).toBe(true);
+  });
+
+  it("a model that was deleted takes what waits with it, and the person is told", async () => {
+    await open();
+    paint();
+    socket().receive({ op: "model", event: "deleted", model: 1 } as never);
+    expect(told).toEqual([texts.saving.lost_with_model(1, "Pot")]);
+    expect([session.deleted, unsaved_changes()]).toEqual([true, 0]);
+    session.close();
+    expect(told.length).toBe(1);
+  });
+});
+
+describe("the camera in mid-stroke", () => {
+  it("stays, whatever is pressed; a new size of the stage waits", async () => {
+    await open();
+    session.choose_tool("brush");
+    session.gestures.tool_down({ x: 5, y: 5 });
+    const before = session.camera.message();
+    session.standard_view("top");
+    session.fit();
+    session.set_perspective(false);
+    session.gestures.zoom(0.5, 9, 9);
+    session.set_viewport(400, 300, 1);
+    expect(session.camera.message()).toEqual(before);
+    session.gestures.tool_up();
+    expect([session.camera.width, session.camera.height, session.camera.perspective]).toEqual([400, 300, true]);
+    session.standard_view("top");
+    expect(session.camera.elevation).toBeCloseTo(Math.PI / 2);
+  });
+});
+
+describe("what this person shows and hides", () => {
+  it("of a deleted layer is forgotten at once", async () => {
+    await open();
+    session.set_visible(session.layers[0]!, false);
+    session.set_opacity(session.layers[1]!, 0.5);
+    socket().receive({ op: "layer", event: "deleted", layer_id: 7 } as never);
+    expect(socket().of("layers").at(-1)!.layers).toEqual([{ layer: 8, opacity: 0.5 }]);
+  });
+  it("of a layer that was deleted while the connection was lost is forgotten, too", async () => {
+    await open();
+    session.set_visible(session.layers[0]!, false);
+    socket().lose();
+    await vi.advanceTimersByTimeAsync(300);
+    join("owner", [layer(8, 1)]);
+    expect(socket().of("layers")).toEqual([]);
+    session.set_opacity(session.layers[0]!, 0.5);
+    expect(socket().of("layers").at(-1)!.layers).toEqual([{ layer: 8, opacity: 0.5 }]);
+  });
+});
+
+describe("roles", () => {
+  it.each<[Role, boolean, boolean]>([
+    ["viewer", false, false],
+    ["annotator", true, false],
+    ["curator", true, true],
+    ["administrator", true, true],
+    ["owner", true, true],
+  ])("%s", async (role, paints, curates) => {
+    await open(role);
+    expect([session.can_paint, session.can_curate]).toEqual([paints, curates]);
+  });
+});
+
+describe("moving a layer", () => {
+  it("that fails half-way shows what the server has", async () => {
+    await open();
+    answers.set("GET /api/v1/models/1/layers/8", [200, layer(8, 1)]);
+    answers.set("PATCH /api/v1/models/1/layers/8", [200, layer(8, 0)]);
+    answers.set("GET /api/v1/models/1/layers/7", [403, { status: 403, title: "Not allowed" }]);
+    answers.set("GET /api/v1/models/1/layers?limit=1000", [200, { layers: [layer(7, 0), layer(8, 0)], total: 2 }]);
+    await expect(session.move_layer(session.layers[0]!, 1)).rejects.toMatchObject({ status: 403 });
+    expect(session.layers.map(({ id, order }) => [id, order])).toEqual([[7, 0], [8, 0]]); // prettier-ignore
+  });
+  it("that fails with the network is undone", async () => {
+    await open();
+    await expect(session.move_layer(session.layers[0]!, 1)).rejects.toMatchObject({ status: 500 });
+    expect(session.layers.map(({ id, order }) => [id, order])).toEqual([[7, 0], [8, 1]]); // prettier-ignore
+  });
+});
