@@ -100,17 +100,19 @@ struct JournalWriter::Impl {
   void set_failing(bool now) {
     std::lock_guard lock(mutex);
     failing = now;
+    changed.notify_all();
   }
 
   // Until the group is answered.
   void write(std::deque<Waiting>& group) {
-    std::optional<Clock::time_point> first_failure;
+    const auto started = Clock::now();
+    bool failed_before = false;
     while (!group.empty()) {
-      auto outcome = attempt(group, first_failure.has_value());
+      auto outcome = attempt(group, failed_before);
       if (outcome) {
         set_failing(false);
         while (!group.empty()) answer_front(group, {});
-        if (first_failure) log::info("journal: commits succeed again");
+        if (failed_before) log::info("journal: commits succeed again");
         return;
       }
       if (!outcome.error().transient) {
@@ -121,11 +123,9 @@ struct JournalWriter::Impl {
         }
       }
       set_failing(true);
-      if (!first_failure) {
-        first_failure = Clock::now();
+      if (!std::exchange(failed_before, true))
         log::warning("journal: a commit failed and is tried again: " + outcome.error().problem.detail);
-      }
-      if (Clock::now() - *first_failure >= options.retry_for) {
+      if (Clock::now() - started >= options.retry_for) {
         give_up(group, outcome.error().problem);
         return;
       }
@@ -137,7 +137,7 @@ struct JournalWriter::Impl {
   tl::expected<PgConnection*, CommitFailure> connected() {
     if (connection && connection->alive()) return &*connection;
     connection.reset();
-    auto fresh = PgConnection::connect(dsn);
+    auto fresh = PgConnection::connect(dsn, options.limits);
     if (!fresh) return tl::unexpected(CommitFailure{fresh.error(), true});
     connection.emplace(std::move(*fresh));
     return &*connection;
@@ -246,7 +246,7 @@ bool JournalWriter::accepting() const {
 void JournalWriter::drain() {
   std::unique_lock lock(impl_->mutex);
   const std::uint64_t until = impl_->submitted;
-  impl_->changed.wait(lock, [&] { return impl_->answered >= until; });
+  impl_->changed.wait(lock, [&] { return impl_->answered >= until && !impl_->failing; });
 }
 
 }  // namespace strata::store

@@ -118,7 +118,7 @@ Result<Layer> Store::update_layer(Layer layer) {
 }
 
 Result<void> Store::delete_layer(std::int64_t id) {
-  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+  return impl_->pool.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
     auto done = connection.query("DELETE FROM layers WHERE id = $1", Params().integer(id));
     if (!done) return tl::unexpected(done.error());
     return done->affected() > 0 ? Result<void>{} : not_found("layer", std::to_string(id));

@@ -122,7 +122,7 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
     if (!content) return tl::unexpected(content.error());
     contents.push_back(std::move(*content));
   }
-  return impl_->pool.write([&](PgConnection& connection) -> Result<Model> {
+  return impl_->pool.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<Model> {
     const Sha256 geometry = contents.front().hash;
     std::vector<const Content*> by_hash;
     for (const Content& content : contents) by_hash.push_back(&content);
@@ -187,7 +187,7 @@ Result<Model> Store::update_model(Model m) {
 }
 
 Result<void> Store::delete_model(std::int64_t id) {
-  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+  return impl_->pool.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
     auto used = connection.query("SELECT geometry FROM models WHERE id = $1 UNION "
                                  "SELECT sha256 FROM model_sources WHERE model_id = $1", Params().integer(id));
     if (!used) return tl::unexpected(used.error());

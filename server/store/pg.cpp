@@ -1,6 +1,10 @@
 #include "store/pg.h"
 
+#include <poll.h>
+#include <sys/socket.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 
 namespace strata::store {
@@ -18,12 +22,20 @@ bool starts_with_any(std::string_view sqlstate, std::initializer_list<std::strin
 }
 
 constexpr const char* kConnectionLost = "08006";
+constexpr std::chrono::milliseconds kConnectFor{5000};
+
+Problem unknown_outcome(Problem lost) {
+  lost.title = "Outcome unknown";
+  lost.detail = "The database's answer to the last step was lost, so this may have been done or not. Look before you repeat it; a "
+                "repeat with the same Idempotency-Key does nothing twice.";
+  return lost;
+}
 
 }  // namespace
 
 Problem unavailable(std::string_view why) {
   return {503, "Database unavailable",
-          "PostgreSQL does not answer (" + one_line(why) + "). Nothing was changed by this call unless said; try again.", ""};
+          "PostgreSQL does not answer (" + one_line(why) + "). Nothing was changed by this call; try again.", ""};
 }
 
 Problem problem_of(std::string_view sqlstate, std::string_view message) {
@@ -52,18 +64,35 @@ bool is_transient(std::string_view sqlstate) {
   return !starts_with_any(sqlstate, {"22", "23", "42", "0A", "54"});
 }
 
-Result<PgConnection> PgConnection::connect(const std::string& dsn) {
-  // Settings given in the DSN come later in the list and win.
+Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimits& limits) {
+  // libpq takes whole seconds, and 2 for 1. Settings given in the DSN come later in the list and win.
+  const auto patience = std::chrono::ceil<std::chrono::seconds>(std::min(limits.answer, kConnectFor));
+  const std::string connect_timeout = std::to_string(std::max<std::int64_t>(patience.count(), 2));
   const char* keys[] = {"connect_timeout", "tcp_user_timeout", "keepalives_idle", "application_name", "dbname", nullptr};
-  const char* values[] = {"5", "30000", "30", "strata", dsn.c_str(), nullptr};
+  const char* values[] = {connect_timeout.c_str(), "30000", "30", "strata", dsn.c_str(), nullptr};
   PgConnection connection(PQconnectdbParams(keys, values, 1));
   PGconn* raw = connection.connection_.get();
   if (!raw) return tl::unexpected(unavailable("out of memory"));
-  if (PQstatus(raw) != CONNECTION_OK) return tl::unexpected(unavailable(PQerrorMessage(raw)));
+  if (PQstatus(raw) != CONNECTION_OK || PQsetnonblocking(raw, 1) != 0) return tl::unexpected(unavailable(PQerrorMessage(raw)));
   PQsetNoticeProcessor(raw, [](void*, const char*) {}, nullptr);
+  connection.limits_ = {std::min(limits.answer, kConnectFor), {}, {}};
   auto set = connection.script("SET synchronous_commit = on; SET client_encoding = 'UTF8'; SET jit = off");
   if (!set) return tl::unexpected(set.error());
+  // A session whose client gave up ends, and lets go of its locks. Not every system can do that.
+  if (PQserverVersion(raw) >= 140000) (void)connection.script("SET client_connection_check_interval = '2s'");
+  if (auto limited = connection.set_limits(limits); !limited) return tl::unexpected(limited.error());
   return connection;
+}
+
+Result<void> PgConnection::set_limits(const PgLimits& limits) {
+  if (limits == limits_) return {};
+  if (limits.statement != limits_.statement || limits.lock != limits_.lock) {
+    auto set = script("SET statement_timeout = " + std::to_string(limits.statement.count()) +
+                      "; SET lock_timeout = " + std::to_string(limits.lock.count()));
+    if (!set) return set;
+  }
+  limits_ = limits;
+  return {};
 }
 
 bool PgConnection::alive() {
@@ -72,27 +101,85 @@ bool PgConnection::alive() {
          PQtransactionStatus(raw) == PQTRANS_IDLE;
 }
 
+void PgConnection::close(std::string reason) {
+  // Shut first: saying goodbye to a database that hangs must not wait, either.
+  shutdown(PQsocket(connection_.get()), SHUT_RDWR);
+  connection_.reset();
+  closed_because_ = std::move(reason);
+}
+
+// False: nothing moved for as long as the limits allow, and the connection is closed.
+bool PgConnection::wait_for_socket(short events) {
+  const auto deadline = std::chrono::steady_clock::now() + limits_.answer;
+  for (;;) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    pollfd socket{PQsocket(connection_.get()), events, 0};
+    const int ready = poll(&socket, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
+    if (ready > 0) return true;
+    if (ready < 0 && errno == EINTR) continue;
+    close("no answer for " + std::to_string(limits_.answer.count()) + " ms");
+    return false;
+  }
+}
+
+// Until all that was queued is sent. What arrives meanwhile is read, so that both sides cannot wait for each other.
+bool PgConnection::flush() {
+  for (;;) {
+    const int rest = PQflush(connection_.get());
+    if (rest <= 0) return rest == 0;
+    if (!wait_for_socket(POLLIN | POLLOUT)) return false;
+    if (PQconsumeInput(connection_.get()) != 1) return false;
+  }
+}
+
+// Null at the end of a statement's results, and when the connection was closed.
+PGresult* PgConnection::next_result() {
+  while (connection_ && PQisBusy(connection_.get())) {
+    if (!wait_for_socket(POLLIN)) return nullptr;
+    if (PQconsumeInput(connection_.get()) != 1) break;
+  }
+  return PQgetResult(connection_.get());
+}
+
+// The last result of what was sent, or the first failure.
+Result<PgResult> PgConnection::outcome() {
+  if (!flush()) return failed(nullptr);
+  Result<PgResult> last;
+  while (PGresult* result = next_result()) {
+    PgResult owner(result);
+    const auto status = PQresultStatus(result);
+    if (!last) continue;
+    if (status == PGRES_COPY_IN) return owner;
+    if (status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK)
+      last = std::move(owner);
+    else
+      last = failed(result);
+  }
+  if (!connection_) return failed(nullptr);
+  return last;
+}
+
 tl::unexpected<Problem> PgConnection::failed(const PGresult* result) {
   const char* state = result ? PQresultErrorField(result, PG_DIAG_SQLSTATE) : nullptr;
   const char* primary = result ? PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY) : nullptr;
   const bool lost = PQstatus(connection_.get()) != CONNECTION_OK;
   sqlstate_ = state && !lost ? state : kConnectionLost;
-  return tl::unexpected(problem_of(sqlstate_, primary ? primary : PQerrorMessage(connection_.get())));
+  return tl::unexpected(problem_of(sqlstate_, primary       ? primary
+                                              : connection_ ? PQerrorMessage(connection_.get())
+                                                            : closed_because_.c_str()));
 }
 
 Result<void> PgConnection::script(const std::string& sql) {
-  const std::unique_ptr<PGresult, decltype(&PQclear)> result(PQexec(connection_.get(), sql.c_str()), &PQclear);
-  const auto status = PQresultStatus(result.get());
-  if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK) return failed(result.get());
-  return {};
+  if (!PQsendQuery(connection_.get(), sql.c_str())) return failed(nullptr);
+  auto done = outcome();
+  return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
 Result<std::string> PgConnection::prepared(const char* sql, const Params& params) {
   if (const auto known = prepared_.find(std::string_view(sql)); known != prepared_.end()) return known->second;
   const std::string name = "s" + std::to_string(prepared_.size());
-  const std::unique_ptr<PGresult, decltype(&PQclear)> result(
-      PQprepare(connection_.get(), name.c_str(), sql, params.count(), params.types()), &PQclear);
-  if (PQresultStatus(result.get()) != PGRES_COMMAND_OK) return failed(result.get());
+  if (!PQsendPrepare(connection_.get(), name.c_str(), sql, params.count(), params.types())) return failed(nullptr);
+  if (auto made = outcome(); !made) return tl::unexpected(made.error());
   prepared_.emplace(sql, name);
   return name;
 }
@@ -100,41 +187,37 @@ Result<std::string> PgConnection::prepared(const char* sql, const Params& params
 Result<PgResult> PgConnection::query(const char* sql, const Params& params) {
   const auto name = prepared(sql, params);
   if (!name) return tl::unexpected(name.error());
-  PGresult* result = PQexecPrepared(connection_.get(), name->c_str(), params.count(), params.values(), params.lengths(),
-                                    params.formats(), 1);
-  PgResult owner(result);
-  const auto status = PQresultStatus(result);
-  if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK) return failed(result);
-  return owner;
+  if (!PQsendQueryPrepared(connection_.get(), name->c_str(), params.count(), params.values(), params.lengths(),
+                           params.formats(), 1))
+    return failed(nullptr);
+  return outcome();
 }
 
 Result<void> PgConnection::each_row(const char* sql, const Params& params,
                                     const std::function<Result<void>(const PgResult&)>& on_row) {
   const auto name = prepared(sql, params);
   if (!name) return tl::unexpected(name.error());
-  PGconn* raw = connection_.get();
-  if (!PQsendQueryPrepared(raw, name->c_str(), params.count(), params.values(), params.lengths(), params.formats(), 1))
+  if (!PQsendQueryPrepared(connection_.get(), name->c_str(), params.count(), params.values(), params.lengths(),
+                           params.formats(), 1))
     return failed(nullptr);
-  PQsetSingleRowMode(raw);
+  PQsetSingleRowMode(connection_.get());
+  if (!flush()) return failed(nullptr);
   Result<void> outcome;
-  bool cancelled = false;
-  while (PGresult* result = PQgetResult(raw)) {
+  while (PGresult* result = next_result()) {
     const PgResult owner(result);
     const auto status = PQresultStatus(result);
-    if (!outcome) {
-      if (cancelled) continue;
-      // The caller wants no more: ask the server to stop instead of reading the rest.
-      cancelled = true;
-      const std::unique_ptr<PGcancel, decltype(&PQfreeCancel)> cancel(PQgetCancel(raw), &PQfreeCancel);
-      char ignored[256];
-      if (cancel) PQcancel(cancel.get(), ignored, sizeof ignored);
-    } else if (status == PGRES_SINGLE_TUPLE) {
+    if (!outcome) continue;
+    if (status == PGRES_SINGLE_TUPLE) {
       outcome = on_row(owner);
+      if (!outcome) {
+        close("the rest was not wanted");
+        return outcome;
+      }
     } else if (status != PGRES_TUPLES_OK) {
       outcome = failed(result);
-      cancelled = true;
     }
   }
+  if (!connection_) return failed(nullptr);
   return outcome;
 }
 
@@ -151,15 +234,16 @@ Result<std::vector<PgResult>> PgConnection::pipeline(const std::deque<Statement>
     const Params& p = statements[i].params;
     if (!PQsendQueryPrepared(raw, names[i].c_str(), p.count(), p.values(), p.lengths(), p.formats(), 1))
       return failed(nullptr);
+    if (!flush()) return failed(nullptr);  // each before the next, so that one copy of the bytes is enough
   }
-  if (!PQpipelineSync(raw)) return failed(nullptr);
+  if (!PQpipelineSync(raw) || !flush()) return failed(nullptr);
 
   std::vector<PgResult> results;
   Result<void> outcome;
   for (bool synced = false; !synced;) {
-    PGresult* result = PQgetResult(raw);
+    PGresult* result = next_result();
     if (!result) {
-      if (PQstatus(raw) != CONNECTION_OK) return failed(nullptr);
+      if (PQstatus(connection_.get()) != CONNECTION_OK) return failed(nullptr);
       continue;  // the end of one statement's results
     }
     PgResult owner(result);
@@ -179,30 +263,25 @@ Result<std::vector<PgResult>> PgConnection::pipeline(const std::deque<Statement>
 }
 
 Result<void> PgConnection::copy_begin(const char* sql) {
-  const std::unique_ptr<PGresult, decltype(&PQclear)> result(PQexec(connection_.get(), sql), &PQclear);
-  if (PQresultStatus(result.get()) != PGRES_COPY_IN) return failed(result.get());
+  if (!PQsendQuery(connection_.get(), sql)) return failed(nullptr);
+  if (auto begun = outcome(); !begun) return tl::unexpected(begun.error());
   return copy_send(copy_header());
 }
 
 Result<void> PgConnection::copy_send(std::string_view data) {
-  if (PQputCopyData(connection_.get(), data.data(), static_cast<int>(data.size())) != 1) return failed(nullptr);
+  if (PQputCopyData(connection_.get(), data.data(), static_cast<int>(data.size())) != 1 || !flush()) return failed(nullptr);
   return {};
 }
 
 Result<void> PgConnection::copy_end() {
   if (auto sent = copy_send(copy_trailer()); !sent) return sent;
   if (PQputCopyEnd(connection_.get(), nullptr) != 1) return failed(nullptr);
-  Result<void> outcome;
-  while (PGresult* result = PQgetResult(connection_.get())) {
-    const PgResult owner(result);
-    if (PQresultStatus(result) != PGRES_COMMAND_OK) outcome = failed(result);
-  }
-  return outcome;
+  auto done = outcome();
+  return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
 void PgConnection::copy_abort(const char* reason) {
-  PQputCopyEnd(connection_.get(), reason);
-  while (PGresult* result = PQgetResult(connection_.get())) PQclear(result);
+  if (PQputCopyEnd(connection_.get(), reason) == 1) (void)outcome();  // a refusal, as asked for
 }
 
 Result<Transaction> Transaction::begin(PgConnection& connection) {
@@ -215,7 +294,10 @@ Transaction::~Transaction() {
 }
 
 Result<void> Transaction::commit() {
-  return std::exchange(connection_, nullptr)->script("COMMIT");
+  PgConnection& connection = *std::exchange(connection_, nullptr);
+  auto committed = connection.script("COMMIT");
+  if (!committed && connection.sqlstate() == kConnectionLost) return tl::unexpected(unknown_outcome(committed.error()));
+  return committed;
 }
 
 }  // namespace strata::store

@@ -16,6 +16,7 @@
 
 #include "core/problem.h"
 #include "core/uuid.h"
+#include "store/pg_limits.h"
 
 namespace strata::store {
 
@@ -114,11 +115,14 @@ class PgResult {
   std::unique_ptr<PGresult, Clear> result_;
 };
 
-// One connection, used by one thread at a time. Statements are prepared once per connection.
+// One connection, used by one thread at a time. Statements are prepared once per connection. A call that waits longer than the
+// limits closes the connection: its Problem is 503 and its sqlstate "08006", as when the server had closed it.
 class PgConnection {
  public:
-  // One attempt. The session writes durably (synchronous_commit on) and speaks UTF-8.
-  static Result<PgConnection> connect(const std::string& dsn);
+  // One attempt, of at most 5 seconds. The session writes durably (synchronous_commit on) and speaks UTF-8.
+  static Result<PgConnection> connect(const std::string& dsn, const PgLimits& limits = kRequestLimits);
+  // From the next call on; costs a round trip where they change.
+  Result<void> set_limits(const PgLimits& limits);
 
   // False once the server closed the connection; costs one system call.
   bool alive();
@@ -130,7 +134,8 @@ class PgConnection {
 
   Result<void> script(const std::string& sql);  // any number of statements without parameters
   Result<PgResult> query(const char* sql, const Params& params = {});
-  // Hands out rows as they arrive, one result of one row each, so that memory stays small. An error of `on_row` ends it.
+  // Hands out rows as they arrive, one result of one row each, so that memory stays small. An error of `on_row` ends it, and
+  // with it the connection, since asking the server to stop could wait for it without end.
   Result<void> each_row(const char* sql, const Params& params,
                         const std::function<Result<void>(const PgResult&)>& on_row);
 
@@ -151,11 +156,18 @@ class PgConnection {
   explicit PgConnection(PGconn* connection) : connection_(connection) {}
   Result<std::string> prepared(const char* sql, const Params& params);
   tl::unexpected<Problem> failed(const PGresult* result);
+  bool wait_for_socket(short events);
+  bool flush();
+  PGresult* next_result();
+  Result<PgResult> outcome();
+  void close(std::string reason);
   struct Finish {
     void operator()(PGconn* connection) const { PQfinish(connection); }
   };
   std::unique_ptr<PGconn, Finish> connection_;
   std::map<std::string, std::string, std::less<>> prepared_;
+  PgLimits limits_;
+  std::string closed_because_;
   std::string sqlstate_;
 };
 
@@ -168,6 +180,7 @@ class Transaction {
   Transaction(Transaction&& other) noexcept : connection_(std::exchange(other.connection_, nullptr)) {}
   Transaction& operator=(Transaction&&) = delete;
   ~Transaction();
+  // Where the answer is lost nobody knows whether it was done: the Problem says so.
   Result<void> commit();
 
  private:

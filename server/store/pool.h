@@ -9,13 +9,14 @@
 
 namespace strata::store {
 
-// Connections shared by threads. A caller waits for a free one; broken ones are replaced. When the database is away,
-// connecting is tried again for `kReconnectFor` (a restart takes about that long) before the Problem 503.
+// Connections shared by threads. A caller waits for a free one, for `slot_for` at most (503); broken ones are replaced. When the
+// database is away, connecting is tried again for `kReconnectFor` (a restart takes about that long) before the Problem 503.
 class Pool {
  public:
   static constexpr std::chrono::milliseconds kReconnectFor{3000};
 
-  Pool(std::string dsn, int size) : dsn_(std::move(dsn)), free_slots_(size) {}
+  Pool(std::string dsn, int size, PgLimits limits, std::chrono::milliseconds slot_for)
+      : dsn_(std::move(dsn)), limits_(limits), slot_for_(slot_for), free_slots_(size) {}
 
   const std::string& dsn() const { return dsn_; }
 
@@ -34,7 +35,8 @@ class Pool {
     Pool* pool_;
     PgConnection connection_;
   };
-  Result<Lease> acquire(std::chrono::milliseconds reconnect_for = kReconnectFor);
+  Result<Lease> acquire() { return acquire(limits_); }
+  Result<Lease> acquire(const PgLimits& limits);
 
   // Runs `work(connection)`, once more on a new connection when the old one broke: for reads.
   template <class Work>
@@ -50,8 +52,12 @@ class Pool {
   // Runs `work(connection)` in one transaction, committed when it succeeds; from the start again after a deadlock.
   template <class Work>
   auto write(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
+    return write_within(limits_, std::forward<Work>(work));
+  }
+  template <class Work>
+  auto write_within(const PgLimits& limits, Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
     using Outcome = std::invoke_result_t<Work, PgConnection&>;
-    auto lease = acquire();
+    auto lease = acquire(limits);
     if (!lease) return tl::unexpected(lease.error());
     for (int tries_left = 3;; --tries_left) {
       auto transaction = Transaction::begin(**lease);
@@ -67,9 +73,13 @@ class Pool {
   }
 
  private:
+  Result<PgConnection> take(const PgLimits& limits);
   void release(PgConnection connection);
+  void free_slot();
 
   const std::string dsn_;
+  const PgLimits limits_;
+  const std::chrono::milliseconds slot_for_;
   std::mutex mutex_;
   std::condition_variable changed_;
   int free_slots_;

@@ -15,14 +15,14 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options, const std::file
   if (!migrations) return tl::unexpected(migrations.error());
   std::unique_ptr<Store> store(new Store);
   store->impl_ = std::make_unique<Impl>(std::move(options));
-  auto lease = store->impl_->pool.acquire();
-  if (!lease) return tl::unexpected(lease.error());
-  auto encoding = (**lease).query("SELECT current_setting('server_encoding')");
+  auto connection = PgConnection::connect(store->impl_->options.dsn, kMigrationLimits);
+  if (!connection) return tl::unexpected(connection.error());
+  auto encoding = connection->query("SELECT current_setting('server_encoding')");
   if (!encoding) return tl::unexpected(encoding.error());
   if (encoding->text(0, 0) != "UTF8")
     return fail(500, "Database not usable",
                 "The database's encoding is " + encoding->text(0, 0) + "; Strata needs one made with ENCODING 'UTF8'.");
-  auto version = migrate(**lease, *migrations);
+  auto version = migrate(*connection, *migrations);
   if (!version) return tl::unexpected(version.error());
   store->impl_->schema_version = *version;
   return store;
@@ -37,8 +37,17 @@ Result<StoreInfo> Store::info() {
 }
 
 bool Store::ready() {
-  auto lease = impl_->pool.acquire(std::chrono::milliseconds(0));
-  return lease && (**lease).query("SELECT 1").has_value();
+  constexpr PgLimits kQuick{std::chrono::seconds(2), std::chrono::seconds(2), std::chrono::seconds(2)};
+  const std::unique_lock lock(impl_->probe_mutex, std::try_to_lock);
+  if (!lock) return impl_->was_ready;
+  auto& probe = impl_->probe;
+  if (!probe || !probe->alive()) {
+    auto fresh = PgConnection::connect(impl_->options.dsn, kQuick);
+    probe.reset();
+    if (fresh) probe.emplace(std::move(*fresh));
+  }
+  impl_->was_ready = probe && probe->query("SELECT 1");
+  return impl_->was_ready;
 }
 
 Result<void> check_name(const std::string& name) {

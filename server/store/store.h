@@ -13,12 +13,15 @@
 #include "core/model.h"
 #include "core/tile_mirror.h"
 #include "store/journal.h"
+#include "store/pg_limits.h"
 
 namespace strata::store {
 
 struct StoreOptions {
   std::string dsn;           // libpq connection string
   int connections = 8;       // pooled, for everything but the journal writer
+  PgLimits limits = kRequestLimits;
+  std::chrono::milliseconds slot_for{10'000};  // longest wait for one of the pool
 };
 
 struct StoreInfo {
@@ -37,7 +40,8 @@ class Store {
   ~Store();
 
   Result<StoreInfo> info();
-  bool ready();  // one quick round trip
+  // One round trip, of 2 seconds at most (4 where it must connect first); while another thread asks, the last answer.
+  bool ready();
 
   // --- projects; `default` exists from the start. `ref` is an id in digits or a slug.
   Result<std::vector<Project>> projects();

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <atomic>
+#include <mutex>
+
 #include "core/slug.h"
 #include "store/pool.h"
 #include "store/store.h"
@@ -7,10 +10,14 @@
 namespace strata::store {
 
 struct Store::Impl {
-  Impl(StoreOptions given) : options(std::move(given)), pool(options.dsn, options.connections) {}
-  StoreOptions options;
+  Impl(StoreOptions given) : options(std::move(given)), pool(options.dsn, options.connections, options.limits, options.slot_for) {}
+  const StoreOptions options;
   Pool pool;
   std::int64_t schema_version = 0;
+  // Of its own, so that a busy pool is not taken for a database that is away.
+  std::mutex probe_mutex;
+  std::optional<PgConnection> probe;
+  std::atomic<bool> was_ready = true;
 };
 
 inline constexpr std::size_t kLongestName = 255;

@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include <atomic>
+#include <future>
 #include <thread>
 
 #include "db/journal_painter.h"
@@ -133,6 +134,72 @@ TEST_F(WriterFaults, commits_that_keep_failing_answer_everyone_and_then_it_start
   EXPECT_TRUE(test::content_of(store_->load_tiles(layer_).value()) == kept);
   ASSERT_TRUE(test::save(writer, painter.entry(2)));
   EXPECT_EQ(store_->last_sequence(model_.id).value(), 2);
+}
+
+TEST_F(WriterFaults, a_database_that_hangs_fails_commits_and_reads_in_time_and_then_all_is_well) {
+  using std::chrono::milliseconds;
+  const PgLimits quick{milliseconds(300), milliseconds(0), milliseconds(0)};
+  Painter painter(layer_, 6);
+  const auto quick_store = Store::open({cluster_->dsn(), 2, quick}, STRATA_MIGRATIONS_DIR).value();
+  ASSERT_TRUE(quick_store->project("default"));
+  JournalWriter writer(*store_, {.retry_for = milliseconds(2000), .limits = quick});
+  ASSERT_TRUE(test::save(writer, painter.paint(1, 2, 4)));
+  const auto kept = painter.content();
+  {
+    const test::Hang hang(*cluster_);
+    std::atomic<int> unsaved{0};
+    for (int i = 2; i <= 30; ++i)
+      ASSERT_TRUE(writer.submit(painter.paint(i, 2, 4), [&unsaved](Result<void> result) {
+        ASSERT_FALSE(result);
+        EXPECT_EQ(result.error().status, 503) << result.error().detail;
+        ++unsaved;
+      }));
+    while (writer.accepting()) std::this_thread::sleep_for(milliseconds(1));
+    EXPECT_FALSE(writer.submit(painter.entry(31), {}));
+    EXPECT_FALSE(store_->ready());
+    const auto read = quick_store->project("default");
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().status, 503);
+    writer.drain();
+    EXPECT_EQ(unsaved, 29);
+    EXPECT_TRUE(writer.accepting());
+  }
+  while (!store_->ready()) std::this_thread::sleep_for(milliseconds(10));
+  EXPECT_TRUE(quick_store->project("default"));
+  EXPECT_EQ(store_->last_sequence(model_.id).value(), 1);
+  EXPECT_TRUE(test::content_of(store_->load_tiles(layer_).value()) == kept);
+  ASSERT_TRUE(test::save(writer, painter.entry(2)));
+  EXPECT_EQ(store_->last_sequence(model_.id).value(), 2);
+}
+
+TEST_F(WriterFaults, a_caller_waits_for_a_busy_pool_only_so_long) {
+  const auto narrow = Store::open({.dsn = cluster_->dsn(), .connections = 1, .slot_for = std::chrono::milliseconds(50)},
+                                  STRATA_MIGRATIONS_DIR).value();
+  auto holder = PgConnection::connect(cluster_->dsn());
+  ASSERT_TRUE(holder->script("BEGIN; SELECT 1 FROM layers FOR UPDATE"));
+  auto waiting = std::async(std::launch::async, [&] { return narrow->update_layer(layer_); });
+  Result<Project> refused;
+  do {
+    refused = narrow->project("default");
+  } while (refused);
+  EXPECT_EQ(refused.error().status, 503);
+  EXPECT_EQ(refused.error().title, "Database busy");
+  EXPECT_TRUE(narrow->ready()) << "busy is not away";
+  ASSERT_TRUE(holder->script("COMMIT"));
+  EXPECT_TRUE(waiting.get());
+  EXPECT_TRUE(narrow->project("default"));
+}
+
+TEST_F(WriterFaults, a_commit_without_an_answer_is_said_to_be_of_unknown_outcome) {
+  auto connection = PgConnection::connect(cluster_->dsn(), {std::chrono::milliseconds(300), {}, {}});
+  auto transaction = Transaction::begin(*connection);
+  ASSERT_TRUE(connection->query("UPDATE projects SET description = 'changed'"));
+  const test::Hang hang(*cluster_);
+  const auto committed = transaction->commit();
+  ASSERT_FALSE(committed);
+  EXPECT_EQ(committed.error().status, 503);
+  EXPECT_EQ(committed.error().title, "Outcome unknown");
+  EXPECT_FALSE(connection->alive());
 }
 
 TEST_F(WriterFaults, readers_get_through_a_restart_of_the_database) {

@@ -70,6 +70,34 @@ void kill_postmaster(const store::Cluster& cluster) {
   }
 }
 
+namespace {
+
+std::vector<int> children_of(int parent) {
+  std::vector<int> children;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    std::ifstream status(entry.path() / "status");
+    for (std::string line; std::getline(status, line);)
+      if (line.starts_with("PPid:") && std::stoi(line.substr(5)) == parent) children.push_back(std::stoi(name));
+  }
+  return children;
+}
+
+}  // namespace
+
+Hang::Hang(const store::Cluster& cluster) : stopped_{cluster.postmaster_pid()} {
+  kill(stopped_.front(), SIGSTOP);  // first: then it has no new children
+  for (const int child : children_of(stopped_.front())) {
+    kill(child, SIGSTOP);
+    stopped_.push_back(child);
+  }
+}
+
+Hang::~Hang() {
+  for (const int pid : stopped_) kill(pid, SIGCONT);
+}
+
 std::string fresh_database() {
   static std::atomic<int> count{0};
   const std::string name = "test_" + std::to_string(++count);

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "store/cluster.h"
 #include "store/store.h"
@@ -14,6 +15,18 @@ store::Cluster& shared_cluster();
 
 // kill -9 of the postmaster; returns once it is dead, so that `ensure_running` sees it.
 void kill_postmaster(const store::Cluster& cluster);
+
+// kill -STOP of the postmaster and all its sessions until the object goes: a database that hangs.
+class Hang {
+ public:
+  explicit Hang(const store::Cluster& cluster);
+  ~Hang();
+  Hang(const Hang&) = delete;
+  Hang& operator=(const Hang&) = delete;
+
+ private:
+  std::vector<int> stopped_;
+};
 
 // A fresh, empty database of the shared cluster: its connection string.
 std::string fresh_database();
