@@ -174,6 +174,12 @@ class Culler {
 
 }  // namespace
 
+std::size_t Candidates::count_tiles() const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) count += i == 0 || blocks[i].tile != blocks[i - 1].tile;
+  return count;
+}
+
 std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int width, int height, const glm::dvec3& center,
                                         double radius) {
   const glm::dmat4 rows = glm::transpose(clip_from_model);

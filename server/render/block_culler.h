@@ -31,6 +31,8 @@ struct CandidateBlock {
 struct Candidates {
   std::vector<CandidateBlock> blocks;  // all blocks of a tile together
   std::vector<std::uint32_t> segment_lists;
+
+  std::size_t count_tiles() const;
 };
 
 // Blocks of the surface map that a stroke may touch: bounds of 128, 32 and 8 texels are projected to the window and tested

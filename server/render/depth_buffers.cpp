@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/stroke.h"
 #include "shared/depth_probe.h"
 
 namespace strata::render {
@@ -13,13 +12,6 @@ namespace {
 
 constexpr std::size_t kRecent = 4;
 constexpr int kCell = static_cast<int>(shader::kDepthCell);
-constexpr std::size_t kMaxPathPoints = 4096;
-
-std::vector<float> floats_of(const gl::Readback& readback) {
-  std::vector<float> values(readback.size() / sizeof(float));
-  std::memcpy(values.data(), readback.data().data(), values.size() * sizeof(float));
-  return values;
-}
 
 }  // namespace
 
@@ -84,30 +76,26 @@ std::shared_ptr<DepthBuffer> DepthBuffers::find(const DepthKey& key) {
   return buffer;
 }
 
-Result<std::shared_ptr<DepthBuffer>> DepthBuffers::get(const DepthKey& key, const MeshBuffers& mesh, const Camera& camera) {
-  if (auto found = find(key)) return found;
-  std::shared_ptr<DepthBuffer> buffer;
+Result<std::shared_ptr<DepthBuffer>> DepthBuffers::start(const DepthKey& key) {
   if (recent_.size() >= kRecent) {
     auto oldest = std::move(recent_.back());
     recent_.pop_back();
-    const bool reusable = oldest.use_count() == 1 && oldest->key.width == key.width && oldest->key.height == key.height;
-    if (reusable) {
-      buffer = std::move(oldest);
-      buffer->start(key);
+    if (oldest.use_count() == 1 && oldest->key.width == key.width && oldest->key.height == key.height) {
+      oldest->start(key);
+      return oldest;
     }
   }
-  if (!buffer) {
-    auto made = make(key);
-    if (!made) return made;
-    buffer = std::move(*made);
-  }
+  return make(key);
+}
+
+bool DepthBuffers::draw_slice(const std::shared_ptr<DepthBuffer>& buffer, const MeshBuffers& mesh, const Camera& camera,
+                              MeshProgress& progress) {
   const auto uniforms = mesh_uniforms(camera, mesh.geometry().origin);
-  MeshProgress progress;
-  while (!pass_.draw_slice(mesh, uniforms, buffer->framebuffer, key.width, key.height, progress)) {
-  }
+  if (!pass_.draw_slice(mesh, uniforms, buffer->framebuffer, buffer->key.width, buffer->key.height, progress))
+    return false;
   buffer->complete = true;
   recent_.push_front(buffer);
-  return buffer;
+  return true;
 }
 
 bool DepthBuffers::evict_one() {
@@ -120,49 +108,64 @@ void DepthBuffers::forget_model(std::uint64_t model) {
   std::erase_if(recent_, [&](const auto& buffer) { return buffer->key.model == model; });
 }
 
-Result<void> DepthBuffers::fill_grid(DepthBuffer& buffer, double x0, double y0, double x1, double y1) {
-  const auto cell = [](double pixel, int count) { return std::clamp(static_cast<int>(std::floor(pixel / kCell)), 0, count - 1); };
-  const int first_x = cell(x0, buffer.grid_width), last_x = cell(x1, buffer.grid_width);
-  const int first_y = cell(y0, buffer.grid_height), last_y = cell(y1, buffer.grid_height);
-  const auto at = [&](int x, int y) -> float& {
-    return buffer.grid[static_cast<std::size_t>(y) * static_cast<std::size_t>(buffer.grid_width) + static_cast<std::size_t>(x)];
+Result<DepthBuffers::GridRead> DepthBuffers::begin_grid(const DepthBuffer& buffer, const PixelBox& box) {
+  // Clamped before the cast: a large tool near the eye reaches farther than an int.
+  const auto cell = [](double pixel, int count) {
+    return static_cast<int>(std::clamp(std::floor(pixel / kCell), 0.0, count - 1.0));
   };
+  GridRead read;
+  read.first_x = cell(box.x0, buffer.grid_width);
+  read.first_y = cell(box.y0, buffer.grid_height);
+  read.width = cell(box.x1, buffer.grid_width) - read.first_x + 1;
+  read.height = cell(box.y1, buffer.grid_height) - read.first_y + 1;
   bool known = true;
-  for (int y = first_y; y <= last_y && known; ++y)
-    for (int x = first_x; x <= last_x && known; ++x) known = at(x, y) >= 0;
-  if (known) return {};
+  for (int y = read.first_y; y < read.first_y + read.height && known; ++y) {
+    const auto row = buffer.grid.begin() + static_cast<std::ptrdiff_t>(y) * buffer.grid_width + read.first_x;
+    known = std::all_of(row, row + read.width, [](float depth) { return depth >= 0; });
+  }
+  if (known) return read;
 
-  const int width = last_x - first_x + 1, height = last_y - first_y + 1;
-  auto readback = readback_->begin(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * sizeof(float));
-  if (!readback) return tl::unexpected(readback.error());
+  auto cells =
+      readback_->begin(static_cast<std::size_t>(read.width) * static_cast<std::size_t>(read.height) * sizeof(float));
+  if (!cells) return tl::unexpected(cells.error());
   grid_program_.use();
-  grid_program_.set(0, first_x, first_y);
-  grid_program_.set(1, width, height);
+  grid_program_.set(0, read.first_x, read.first_y);
+  grid_program_.set(1, read.width, read.height);
   buffer.texture.bind(0);
-  readback->buffer().bind_storage(0);
-  glDispatchCompute(static_cast<GLuint>(width + 7) / 8, static_cast<GLuint>(height + 7) / 8, 1);
-  readback->submit();
-  readback->wait();
-  const auto cells = floats_of(*readback);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      at(first_x + x, first_y + y) = cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
-  return {};
+  cells->buffer().bind_storage(0);
+  glDispatchCompute(static_cast<GLuint>(read.width + 7) / 8, static_cast<GLuint>(read.height + 7) / 8, 1);
+  cells->submit();
+  read.cells = std::move(*cells);
+  return read;
 }
 
-Result<std::vector<float>> DepthBuffers::gather(const DepthBuffer& buffer, std::span<const glm::ivec2> pixels) {
-  auto readback = readback_->begin(pixels.size() * sizeof(float));
-  if (!readback) return tl::unexpected(readback.error());
+void DepthBuffers::finish_grid(DepthBuffer& buffer, const GridRead& read) {
+  if (!read.cells) return;
+  const std::byte* source = read.cells.data().data();
+  const std::size_t row_bytes = static_cast<std::size_t>(read.width) * sizeof(float);
+  for (int y = read.first_y; y < read.first_y + read.height; ++y, source += row_bytes) {
+    std::memcpy(&buffer.grid[static_cast<std::size_t>(y * buffer.grid_width + read.first_x)], source, row_bytes);
+  }
+}
+
+Result<gl::Readback> DepthBuffers::begin_gather(const DepthBuffer& buffer, std::span<const glm::ivec2> pixels) {
+  auto depths = readback_->begin(pixels.size() * sizeof(float));
+  if (!depths) return depths;
   pixels_.upload_values(0, pixels);
   gather_program_.use();
   gather_program_.set(0, static_cast<GLuint>(pixels.size()));
   buffer.texture.bind(0);
   pixels_.bind_storage(0);
-  readback->buffer().bind_storage(1);
+  depths->buffer().bind_storage(1);
   glDispatchCompute(static_cast<GLuint>(pixels.size() + 63) / 64, 1, 1);
-  readback->submit();
-  readback->wait();
-  return floats_of(*readback);
+  depths->submit();
+  return depths;
+}
+
+std::vector<float> DepthBuffers::finish_gather(const gl::Readback& depths) {
+  std::vector<float> values(depths.size() / sizeof(float));
+  std::memcpy(values.data(), depths.data().data(), values.size() * sizeof(float));
+  return values;
 }
 
 }  // namespace strata::render

@@ -10,6 +10,7 @@
 #include "gl/framebuffer.h"
 #include "gl/readback.h"
 #include "render/mesh_pass.h"
+#include "render/tool_path.h"
 
 namespace strata::render {
 
@@ -45,15 +46,25 @@ class DepthBuffers {
   // A view's buffer, for `find`.
   void offer(const std::shared_ptr<DepthBuffer>& buffer);
   std::shared_ptr<DepthBuffer> find(const DepthKey& key);
-  // Found or drawn whole; kept as a recent one.
-  Result<std::shared_ptr<DepthBuffer>> get(const DepthKey& key, const MeshBuffers& mesh, const Camera& camera);
+  // For a camera that no buffer is found for: one to be drawn by `draw_slice`.
+  Result<std::shared_ptr<DepthBuffer>> start(const DepthKey& key);
+  // True when the mesh is complete; the buffer is then kept as a recent one.
+  bool draw_slice(const std::shared_ptr<DepthBuffer>& buffer, const MeshBuffers& mesh, const Camera& camera,
+                  MeshProgress& progress);
   bool evict_one();
   void forget_model(std::uint64_t model);
 
-  // Fills the grid over a rectangle of pixels (origin lower left).
-  Result<void> fill_grid(DepthBuffer& buffer, double x0, double y0, double x1, double y1);
-  // Depth under pixels, which must lie inside the window.
-  Result<std::vector<float>> gather(const DepthBuffer& buffer, std::span<const glm::ivec2> pixels);
+  // Cells of the grid on their way from the GPU; empty when all were known.
+  struct GridRead {
+    gl::Readback cells;
+    int first_x = 0, first_y = 0, width = 0, height = 0;
+  };
+  // Over a box of pixels, which may reach far out of the window.
+  Result<GridRead> begin_grid(const DepthBuffer& buffer, const PixelBox& box);
+  static void finish_grid(DepthBuffer& buffer, const GridRead& read);  // once `cells` are ready
+  // Depths under at most kMaxPathPoints pixels, which must lie inside the window.
+  Result<gl::Readback> begin_gather(const DepthBuffer& buffer, std::span<const glm::ivec2> pixels);
+  static std::vector<float> finish_gather(const gl::Readback& depths);
 
  private:
   GpuMemory* memory_ = nullptr;

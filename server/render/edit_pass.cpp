@@ -30,10 +30,9 @@ std::size_t width_index(int texel_bytes) { return texel_bytes == 1 ? 0 : texel_b
 // scales makes its units of model units.
 DepthBias slope_aware_bias(const Camera& camera, double model_diagonal) {
   const auto& p = camera.projection;
-  const double view_scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(camera.view))));
   const double depth_per_unit = 0.5 * std::abs(p[2][2] * p[3][3] - p[3][2] * p[2][3]);
   DepthBias bias;
-  bias.scale = kDepthBiasOfDiagonal * model_diagonal * view_scale * depth_per_unit;
+  bias.scale = kDepthBiasOfDiagonal * model_diagonal * view_scale(camera) * depth_per_unit;
   bias.slope_factor = kDepthBiasSlopeFactor;
   bias.slope_limit = kDepthBiasSlopeLimit;
   return bias;

@@ -118,20 +118,28 @@ void GpuThread::run() {
 }
 
 bool GpuThread::run_some() {
-  return step_lane(Lane::ordered) || step_frames() || step_lane(Lane::background);
+  const auto step = step_lane(Lane::ordered);
+  if (step && *step != Step::waiting && *step != Step::yield) return true;
+  return step_behind_edits() || step == Step::yield;
 }
 
-bool GpuThread::step_lane(Lane lane) {
+bool GpuThread::step_behind_edits() {
+  if (step_frames()) return true;
+  const auto step = step_lane(Lane::background);
+  return step && *step != Step::waiting;
+}
+
+std::optional<Step> GpuThread::step_lane(Lane lane) {
   auto& current = current_[static_cast<int>(lane)];
   if (!current) {
     std::lock_guard lock(mutex_);
-    if (queue(lane).empty()) return false;
+    if (queue(lane).empty()) return std::nullopt;
     current = std::move(queue(lane).front());
     queue(lane).pop_front();
   }
   const Step step = current->step();
   if (step == Step::done) current.reset();
-  return step != Step::waiting;
+  return step;
 }
 
 // The oldest frame that can go on does; a new one starts when all others wait for the GPU.

@@ -16,6 +16,7 @@ namespace strata::render {
 // What a job's step tells the GPU thread. A step takes a few milliseconds at most; long work is many steps.
 enum class Step {
   more,     // call again
+  yield,    // call again, after a step of the lanes behind: a long job whose own lane waits for it
   waiting,  // for the GPU: let others run, then call again
   done,
 };
@@ -32,7 +33,8 @@ enum class Lane {
 };
 
 // The thread that owns the GPU. Ordered jobs go before frames, frames before background; a waiting job lets the next
-// kind run meanwhile, but nothing overtakes it in its own lane. Frames wait while an ordered job can go on.
+// kind run meanwhile, but nothing overtakes it in its own lane. Frames wait while an ordered job can go on, unless it
+// yields.
 class GpuThread {
  public:
   struct Hooks {
@@ -58,15 +60,16 @@ class GpuThread {
   // Runs `reply` on the GPU thread before any other work; on this thread when it has stopped.
   void post_reply(std::function<void()> reply);
   void wake();  // a frame was queued
-  bool on_this_thread() const { return std::this_thread::get_id() == thread_.get_id(); }
 
  private:
   using Clock = std::chrono::steady_clock;
 
   void run();
   bool run_some();  // false when there was nothing that could go on
-  bool step_lane(Lane lane);
+  // The step of the lane's first job; nothing where the lane is empty.
+  std::optional<Step> step_lane(Lane lane);
   bool step_frames();
+  bool step_behind_edits();
   void run_replies();
   void recover();
   void abort_all(const Problem& problem);

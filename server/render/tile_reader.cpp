@@ -1,5 +1,7 @@
 #include "render/tile_reader.h"
 
+#include <algorithm>
+#include <cassert>
 #include <cstring>
 
 #include "shared/pages.h"
@@ -26,17 +28,23 @@ Result<TileReader> TileReader::create(const std::filesystem::path& shader_dir, g
     if (!program) return tl::unexpected(program.error());
     reader.programs_[width_index(texel_bytes)] = std::move(*program);
   }
+  auto pages = gl::Buffer::create(kMaxPages * sizeof(PageId), gl::Buffer::Use::fixed, "tile read pages");
+  if (!pages) return tl::unexpected(pages.error());
+  reader.pages_ = std::move(*pages);
   return reader;
 }
 
-Result<gl::Readback> TileReader::begin(const PagePool& pool, std::span<const PageId> pages) {
-  auto readback = readback_->begin(pages.size() * bytes_per_tile(pool));
-  if (!readback) return readback;
-  if (auto sent = pages_.replace(pages); !sent) return tl::unexpected(sent.error());
+Result<gl::Readback> TileReader::make_room(const PagePool& pool, std::size_t pages) const {
+  return readback_->begin(std::min(pages, kMaxPages) * bytes_per_tile(pool));
+}
+
+void TileReader::begin(const PagePool& pool, std::span<const PageId> pages, gl::Readback& room) {
+  assert(pages.size() * bytes_per_tile(pool) <= room.size());
+  pages_.upload_values(0, pages);
   const gl::Program& program = programs_[width_index(pool.texel_bytes())];
   program.use();
   pages_.bind_storage(0);
-  readback->buffer().bind_storage(1);
+  room.buffer().bind_storage(1);
   // Runs of pages in one chunk share a dispatch.
   for (std::size_t first = 0; first < pages.size();) {
     const auto chunk = pages[first] >> shader::kPageChunkShift;
@@ -48,8 +56,7 @@ Result<gl::Readback> TileReader::begin(const PagePool& pool, std::span<const Pag
     glDispatchCompute(kRunsPerTile / kRunsPerGroup, static_cast<GLuint>(last - first), 1);
     first = last;
   }
-  readback->submit();
-  return readback;
+  room.submit();
 }
 
 TileData TileReader::tile(const gl::Readback& readback, const PagePool& pool, std::size_t index) {

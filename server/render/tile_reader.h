@@ -8,7 +8,6 @@
 #include "gl/program.h"
 #include "gl/readback.h"
 #include "render/page_pool.h"
-#include "render/stream_buffer.h"
 
 namespace strata::render {
 
@@ -19,14 +18,17 @@ class TileReader {
 
   static Result<TileReader> create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback);
 
-  // Starts reading up to kMaxPages pages; they come back in the order given.
-  Result<gl::Readback> begin(const PagePool& pool, std::span<const PageId> pages);
+  // Room for reading up to `pages` pages at a time: what can fail of a read, so that it can be had before what is read
+  // is changed.
+  Result<gl::Readback> make_room(const PagePool& pool, std::size_t pages) const;
+  // Starts reading pages, which come back in the order given. `room` must hold them.
+  void begin(const PagePool& pool, std::span<const PageId> pages, gl::Readback& room);
   static TileData tile(const gl::Readback& readback, const PagePool& pool, std::size_t index);
 
  private:
   gl::ReadbackPool* readback_ = nullptr;
   std::array<gl::Program, 3> programs_;
-  StreamBuffer pages_{"tile read pages"};
+  gl::Buffer pages_;
 };
 
 }  // namespace strata::render

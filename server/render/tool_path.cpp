@@ -6,6 +6,9 @@
 namespace strata::render {
 namespace {
 
+// Covers any window, and its square is still a float.
+constexpr double kLargestRadius_px = 1e9;
+
 PixelBox join(const PixelBox& a, const PixelBox& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
@@ -38,13 +41,15 @@ PixelBox box_of(const shader::EditSegment& s) {
 ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii_px) {
   ToolPath path;
   const auto point = [&](std::size_t i) { return glm::dvec2(stroke.path[i].x, stroke.camera.height - stroke.path[i].y); };
+  const auto radius = [&](std::size_t i) { return std::min(radii_px[i], kLargestRadius_px); };
   std::size_t from = 0;
   for (std::size_t i = 1; i < stroke.path.size(); ++i) {
-    if (point(i) == point(from) && radii_px[i] == radii_px[from]) continue;
-    path.segments.push_back(make_segment(point(from), point(i), radii_px[from], radii_px[i], stroke.shape));
+    if (point(i) == point(from) && radius(i) == radius(from)) continue;
+    path.segments.push_back(make_segment(point(from), point(i), radius(from), radius(i), stroke.shape));
     from = i;
   }
-  if (path.segments.empty()) path.segments.push_back(make_segment(point(0), point(0), radii_px[0], radii_px[0], stroke.shape));
+  if (path.segments.empty())
+    path.segments.push_back(make_segment(point(0), point(0), radius(0), radius(0), stroke.shape));
   for (std::size_t i = 0; i < path.segments.size(); ++i) {
     path.boxes.push_back(box_of(path.segments[i]));
     const PixelBox& box = path.boxes.back();
@@ -53,6 +58,10 @@ ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii
     path.box = i == 0 ? box : join(path.box, box);
   }
   return path;
+}
+
+double view_scale(const Camera& camera) {
+  return std::cbrt(std::abs(glm::determinant(glm::dmat3(camera.view))));
 }
 
 double w_at_depth(const Camera& camera, double depth) {
@@ -64,7 +73,8 @@ double w_at_depth(const Camera& camera, double depth) {
 
 std::vector<double> radii_from_depths(const StrokeBatch& stroke, std::span<const float> depths, double fallback_w) {
   const std::size_t count = stroke.path.size();
-  const double scale = 0.5 * stroke.camera.height * std::abs(stroke.camera.projection[1][1]);
+  const double scale =
+      view_scale(stroke.camera) * 0.5 * stroke.camera.height * std::abs(stroke.camera.projection[1][1]);
   std::vector<double> ws(count, 0);
   std::vector<std::size_t> distance(count, count);  // to the path point the depth is from
   const auto spread = [&](std::size_t i, std::size_t from) {

@@ -61,8 +61,11 @@ class PaperPeer {
       buffers_ = must(render::MeshBuffers::create(scene.mesh.geometry, memory_));
       while (!buffers_->upload_slice()) {
       }
-      depth_ = must(depths_->get({1, scene.camera.view, scene.camera.projection, scene.camera.width, scene.camera.height},
-                                 *buffers_, scene.camera));
+      depth_ = must(
+          depths_->start({1, scene.camera.view, scene.camera.projection, scene.camera.width, scene.camera.height}));
+      render::MeshProgress progress;
+      while (!depths_->draw_slice(depth_, *buffers_, scene.camera, progress)) {
+      }
       glFinish();
     });
   }

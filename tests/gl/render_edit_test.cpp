@@ -1,6 +1,8 @@
+#include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <set>
 
 #include "support/edit_oracle.h"
@@ -157,6 +159,77 @@ TEST(Edit, a_radius_in_model_units_grows_towards_the_eye_along_a_segment) {
   }
   EXPECT_GT(radii[1], radii[0] * 1.1);
   EXPECT_EQ(compare(oracle_edit(scene, stroke, radii, depth), outcome).surface, 0);
+}
+
+TEST(Edit, a_radius_in_model_units_does_not_depend_on_the_units_of_the_view) {
+  TestRenderer renderer;
+  const auto scene = make_scene(flat_square(), 1024);
+  const auto model = renderer.add(scene);
+  const auto camera = perspective_camera({0, 0, 2}, {0, 0, 0}, 800, 600);
+  const auto written_from = [&](const Camera& from) {
+    auto stroke = dab(from, 400, 300, 0);
+    stroke.radius_world = 0.2;
+    return written_texels(renderer.paint(renderer.add_layer(model, ValueType::u8, 1024), stroke));
+  };
+  auto scaled = camera;  // sees the same: only the units of its view space are others
+  scaled.view = glm::scale(glm::dmat4(1.0), glm::dvec3(2.5)) * camera.view;
+  EXPECT_NEAR(written_from(scaled), written_from(camera), 20);
+}
+
+TEST(Edit, a_radius_far_beyond_the_window_paints_all_that_is_seen) {
+  TestRenderer renderer;
+  const auto scene = make_scene(flat_square(), 1024);
+  const auto model = renderer.add(scene);
+  const auto camera = perspective_camera({0.1, 0, 0.5}, {0.1, 0, 0}, 800, 600);
+  const auto written_by = [&](double radius_px, double radius_world) {
+    auto stroke = dab(camera, 300, 200, radius_px);
+    stroke.radius_world = radius_world;
+    return written_texels(renderer.paint(renderer.add_layer(model, ValueType::u8, 1024), stroke));
+  };
+  const int all = written_by(10'000, 0);
+  EXPECT_GT(all, 50'000);
+  EXPECT_EQ(written_by(0, 1e10), all);
+  EXPECT_EQ(written_by(1e300, 0), all);
+}
+
+// While one lives on the GPU thread, the driver refuses to map the buffer after the next `granted` ones.
+class MapRefusal {
+ public:
+  explicit MapRefusal(int granted) : real_(epoxy_glMapNamedBufferRange) {
+    granted_ = granted;
+    next_ = real_;
+    epoxy_glMapNamedBufferRange = [](GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access) -> void* {
+      return granted_-- == 0 ? nullptr : next_(buffer, offset, length, access);
+    };
+  }
+  ~MapRefusal() { epoxy_glMapNamedBufferRange = real_; }
+
+ private:
+  const PFNGLMAPNAMEDBUFFERRANGEPROC real_;
+  static inline PFNGLMAPNAMEDBUFFERRANGEPROC next_;
+  static inline int granted_;
+};
+
+TEST(Edit, a_stroke_that_is_refused_for_want_of_memory_has_painted_nothing) {
+  const auto scene = make_scene(flat_square(), 256);
+  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 200, 200, 0.5);
+  int refusals = 0;
+  for (bool painted = false; !painted; ++refusals) {
+    TestRenderer renderer;  // a new one has no buffer that would serve again
+    const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 256);
+    std::optional<MapRefusal> refusal;
+    renderer->run_on_gpu_thread_for_test([&] { refusal.emplace(refusals); });
+    const auto outcome = await<render::StrokeOutcome>(
+        [&](auto done) { renderer->paint(layer, dab(camera, 60, 60, 40, 7), std::move(done)); });
+    renderer->run_on_gpu_thread_for_test([&] { refusal.reset(); });
+    painted = outcome.has_value();
+    if (painted) break;
+    EXPECT_EQ(outcome.error().status, 503);
+    for (const auto& tile : renderer.paint(layer, dab(camera, 30, 60, 3, 9)).tiles) {
+      EXPECT_TRUE(tile.after.valid == tile.written) << "refused at buffer " << refusals;
+    }
+  }
+  EXPECT_GE(refusals, 3) << "the depth grid, the rows and the tiles are read back";
 }
 
 TEST(Edit, erasing_clears_value_and_flag_and_tells_what_it_touched) {

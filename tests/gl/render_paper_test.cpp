@@ -9,7 +9,6 @@
 
 #include "bench/peers/paper.h"
 #include "mesh/load.h"
-#include "render/depth_buffers.h"
 #include "render/edit_pass.h"
 #include "support/gl_scene.h"
 #include "support/shader_dirs.h"
@@ -135,7 +134,7 @@ TEST(Paper, surface_texels_are_those_of_the_papers_algorithms_on_random_cameras_
       auto mesh = std::move(*render::MeshBuffers::create(scene->geometry, memory));
       while (!mesh->upload_slice()) {
       }
-      const auto depth = *depths.get({1, camera.view, camera.projection, camera.width, camera.height}, *mesh, camera);
+      const auto depth = draw_depth(depths, *mesh, camera);
       paper->clear();
       paper->edit(camera, depth->texture, {x, y}, radius, 200);
       mask = paper->mask();

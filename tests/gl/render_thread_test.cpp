@@ -139,6 +139,26 @@ TEST_F(Lanes, nothing_overtakes_an_edit_that_waits_for_the_gpu_but_a_frame) {
   EXPECT_EQ(finish(), (std::vector<std::string>{"frame", "waiting edit", "next edit"}));
 }
 
+TEST_F(Lanes, an_edit_that_yields_shares_the_gpu_with_frames_and_uploads_but_not_with_other_edits) {
+  start();
+  Gate gate;
+  thread_->post(Lane::ordered, gate.job());
+  thread_->post(Lane::ordered, {[this, left = std::make_shared<int>(4)] {
+                                  note("slice");
+                                  return --*left > 0 ? Step::yield : Step::done;
+                                },
+                                [](const Problem&) {}});
+  thread_->post(Lane::ordered, noted("next edit"));
+  thread_->post(Lane::background, noted("upload"));
+  {
+    std::lock_guard lock(mutex_);
+    frames_.push_back(noted("frame"));
+  }
+  gate.open.set_value();
+  // One step takes the frame from the queue, the next does it.
+  EXPECT_EQ(finish(), (std::vector<std::string>{"slice", "slice", "frame", "slice", "upload", "slice", "next edit"}));
+}
+
 TEST_F(Lanes, a_full_lane_refuses_but_not_what_must_not_be_lost) {
   start(2);
   Gate gate;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "render/depth_buffers.h"
 #include "support/shader_dirs.h"
 
 namespace strata::test {
@@ -144,6 +143,15 @@ void TestRenderer::write(render::LayerHandle layer, std::vector<render::TileUplo
   expect(await<void>([&](auto done) { renderer_->write_tiles(layer, std::move(tiles), std::move(done)); }));
 }
 
+std::shared_ptr<render::DepthBuffer> draw_depth(render::DepthBuffers& depths, const render::MeshBuffers& mesh,
+                                                const Camera& camera) {
+  auto buffer = expect(depths.start({1, camera.view, camera.projection, camera.width, camera.height}));
+  render::MeshProgress progress;
+  while (!depths.draw_slice(buffer, mesh, camera, progress)) {
+  }
+  return buffer;
+}
+
 std::vector<float> TestRenderer::depth(const Scene& scene, const Camera& camera) {
   std::vector<float> pixels(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
   renderer_->run_on_gpu_thread_for_test([&] {
@@ -153,7 +161,7 @@ std::vector<float> TestRenderer::depth(const Scene& scene, const Camera& camera)
     auto mesh = expect(render::MeshBuffers::create(scene.geometry, memory));
     while (!mesh->upload_slice()) {
     }
-    const auto buffer = expect(depths.get({1, camera.view, camera.projection, camera.width, camera.height}, *mesh, camera));
+    const auto buffer = draw_depth(depths, *mesh, camera);
     glGetTextureImage(buffer->texture.id(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(pixels.size() * sizeof(float)),
                       pixels.data());
   });

@@ -6,6 +6,7 @@
 
 #include "mesh/geometry.h"
 #include "mesh/surface_map.h"
+#include "render/depth_buffers.h"
 #include "render/renderer.h"
 
 namespace strata::test {
@@ -55,6 +56,10 @@ class TestRenderer {
  private:
   std::unique_ptr<render::Renderer> renderer_;
 };
+
+// Of the whole mesh; with a context current.
+std::shared_ptr<render::DepthBuffer> draw_depth(render::DepthBuffers& depths, const render::MeshBuffers& mesh,
+                                                const Camera& camera);
 
 // A dab of a disc with a u8 value.
 StrokeBatch dab(const Camera& camera, double x, double y, double radius_px, std::uint32_t value_bits = 7);
