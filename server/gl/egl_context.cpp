@@ -129,7 +129,8 @@ EglContext::EglContext(EglContext&& other) noexcept
     : display_(other.display_),
       context_(std::exchange(other.context_, EGL_NO_CONTEXT)),
       platform_(std::move(other.platform_)),
-      robust_(other.robust_) {}
+      robust_(other.robust_),
+      lost_(other.lost_) {}
 
 EglContext& EglContext::operator=(EglContext&& other) noexcept {
   if (this != &other) {
@@ -138,6 +139,7 @@ EglContext& EglContext::operator=(EglContext&& other) noexcept {
     context_ = std::exchange(other.context_, EGL_NO_CONTEXT);
     platform_ = std::move(other.platform_);
     robust_ = other.robust_;
+    lost_ = other.lost_;
   }
   return *this;
 }
@@ -151,6 +153,10 @@ void EglContext::destroy() {
   eglDestroyContext(display_, std::exchange(context_, EGL_NO_CONTEXT));
 }
 
-bool EglContext::lost() const { return robust_ && glGetGraphicsResetStatus() != GL_NO_ERROR; }
+// GL may tell a reset only once, whoever asks: it is kept.
+bool EglContext::lost() {
+  lost_ = lost_ || (robust_ && glGetGraphicsResetStatus() != GL_NO_ERROR);
+  return lost_;
+}
 
 }  // namespace strata::gl

@@ -27,9 +27,8 @@ class EglContext {
 
   explicit operator bool() const { return context_ != EGL_NO_CONTEXT; }
   const std::string& platform() const { return platform_; }
-  bool robust() const { return robust_; }
-  // True after a reset of the device: every GL object is gone.
-  bool lost() const;
+  // True from a reset of the device on: every GL object is gone.
+  bool lost();
 
  private:
   void destroy();
@@ -38,6 +37,7 @@ class EglContext {
   EGLContext context_ = EGL_NO_CONTEXT;
   std::string platform_;
   bool robust_ = false;
+  bool lost_ = false;
 };
 
 }  // namespace strata::gl

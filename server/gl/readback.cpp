@@ -8,7 +8,6 @@ namespace strata::gl {
 namespace {
 
 constexpr std::size_t kSmallest = std::size_t{64} << 10;
-constexpr std::uint64_t kSecond_ns = 1'000'000'000;
 
 }  // namespace
 
@@ -38,11 +37,6 @@ void Readback::release() {
 void Readback::submit() {
   glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   fence_ = Fence::place();
-}
-
-void Readback::wait() {
-  while (!fence_.passed(kSecond_ns)) {
-  }
 }
 
 Result<Readback> ReadbackPool::begin(std::size_t bytes) {

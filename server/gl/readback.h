@@ -26,7 +26,6 @@ class Readback {
   std::size_t size() const { return size_; }
   void submit();
   bool ready(std::uint64_t timeout_ns = 0) { return fence_.passed(timeout_ns); }
-  void wait();
   std::span<const std::byte> data() const { return buffer_.mapped().first(size_); }
 
  private:

@@ -22,8 +22,6 @@ shader::EditUniforms make_uniforms(const StrokeBatch& stroke, const glm::mat4& c
   return uniforms;
 }
 
-std::size_t width_index(int texel_bytes) { return texel_bytes == 1 ? 0 : texel_bytes == 2 ? 1 : 2; }
-
 }  // namespace
 
 // Window depth changes with the distance t along the axis by |P22 P33 - P32 P23| / (2 w²) per unit; a view matrix that
@@ -41,11 +39,11 @@ DepthBias slope_aware_bias(const Camera& camera, double model_diagonal) {
 Result<EditPass> EditPass::create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback) {
   EditPass pass;
   pass.readback_ = &readback;
-  for (const int texel_bytes : {1, 2, 4}) {
-    auto program = gl::Program::load(shader_dir, {"edit_pass.comp"}, {image_format_define(texel_bytes)});
-    if (!program) return tl::unexpected(program.error());
-    pass.programs_[width_index(texel_bytes)] = std::move(*program);
-  }
+  auto programs = ProgramPerWidth::load(shader_dir, "edit_pass.comp", [](int texel_bytes) {
+    return "TEXEL_FORMAT r" + std::to_string(8 * texel_bytes) + "ui";
+  });
+  if (!programs) return tl::unexpected(programs.error());
+  pass.programs_ = std::move(*programs);
   pass.timer_ = gl::TimerQuery::create("edit");
   return pass;
 }
@@ -85,10 +83,8 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
     const PageId page = layer.page(block.tile);
     return page == shader::kNoPage ? 0u : page >> shader::kPageChunkShift;
   };
-  if (layer.pool().chunk_count() > 1) {
-    std::stable_sort(edit.blocks.begin(), edit.blocks.end(),
-                     [&](const CandidateBlock& a, const CandidateBlock& b) { return chunk_of(a) < chunk_of(b); });
-  }
+  std::stable_sort(edit.blocks.begin(), edit.blocks.end(),
+                   [&](const CandidateBlock& a, const CandidateBlock& b) { return chunk_of(a) < chunk_of(b); });
   std::vector<shader::EditBlock> blocks;
   blocks.reserve(edit.blocks.size());
   for (const CandidateBlock& block : edit.blocks) {
@@ -106,7 +102,7 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
   edit.bytes_up = sizeof uniforms + blocks.size() * sizeof(shader::EditBlock) + path.segments.size() * sizeof(shader::EditSegment) +
                   candidates.segment_lists.size() * sizeof(std::uint32_t);
 
-  const gl::Program& program = programs_[width_index(layer.pool().texel_bytes())];
+  const gl::Program& program = programs_.of(layer.pool().texel_bytes());
   program.use();
   uniforms_.bind_uniform(0);
   blocks_.bind_storage(0);
@@ -121,9 +117,9 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
     const auto chunk = chunk_of(edit.blocks[first]);
     std::size_t last = first;
     while (last < edit.blocks.size() && chunk_of(edit.blocks[last]) == chunk) ++last;
-    if (static_cast<int>(chunk) < layer.pool().chunk_count()) {
-      layer.pool().values(static_cast<int>(chunk)).bind_image(0, GL_WRITE_ONLY);
-      layer.pool().valid(static_cast<int>(chunk)).bind_image(1, GL_WRITE_ONLY);
+    if (layer.pool().has_chunk(chunk)) {
+      layer.pool().values(chunk).bind_image(0, GL_WRITE_ONLY);
+      layer.pool().valid(chunk).bind_image(1, GL_WRITE_ONLY);
     }
     const auto count = static_cast<GLuint>(last - first);
     program.set(0, static_cast<GLuint>(first));

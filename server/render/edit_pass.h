@@ -1,17 +1,16 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <map>
 #include <vector>
 
-#include "gl/program.h"
 #include "gl/readback.h"
 #include "gl/timer_query.h"
 #include "render/block_culler.h"
 #include "render/layer_textures.h"
 #include "render/stream_buffer.h"
 #include "render/surface_map_textures.h"
+#include "render/texel_width.h"
 
 namespace strata::render {
 
@@ -51,7 +50,7 @@ class EditPass {
   Result<std::vector<TileAddress>> make_pages(const std::vector<CandidateBlock>& blocks, LayerTextures& layer);
 
   gl::ReadbackPool* readback_ = nullptr;
-  std::array<gl::Program, 3> programs_;  // of 1, 2 and 4 bytes a texel
+  ProgramPerWidth programs_;
   gl::TimerQuery timer_;
   StreamBuffer uniforms_{"edit uniforms"}, blocks_{"edit blocks"}, segments_{"edit segments"}, lists_{"edit segment lists"};
 };

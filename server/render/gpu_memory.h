@@ -32,10 +32,10 @@ class GpuMemory {
 
   explicit GpuMemory(std::uint64_t budget_bytes) : budget_bytes_(budget_bytes) {}
   void set_budget(std::uint64_t budget_bytes) { budget_bytes_ = budget_bytes; }
-  std::uint64_t budget() const { return budget_bytes_; }
   std::uint64_t used() const { return used_bytes_; }
 
-  // Frees one thing that can be made again (a view's buffers, a depth buffer); false when there is none.
+  // Frees one thing that is not used or can be made again (empty pages, a depth buffer, a view's buffers); false when
+  // there is none.
   void set_evictor(std::function<bool()> evict_one) { evict_one_ = std::move(evict_one); }
   // A Problem 503 when `bytes` do not fit even after eviction; `what` names their use in it.
   Result<Share> reserve(std::uint64_t bytes, std::string_view what);

@@ -91,8 +91,12 @@ Result<void> GpuScene::load() {
   return keep(shade_pass_, ShadePass::create(dir, info_.software));
 }
 
-// Depth buffers of cameras that no view has go first, then the buffers of the view that was not drawn for the longest time.
+// Pages that no layer uses go first, then depth buffers of cameras that no view has, then the buffers of the view that
+// was not drawn for the longest time.
 bool GpuScene::evict_one() {
+  for (PagePool* pool : {&pool_1_, &pool_2_, &pool_4_}) {
+    if (pool->drop_empty_chunk()) return true;
+  }
   if (depths_ && depths_->evict_one()) return true;
   View* oldest = nullptr;
   for (auto& [handle, view] : views_) {

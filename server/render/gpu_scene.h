@@ -33,7 +33,7 @@ class GpuScene {
   GpuScene& operator=(const GpuScene&) = delete;
   ~GpuScene();
 
-  bool lost() const { return context_.lost(); }
+  bool lost() { return context_.lost(); }
   const GpuInfo& info() const { return info_; }
   const RendererOptions& options() const { return options_; }
   GpuMemory& memory() { return memory_; }

@@ -29,7 +29,7 @@ struct Job {
 
 enum class Lane {
   ordered,     // edits and layer changes: one after the other, first of all
-  background,  // uploads of models and surface maps: one after the other, last of all
+  background,  // uploads of models, surface maps and layers that are opened: one after the other, last of all
 };
 
 // The thread that owns the GPU. Ordered jobs go before frames, frames before background; a waiting job lets the next

@@ -31,10 +31,17 @@ LayerTextures::~LayerTextures() {
 
 Result<PageId> LayerTextures::ensure_page(TileAddress tile) {
   if (const PageId present = page(tile); present != shader::kNoPage) return present;
+  auto added = ensure_page_for_upload(tile);
+  if (added) pool_.clear(*added);
+  return added;
+}
+
+Result<PageId> LayerTextures::ensure_page_for_upload(TileAddress tile) {
+  if (const PageId present = page(tile); present != shader::kNoPage) return present;
   auto added = pool_.allocate();
   if (!added) return added;
   tables_.set(index(tile), *added);
-  chunks_ |= 1u << (*added >> shader::kPageChunkShift);
+  ++pages_in_chunk_[*added >> shader::kPageChunkShift];
   *bytes_ += pool_.bytes_per_page();
   return added;
 }
@@ -43,6 +50,7 @@ void LayerTextures::free_page(TileAddress tile) {
   const PageId present = page(tile);
   if (present == shader::kNoPage) return;
   pool_.free(present);
+  --pages_in_chunk_[present >> shader::kPageChunkShift];
   tables_.set(index(tile), shader::kNoPage);
   *bytes_ -= pool_.bytes_per_page();
 }

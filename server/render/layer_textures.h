@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <memory>
 
@@ -20,14 +21,16 @@ class LayerTextures {
 
   ValueType type() const { return type_; }
   int resolution() const { return resolution_; }
-  int tiles_per_side() const { return tiles_per_side_; }
   PagePool& pool() const { return pool_; }
   std::uint32_t table_offset() const { return table_offset_; }
-  std::uint32_t chunks() const { return chunks_; }  // bit per chunk that may hold a page of it
+  bool has_page_in(std::uint32_t chunk) const { return pages_in_chunk_[chunk] > 0; }
 
   bool contains(TileAddress tile) const { return tile.x < tiles_per_side_ && tile.y < tiles_per_side_; }
   PageId page(TileAddress tile) const { return tables_.at(index(tile)); }  // kNoPage when empty
+  // An empty page where there is none.
   Result<PageId> ensure_page(TileAddress tile);
+  // For callers that upload the whole tile next: a new page's content is undefined.
+  Result<PageId> ensure_page_for_upload(TileAddress tile);
   void free_page(TileAddress tile);
 
   // Table and pages. The counter outlives the layer, so that any thread may ask.
@@ -43,7 +46,7 @@ class LayerTextures {
   PageTables& tables_;
   PagePool& pool_;
   const std::uint32_t table_offset_;
-  std::uint32_t chunks_ = 0;
+  std::array<std::uint32_t, PagePool::kMaxChunks> pages_in_chunk_{};
   std::shared_ptr<std::atomic<std::uint64_t>> bytes_;
 };
 

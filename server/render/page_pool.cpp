@@ -2,40 +2,34 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
+#include <numeric>
+#include <string>
 
+#include "render/texel_width.h"
 #include "shared/pages.h"
 
 namespace strata::render {
 namespace {
 
 constexpr int kSliceSize = 2048;
-constexpr std::size_t kMaxChunks = 16;   // 4 bits in a shade layer's units
-constexpr int kMaxSlicesPerChunk = 512;
+constexpr unsigned kMaxSlicesPerChunk = 512;
 constexpr std::uint32_t kCellsPerSlice = shader::kCellsPerSide * shader::kCellsPerSide;
 
 struct Place {
-  int chunk, slice, x, y;
+  std::uint32_t chunk;
+  int slice, x, y;
 };
 
 Place place_of(PageId page) {
   const auto cell = page & shader::kPageCellMask;
-  return {static_cast<int>(page >> shader::kPageChunkShift),
-          static_cast<int>((page >> shader::kPageCellBits) & shader::kPageSliceMask),
-          static_cast<int>(cell % shader::kCellsPerSide) * kTileSize, static_cast<int>(cell / shader::kCellsPerSide) * kTileSize};
+  return {page >> shader::kPageChunkShift, static_cast<int>((page >> shader::kPageCellBits) & shader::kPageSliceMask),
+          static_cast<int>(cell % shader::kCellsPerSide) * kTileSize,
+          static_cast<int>(cell / shader::kCellsPerSide) * kTileSize};
 }
 
 }  // namespace
-
-GLenum texel_format(int texel_bytes) { return texel_bytes == 1 ? GL_R8UI : texel_bytes == 2 ? GL_R16UI : GL_R32UI; }
-
-GLenum texel_component(int texel_bytes) {
-  return texel_bytes == 1 ? GL_UNSIGNED_BYTE : texel_bytes == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
-}
-
-std::string image_format_define(int texel_bytes) {
-  return std::string("TEXEL_FORMAT ") + (texel_bytes == 1 ? "r8ui" : texel_bytes == 2 ? "r16ui" : "r32ui");
-}
 
 Result<PageId> PagePool::allocate() {
   if (free_.empty()) {
@@ -43,11 +37,24 @@ Result<PageId> PagePool::allocate() {
   }
   const PageId page = free_.back();
   free_.pop_back();
-  clear(page);
+  ++chunks_[page >> shader::kPageChunkShift].used_pages;
   return page;
 }
 
-void PagePool::free(PageId page) { free_.push_back(page); }
+void PagePool::free(PageId page) {
+  free_.push_back(page);
+  --chunks_[page >> shader::kPageChunkShift].used_pages;
+}
+
+bool PagePool::drop_empty_chunk() {
+  const auto empty =
+      std::find_if(chunks_.begin(), chunks_.end(), [](const Chunk& c) { return c.values && c.used_pages == 0; });
+  if (empty == chunks_.end()) return false;
+  const auto number = static_cast<std::uint32_t>(empty - chunks_.begin());
+  std::erase_if(free_, [&](PageId page) { return page >> shader::kPageChunkShift == number; });
+  *empty = {};
+  return true;
+}
 
 void PagePool::clear(PageId page) {
   const Place p = place_of(page);
@@ -71,32 +78,38 @@ void PagePool::upload(PageId page, const TileData& data) {
 }
 
 Result<void> PagePool::add_chunk() {
-  if (chunks_.size() >= kMaxChunks) {
+  const auto unused = std::find_if(chunks_.begin(), chunks_.end(), [](const Chunk& chunk) { return !chunk.values; });
+  const auto number = static_cast<std::size_t>(unused - chunks_.begin());
+  if (number >= kMaxChunks) {
     return fail(503, "GPU memory used up", "No more than 16 texture chunks of one value width can be used.");
   }
-  const int slices = chunks_.empty() ? 1 : std::min(chunks_.back().values.layers() * 2, kMaxSlicesPerChunk);
-  auto added = add_chunk_of(slices);
-  // Near the budget a single slice may still fit.
-  if (!added && slices > 1) added = add_chunk_of(1);
-  return added;
+  const int present = std::accumulate(chunks_.begin(), chunks_.end(), 0,
+                                      [](int sum, const Chunk& chunk) { return sum + chunk.values.layers(); });
+  // 1, 2, 4 … where none was dropped.
+  int slices = static_cast<int>(std::min(std::bit_floor(static_cast<unsigned>(present) + 1), kMaxSlicesPerChunk));
+  auto chunk = make_chunk(number, slices);
+  // Near the budget fewer may still fit.
+  while (!chunk && slices > 1) chunk = make_chunk(number, slices /= 2);
+  if (!chunk) return tl::unexpected(chunk.error());
+  if (number == chunks_.size()) chunks_.emplace_back();
+  chunks_[number] = std::move(*chunk);
+  // In reverse, so that pages are taken in ascending order.
+  for (auto i = static_cast<std::uint32_t>(slices) * kCellsPerSlice; i-- > 0;) {
+    free_.push_back(static_cast<std::uint32_t>(number) << shader::kPageChunkShift | i);
+  }
+  return {};
 }
 
-Result<void> PagePool::add_chunk_of(int slices) {
+Result<PagePool::Chunk> PagePool::make_chunk(std::size_t number, int slices) {
   const std::uint64_t bytes = std::uint64_t{kSliceSize} * kSliceSize * static_cast<unsigned>(slices * (texel_bytes_ + 1));
   auto share = memory_.reserve(bytes, "layer tiles");
   if (!share) return tl::unexpected(share.error());
-  const std::string name = "pages of " + std::to_string(texel_bytes_) + " bytes, chunk " + std::to_string(chunks_.size());
+  const std::string name = "pages of " + std::to_string(texel_bytes_) + " bytes, chunk " + std::to_string(number);
   auto values = gl::Texture::create_array(texel_format(texel_bytes_), kSliceSize, kSliceSize, slices, name);
   if (!values) return tl::unexpected(values.error());
   auto valid = gl::Texture::create_array(GL_R8UI, kSliceSize, kSliceSize, slices, name + ", valid");
   if (!valid) return tl::unexpected(valid.error());
-  const auto chunk = static_cast<std::uint32_t>(chunks_.size());
-  chunks_.push_back({std::move(*values), std::move(*valid), std::move(*share)});
-  // In reverse, so that pages are taken in ascending order.
-  for (auto i = static_cast<std::uint32_t>(slices) * kCellsPerSlice; i-- > 0;) {
-    free_.push_back(chunk << shader::kPageChunkShift | i);
-  }
-  return {};
+  return Chunk{std::move(*values), std::move(*valid), std::move(*share), 0};
 }
 
 }  // namespace strata::render

@@ -182,6 +182,10 @@ void Renderer::write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Don
   impl_->post(Lane::ordered, std::make_shared<TilesUpload>(layer, std::move(tiles), std::move(done)));
 }
 
+void Renderer::load_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done) {
+  impl_->post(Lane::background, std::make_shared<TilesUpload>(layer, std::move(tiles), std::move(done)));
+}
+
 void Renderer::paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done) {
   impl_->post(Lane::ordered, std::make_shared<PaintJob>(layer, std::move(stroke), std::move(done)));
 }

@@ -90,7 +90,8 @@ struct Frame {
 
 // Owns the GPU: one thread with the EGL context and a bounded queue (invariant 1 of ARCHITECTURE.md). All functions are
 // thread-safe and return at once; callbacks run on the GPU thread and must be quick. Order: edits and layer changes in
-// the order given, before frames, before background work (uploads of models and surface maps, in slices). A full queue or
+// the order given, before frames, before background work (uploads of models, surface maps and what layers hold when a model
+// is opened, in slices). A full queue or
 // a stopped renderer answers with a Problem 503; a lost context answers pending work with a Problem 503 titled "GPU lost".
 // (Only a stopped renderer calls back on the caller's thread: there is no other left.)
 class Renderer {
@@ -114,8 +115,11 @@ class Renderer {
 
   void add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done);
   void remove_layer(LayerHandle layer);
-  // Sets whole tiles (load, fill, undo, import); done after the GPU has them. In order with strokes.
+  // Sets whole tiles (fill, undo, import); done after the GPU has them. In order with strokes.
   void write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done);
+  // The same for what a new layer holds from the start: it may be shown and painted only after `done`, and edits and frames of
+  // others go first.
+  void load_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done);
   void paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done);
 
   // Views keep a g-buffer and the last picture. Requests of one view replace each other while they wait ("latest wins"):

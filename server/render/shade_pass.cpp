@@ -25,9 +25,9 @@ std::uint32_t mode_of(PaletteMode mode) {
   return shader::kPaletteLinear;
 }
 
-void set_unit(shader::ShadeLayer& layer, int chunk, std::uint32_t unit) {
+void set_unit(shader::ShadeLayer& layer, std::uint32_t chunk, std::uint32_t unit) {
   auto& units = chunk < 8 ? layer.units_low : layer.units_high;
-  const int shift = (chunk % 8) * 4;
+  const std::uint32_t shift = (chunk % 8) * 4;
   units = (units & ~(15u << shift)) | unit << shift;
 }
 
@@ -97,8 +97,8 @@ std::vector<ShadePass::Batch> ShadePass::plan(const ShadeInput& input) {
   for (const ShadeInput::Layer& layer : input.layers) {
     const auto described = describe(layer);
     bool listed = false;  // in the last batch
-    for (int i = 0; i < layer.textures->pool().chunk_count(); ++i) {
-      if (!(layer.textures->chunks() >> i & 1u)) continue;
+    for (std::uint32_t i = 0; i < PagePool::kMaxChunks; ++i) {
+      if (!layer.textures->has_page_in(i)) continue;
       const Chunk chunk{&layer.textures->pool(), i};
       if (!can_take(batches.back(), chunk, listed)) {
         batches.emplace_back();

@@ -47,7 +47,7 @@ class ShadePass {
  private:
   struct Chunk {
     const PagePool* pool;
-    int index;
+    std::uint32_t index;
     bool operator==(const Chunk&) const = default;
   };
   struct Batch {

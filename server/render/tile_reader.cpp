@@ -16,18 +16,15 @@ std::size_t bytes_per_tile(const PagePool& pool) {
   return kMaskBytes + static_cast<std::size_t>(kTexelsPerTile * pool.texel_bytes());
 }
 
-std::size_t width_index(int texel_bytes) { return texel_bytes == 1 ? 0 : texel_bytes == 2 ? 1 : 2; }
-
 }  // namespace
 
 Result<TileReader> TileReader::create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback) {
   TileReader reader;
   reader.readback_ = &readback;
-  for (const int texel_bytes : {1, 2, 4}) {
-    auto program = gl::Program::load(shader_dir, {"tile_read_pass.comp"}, {"TEXEL_BYTES " + std::to_string(texel_bytes)});
-    if (!program) return tl::unexpected(program.error());
-    reader.programs_[width_index(texel_bytes)] = std::move(*program);
-  }
+  auto programs = ProgramPerWidth::load(shader_dir, "tile_read_pass.comp",
+                                        [](int texel_bytes) { return "TEXEL_BYTES " + std::to_string(texel_bytes); });
+  if (!programs) return tl::unexpected(programs.error());
+  reader.programs_ = std::move(*programs);
   auto pages = gl::Buffer::create(kMaxPages * sizeof(PageId), gl::Buffer::Use::fixed, "tile read pages");
   if (!pages) return tl::unexpected(pages.error());
   reader.pages_ = std::move(*pages);
@@ -41,7 +38,7 @@ Result<gl::Readback> TileReader::make_room(const PagePool& pool, std::size_t pag
 void TileReader::begin(const PagePool& pool, std::span<const PageId> pages, gl::Readback& room) {
   assert(pages.size() * bytes_per_tile(pool) <= room.size());
   pages_.upload_values(0, pages);
-  const gl::Program& program = programs_[width_index(pool.texel_bytes())];
+  const gl::Program& program = programs_.of(pool.texel_bytes());
   program.use();
   pages_.bind_storage(0);
   room.buffer().bind_storage(1);
@@ -50,8 +47,8 @@ void TileReader::begin(const PagePool& pool, std::span<const PageId> pages, gl::
     const auto chunk = pages[first] >> shader::kPageChunkShift;
     std::size_t last = first;
     while (last < pages.size() && pages[last] >> shader::kPageChunkShift == chunk) ++last;
-    pool.values(static_cast<int>(chunk)).bind(0);
-    pool.valid(static_cast<int>(chunk)).bind(1);
+    pool.values(chunk).bind(0);
+    pool.valid(chunk).bind(1);
     program.set(0, static_cast<GLuint>(first));
     glDispatchCompute(kRunsPerTile / kRunsPerGroup, static_cast<GLuint>(last - first), 1);
     first = last;

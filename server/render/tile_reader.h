@@ -1,13 +1,12 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <span>
 #include <vector>
 
-#include "gl/program.h"
 #include "gl/readback.h"
 #include "render/page_pool.h"
+#include "render/texel_width.h"
 
 namespace strata::render {
 
@@ -27,7 +26,7 @@ class TileReader {
 
  private:
   gl::ReadbackPool* readback_ = nullptr;
-  std::array<gl::Program, 3> programs_;
+  ProgramPerWidth programs_;
   gl::Buffer pages_;
 };
 

@@ -7,7 +7,7 @@
 namespace strata::render {
 namespace {
 
-constexpr std::size_t kTilesPerStep = 64;
+constexpr std::size_t kTilesPreparedPerStep = 4096, kTilesWrittenPerStep = 64;
 
 bool is_empty(const TileUpload& tile) { return !tile.data || tile.data->values.empty() || !tile.data->valid.any(); }
 
@@ -53,51 +53,57 @@ Step SurfaceMapUpload::step(GpuScene& scene) {
   return Step::done;
 }
 
-Result<void> TilesUpload::prepare(LayerTextures& layer) {
-  const auto bytes = static_cast<std::size_t>(kTexelsPerTile * layer.pool().texel_bytes());
-  for (const TileUpload& tile : tiles_) {
-    if (!layer.contains(tile.address)) {
-      return fail(422, "Tile out of range", "A tile's address must lie inside the layer.", "tiles");
-    }
-    if (!is_empty(tile) && tile.data->values.size() != bytes) {
-      return fail(422, "Tile of another type", "A tile must hold 128 x 128 values of the layer's type.", "tiles");
-    }
+Step TilesUpload::step(GpuScene& scene) {
+  const auto step = advance(scene);
+  if (step) return *step;
+  if (const auto layer = scene.layer(layer_); layer) {
+    for (const TileAddress tile : fresh_) (*layer)->textures->free_page(tile);
   }
-  std::vector<TileAddress> fresh;
-  for (const TileUpload& tile : tiles_) {
-    if (is_empty(tile) || layer.page(tile.address) != shader::kNoPage) continue;
-    if (auto page = layer.ensure_page(tile.address); !page) {
-      for (const TileAddress address : fresh) layer.free_page(address);
-      return tl::unexpected(page.error());
-    }
-    fresh.push_back(tile.address);
-  }
-  return {};
+  abort(step.error());
+  return Step::done;
 }
 
-Step TilesUpload::step(GpuScene& scene) {
-  const auto refuse = [&](const Problem& problem) {
-    abort(problem);
-    return Step::done;
-  };
+Result<Step> TilesUpload::advance(GpuScene& scene) {
   auto layer = scene.layer(layer_);
-  if (!layer) return refuse(layer.error());
+  if (!layer) return tl::unexpected(layer.error());
   LayerTextures& textures = *(*layer)->textures;
-  if (!prepared_) {
-    if (auto prepared = prepare(textures); !prepared) return refuse(prepared.error());
-    prepared_ = true;
+  if (prepared_ < tiles_.size()) {
+    const std::size_t end = std::min(prepared_ + kTilesPreparedPerStep, tiles_.size());
+    for (; prepared_ < end; ++prepared_) {
+      if (auto prepared = prepare(textures, tiles_[prepared_]); !prepared) return tl::unexpected(prepared.error());
+    }
+    return Step::more;
   }
-  const std::size_t last = std::min(next_ + kTilesPerStep, tiles_.size());
-  for (; next_ < last; ++next_) {
-    const TileUpload& tile = tiles_[next_];
-    if (is_empty(tile)) textures.free_page(tile.address);
-    else if (auto page = textures.ensure_page(tile.address); page) textures.pool().upload(*page, *tile.data);
-    else return refuse(page.error());
+  const std::size_t end = std::min(written_ + kTilesWrittenPerStep, tiles_.size());
+  for (; written_ < end; ++written_) {
+    const TileUpload& tile = tiles_[written_];
+    if (is_empty(tile)) {
+      textures.free_page(tile.address);
+      continue;
+    }
+    auto page = textures.ensure_page_for_upload(tile.address);
+    if (!page) return tl::unexpected(page.error());
+    textures.pool().upload(*page, *tile.data);
   }
-  if (next_ < tiles_.size()) return Step::more;
-  if (auto flushed = scene.tables().flush(); !flushed) return refuse(flushed.error());
+  if (written_ < tiles_.size()) return Step::more;
+  if (auto flushed = scene.tables().flush(); !flushed) return tl::unexpected(flushed.error());
   done_({});
   return Step::done;
+}
+
+Result<void> TilesUpload::prepare(LayerTextures& layer, const TileUpload& tile) {
+  if (!layer.contains(tile.address)) {
+    return fail(422, "Tile out of range", "A tile's address must lie inside the layer.", "tiles");
+  }
+  if (is_empty(tile)) return {};
+  if (tile.data->values.size() != static_cast<std::size_t>(kTexelsPerTile * layer.pool().texel_bytes())) {
+    return fail(422, "Tile of another type", "A tile must hold 128 x 128 values of the layer's type.", "tiles");
+  }
+  if (layer.page(tile.address) != shader::kNoPage) return {};
+  auto page = layer.ensure_page_for_upload(tile.address);
+  if (!page) return tl::unexpected(page.error());
+  fresh_.push_back(tile.address);
+  return {};
 }
 
 }  // namespace strata::render

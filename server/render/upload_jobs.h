@@ -34,7 +34,8 @@ class SurfaceMapUpload {
   std::unique_ptr<SurfaceMapTextures> textures_;
 };
 
-// All pages are made before the first tile is written: a Problem leaves the layer as it was.
+// All pages are made before the first tile is written: a Problem leaves the layer as it was. A new page is not cleared,
+// so nobody may see the layer meanwhile.
 class TilesUpload {
  public:
   TilesUpload(LayerHandle layer, std::vector<TileUpload> tiles, Renderer::Done<void> done)
@@ -43,13 +44,14 @@ class TilesUpload {
   void abort(const Problem& problem) { done_(tl::unexpected(problem)); }
 
  private:
-  Result<void> prepare(LayerTextures& layer);
+  Result<Step> advance(GpuScene& scene);
+  Result<void> prepare(LayerTextures& layer, const TileUpload& tile);
 
   const LayerHandle layer_;
   const std::vector<TileUpload> tiles_;
   Renderer::Done<void> done_;
-  bool prepared_ = false;
-  std::size_t next_ = 0;
+  std::size_t prepared_ = 0, written_ = 0;  // tiles
+  std::vector<TileAddress> fresh_;          // pages were made for these
 };
 
 }  // namespace strata::render

@@ -110,6 +110,88 @@ TEST(Layers, removing_a_layer_or_a_model_gives_its_memory_back) {
   EXPECT_EQ(gone.error().status, 404);
 }
 
+TEST(Layers, memory_of_removed_layers_serves_layers_of_other_widths) {
+  render::RendererOptions options;
+  options.gpu_memory_bytes = 24u << 20;  // one slice of four-byte pages takes 20 MiB, of one-byte pages 8 MiB
+  TestRenderer renderer(options);
+  const auto model = renderer.add(make_scene(flat_square(), 256));
+  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 200, 200, 0.5);
+  const auto view = renderer.add_view(model);
+  for (int round = 0; round < 2; ++round) {
+    const auto wide = renderer.add_layer(model, ValueType::f32, 256),
+               narrow = renderer.add_layer(model, ValueType::u8, 256);
+    const auto painted = renderer.paint(wide, dab(camera, 100, 100, 40, 0x3f800000));
+    const auto refused = await<render::StrokeOutcome>(
+        [&](auto done) { renderer->paint(narrow, dab(camera, 100, 100, 40), std::move(done)); });
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().status, 503);
+    renderer->remove_layer(wide);
+    const auto outcome = renderer.paint(narrow, dab(camera, 100, 100, 40));
+    EXPECT_EQ(outcome.tiles.size(), painted.tiles.size());
+    EXPECT_LE(renderer->gpu_bytes_used(), options.gpu_memory_bytes);
+    render::FrameRequest request;
+    request.view = view;
+    request.camera = camera;
+    request.width = request.height = 200;
+    request.layers = {{narrow, std::make_shared<Palette>(default_palette(ValueType::u8, true)), 1}};
+    const auto picture = renderer.draw(request);
+    EXPECT_NE(picture.pixels[4 * (100 * 200 + 100)], picture.pixels[4 * (100 * 200 + 10)]) << "the paint is seen";
+    renderer->remove_layer(narrow);
+  }
+}
+
+TEST(Layers, what_a_layer_holds_from_the_start_is_loaded_behind_edits) {
+  TestRenderer renderer;
+  const auto model = renderer.add(make_scene(flat_square(), 256));
+  const auto layer = renderer.add_layer(model, ValueType::u8, 256);
+  std::vector<render::TileUpload> tiles;
+  for (std::uint16_t y = 0; y < 2; ++y)
+    for (std::uint16_t x = 0; x < 2; ++x) tiles.push_back({{x, y}, random_tile(ValueType::u8, x + 2u * y)});
+  std::vector<std::string> order;
+  std::promise<void> loaded;
+  std::promise<render::LayerHandle> added;
+  renderer->run_on_gpu_thread_for_test([&] {  // nothing runs until both wait
+    renderer->load_tiles(layer, tiles, [&](Result<void> done) {
+      EXPECT_TRUE(done);
+      order.emplace_back("load");
+      loaded.set_value();
+    });
+    renderer->add_layer(model, ValueType::u8, 256, [&](Result<render::LayerHandle> done) {
+      order.emplace_back("layer");
+      added.set_value(*done);
+    });
+  });
+  loaded.get_future().wait();
+  added.get_future().wait();
+  EXPECT_EQ(order, (std::vector<std::string>{"layer", "load"}));
+  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 200, 200, 0.5);
+  for (const auto& tile : renderer.paint(layer, dab(camera, 100, 100, 30, 5)).tiles) {
+    TileData expected = *tiles[tile.address.y * 2u + tile.address.x].data;
+    for (int i = 0; i < kTexelsPerTile; ++i) {
+      if (tile.written.test(i)) expected.write(i, 5);
+    }
+    EXPECT_EQ(tile.after, expected);
+  }
+}
+
+TEST(Layers, tiles_that_do_not_all_fit_leave_the_layer_as_it_was) {
+  render::RendererOptions options;
+  options.gpu_memory_bytes = 24u << 20;  // 256 four-byte pages
+  TestRenderer renderer(options);
+  const auto layer = renderer.add_layer(renderer.add(make_scene(flat_square(), 256)), ValueType::u32, 4096);
+  const auto empty = renderer->layer_bytes_used(layer);
+  std::vector<render::TileUpload> tiles;
+  const auto tile = random_tile(ValueType::u32, 1);
+  for (std::uint16_t i = 0; i < 300; ++i)
+    tiles.push_back({{static_cast<std::uint16_t>(i % 32), static_cast<std::uint16_t>(i / 32)}, tile});
+  const auto refused = await<void>([&](auto done) { renderer->write_tiles(layer, tiles, std::move(done)); });
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().status, 503);
+  EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
+  tiles.resize(256);
+  renderer.write(layer, tiles);
+}
+
 TEST(Layers, painting_beyond_the_memory_budget_is_refused_and_changes_nothing) {
   render::RendererOptions options;
   options.gpu_memory_bytes = 12u << 20;  // no chunk of four-byte pages fits

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+
+#include "gl/program.h"
+
+namespace strata::render {
+
+// Values are kept as bits in pools of 1, 2 and 4 bytes a texel, and each program that reads or writes them is built for
+// each.
+
+// GL names of a texel width.
+GLenum texel_format(int texel_bytes);
+GLenum texel_component(int texel_bytes);
+
+// Programs of one shader file for each width.
+class ProgramPerWidth {
+ public:
+  // `define_of` gives the width's define.
+  template <class DefineOf>
+  static Result<ProgramPerWidth> load(const std::filesystem::path& shader_dir, const std::string& file,
+                                      DefineOf define_of) {
+    ProgramPerWidth programs;
+    for (const int texel_bytes : {1, 2, 4}) {
+      auto program = gl::Program::load(shader_dir, {file}, {define_of(texel_bytes)});
+      if (!program) return tl::unexpected(program.error());
+      programs.programs_[index(texel_bytes)] = std::move(*program);
+    }
+    return programs;
+  }
+  const gl::Program& of(int texel_bytes) const { return programs_[index(texel_bytes)]; }
+
+ private:
+  static std::size_t index(int texel_bytes) { return static_cast<std::size_t>(texel_bytes) / 2; }
+  std::array<gl::Program, 3> programs_;
+};
+
+}  // namespace strata::render
