@@ -106,7 +106,7 @@ Result<LayerState> OpenRoom::put_on_gpu(const Layer& layer, std::shared_ptr<Tile
   for (const auto& [address, data] : mirror->snapshot().tiles) uploads.push_back({address, data});
   if (!uploads.empty()) {
     auto written = await<void>(
-        [&](auto done) { parts_.renderer.write_tiles(*handle, std::move(uploads), std::move(done)); });
+        [&](auto done) { parts_.renderer.load_tiles(*handle, std::move(uploads), std::move(done)); });
     if (!written) return tl::unexpected(written.error());
   }
   return LayerState{layer, *handle, std::move(mirror), std::make_shared<const Palette>(layer.palette)};
