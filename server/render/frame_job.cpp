@@ -1,5 +1,6 @@
 #include "render/frame_job.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -7,6 +8,11 @@
 #include "render/screen_rect.h"
 
 namespace strata::render {
+namespace {
+
+constexpr std::size_t kBytesCollectedPerStep = std::size_t{16} << 20;  // a few milliseconds
+
+}  // namespace
 
 Step FrameJob::step(GpuScene& scene) {
   const auto begin = std::chrono::steady_clock::now();
@@ -25,21 +31,28 @@ Step FrameJob::step(GpuScene& scene) {
     switch (stage_) {
       case Stage::prepare:
         if (auto prepared = prepare(scene, **view); !prepared) return tl::unexpected(prepared.error());
-        stage_ = (*view)->gbuffer_complete ? Stage::shade : Stage::gbuffer;
+        stage_ = (*view)->gbuffer_complete ? Stage::area : Stage::gbuffer;
         return Step::more;
       case Stage::gbuffer: {
         auto complete = draw_slice(scene, **view);
         if (!complete) return tl::unexpected(complete.error());
-        if (*complete) stage_ = Stage::shade;
+        if (*complete) stage_ = Stage::area;
         return Step::more;
       }
-      case Stage::shade:
-        if (auto shaded = shade(scene, **view); !shaded) return tl::unexpected(shaded.error());
-        stage_ = Stage::readback;
+      case Stage::area:
+        if (auto chosen = choose_area(scene, **view); !chosen) return tl::unexpected(chosen.error());
+        stage_ = frame_.rect.width > 0 ? Stage::shade : Stage::readback;
         return Step::more;
+      case Stage::shade: {
+        auto complete = shade_band(scene, **view);
+        if (!complete) return tl::unexpected(complete.error());
+        if (*complete) stage_ = Stage::readback;
+        return Step::more;
+      }
       case Stage::readback: break;
     }
-    return pixels_ && !pixels_.ready() ? Step::waiting : Step::done;
+    if (!pixels_.ready()) return Step::waiting;
+    return collect_rows() ? Step::done : Step::more;
   };
   const auto step = advance();
   if (!step) return refuse(step.error());
@@ -47,7 +60,9 @@ Step FrameJob::step(GpuScene& scene) {
   if (*step == Step::done) {
     (*view)->drawing = false;
     if (scene.lost()) return refuse({503, "GPU lost", "The GPU context was lost and is being rebuilt. Ask for the frame again.", {}});
-    finish();
+    pixels_ = {};
+    frame_.render_ms = busy_ms_;
+    task_.done(std::move(frame_));
   }
   return *step;
 }
@@ -58,9 +73,6 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   if (auto valid = validate(request.camera); !valid) return valid;
   if (request.width < 1 || request.height < 1 || request.width > kMaxViewSize || request.height > kMaxViewSize) {
     return fail(422, "Size out of range", "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", "width");
-  }
-  if (request.layers.size() > PaletteTextures::kMaxPalettes) {
-    return fail(422, "Too many layers", "A view shows at most 64 layers; hide some.", "layers");
   }
   for (const LayerStyle& style : request.layers) {
     auto layer = scene.layer(style.layer);
@@ -88,61 +100,77 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
   return complete;
 }
 
-Result<void> FrameJob::shade(GpuScene& scene, View& view) {
+Result<void> FrameJob::choose_area(GpuScene& scene, const View& view) {
   const FrameRequest& request = task_.request;
-  frame_.width = request.width;
-  frame_.height = request.height;
-  frame_.rect = {0, 0, request.width, request.height};
   auto model = scene.model(view.model);
   if (!model) return tl::unexpected(model.error());
   const mesh::Geometry& geometry = (*model)->mesh->geometry();
   const glm::dmat4 clip = request.camera.projection * request.camera.view * glm::translate(glm::dmat4(1.0), geometry.origin);
+  frame_.width = request.width;
+  frame_.height = request.height;
+  frame_.rect = {0, 0, request.width, request.height};
   if (request.changed && view.shows(request)) {
     frame_.rect = screen_rect(*request.changed, clip, request.width, request.height, request.align_to_16);
     if (frame_.rect.width == 0) return {};
   }
   const FrameRequest::Box box{geometry.box_min, geometry.box_max};
-  const PixelRect surface = intersection(frame_.rect, screen_rect({&box, 1}, clip, request.width, request.height, false));
-  ShadeInput input{view.uv, view.light, view.shading, frame_.rect, surface, request.background_top, request.background_bottom, {}};
+  surface_ = intersection(frame_.rect, screen_rect({&box, 1}, clip, request.width, request.height, false));
+  auto pixels = scene.readback().begin(row_bytes() * static_cast<std::size_t>(frame_.rect.height));
+  if (!pixels) return tl::unexpected(pixels.error());
+  pixels_ = std::move(*pixels);
+  return {};
+}
+
+Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
+  const FrameRequest& request = task_.request;
+  const PixelRect& rect = frame_.rect;
+  const int rows = std::max(1, scene.pixels_per_band() / (rect.width * (1 + static_cast<int>(request.layers.size()))));
+  const PixelRect band{rect.x, rect.y + shaded_rows_, rect.width, std::min(rows, rect.height - shaded_rows_)};
+  ShadeInput input{view.uv,
+                   view.light,
+                   view.shading,
+                   band,
+                   intersection(band, surface_),
+                   request.background_top,
+                   request.background_bottom,
+                   {}};
   for (const LayerStyle& style : request.layers) {
     auto layer = scene.layer(style.layer);
     if (!layer) return tl::unexpected(layer.error());
     input.layers.push_back({(*layer)->textures.get(), style.palette, style.opacity});
   }
-  if (auto flushed = scene.tables().flush(); !flushed) return flushed;
-  if (auto shaded = scene.shade_pass().shade(input, scene.tables()); !shaded) return shaded;
+  if (auto flushed = scene.tables().flush(); !flushed) return tl::unexpected(flushed.error());
+  if (auto shaded = scene.shade_pass().shade(input, scene.tables()); !shaded) return tl::unexpected(shaded.error());
+  shaded_rows_ += band.height;
 
-  const PixelRect& rect = frame_.rect;
-  const std::size_t bytes = std::size_t{4} * static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
-  auto pixels = scene.readback().begin(bytes);
-  if (!pixels) return tl::unexpected(pixels.error());
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, pixels->buffer().id());
-  glGetTextureSubImage(view.picture.id(), 0, rect.x, request.height - rect.y - rect.height, 0, rect.width, rect.height, 1, GL_RGBA,
-                       GL_UNSIGNED_BYTE, static_cast<GLsizei>(bytes), nullptr);
+  const std::size_t offset = row_bytes() * static_cast<std::size_t>(rect.height - shaded_rows_);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, pixels_.buffer().id());
+  glGetTextureSubImage(view.picture.id(), 0, band.x, request.height - band.y - band.height, 0, band.width, band.height,
+                       1, GL_RGBA, GL_UNSIGNED_BYTE,
+                       static_cast<GLsizei>(row_bytes() * static_cast<std::size_t>(band.height)),
+                       reinterpret_cast<void*>(offset));
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-  pixels->submit();
-  pixels_ = std::move(*pixels);
+  if (shaded_rows_ < rect.height) return false;
+  pixels_.submit();
   view.picture_complete = true;
   view.layers = request.layers;
   view.background_top = request.background_top;
   view.background_bottom = request.background_bottom;
-  return {};
+  return true;
 }
 
-void FrameJob::finish() {
-  if (pixels_) {
-    // Textures have their lowest row first, pictures their highest.
-    const auto data = pixels_.data();
-    const std::size_t row_bytes = std::size_t{4} * static_cast<std::size_t>(frame_.rect.width);
-    frame_.pixels.reserve(data.size());
-    for (std::size_t end = data.size(); end > 0; end -= row_bytes) {
-      const auto* row = reinterpret_cast<const std::uint8_t*>(data.data() + end - row_bytes);
-      frame_.pixels.insert(frame_.pixels.end(), row, row + row_bytes);
-    }
-    pixels_ = {};
+// Textures have their lowest row first, pictures their highest.
+bool FrameJob::collect_rows() {
+  if (!pixels_) return true;
+  const auto data = pixels_.data();
+  frame_.pixels.reserve(data.size());
+  const std::size_t until = std::min(frame_.pixels.size() + kBytesCollectedPerStep, data.size());
+  while (frame_.pixels.size() < until) {
+    const auto* row =
+        reinterpret_cast<const std::uint8_t*>(data.data() + data.size() - frame_.pixels.size() - row_bytes());
+    frame_.pixels.insert(frame_.pixels.end(), row, row + row_bytes());
   }
-  frame_.render_ms = busy_ms_;
-  task_.done(std::move(frame_));
+  return frame_.pixels.size() == data.size();
 }
 
 }  // namespace strata::render

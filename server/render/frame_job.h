@@ -6,7 +6,8 @@
 
 namespace strata::render {
 
-// One frame of one view: the g-buffer in slices when the camera changed, the shading, the read-back of what changed.
+// One frame of one view: the g-buffer in slices when the camera changed, then what changed is shaded and read back in
+// bands.
 class FrameJob {
  public:
   explicit FrameJob(FrameTask task) : task_(std::move(task)) {}
@@ -16,17 +17,21 @@ class FrameJob {
   void abort(const Problem& problem) { task_.done(tl::unexpected(problem)); }
 
  private:
-  enum class Stage { prepare, gbuffer, shade, readback };
+  enum class Stage { prepare, gbuffer, area, shade, readback };
   Result<void> prepare(GpuScene& scene, View& view);
   Result<bool> draw_slice(GpuScene& scene, View& view);  // true when complete
-  Result<void> shade(GpuScene& scene, View& view);
-  void finish();
+  Result<void> choose_area(GpuScene& scene, const View& view);
+  Result<bool> shade_band(GpuScene& scene, View& view);  // true when complete
+  std::size_t row_bytes() const { return std::size_t{4} * static_cast<std::size_t>(frame_.rect.width); }
+  bool collect_rows();  // true when complete
 
   FrameTask task_;
   Stage stage_ = Stage::prepare;
   MeshProgress progress_;
   Frame frame_;
-  gl::Readback pixels_;
+  PixelRect surface_;    // of `frame_.rect`: may show surface
+  int shaded_rows_ = 0;  // of `frame_.rect`, from its top
+  gl::Readback pixels_;  // lowest row first
   double busy_ms_ = 0;
 };
 

@@ -44,6 +44,8 @@ class GpuScene {
   TileReader& tile_reader() { return *tile_reader_; }
   MeshPass& gbuffer_pass() { return *gbuffer_pass_; }
   ShadePass& shade_pass() { return *shade_pass_; }
+  // How much of a picture is shaded in a step, in pixels of one layer.
+  int pixels_per_band() const { return info_.software ? kPixelsPerBandSoftware : kPixelsPerBandHardware; }
   std::uint64_t next_use() { return ++uses_; }
 
   ModelHandle add(Model model);
@@ -58,6 +60,9 @@ class GpuScene {
   void remove_view(ViewHandle handle) { views_.erase(handle); }
 
  private:
+  // A few milliseconds; a picture of 1280 x 720 with three layers is one band.
+  static constexpr int kPixelsPerBandSoftware = 1 << 22, kPixelsPerBandHardware = 1 << 28;
+
   GpuScene(const RendererOptions& options, std::uint64_t generation, GpuMemory& memory);
   Result<void> load();
   bool evict_one();

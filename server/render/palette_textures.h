@@ -26,7 +26,7 @@ class PaletteTextures {
   Entry find(const std::shared_ptr<const Palette>& palette, ValueType type);
 
   static constexpr std::size_t kMaxPoints = 4096;  // a palette
-  static constexpr std::size_t kMaxPalettes = shader::kMaxShadeLayers;  // in one frame
+  static constexpr std::size_t kMaxPalettes = shader::kMaxShadeLayers;  // that there can be room for
 
   void bind(GLuint texture_unit, GLuint points_binding) const;
 

@@ -87,14 +87,15 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
   // Without a range every value takes an end; the shader divides by it.
   const bool has_range = out.palette_max > out.palette_min;
   if (!has_range && layer.palette->mode == PaletteMode::linear) out.palette_max = std::nextafter(out.palette_min, 1e38f);
-  out.units_low = out.units_high = 0xffffffffu;
+  static_assert(shader::kNoChunkUnit == 0xfu);
+  out.units_low = out.units_high = 0xffffffffu;  // no chunk is bound yet
   return out;
 }
 
 // Batches in drawing order. A layer whose chunks do not all fit spans several: each of its texels is in one of them.
-std::vector<ShadePass::Batch> ShadePass::plan(const ShadeInput& input) {
+std::vector<ShadePass::Batch> ShadePass::plan(std::span<const ShadeInput::Layer> layers) {
   std::vector<Batch> batches(1);
-  for (const ShadeInput::Layer& layer : input.layers) {
+  for (const ShadeInput::Layer& layer : layers) {
     const auto described = describe(layer);
     bool listed = false;  // in the last batch
     for (std::uint32_t i = 0; i < PagePool::kMaxChunks; ++i) {
@@ -121,8 +122,6 @@ std::vector<ShadePass::Batch> ShadePass::plan(const ShadeInput& input) {
 }
 
 Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables) {
-  palettes_.make_room(input.layers.size());
-  const auto batches = plan(input);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, input.target.id());
   no_vertices_.bind();
   glViewport(0, 0, input.uv.width(), input.uv.height());
@@ -135,13 +134,20 @@ Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables)
     if (auto drawn = draw_background(input); !drawn) return drawn;
     glDepthFunc(GL_GREATER);
     glEnable(GL_DEPTH_TEST);
-    for (const Batch& batch : batches) {
-      const bool first = &batch == &batches.front();
-      if (auto drawn = draw_surface(input, batch, first, tables); !drawn) return drawn;
-      // What the next draws is `colour + alpha * what is there`; the picture stays opaque.
-      glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_ONE);
-      glEnable(GL_BLEND);
-    }
+    bool first = true;
+    std::span<const ShadeInput::Layer> left = input.layers;
+    do {
+      const auto group = left.first(std::min(left.size(), PaletteTextures::kMaxPalettes));
+      left = left.subspan(group.size());
+      palettes_.make_room(group.size());
+      for (const Batch& batch : plan(group)) {
+        if (auto drawn = draw_surface(input, batch, first, tables); !drawn) return drawn;
+        first = false;
+        // What the next draws is `colour + alpha * what is there`; the picture stays opaque.
+        glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_ONE);
+        glEnable(GL_BLEND);
+      }
+    } while (!left.empty());
     return {};
   };
   auto drawn = draw_all();

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -57,7 +58,7 @@ class ShadePass {
   };
   bool can_take(const Batch& batch, const Chunk& chunk, bool listed) const;
   Result<const gl::Program*> program(const Batch& batch);
-  std::vector<Batch> plan(const ShadeInput& input);
+  std::vector<Batch> plan(std::span<const ShadeInput::Layer> layers);
   Result<void> draw_background(const ShadeInput& input);
   Result<void> draw_surface(const ShadeInput& input, const Batch& batch, bool first, const PageTables& tables);
   Result<void> draw(const ShadeInput& input, const gl::Program& program, const PixelRect& rect,

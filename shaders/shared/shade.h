@@ -6,7 +6,7 @@ const uint kPaletteLinear = 0u;
 const uint kPaletteStep = 1u;
 const uint kPaletteCategorical = 2u;
 const uint kNoChunkUnit = 15u;
-const uint kMaxShadeLayers = 64u;  // in a view
+const uint kMaxShadeLayers = 64u;  // in a draw
 
 // One layer of a view. The order of `type` is that of strata::ValueType.
 struct ShadeLayer {

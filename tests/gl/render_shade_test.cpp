@@ -120,6 +120,47 @@ TEST_F(Shade, many_layers_of_every_width_are_drawn_in_their_order) {
   expect_color(layers, expected, lit);
 }
 
+TEST_F(Shade, more_layers_than_one_draw_takes_are_all_shown) {
+  const double lit = light();
+  const auto plain = [](Rgba color) {
+    return std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, color, {}}}, {}});
+  };
+  const auto layer = filled_layer(ValueType::u8, 1);
+  std::vector<render::LayerStyle> layers(150, {layer, plain({255, 255, 255, 255}), 0});
+  layers[3] = {layer, plain({255, 0, 0, 255}), 1};
+  layers[70] = {layer, plain({0, 255, 0, 255}), 0.5f};
+  layers[140] = {layer, plain({0, 0, 255, 255}), 0.5f};
+  expect_color(layers, {64, 64, 128}, lit);
+}
+
+TEST_F(Shade, a_large_picture_is_shaded_in_bands_without_a_seam) {
+  const auto scene = make_scene(bumpy_sphere(30), 512);
+  const auto model = renderer_.add(scene);
+  const auto layer = renderer_.add_layer(model, ValueType::u8, 512);
+  auto palette = std::make_shared<Palette>(default_palette(ValueType::u8, false));
+  render::FrameRequest request;
+  request.view = renderer_.add_view(model);
+  request.camera = perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 2048, 1800);
+  request.width = 2048, request.height = 1800;
+  for (int i = 0; i < 3; ++i) request.layers.push_back({layer, palette, 0.5f});
+  renderer_.paint(layer, dab(request.camera, 1024, 900, 500, 100));
+  const auto picture = renderer_.draw(request);
+  // The same in pieces that are one band each.
+  for (const double y : {-0.4, 0.0, 0.4}) {
+    auto part_request = request;
+    part_request.changed = {{{-0.3, y - 0.1, 0.5}, {0.3, y + 0.1, 1}}};
+    const auto part = renderer_.draw(part_request);
+    ASSERT_GT(part.rect.height, 50);
+    ASSERT_LT(part.rect.width * part.rect.height * 4, 1 << 22);
+    for (int row = 0; row < part.rect.height; ++row) {
+      const auto* whole = &picture.pixels[4 * (static_cast<std::size_t>(part.rect.y + row) * 2048 +
+                                               static_cast<std::size_t>(part.rect.x))];
+      ASSERT_TRUE(std::equal(whole, whole + 4 * part.rect.width,
+                             &part.pixels[static_cast<std::size_t>(4 * row * part.rect.width)]));
+    }
+  }
+}
+
 TEST_F(Shade, the_background_is_a_gradient_from_top_to_bottom) {
   request_.camera = orthographic_camera({0, 0, 2}, {5, 0, 0}, kSize, kSize, 0.5);
   request_.background_top = {250, 0, 0, 255};
