@@ -59,7 +59,9 @@ try {
   await bea.sign_in(server, server.add_person("bea", "annotator"));
   await bea.page.goto(`${server.url}/models/${id}`);
   await bea.drawn();
-  if (has_scan) await bea.page.getByRole("button", { name: "Decide later" }).click();
+  // She may paint, but not say what layers there are and how large the model is.
+  assert.equal(await bea.page.getByRole("button", { name: "New layer" }).count(), 0);
+  assert.equal(await bea.page.getByRole("button", { name: "Check the size" }).count(), 0);
   await bea.page.keyboard.press("v");
   for (let i = 0; i < 4; ++i) await bea.page.keyboard.press("ArrowLeft");
   await anna.page.getByLabel(/2 people are here/).waitFor();

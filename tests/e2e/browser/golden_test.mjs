@@ -18,10 +18,42 @@ const is_update = process.env.STRATA_UPDATE_GOLDEN === "1";
 const kStep = 40;
 const kPageLimits = { share: 0.012, mean: 1.6 };
 const kPictureLimits = { share: 0.004, mean: 0.8 };
+// A small thing that is missing drowns in a whole page, so the details are looked at on their own. The limits leave room for
+// the edges of letters and lines; that none of the details may be missing is tried with each of them.
+const kDetailLimits = { share: 0.05, mean: 7 };
 
 const failures = [];
 
-function compare(name, shot, limits) {
+/** Compares the box (in pixels) of two pictures of one size. */
+function difference(now, golden, { x, y, width, height }) {
+  let [off, sum] = [0, 0];
+  for (let row = y; row < y + height; ++row) {
+    for (let column = x; column < x + width; ++column) {
+      const at = (row * now.width + column) * 4;
+      const steps = [0, 1, 2].map((c) => Math.abs(now.data[at + c] - golden.data[at + c]));
+      if (Math.max(...steps) > kStep) ++off;
+      sum += steps[0] + steps[1] + steps[2];
+    }
+  }
+  return { share: off / (width * height), mean: sum / (width * height) / 3 };
+}
+
+const within = (found, limits) => found.share <= limits.share && found.mean <= limits.mean;
+const whole = ({ width, height }) => ({ x: 0, y: 0, width, height });
+
+/** Grey, and red where the pictures differ. */
+function difference_picture(now, golden) {
+  const picture = { ...now, data: new Uint8Array(now.data.length) };
+  for (let at = 0; at < now.data.length; at += 4) {
+    const differs = [0, 1, 2].some((c) => Math.abs(now.data[at + c] - golden.data[at + c]) > kStep);
+    const grey = 128 + (golden.data[at] + golden.data[at + 1] + golden.data[at + 2]) / 6;
+    picture.data.set(differs ? [220, 0, 0, 255] : [grey, grey, grey, 255], at);
+  }
+  return encode_png(picture);
+}
+
+/** `details`: names and boxes of small parts, compared on their own. */
+function compare(name, shot, limits, details = {}) {
   mkdirSync(kOutput, { recursive: true });
   const file = join(kGolden, `${name}.png`);
   if (is_update || !existsSync(file)) {
@@ -35,24 +67,33 @@ function compare(name, shot, limits) {
     failures.push(`${name}: ${now.width} × ${now.height} instead of ${golden.width} × ${golden.height}`);
     return;
   }
-  const difference = { ...now, data: new Uint8Array(now.data.length) };
-  let [off, sum] = [0, 0];
-  for (let at = 0; at < now.data.length; at += 4) {
-    const steps = [0, 1, 2].map((c) => Math.abs(now.data[at + c] - golden.data[at + c]));
-    const differs = Math.max(...steps) > kStep;
-    if (differs) ++off;
-    sum += steps[0] + steps[1] + steps[2];
-    const grey = 128 + (golden.data[at] + golden.data[at + 1] + golden.data[at + 2]) / 6;
-    difference.data.set(differs ? [220, 0, 0, 255] : [grey, grey, grey, 255], at);
+  const parts = [[name, whole(now), limits], ...Object.entries(details).map(([part, box]) => [`${name}, ${part}`, box, kDetailLimits])];
+  let is_good = true;
+  for (const [part, box, most] of parts) {
+    const found = difference(now, golden, box);
+    const text = `${part}: ${(found.share * 100).toFixed(3)} % of pixels differ (at most ${most.share * 100} %), mean ${found.mean.toFixed(3)} (at most ${most.mean})`;
+    console.log(text);
+    if (within(found, most)) continue;
+    failures.push(`${text}; see ${join(kOutput, name)}.diff.png`);
+    is_good = false;
   }
-  const pixels = now.width * now.height;
-  const [share, mean] = [off / pixels, sum / pixels / 3];
-  const text = `${name}: ${(share * 100).toFixed(3)} % of pixels differ (at most ${limits.share * 100} %), mean ${mean.toFixed(3)} (at most ${limits.mean})`;
-  console.log(text);
-  if (share <= limits.share && mean <= limits.mean) return;
+  if (is_good) return;
   writeFileSync(join(kOutput, `${name}.png`), shot);
-  writeFileSync(join(kOutput, `${name}.diff.png`), encode_png(difference));
-  failures.push(`${text}; see ${join(kOutput, name)}.diff.png`);
+  writeFileSync(join(kOutput, `${name}.diff.png`), difference_picture(now, golden));
+}
+
+/** The page without a detail must not pass for the golden picture. */
+function assert_noticed(name, detail, box, without) {
+  if (is_update) return;
+  const found = difference(decode_png(without), decode_png(readFileSync(join(kGolden, `${name}.png`))), box);
+  console.log(`${name} without ${detail}: ${(found.share * 100).toFixed(1)} % of pixels differ, mean ${found.mean.toFixed(1)}`);
+  if (within(found, kDetailLimits)) failures.push(`${name}: the limits do not notice that ${detail} is missing`);
+}
+
+/** Where an element is, in whole pixels. */
+async function box_of(locator) {
+  const { x, y, width, height } = await locator.boundingBox();
+  return { x: Math.round(x), y: Math.round(y), width: Math.round(width), height: Math.round(height) };
 }
 
 /** The page's own screens, at the size of a laptop and of a phone. */
@@ -70,7 +111,23 @@ async function compare_page(server) {
     await page.getByRole("radio", { name: "Open crack" }).click();
     await laptop.point(0.5, 0.6);
     await page.locator("strata-value-readout").getByText(/Position/).waitFor();
-    compare("model", await laptop.settled(), kPageLimits);
+    const ring = await box_of(page.locator("strata-stage svg.over circle").first());
+    const elements = {
+      title: page.locator("strata-model-page h1"),
+      saving: page.locator("strata-model-page .saving"),
+      people: page.locator("strata-model-page .people span"),
+      legend: page.locator("strata-layer-panel .legend-classes"),
+      "the scale bar": page.locator("strata-stage .scale"),
+      "the value under the pointer": page.locator("strata-value-readout .card"),
+    };
+    const details = { "the cursor": { x: ring.x - 3, y: ring.y - 3, width: ring.width + 6, height: ring.height + 6 } };
+    for (const [name, locator] of Object.entries(elements)) details[name] = await box_of(locator);
+    compare("model", await laptop.settled(), kPageLimits, details);
+    for (const [name, element] of Object.entries({ "the cursor": page.locator("strata-stage svg.over"), ...elements })) {
+      await element.evaluate((each) => (each.style.visibility = "hidden"));
+      assert_noticed("model", name, details[name], await laptop.settled());
+      await element.evaluate((each) => (each.style.visibility = ""));
+    }
     await page.getByRole("button", { name: "New layer" }).click();
     await page.getByRole("radio", { name: /^Class/ }).click();
     compare("new_layer", await laptop.settled(), kPageLimits);

@@ -1,0 +1,237 @@
+// The page at work with one person: what the cursor promises is what is painted, keys and fingers go where they belong,
+// nothing is lost on the way to another page, and what somebody else changed is not overwritten.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser, has_hue, rgb } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
+const kEdge_px = 3; // of the footprint's edge: half a texel, and JPEG's blocks of colour
+
+const browser = await Browser.open();
+const { page } = browser;
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const base = "/models/demo-pot";
+const edits = async (layer) => (await server.json("GET", `${base}/layers/${layer}/edits?limit=1000`)).total;
+const button = (name) => page.getByRole("button", { name, exact: true });
+const radio = (name) => page.getByRole("radio", { name });
+const show_only = async (slug) => {
+  for (const { id, slug: other } of (await server.json("GET", `${base}/layers`)).layers) {
+    await server.json("PATCH", `${base}/layers/${id}`, { visible: other === slug });
+  }
+};
+const menu = async (layer, item) => {
+  await button(`Options for ${layer}`).click();
+  await page.getByRole("menuitem", { name: item }).click();
+};
+
+/** Magenta, even in the shade, where JPEG leaves little of the hue. */
+const may_be_magenta = (data, at) => {
+  const least = Math.min(data[at], data[at + 2]);
+  return least > 24 && data[at + 1] < 0.5 * least;
+};
+
+/** The circle that is drawn around the pointer, in CSS pixels of the stage. */
+async function cursor() {
+  const circle = page.locator("strata-stage svg.over circle").first();
+  const [x, y, r] = await circle.evaluate((each) => ["cx", "cy", "r"].map((name) => Number(each.getAttribute(name))));
+  return { x, y, r };
+}
+
+/** Clicks once where the pointer is, and compares what is painted then with the circle. */
+async function compare_footprint(what) {
+  await browser.point(0.5, 0.62);
+  await page.locator("strata-value-readout").getByText(/Position/).waitFor(); // the depth under the pointer is known
+  const circle = await cursor();
+  const box = await browser.stage_box();
+  await page.mouse.down();
+  await page.mouse.up();
+  await browser.saved();
+  await page.mouse.move(box.x + box.width - 3, box.y + 3); // away: the cursor would hide what is painted
+  await wait_for(async () => (await browser.count(rgb(kMagenta))) > circle.r * circle.r, `the dab of ${what}`, 150);
+  const { data, width, height } = await browser.picture(box);
+  let [holes, spills, painted] = [0, 0, 0];
+  for (let y = 0; y < height; ++y) {
+    for (let x = 0; x < width; ++x) {
+      const distance = Math.hypot(x + 0.5 - circle.x, y + 0.5 - circle.y);
+      const at = (y * width + x) * 4;
+      if (may_be_magenta(data, at)) ++painted;
+      else if (distance < circle.r - kEdge_px) ++holes;
+      if (has_hue(data, at, rgb(kMagenta)) && distance > circle.r + kEdge_px) ++spills;
+    }
+  }
+  const share = painted / (Math.PI * circle.r * circle.r);
+  console.log(`  ${what}: radius ${circle.r.toFixed(1)} px, ${painted} pixels painted (${(share * 100).toFixed(1)} % of the circle), ` +
+    `${holes} holes, ${spills} spills`);
+  assert.deepEqual({ holes, spills }, { holes: 0, spills: 0 }, `the cursor of ${what} is not what was painted`);
+  assert.ok(Math.abs(share - 1) < 0.08, `${what}: ${share} of the circle's area`);
+  await page.keyboard.press("Control+z");
+  await browser.saved();
+  await wait_for(async () => (await browser.count(rgb(kMagenta))) === 0, "the dab to be taken back", 150);
+  return circle.r;
+}
+
+/** A box, as a person drops it on the page. */
+async function drop_scan(name) {
+  const corners = Array.from({ length: 8 }, (_, i) => [i & 1, i & 2 ? 1 : 0, i & 4 ? 1 : 0].map((c) => c * 40).join(" "));
+  const sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+  const faces = sides.flatMap(([a, b, c, d]) => [`3 ${a} ${b} ${c}`, `3 ${a} ${c} ${d}`]);
+  const text = ["ply", "format ascii 1.0", "element vertex 8", "property float x", "property float y", "property float z",
+    "element face 12", "property list uchar int vertex_indices", "end_header", ...corners, ...faces, ""].join("\n");
+  return page.evaluate(([file, body]) => {
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([body], file));
+    const event = new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true });
+    document.body.dispatchEvent(event);
+    return event.defaultPrevented; // else the browser leaves for the file
+  }, [name, text]);
+}
+
+try {
+  await server.start();
+  const palette = { mode: "categorical", points: [{ at: 1, color: kMagenta, label: "Test" }] };
+  await server.json("POST", `${base}/layers`, { name: "Test", type: "u8", resolution: 8192, palette });
+  await show_only("test");
+  await page.goto(server.link);
+  await page.getByRole("link", { name: /Demo pot/ }).click();
+  await browser.drawn();
+  await button("Paint on Test").click();
+
+  say("the cursor shows the true footprint, in pixels and in millimetres, far and near");
+  await page.keyboard.press("b");
+  await compare_footprint("40 px");
+  await radio("on the object").click();
+  await page.getByRole("spinbutton", { name: "Width, mm" }).fill("9");
+  await page.keyboard.press("Enter");
+  const far = await compare_footprint("9 mm");
+  for (let i = 0; i < 4; ++i) await page.keyboard.press("+");
+  const near = await compare_footprint("9 mm, nearer");
+  assert.ok(near > far * 1.4, `the circle of 9 mm grows from ${far} to ${near} px only`);
+  await page.keyboard.press("Home");
+  await radio("on screen").click();
+
+  say("Space turns the model, also after a tool was chosen with the mouse");
+  await button("Eraser").click();
+  await button("Brush").click();
+  const painted = await edits("test");
+  const canvas = page.locator("strata-stage canvas").first();
+  const camera = () => canvas.evaluate((each) => Number(each.dataset.cameraSeq));
+  const [box, before] = [await browser.stage_box(), await camera()];
+  await browser.point(0.5, 0.5);
+  await page.keyboard.down(" ");
+  await browser.drag([[0.5, 0.5], [0.55, 0.5]]);
+  await page.keyboard.up(" ");
+  await wait_for(async () => (await camera()) > before, "the model to turn");
+  await browser.saved();
+  assert.equal(await edits("test"), painted, "Space and a drag painted");
+  assert.equal(await button("Brush").getAttribute("aria-pressed"), "true", "Space pressed a button");
+
+  say("keys do not act behind a question; a choice obeys the arrows");
+  await button("Fill the whole surface").click();
+  await page.getByRole("heading", { name: "Fill all of “Test”?" }).waitFor();
+  await page.keyboard.press("e");
+  await page.getByRole("button", { name: "Cancel" }).click();
+  assert.equal(await button("Brush").getAttribute("aria-pressed"), "true", "a key chose a tool behind the question");
+  await radio("Round").focus();
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await radio("Square").getAttribute("aria-checked"), "true");
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await radio("Round").getAttribute("aria-checked"), "true");
+
+  say("keys do not move the camera in mid-stroke");
+  await page.mouse.move(box.x + box.width * 0.5, box.y + box.height * 0.6);
+  await browser.settled(); // the still picture of the newest camera is there
+  const held = await camera();
+  await page.mouse.down();
+  await page.keyboard.press("5");
+  await page.keyboard.press("o");
+  await page.mouse.move(box.x + box.width * 0.52, box.y + box.height * 0.6, { steps: 4 });
+  await page.mouse.up();
+  await browser.saved();
+  await browser.settled();
+  assert.equal(await camera(), held, "the camera moved in mid-stroke");
+
+  say("a stroke that is not saved yet when its page is left: the server dies, too");
+  const known = await edits("test");
+  await server.signal("SIGSTOP");
+  await browser.drag([[0.45, 0.62], [0.55, 0.62]]);
+  await server.signal("SIGKILL");
+  await page.locator('.saving[data-state="not-saved"]').waitFor();
+  await page.goBack();
+  await page.getByRole("heading", { name: "Models", exact: true }).waitFor();
+  await page.getByText(/of “Demo pot” not saved yet/).waitFor();
+  await server.start();
+  await page.getByText("All changes of “Demo pot” are saved now.").waitFor();
+  assert.ok((await edits("test")) > known, "what was painted is not in the history");
+  await page.goForward();
+  await browser.drawn();
+  await page.keyboard.press("b");
+
+  say("somebody else changes the layer that is being edited");
+  await menu("Test", "Edit…");
+  await page.getByLabel("Label of class 1").waitFor();
+  await server.json("PATCH", `${base}/layers/test`, { description: "by the other" });
+  await page.getByLabel("Name", { exact: true }).fill("Mine");
+  await button("Save").click();
+  await page.getByText("Somebody else changed this layer meanwhile").waitFor();
+  await button("Show the newest").click();
+  await wait_for(async () => (await page.getByLabel("Description").inputValue()) === "by the other", "the newest version");
+  assert.equal(await page.getByLabel("Name", { exact: true }).inputValue(), "Test");
+  await button("Add a class").click(); // a layer of one class gets its second one
+  await page.getByLabel("Label of class 2").fill("Second");
+  await button("Save").click();
+  await radio("Second").waitFor();
+  const changed = await server.json("GET", `${base}/layers/test`);
+  assert.deepEqual([changed.name, changed.description, changed.palette.points.length], ["Test", "by the other", 2]);
+
+  say("a layer of things with records");
+  await button("New layer").click();
+  await radio(/^Things with records/).click();
+  await page.getByLabel("Name", { exact: true }).fill("Finds");
+  await button("Create layer").click();
+  await page.getByLabel("Number of the record").fill("70012");
+  await page.keyboard.press("Enter");
+  await browser.drag([[0.46, 0.45], [0.54, 0.45]]);
+  await browser.saved();
+  await browser.point(0.5, 0.45);
+  await page.locator("strata-value-readout").getByText("Record 70012").waitFor();
+  await menu("Finds", "Areas…");
+  await page.getByText("Record 70012").last().waitFor();
+  await page.keyboard.press("Escape");
+  assert.deepEqual(
+    await server.json("GET", `${base}/layers/finds/statistics`).then(({ keys }) => keys.map(({ key }) => key)), [70012]);
+
+  say("a unit that was confirmed by mistake is corrected");
+  await button("About this model").click();
+  await button("Correct size and direction…").click();
+  await radio("centimetres").click();
+  await button("Yes, that is right").click();
+  await wait_for(async () => (await server.json("GET", base)).unit === "cm", "the unit to be corrected");
+
+  say("a scan that is dropped on a model's page is imported, and the person stays until they open it");
+  const here = page.url();
+  assert.ok(await drop_scan("dropped_box.ply"), "the browser would have left for the file");
+  await page.getByText("“dropped box” is ready.").waitFor();
+  assert.equal(page.url(), here);
+  await page.getByRole("link", { name: "Open", exact: true }).click();
+  await page.getByRole("heading", { name: "dropped box", exact: true }).waitFor();
+  await browser.drawn(); // straight from one model to another
+  await page.getByText(/This object is .*: right\?/).waitFor();
+
+  say("the end");
+  browser.assert_no_complaints(["WebSocket connection", "ERR_CONNECTION_REFUSED", "ERR_EMPTY_RESPONSE", "ERR_CONNECTION_RESET", "412"]);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
+  if (process.env.STRATA_TEST_OUTPUT) {
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "page.png") }).catch(() => {});
+  }
+  throw error;
+} finally {
+  await browser.close();
+  await server.remove();
+}
