@@ -224,7 +224,7 @@ std::optional<SearchTree::Hit> SearchTree::first_hit(const glm::vec3& origin, co
       limit, [&](const Box& box) { return ray.enter(box, limit); },
       [&](std::size_t triangle) {
         const auto [a, b, c] = impl_->corners(triangle);
-        glm::dvec3 weights;
+        glm::dvec3 weights(0);
         const auto distance = ray.hit(a, b, c, weights);
         if (!distance || *distance > limit || (*distance == limit && triangle > found)) return;
         limit = *distance;
