@@ -28,10 +28,12 @@ struct Renderer::Impl {
   std::uint64_t generation = 0;     // GPU thread
   std::atomic<bool> lose_context{false};
 
+  std::mutex lost_callback_mutex;  // held during the call, so that whoever takes the callback away waits for it
+  std::function<void()> lost_callback;
+
   mutable std::mutex mutex;  // guards what follows
   GpuInfo info;
   std::unordered_map<LayerHandle, std::shared_ptr<std::atomic<std::uint64_t>>> layer_bytes;
-  std::vector<std::function<void()>> lost_callbacks;
 
   Result<void> make_scene() {
     auto made = GpuScene::create(options, ++generation, memory, messages);
@@ -51,12 +53,8 @@ struct Renderer::Impl {
     }
     if (auto made = make_scene(); !made) return made;
     log::warning("The GPU context was lost and made anew; models are uploaded again.");
-    std::vector<std::function<void()>> callbacks;
-    {
-      std::lock_guard lock(mutex);
-      callbacks = lost_callbacks;
-    }
-    for (const auto& callback : callbacks) callback();
+    std::lock_guard lock(lost_callback_mutex);
+    if (lost_callback) lost_callback();
     return {};
   }
 
@@ -211,8 +209,8 @@ void Renderer::draw(FrameRequest request, Done<Frame> done) {
 }
 
 void Renderer::on_context_lost(std::function<void()> callback) {
-  std::lock_guard lock(impl_->mutex);
-  impl_->lost_callbacks.push_back(std::move(callback));
+  std::lock_guard lock(impl_->lost_callback_mutex);
+  impl_->lost_callback = std::move(callback);
 }
 
 void Renderer::lose_context_for_test() {

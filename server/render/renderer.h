@@ -128,7 +128,8 @@ class Renderer {
   void remove_view(ViewHandle view);
   void draw(FrameRequest request, Done<Frame> done);
 
-  // Called on the GPU thread after a lost context was replaced: every handle given before is void.
+  // Called on the GPU thread after a lost context was replaced: every handle given before is void. There is one callback: a new
+  // one takes the place of the last, an empty one removes it. The last is not running any more when this returns.
   void on_context_lost(std::function<void()> callback);
   void lose_context_for_test();  // destroys the context, as a driver reset would
   // Runs `work` with the context current, in order with edits, and returns after it.
