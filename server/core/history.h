@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "core/revision.h"
 
@@ -18,8 +17,24 @@ struct PastRevision {
 };
 
 // The rule of undo and redo: a texel shows what the newest in-force edit that wrote it left there, or what was there
-// before all of them. Recomputes the `texels` of a tile by that rule, after the caller flipped an edit's `in_force`.
-// `newest_first` holds every revision of the tile; `current` is the tile after the newest of them.
-TileData resolve_tile(const TileData& current, std::span<const PastRevision> newest_first, const TileMask& texels);
+// before all of them. Recomputes the `texels` of a tile by that rule, after the caller flipped an edit's `in_force`, from
+// the tile's revisions, which come one by one: a tile may have more of them than fit into memory.
+class TileResolver {
+ public:
+  // `current` is the tile after its newest revision.
+  TileResolver(const TileData& current, const TileMask& texels) : result_(current), past_(current), open_(texels) {}
+
+  // False when older revisions change nothing more.
+  bool is_open() const { return open_.any(); }
+  // The newest revision first, then the one before it, and so on.
+  void add(const PastRevision& entry);
+  // After the oldest revision, or when nothing is open.
+  TileData finish() &&;
+
+ private:
+  TileData result_;
+  TileData past_;  // the tile after the revision that comes next
+  TileMask open_;  // texels whose author is not found yet
+};
 
 }  // namespace strata

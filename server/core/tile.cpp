@@ -35,4 +35,15 @@ void TileData::clear(int texel) {
   valid.reset(texel);
 }
 
+void copy_texels(const TileData& from, const TileMask& mask, TileData& to) {
+  for (int w = 0; w < kMaskWords; ++w)
+    for (std::uint64_t left = mask.words[w]; left; left &= left - 1) {
+      const int texel = w * 64 + std::countr_zero(left);
+      if (from.valid.test(texel))
+        to.write(texel, from.bits(texel));
+      else
+        to.clear(texel);
+    }
+}
+
 }  // namespace strata

@@ -361,6 +361,13 @@ void LiveSession::model_changed(const Model& model) {
   send(event);
 }
 
+void LiveSession::model_deleted() {
+  protocol::ModelEvent event;
+  event.event = protocol::ModelEventEvent::deleted;
+  send(event);
+  if (auto socket = socket_.lock()) socket->close(kCloseGoingAway, "the model was deleted");
+}
+
 void LiveSession::presence_changed() {
   auto socket = socket_.lock();
   if (!socket) return;
@@ -412,7 +419,7 @@ void LiveSession::resolve_pointer() {
       asked = *std::exchange(pointer_, std::nullopt);
       here = member_;
     }
-    auto point = room_->pick(asked.camera, asked.pixel.x, asked.pixel.y, {});
+    auto point = room_->pick(asked.camera, asked.pixel.x, asked.pixel.y, {});  // where, not what is there
     here->pointer(point && point->hit ? std::optional(point->position) : std::nullopt);
   }
 }

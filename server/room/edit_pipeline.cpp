@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <chrono>
 #include <limits>
 #include <map>
+#include <new>
 
 #include "core/log.h"
 
@@ -12,7 +14,8 @@ namespace {
 
 constexpr int kStrokesInFlight = 8;   // keeps the GPU fed; more would only lengthen a rollback
 constexpr int kKeyTileEvery = 64;     // revisions of a tile between two whole copies
-constexpr std::size_t kUndoableTilesAtOnce = 256;  // history is loaded in groups to bound memory
+constexpr int kRevisionsAtOnce = 32;  // of a tile's history: undo holds no more in memory
+constexpr auto kRepairPause = std::chrono::milliseconds(500);
 
 template <class... Visitors>
 struct Overloaded : Visitors... {
@@ -48,111 +51,177 @@ std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& c
   return box;
 }
 
+// The room has the layer, so a handle that the renderer does not know is one of a context that was lost.
+Problem gpu_problem(const Problem& why) {
+  if (why.status != 404) return why;
+  return {503, "GPU lost", "The graphics context is being restored; send the edit again.", {}};
+}
+
 }  // namespace
 
 EditPipeline::EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_sequence)
-    : parts_(std::move(parts)), host_(&host), sequence_(last_sequence), durable_(last_sequence) {}
+    : parts_(std::move(parts)), host_(&host), sequence_(last_sequence), durable_(last_sequence), repair_timer_(parts_.strand) {}
+
+template <class Handler>
+auto EditPipeline::then(Handler handler) {
+  return [self = shared_from_this(), handler = std::move(handler)](auto value) mutable {
+    boost::asio::post(self->parts_.strand, [self, handler = std::move(handler), value = std::move(value)]() mutable {
+      handler(std::move(value));
+      self->step();
+    });
+  };
+}
 
 void EditPipeline::edit(EditRequest request, Room::Applied applied, Room::Saved saved) {
-  auto no = [&](int status, const char* title, const char* detail) {
-    saved(fail(status, title, detail));
-  };
-  if (closed_) return no(503, "Model is closing", "The server is letting go of this model; try again in a moment.");
-  if (repeat(request, applied, saved)) return;
+  if (closed_) return saved(tl::unexpected(*closed_));
+  if (auto found = running_.find(request.id); found != running_.end()) return found->second.push_back(std::move(saved));
   if (!parts_.writer.accepting())
-    return no(503, "Not saved", "The database does not take edits at the moment. Viewing goes on; try again shortly.");
-  if (waiting_.size() >= parts_.max_waiting)
-    return no(429, "Too many edits", "This model has as many waiting edits as it may; send more slowly.");
-  if (verify_) {
-    auto last = parts_.store.last_sequence(host_->pipeline_model().id);
-    if (!last) return saved(tl::unexpected(last.error()));
-    verify_ = false;
-    // A commit whose answer was lost may have happened after all: the journal is right, the room is not.
-    if (*last != durable_) {
-      host_->reload_from_store();
-      return no(503, "Model is reloading", "The model is being read anew from the database; send the edit again.");
-    }
-  }
+    return saved(fail(503, "Not saved", "The database does not take edits at the moment. Viewing goes on; try again shortly."));
   running_[request.id];
   waiting_.push_back({std::move(request), std::move(applied), std::move(saved), {}});
   step();
 }
 
-bool EditPipeline::repeat(const EditRequest& request, const Room::Applied& applied, Room::Saved& saved) {
-  if (auto found = running_.find(request.id); found != running_.end()) {
-    found->second.push_back(std::move(saved));
-    return true;
-  }
-  auto row = parts_.store.find_edit(host_->pipeline_model().id, request.id);
-  if (!row) {
-    saved(tl::unexpected(row.error()));
-    return true;
-  }
-  if (!*row) return false;
-  const auto& answer_json = (*row)->answer;
-  const EditAnswer answer{(*row)->sequence, answer_json.value("texels_changed", std::uint64_t{0}),
-                          answer_json.value("area_m2", 0.0), true};
-  if (applied) applied(answer);
-  saved(answer);
-  return true;
-}
-
-void EditPipeline::when_idle(std::function<void()> work) {
+void EditPipeline::when_idle(Work work) {
+  if (closed_) return work(tl::unexpected(*closed_));
   waiting_.push_back({{}, {}, {}, std::move(work)});
   step();
 }
 
-void EditPipeline::step() {
-  while (!waiting_.empty() && !paused_ && !busy_ && !failure_ && !closed_ && !waits_for_map_) {
-    Waiting& front = waiting_.front();
-    auto take = [&] {
-      Waiting item = std::move(front);
-      waiting_.pop_front();
-      return item;
-    };
-    if (front.work) {
-      if (in_flight_ > 0 || !pending_.empty()) return;
-      busy_ = true;
-      boost::asio::post(parts_.workers, [self = shared_from_this(), work = take().work] {
-        work();
-        boost::asio::post(self->parts_.strand, [self] {
-          self->busy_ = false;
-          self->step();
-        });
-      });
-      return;
+// ---------------------------------------------------------------------------------------------------- looking up
+
+// One question at a time, about all that came meanwhile. Where `verify_` is set, also: is the journal where the room thinks it is?
+// When the last question had no answer, that one is asked only where somebody waits for it.
+void EditPipeline::ask_journal() {
+  if (asking_) return;
+  const bool settled = in_flight_ == 0 && !busy_ && !paused_ && pending_.empty();
+  const bool verifying = verify_ && settled && !(journal_away_ && waiting_.empty());
+  if (verify_ && !verifying) return;
+  std::vector<Uuid> ids;
+  for (Waiting& item : waiting_) {
+    if (item.work || item.lookup != Waiting::Lookup::none) continue;
+    item.lookup = Waiting::Lookup::asked;
+    ids.push_back(item.request.id);
+  }
+  if (ids.empty() && !verifying) return;
+  asking_ = true;
+  boost::asio::post(parts_.readers, [&store = parts_.store, model_id = host_->pipeline_model().id, ids = std::move(ids), was_away = journal_away_,
+                                     done = then([this, verifying](const Result<store::Store::JournalState>& state) {
+                                       on_journal(verifying, state);
+                                     })]() mutable {
+    // The pool waits for a database that restarts. Once is enough: those who come later hear at once that it is away.
+    if (was_away && !store.ready())
+      return done(Result<store::Store::JournalState>(
+          fail(503, "Database unavailable", "The database does not answer, so nothing can be saved. Viewing goes on; try again shortly.")));
+    done(store.journal_state(model_id, ids));
+  });
+}
+
+void EditPipeline::on_journal(bool verifying, const Result<store::Store::JournalState>& state) {
+  asking_ = false;
+  if (closed_) return;
+  journal_away_ = !state;
+  if (!state) {
+    // All that wait for the journal, not only those it was asked about: edits of one stroke must not change places.
+    std::deque<Waiting> all = std::exchange(waiting_, {});
+    for (Waiting& item : all) {
+      if (!verify_ && (item.work || item.lookup == Waiting::Lookup::is_new)) waiting_.push_back(std::move(item));
+      else refuse(item, state.error());
     }
-    const LayerState* layer = host_->find_layer(front.request.layer_id);
-    if (!layer) {
-      Waiting item = take();
-      refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
+    return;
+  }
+  // A commit whose answer was lost may have happened after all: the journal is right, the room is not. Until the room holds what the
+  // journal has, no repeat may hear that its edit is there, so all is asked again then. (And a question from before `verify_`
+  // was set tells nothing.)
+  if (verifying && state->last_sequence == durable_) verify_ = false;
+  if (std::any_of(state->known.begin(), state->known.end(), [&](const auto& row) { return row.sequence > durable_; })) verify_ = true;
+  if (!verify_) return on_known(state->known);
+  for (Waiting& item : waiting_)
+    if (item.lookup == Waiting::Lookup::asked) item.lookup = Waiting::Lookup::none;
+  if (verifying && state->last_sequence != durable_) host_->journal_differs();
+}
+
+void EditPipeline::on_known(const std::vector<store::JournalRow>& known) {
+  std::deque<Waiting> all = std::exchange(waiting_, {});
+  for (Waiting& item : all) {
+    const auto row = item.lookup == Waiting::Lookup::asked
+                         ? std::find_if(known.begin(), known.end(), [&](const auto& r) { return r.id == item.request.id; })
+                         : known.end();
+    if (row != known.end()) {
+      const EditAnswer first{row->sequence, row->answer.value("texels_changed", std::uint64_t{0}), row->answer.value("area_m2", 0.0), true};
+      if (item.applied) item.applied(first);
+      answer(item.request.id, item.saved, first);
       continue;
     }
-    if (!map_ready(layer->layer.resolution)) return;
-    if (std::holds_alternative<StrokeEdit>(front.request.edit)) {
-      if (in_flight_ >= kStrokesInFlight) return;
-      start_stroke(take(), *layer);
-    } else {
-      if (in_flight_ > 0 || (reads_journal(front.request) && !pending_.empty())) return;
-      start_computed(take(), *layer);
-    }
+    if (item.lookup == Waiting::Lookup::asked) item.lookup = Waiting::Lookup::is_new;
+    waiting_.push_back(std::move(item));
   }
+}
+
+// ------------------------------------------------------------------------------------------------------ starting
+
+void EditPipeline::step() {
+  roll_back_when_answered();
+  if (closed_) return;
+  ask_journal();
+  if (paused_) {
+    if (in_flight_ == 0 && !busy_ && std::exchange(tell_paused_, false)) host_->paused();
+    return;
+  }
+  if (busy_ || failure_) return;
+  if (repair() || verify_) return;
+  while (!waiting_.empty() && !busy_ && !waits_for_map_)
+    if (!start_front()) return;
+}
+
+bool EditPipeline::start_front() {
+  Waiting& front = waiting_.front();
+  const auto take = [&] {
+    Waiting item = std::move(front);
+    waiting_.pop_front();
+    return item;
+  };
+  if (front.work) {
+    if (in_flight_ > 0 || !pending_.empty()) return false;
+    start_work(take().work);
+    return true;
+  }
+  if (front.lookup != Waiting::Lookup::is_new) return false;
+  const LayerState* layer = host_->find_layer(front.request.layer_id);
+  if (!layer) {
+    Waiting item = take();
+    refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
+    return true;
+  }
+  if (!map_ready(layer->layer.resolution)) return false;
+  if (std::holds_alternative<StrokeEdit>(front.request.edit)) {
+    if (in_flight_ >= kStrokesInFlight) return false;
+    start_stroke(take(), *layer);
+  } else {
+    if (in_flight_ > 0 || (reads_journal(front.request) && !pending_.empty())) return false;
+    start_computed(take(), *layer);
+  }
+  return true;
+}
+
+void EditPipeline::start_work(Work work) {
+  busy_ = true;
+  boost::asio::post(parts_.workers, [work = std::move(work), done = then([this](bool) { busy_ = false; })]() mutable {
+    work({});
+    done(true);
+  });
 }
 
 bool EditPipeline::map_ready(int resolution) {
   if (parts_.maps->get(resolution)) return true;
   waits_for_map_ = true;
-  parts_.maps->request(resolution, [self = shared_from_this()](Result<SurfaceMaps::MapPtr> map) {
-    boost::asio::post(self->parts_.strand, [self, map = std::move(map)] {
-      self->waits_for_map_ = false;
-      if (!map && !self->waiting_.empty() && !self->waiting_.front().work) {
-        Waiting item = std::move(self->waiting_.front());
-        self->waiting_.pop_front();
-        self->refuse(item, map.error());
-      }
-      self->step();
-    });
-  });
+  parts_.maps->request(resolution, then([this](const Result<SurfaceMaps::MapPtr>& map) {
+    waits_for_map_ = false;
+    if (map || waiting_.empty() || waiting_.front().work) return;
+    Waiting item = std::move(waiting_.front());
+    waiting_.pop_front();
+    refuse(item, map.error());
+  }));
   return false;
 }
 
@@ -160,43 +229,40 @@ void EditPipeline::start_stroke(Waiting taken, const LayerState& layer) {
   ++in_flight_;
   auto item = std::make_shared<Waiting>(std::move(taken));
   parts_.renderer.paint(layer.handle, std::get<StrokeEdit>(item->request.edit).batch,
-                        [self = shared_from_this(), item](Result<render::StrokeOutcome> outcome) {
-                          boost::asio::post(self->parts_.strand, [self, item, outcome = std::move(outcome)]() mutable {
-                            --self->in_flight_;
-                            self->stroke_done(*item, std::move(outcome));
-                            self->roll_back_when_answered();
-                            self->step();
-                          });
-                        });
+                        then([this, item](Result<render::StrokeOutcome> outcome) {
+                          --in_flight_;
+                          stroke_done(*item, std::move(outcome));
+                        }));
 }
 
 void EditPipeline::stroke_done(Waiting& item, Result<render::StrokeOutcome> outcome) {
-  if (!outcome) return refuse(item, outcome.error());
-  LayerState* layer = closed_ ? nullptr : host_->find_layer(item.request.layer_id);
+  if (!outcome) return refuse(item, gpu_problem(outcome.error()));
+  if (closed_) return refuse(item, *closed_);
+  LayerState* layer = host_->find_layer(item.request.layer_id);
   if (!layer) return refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
   Computed computed;
-  for (auto& tile : outcome->tiles) {
+  for (const auto& tile : outcome->tiles) {
     auto before = layer->mirror->tile(tile.address);
     if (!before) before = std::make_shared<const TileData>(layer->layer.type);
-    computed.changes.push_back(
-        {tile.address, std::move(before), std::make_shared<const TileData>(std::move(tile.after)), tile.written});
+    computed.changes.push_back(painted_change(tile.address, std::move(before), tile.written, tile.after));
   }
   std::optional<render::FrameRequest::Box> box;
   if (!computed.changes.empty()) box = render::FrameRequest::Box{outcome->written_min, outcome->written_max};
   commit(item, *layer, std::move(computed), box);
 }
 
-void EditPipeline::start_computed(Waiting item, const LayerState& layer) {
+void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
   busy_ = true;
-  boost::asio::post(parts_.workers, [self = shared_from_this(), item = std::make_shared<Waiting>(std::move(item)),
-                                     meta = layer.layer, tiles = layer.mirror->snapshot().tiles]() mutable {
-    auto computed = self->compute(item->request, meta, tiles);
-    boost::asio::post(self->parts_.strand, [self, item, computed = std::move(computed)]() mutable {
-      self->busy_ = false;
-      self->computed_done(*item, std::move(computed));
-      self->roll_back_when_answered();
-      self->step();
-    });
+  auto item = std::make_shared<Waiting>(std::move(taken));
+  boost::asio::post(parts_.workers, [this, self = shared_from_this(), item, meta = layer.layer, tiles = layer.mirror->snapshot().tiles,
+                                     done = then([this, item](Result<Computed> computed) {
+                                       upload_computed(item, std::move(computed));
+                                     })]() mutable {
+    try {
+      done(compute(item->request, meta, tiles));
+    } catch (const std::bad_alloc&) {
+      done(Result<Computed>(fail(503, "Out of memory", "The server has not the memory for this edit at the moment; try again later.")));
+    }
   });
 }
 
@@ -235,40 +301,65 @@ Result<EditPipeline::Computed> EditPipeline::compute_undo(const EditRequest& req
   if (!written) return tl::unexpected(written.error());
 
   Computed computed;
-  (redo ? computed.enable : computed.disable) = *sequences;
-  for (std::size_t first = 0; first < written->size(); first += kUndoableTilesAtOnce) {
-    const std::size_t last = std::min(written->size(), first + kUndoableTilesAtOnce);
-    std::vector<TileAddress> addresses;
-    std::unordered_map<TileAddress, const TileMask*> masks;
-    for (std::size_t i = first; i < last; ++i) {
-      addresses.push_back((*written)[i].tile);
-      masks[(*written)[i].tile] = &(*written)[i].written;
-    }
-    auto histories = parts_.store.load_history(layer, addresses);
-    if (!histories) return tl::unexpected(histories.error());
-    for (auto& history : *histories) {
-      for (auto& entry : history.newest_first)
-        if (std::find(sequences->begin(), sequences->end(), entry.sequence) != sequences->end()) entry.in_force = redo;
-      computed.changes.push_back(
-          resolve_change(tiles, history.tile, layer.type, history.newest_first, *masks.at(history.tile)));
-    }
+  for (const auto& tile : *written) {
+    auto change = undo_in_tile(tile, *sequences, redo, layer, tiles);
+    if (!change) return tl::unexpected(change.error());
+    computed.changes.push_back(std::move(*change));
   }
+  (redo ? computed.enable : computed.disable) = std::move(*sequences);
   return computed;
 }
 
-void EditPipeline::computed_done(Waiting& item, Result<Computed> computed) {
-  if (!computed) return refuse(item, computed.error());
-  LayerState* layer = closed_ ? nullptr : host_->find_layer(item.request.layer_id);
-  if (!layer) return refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
-  const auto map = parts_.maps->get(layer->layer.resolution);
-  if (!map) return refuse(item, {503, "GPU lost", "The graphics context is being restored; send the edit again.", {}});
+// Walks back through the tile's history only until every texel has found its author.
+Result<TileChange> EditPipeline::undo_in_tile(const store::Store::WrittenTiles& written, const std::vector<std::int64_t>& sequences,
+                                              bool redo, const Layer& layer, const TileMap& tiles) const {
+  auto before = tile_or_empty(tiles, written.tile, layer.type);
+  TileResolver resolver(*before, written.written);
+  for (std::int64_t newest = std::numeric_limits<std::int64_t>::max(); resolver.is_open();) {
+    auto revisions = parts_.store.tile_history(layer, written.tile, newest, kRevisionsAtOnce);
+    if (!revisions) return tl::unexpected(revisions.error());
+    if (revisions->empty()) break;
+    for (auto& revision : *revisions) {
+      if (std::binary_search(sequences.begin(), sequences.end(), revision.sequence)) revision.in_force = redo;
+      resolver.add(revision);
+    }
+    newest = revisions->back().sequence;
+  }
+  auto after = std::make_shared<const TileData>(std::move(resolver).finish());
+  return TileChange{written.tile, std::move(before), std::move(after), written.written};
+}
+
+// Applied only once the GPU has it: a stroke that comes next is painted over what the mirror holds.
+void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item, Result<Computed> computed) {
+  busy_ = false;
+  if (!computed) return refuse(*item, computed.error());
+  if (closed_) return refuse(*item, *closed_);
+  LayerState* layer = host_->find_layer(item->request.layer_id);
+  if (!layer) return refuse(*item, {404, "No such layer", "The layer was deleted.", "layer"});
   std::vector<render::TileUpload> uploads;
   for (const auto& change : computed->changes) uploads.push_back({change.address, change.after});
-  // A failed upload means a lost context, and then every layer is put on the GPU again from its mirror.
-  parts_.renderer.write_tiles(layer->handle, std::move(uploads), [](Result<void>) {});
-  const auto box = box_of(computed->changes, *map);
-  commit(item, *layer, std::move(*computed), box);
+  busy_ = true;
+  parts_.renderer.write_tiles(layer->handle, std::move(uploads),
+                              then([this, item, computed = std::move(*computed)](const Result<void>& uploaded) mutable {
+                                busy_ = false;
+                                computed_uploaded(*item, std::move(computed), uploaded);
+                              }));
 }
+
+void EditPipeline::computed_uploaded(Waiting& item, Computed computed, const Result<void>& uploaded) {
+  if (closed_) return refuse(item, *closed_);
+  LayerState* layer = host_->find_layer(item.request.layer_id);
+  if (!layer) return refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
+  if (!uploaded) {
+    for (const auto& change : computed.changes) stale_[layer->layer.id].insert(change.address);
+    return refuse(item, gpu_problem(uploaded.error()));
+  }
+  const auto map = parts_.maps->get(layer->layer.resolution);
+  const auto box = map ? box_of(computed.changes, *map) : std::nullopt;
+  commit(item, *layer, std::move(computed), box);
+}
+
+// ------------------------------------------------------------------------------------ making durable, or taking back
 
 void EditPipeline::commit(Waiting& item, LayerState& layer, Computed computed,
                           const std::optional<render::FrameRequest::Box>& box) {
@@ -297,6 +388,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, Computed computed,
     }
     entry.revisions.push_back(std::move(revision));
   }
+  const std::int64_t sequence_before = layer.layer.sequence;
   layer.mirror->put(tiles, sequence);
   host_->set_sequence(layer, sequence);
 
@@ -320,18 +412,13 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, Computed computed,
   host_->edit_applied(event);
   if (item.applied) item.applied(answer);
 
-  pending_.push_back({event, std::move(computed.changes), std::move(item.saved), false});
+  pending_.push_back({event, std::move(computed.changes), sequence_before, std::move(item.saved), false});
   if (failure_) {
     pending_.back().answered = true;
     return;
   }
-  const bool taken = parts_.writer.submit(std::move(entry), [self = shared_from_this(), sequence](Result<void> result) {
-    boost::asio::post(self->parts_.strand, [self, sequence, result = std::move(result)] {
-      self->on_saved(sequence, result);
-      self->roll_back_when_answered();
-      self->step();
-    });
-  });
+  const bool taken =
+      parts_.writer.submit(std::move(entry), then([this, sequence](const Result<void>& result) { on_saved(sequence, result); }));
   if (!taken) {
     failure_ = Problem{503, "Not saved", "The database does not keep up with the edits; they were taken back.", {}};
     pending_.back().answered = true;
@@ -354,8 +441,9 @@ void EditPipeline::on_saved(std::int64_t sequence, const Result<void>& result) {
   answer(pending.event.id, pending.saved, pending.event.answer);
 }
 
+// Nothing is taken back while the room is paused: what it reads or puts on the GPU then must not change under it.
 void EditPipeline::roll_back_when_answered() {
-  if (!failure_ || in_flight_ > 0 || busy_) return;
+  if (!failure_ || in_flight_ > 0 || busy_ || (paused_ && !closed_)) return;
   for (const Pending& pending : pending_)
     if (!pending.answered) return;
 
@@ -363,31 +451,84 @@ void EditPipeline::roll_back_when_answered() {
   failure_.reset();
   verify_ = true;
   sequence_ = durable_;
-  std::map<std::int64_t, TileMap> before;  // by layer: what the tiles were before the oldest pending edit
-  std::vector<Listener::Edit> events;
-  for (auto pending = pending_.rbegin(); pending != pending_.rend(); ++pending)
-    for (const auto& change : pending->changes) before[pending->event.layer_id][change.address] = change.before;
-  for (const auto& pending : pending_) events.push_back(pending.event);
-  std::deque<Pending> taken_back = std::move(pending_);
-  pending_.clear();
-
-  for (auto& [layer_id, tiles] : before) {
-    LayerState* layer = host_ ? host_->find_layer(layer_id) : nullptr;
-    if (!layer) continue;
-    std::vector<render::TileUpload> uploads;
-    for (const auto& [address, data] : tiles) uploads.push_back({address, data});
-    parts_.renderer.write_tiles(layer->handle, std::move(uploads), [](Result<void>) {});
-    layer->mirror->put(tiles, durable_);
-    host_->set_sequence(*layer, std::min(layer->layer.sequence, durable_));
-    since_key_tile_.erase(layer_id);  // the whole copies may be among what was not saved
-    host_->content_changed(*layer, std::nullopt, durable_);
+  std::deque<Pending> taken_back = std::exchange(pending_, {});
+  struct Before {
+    TileMap tiles;
+    std::int64_t sequence = 0;
+  };
+  std::map<std::int64_t, Before> layers;  // what they were before their oldest pending edit
+  for (auto pending = taken_back.rbegin(); pending != taken_back.rend(); ++pending) {
+    Before& before = layers[pending->event.layer_id];
+    before.sequence = pending->layer_sequence_before;
+    for (const auto& change : pending->changes) before.tiles[change.address] = change.before;
   }
+  for (auto& [layer_id, before] : layers) {
+    LayerState* layer = closed_ ? nullptr : host_->find_layer(layer_id);
+    if (!layer) continue;
+    layer->mirror->put(before.tiles, before.sequence);
+    host_->set_sequence(*layer, before.sequence);
+    since_key_tile_.erase(layer_id);  // the whole copies may be among what was not saved
+    for (const auto& [address, data] : before.tiles) stale_[layer_id].insert(address);
+  }
+  if (!closed_) repair();  // on its way before anybody hears of it
+  std::vector<Listener::Edit> events;
+  for (const auto& pending : taken_back) events.push_back(pending.event);
   log::warning("took back " + std::to_string(events.size()) + " edits that could not be saved: " + why.title + ": " + why.detail);
-  if (host_) host_->edits_unsaved(events, why);
+  if (!closed_) host_->edits_unsaved(events, why);
   for (auto& pending : taken_back) answer(pending.event.id, pending.saved, tl::unexpected(why));
 }
 
-void EditPipeline::refuse(Waiting& item, const Problem& why) { answer(item.request.id, item.saved, tl::unexpected(why)); }
+// Writes what the mirrors hold where the GPU may hold something else. First the tiles that are empty: that frees the pages which
+// the others may need.
+bool EditPipeline::repair() {
+  std::erase_if(stale_, [&](const auto& entry) { return !host_->find_layer(entry.first); });
+  if (stale_.empty()) return false;
+  if (repair_waits_ || in_flight_ > 0) return true;
+  busy_ = true;
+  auto left = std::make_shared<std::size_t>(2 * stale_.size());
+  auto failure = std::make_shared<std::optional<Problem>>();
+  for (const bool empty_ones : {true, false})
+    for (const auto& [layer_id, tiles] : stale_) {
+      const LayerState* layer = host_->find_layer(layer_id);
+      std::vector<render::TileUpload> uploads;
+      for (const TileAddress address : tiles)
+        if (auto tile = layer->mirror->tile(address); !tile == empty_ones) uploads.push_back({address, std::move(tile)});
+      parts_.renderer.write_tiles(layer->handle, std::move(uploads), then([this, left, failure](const Result<void>& uploaded) {
+                                    if (!uploaded && !*failure) *failure = uploaded.error();
+                                    if (--*left == 0) repaired(*failure);
+                                  }));
+    }
+  return true;
+}
+
+void EditPipeline::repaired(const std::optional<Problem>& failure) {
+  busy_ = false;
+  if (closed_) return;
+  if (!failure) {
+    for (const auto& [layer_id, tiles] : std::exchange(stale_, {}))
+      if (const LayerState* layer = host_->find_layer(layer_id)) host_->content_changed(*layer, std::nullopt, sequence_);
+    return;
+  }
+  if (paused_) return;  // a lost context: everything is put on the GPU again
+  log::warning("tiles were not written to the GPU, trying again: " + failure->detail);
+  refuse_waiting(gpu_problem(*failure));
+  repair_waits_ = true;
+  repair_timer_.expires_after(kRepairPause);
+  repair_timer_.async_wait([self = shared_from_this()](const boost::system::error_code& cancelled) {
+    self->repair_waits_ = false;
+    if (!cancelled) self->step();
+  });
+}
+
+void EditPipeline::refuse(Waiting& item, const Problem& why) {
+  if (item.work) item.work(tl::unexpected(why));
+  else answer(item.request.id, item.saved, tl::unexpected(why));
+}
+
+void EditPipeline::refuse_waiting(const Problem& why) {
+  std::deque<Waiting> all = std::exchange(waiting_, {});
+  for (Waiting& item : all) refuse(item, why);
+}
 
 void EditPipeline::answer(const Uuid& id, const Room::Saved& saved, const Result<EditAnswer>& result) {
   std::vector<Room::Saved> followers;
@@ -403,23 +544,31 @@ void EditPipeline::answer(const Uuid& id, const Room::Saved& saved, const Result
   }
 }
 
-void EditPipeline::pause() { paused_ = true; }
+// ----------------------------------------------------------------------------------------------- pausing, closing
 
-void EditPipeline::resume(std::int64_t last_sequence) {
-  paused_ = false;
+void EditPipeline::pause() {
+  paused_ = tell_paused_ = true;
+  step();
+}
+
+void EditPipeline::journal_read(std::int64_t last_sequence) {
+  sequence_ = durable_ = last_sequence;  // nothing is pending: the last rollback took all of it
+  verify_ = false;
   since_key_tile_.clear();
-  sequence_ = last_sequence;
-  if (pending_.empty()) durable_ = last_sequence;
+}
+
+void EditPipeline::resume() {
+  paused_ = false;
   step();
 }
 
 void EditPipeline::close(const Problem& why) {
-  closed_ = true;
+  if (closed_) return;
+  closed_ = why;
   host_ = nullptr;
-  std::deque<Waiting> left = std::move(waiting_);
-  waiting_.clear();
-  for (auto& item : left)
-    if (!item.work) refuse(item, why);
+  repair_timer_.cancel();
+  refuse_waiting(why);
+  roll_back_when_answered();
 }
 
 }  // namespace strata::room

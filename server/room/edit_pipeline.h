@@ -1,5 +1,6 @@
 #pragma once
 
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <deque>
@@ -7,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <unordered_map>
 #include <vector>
 
@@ -32,13 +34,20 @@ class PipelineHost {
   virtual void edit_applied(const Listener::Edit& edit) = 0;
   virtual void edit_saved(const Listener::Edit& edit) = 0;
   virtual void edits_unsaved(const std::vector<Listener::Edit>& edits, const Problem& why) = 0;
-  virtual void reload_from_store() = 0;  // the journal holds more than the room knows of
+  virtual void journal_differs() = 0;  // from what the room holds: read it anew. The host pauses the pipeline
+  virtual void paused() = 0;           // the pipeline was asked to pause, and nothing is under way any more
 };
 
-// The order of edits of one room. Strokes go to the GPU several at a time, in sequence order; edits that are computed from the
-// tile mirror (fill, import, undo, restore) wait until the strokes before them are read back. What was read back
+// The order of edits of one room. An edit is first looked up in the journal, which may hold it from an earlier connection. Then
+// strokes go to the GPU several at a time, in sequence order; edits that are computed from the tile mirror (fill, import, undo,
+// restore) wait until the strokes before them are read back, and are applied once the GPU has them. What was read back
 // is compared with the mirror once: that difference becomes the journal's revision, the counts and the change on screen.
-// Lives on the room's strand: every method but `edit` is called there.
+//
+// The mirrors are right at every moment: they hold what the journal has and what is on its way there. The GPU may fall
+// behind them (`stale_`); it is brought up to date before anything else starts.
+//
+// Lives on the room's strand: every method is called there, and nothing there waits. What blocks (journal, history) is done by
+// `readers` and `workers`, whose answers are posted to the strand.
 class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
  public:
   struct Parts {
@@ -46,35 +55,46 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     store::JournalWriter& writer;
     render::Renderer& renderer;
     boost::asio::thread_pool& workers;
+    boost::asio::thread_pool& readers;
     Strand strand;
     std::shared_ptr<SurfaceMaps> maps;
-    std::size_t max_waiting;
   };
   EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_sequence);
 
   void edit(EditRequest request, Room::Applied applied, Room::Saved saved);
-  // Runs `work` when every edit before it is durable; nothing else runs meanwhile. `work` may block: it is on a worker.
-  void when_idle(std::function<void()> work);
+  // Calls `work` on a worker, where it may block, when every edit before it is durable; nothing else runs meanwhile. Where that
+  // will never be, calls it with the reason, on the strand.
+  using Work = std::function<void(const Result<void>&)>;
+  void when_idle(Work work);
 
   std::int64_t sequence() const { return sequence_; }
   std::int64_t durable_sequence() const { return durable_; }
-  bool idle() const { return waiting_.empty() && in_flight_ == 0 && pending_.empty() && !busy_; }
 
-  void pause();                            // the GPU was lost: nothing is started
-  void resume(std::int64_t last_sequence); // layers are back; continue after this sequence
-  void close(const Problem& why);          // the host goes away: waiting edits are refused, later calls do nothing
+  // Starts nothing more, and tells the host as soon as nothing is under way: then the layers' handles and mirrors may be
+  // changed. Journal entries may still be on their way, but none is taken back before `resume`.
+  void pause();
+  void gpu_filled() { stale_.clear(); }  // while paused: from the mirrors
+  // While paused: the mirrors now hold what the journal has, up to `last_sequence`; the GPU has not got `tiles` of a layer yet.
+  void journal_read(std::int64_t last_sequence);
+  void gpu_lacks(std::int64_t layer_id, const std::vector<TileAddress>& tiles) { stale_[layer_id].insert(tiles.begin(), tiles.end()); }
+  void resume();
+
+  void refuse_waiting(const Problem& why);
+  void close(const Problem& why);  // the host goes away: waiting edits are refused, and later ones
 
  private:
   struct Waiting {
     EditRequest request;
     Room::Applied applied;
     Room::Saved saved;
-    std::function<void()> work;  // when_idle
+    Work work;  // of `when_idle`, instead of an edit
+    enum class Lookup { none, asked, is_new } lookup = Lookup::none;  // is_new: the journal does not know its id
   };
   // Applied and on its way to the journal; what is needed to take it back.
   struct Pending {
     Listener::Edit event;
     std::vector<TileChange> changes;
+    std::int64_t layer_sequence_before = 0;
     Room::Saved saved;
     bool answered = false;
   };
@@ -83,34 +103,56 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     std::vector<std::int64_t> disable, enable;
   };
 
-  bool repeat(const EditRequest& request, const Room::Applied& applied, Room::Saved& saved);
+  // Looking up
+  void ask_journal();
+  void on_journal(bool verifying, const Result<store::Store::JournalState>& state);
+  void on_known(const std::vector<store::JournalRow>& known);
+  // Starting
   void step();
+  bool start_front();  // false: it has to wait
+  void start_work(Work work);
   bool map_ready(int resolution);
   void start_stroke(Waiting item, const LayerState& layer);
   void stroke_done(Waiting& item, Result<render::StrokeOutcome> outcome);
   void start_computed(Waiting item, const LayerState& layer);
-  void computed_done(Waiting& item, Result<Computed> computed);
   Result<Computed> compute(const EditRequest& request, const Layer& layer, const TileMap& tiles) const;
   Result<Computed> compute_undo(const EditRequest& request, const Layer& layer, const TileMap& tiles, bool redo) const;
+  Result<TileChange> undo_in_tile(const store::Store::WrittenTiles& written, const std::vector<std::int64_t>& sequences,
+                                  bool redo, const Layer& layer, const TileMap& tiles) const;
+  void upload_computed(const std::shared_ptr<Waiting>& item, Result<Computed> computed);
+  void computed_uploaded(Waiting& item, Computed computed, const Result<void>& uploaded);
+  // Making durable, or taking back
   void commit(Waiting& item, LayerState& layer, Computed computed, const std::optional<render::FrameRequest::Box>& box);
   void on_saved(std::int64_t sequence, const Result<void>& result);
   void roll_back_when_answered();
+  bool repair();  // false: the GPU has all
+  void repaired(const std::optional<Problem>& failure);
   void refuse(Waiting& item, const Problem& why);
   void answer(const Uuid& id, const Room::Saved& saved, const Result<EditAnswer>& result);
 
+  // A callback that, on the strand, gives its argument to `handler` and then steps.
+  template <class Handler>
+  auto then(Handler handler);
+
   Parts parts_;
-  PipelineHost* host_;
+  PipelineHost* host_;               // null when closed
   std::int64_t sequence_;            // of the last edit in the mirrors
   std::int64_t durable_;             // of the last edit in the journal
   std::deque<Waiting> waiting_;
+  bool asking_ = false;              // a question to the journal is under way
+  bool journal_away_ = false;        // the last one had no answer: the next does not wait for the database to come back
   int in_flight_ = 0;                // strokes on the GPU
-  bool busy_ = false;                // a computed edit or `when_idle` work is under way
+  bool busy_ = false;                // a computed edit, `when_idle` work or a repair is under way
   bool waits_for_map_ = false;
   bool paused_ = false;
-  bool closed_ = false;
-  bool verify_ = false;              // after failed commits: compare with the journal before the next edit
+  bool tell_paused_ = false;         // the host waits for `paused`
+  std::optional<Problem> closed_;    // the answer to later edits
+  bool verify_ = false;              // nothing starts before the room was compared with the journal, which may hold more
   std::optional<Problem> failure_;   // commits failed: everything pending is taken back once it is answered
   std::deque<Pending> pending_;      // sequence order
+  std::map<std::int64_t, std::set<TileAddress>> stale_;  // by layer: where the GPU may hold something else than the mirror
+  boost::asio::steady_timer repair_timer_;
+  bool repair_waits_ = false;        // for the timer
   // By layer: revisions since the last whole tile was stored, in this room.
   std::map<std::int64_t, std::unordered_map<TileAddress, int>> since_key_tile_;
   std::unordered_map<Uuid, std::vector<Room::Saved>> running_;  // waiting and pending edits, with who repeated them

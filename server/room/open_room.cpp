@@ -7,7 +7,6 @@
 
 #include "core/log.h"
 #include "core/slug.h"
-#include "room/await.h"
 
 namespace strata::room {
 namespace {
@@ -46,13 +45,6 @@ auto OpenRoom::on_strand(Work work) const {
   return future.get();
 }
 
-template <class Tell>
-void OpenRoom::tell(Tell tell) {
-  std::lock_guard lock(members_mutex_);
-  for (RoomMember* member : members_)
-    if (member->listener()) tell(*member->listener());
-}
-
 OpenRoom::OpenRoom(const RoomParts& parts, Model model, std::shared_ptr<const mesh::Geometry> geometry)
     : parts_(parts),
       model_id_(model.id),
@@ -60,7 +52,8 @@ OpenRoom::OpenRoom(const RoomParts& parts, Model model, std::shared_ptr<const me
       strand_(parts.strands.get_executor()),
       maps_(std::make_shared<SurfaceMaps>(geometry_, parts.renderer, parts.workers)),
       model_(std::move(model)),
-      last_used_(std::chrono::steady_clock::now()) {}
+      last_used_(std::chrono::steady_clock::now()),
+      recovery_(strand_) {}
 
 OpenRoom::~OpenRoom() = default;
 
@@ -71,117 +64,25 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const s
   if (!bytes) return tl::unexpected(bytes.error());
   auto geometry = mesh::decode_geometry(*bytes);
   if (!geometry) return tl::unexpected(geometry.error());
-  auto last = parts.store.last_sequence(model->id);
-  if (!last) return tl::unexpected(last.error());
-
   auto room = std::make_shared<OpenRoom>(parts, std::move(*model),
                                          std::make_shared<const mesh::Geometry>(std::move(*geometry)));
-  room->sequence_ = room->durable_ = *last;
+  auto journal = read_journal(parts.store, room->model_id_, {});
+  if (!journal) return tl::unexpected(journal.error());
+  auto gpu = fill_gpu(parts.renderer, room->geometry_, journal->layers);
+  if (!gpu) return tl::unexpected(gpu.error());
+  for (LayerState& state : journal->layers) {
+    state.handle = gpu->layers.at(state.layer.id);
+    room->layers_.emplace(state.layer.id, std::move(state));
+  }
+  room->model_handle_ = gpu->model;
+  room->maps_->set_model(gpu->model);
+  room->sequence_ = room->durable_ = journal->last_sequence;
   room->pipeline_ = std::make_shared<EditPipeline>(
-      EditPipeline::Parts{parts.store, parts.writer, parts.renderer, parts.workers, room->strand_, room->maps_,
-                          parts.options.max_waiting_edits},
-      *room, *last);
-  if (auto done = room->add_to_gpu(true); !done) return tl::unexpected(done.error());
+      EditPipeline::Parts{parts.store, parts.writer, parts.renderer, parts.workers, parts.readers, room->strand_, room->maps_},
+      *room, journal->last_sequence);
   // Painting needs the maps of the layers there are; bake them while people look around.
   for (const auto& state : room->layer_states()) room->maps_->request(state.layer.resolution, [](auto) {});
   return room;
-}
-
-// ------------------------------------------------------------------------------------------------- GPU contents
-
-Result<std::shared_ptr<TileMirror>> OpenRoom::load_mirror(const Layer& layer) const {
-  auto tiles = parts_.store.load_tiles(layer);
-  if (!tiles) return tl::unexpected(tiles.error());
-  auto mirror = std::make_shared<TileMirror>(layer.type, layer.resolution);
-  mirror->put(tiles->tiles, tiles->sequence);
-  return mirror;
-}
-
-Result<LayerState> OpenRoom::put_on_gpu(const Layer& layer, std::shared_ptr<TileMirror> mirror,
-                                        render::ModelHandle model) const {
-  auto handle = await<render::LayerHandle>(
-      [&](auto done) { parts_.renderer.add_layer(model, layer.type, layer.resolution, std::move(done)); });
-  if (!handle) return tl::unexpected(handle.error());
-  std::vector<render::TileUpload> uploads;
-  for (const auto& [address, data] : mirror->snapshot().tiles) uploads.push_back({address, data});
-  if (!uploads.empty()) {
-    auto written = await<void>(
-        [&](auto done) { parts_.renderer.load_tiles(*handle, std::move(uploads), std::move(done)); });
-    if (!written) return tl::unexpected(written.error());
-  }
-  return LayerState{layer, *handle, std::move(mirror), std::make_shared<const Palette>(layer.palette)};
-}
-
-Result<void> OpenRoom::add_to_gpu(bool from_store) {
-  auto handle = await<render::ModelHandle>([&](auto done) { parts_.renderer.add_model(geometry_, std::move(done)); });
-  if (!handle) return tl::unexpected(handle.error());
-  std::map<std::int64_t, LayerState> states;
-  auto undo = [&](const Problem& problem) {
-    parts_.renderer.remove_model(*handle);
-    return tl::unexpected(problem);
-  };
-  if (from_store) {
-    auto layers = parts_.store.layers(model_id_);
-    if (!layers) return undo(layers.error());
-    for (const Layer& layer : *layers) {
-      auto mirror = load_mirror(layer);
-      if (!mirror) return undo(mirror.error());
-      auto state = put_on_gpu(layer, std::move(*mirror), *handle);
-      if (!state) return undo(state.error());
-      states.emplace(layer.id, std::move(*state));
-    }
-  } else {
-    for (const LayerState& old : layer_states()) {
-      auto state = put_on_gpu(old.layer, old.mirror, *handle);
-      if (!state) return undo(state.error());
-      states.emplace(old.layer.id, std::move(*state));
-    }
-  }
-  render::ModelHandle previous = 0;
-  {
-    std::lock_guard lock(mutex_);
-    previous = std::exchange(model_handle_, *handle);
-    layers_ = std::move(states);
-  }
-  if (previous) parts_.renderer.remove_model(previous);
-  maps_->set_model(*handle);
-  return {};
-}
-
-void OpenRoom::gpu_lost() {
-  boost::asio::post(strand_, [self = shared_from_this()] {
-    self->pipeline_->pause();
-    // The mirrors hold what PostgreSQL has and what is on its way there: the GPU is rebuilt from them.
-    boost::asio::post(self->parts_.workers, [self] { self->rebuild(false); });
-  });
-}
-
-void OpenRoom::reload_from_store() {
-  pipeline_->pause();
-  boost::asio::post(parts_.workers, [self = shared_from_this()] { self->rebuild(true); });
-}
-
-void OpenRoom::rebuild(bool from_store) {
-  auto last = from_store ? parts_.store.last_sequence(model_id_) : Result<std::int64_t>(sequence_.load());
-  Result<void> done = last ? add_to_gpu(from_store) : tl::unexpected(last.error());
-  if (!done) {
-    log::error("model " + std::to_string(model_id_) + " could not be put on the GPU again: " + done.error().title + ": " +
-               done.error().detail);
-    // A lost context calls again; a database that is away is asked again.
-    if (from_store) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(500));
-      boost::asio::post(parts_.workers, [self = shared_from_this()] { self->rebuild(true); });
-    }
-    return;
-  }
-  boost::asio::post(strand_, [self = shared_from_this(), last = *last] {
-    self->sequence_ = last;
-    self->pipeline_->resume(last);
-    self->durable_ = self->pipeline_->durable_sequence();
-    const auto handle = self->model_handle();
-    std::lock_guard lock(self->members_mutex_);
-    for (RoomMember* member : self->members_) member->model_changed(handle);
-  });
 }
 
 // ---------------------------------------------------------------------------------------------------- metadata
@@ -235,26 +136,49 @@ render::ModelHandle OpenRoom::model_handle() const {
 std::int64_t OpenRoom::sequence() const { return sequence_; }
 std::int64_t OpenRoom::durable_sequence() const { return durable_; }
 
+template <class T>
+Result<T> OpenRoom::exclusively(std::function<Result<T>()> work) {
+  auto promise = std::make_shared<std::promise<Result<T>>>();
+  auto future = promise->get_future();
+  ++unanswered_;
+  boost::asio::post(strand_, [self = shared_from_this(), promise, work = std::move(work)] {
+    self->pipeline_->when_idle([promise, work](const Result<void>& may) {
+      if (may) promise->set_value(work());
+      else promise->set_value(tl::unexpected(may.error()));
+    });
+  });
+  auto result = future.get();
+  --unanswered_;
+  return result;
+}
+
 Result<Layer> OpenRoom::create_layer(Layer layer) {
   layer.model_id = model_id_;
   if (auto ok = check_layer(layer, model()); !ok) return tl::unexpected(ok.error());
-  auto created = parts_.store.create_layer(std::move(layer));
-  if (!created) return created;
-  auto state = put_on_gpu(*created, std::make_shared<TileMirror>(created->type, created->resolution), model_handle());
-  if (!state) {
-    if (auto removed = parts_.store.delete_layer(created->id); !removed)
-      log::error("layer " + created->slug + " was not put on the GPU and stays in the database: " + removed.error().detail);
-    return tl::unexpected(state.error());
-  }
-  on_strand([&] {
-    {
-      std::lock_guard lock(mutex_);
-      layers_.emplace(created->id, std::move(*state));
+  auto created = exclusively<Layer>([this, layer]() -> Result<Layer> {
+    // The GPU first: of what it refuses nothing is in the database.
+    auto handle = add_layer(parts_.renderer, model_handle(), layer, {});
+    if (!handle) {
+      if (handle.error().status == 404) return fail(503, "GPU lost", "The graphics context is being restored; try again in a moment.");
+      return tl::unexpected(handle.error());
     }
-    tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::created, *created); });
-    sort_layers_changed();
+    auto made = parts_.store.create_layer(layer);
+    if (!made) {
+      parts_.renderer.remove_layer(*handle);
+      return made;
+    }
+    on_strand([&] {
+      {
+        std::lock_guard lock(mutex_);
+        layers_.emplace(made->id, LayerState{*made, *handle, std::make_shared<TileMirror>(made->type, made->resolution),
+                                             std::make_shared<const Palette>(made->palette)});
+      }
+      tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::created, *made); });
+      sort_layers_changed();
+    });
+    return made;
   });
-  maps_->request(created->resolution, [](auto) {});
+  if (created) maps_->request(created->resolution, [](auto) {});
   return created;
 }
 
@@ -278,30 +202,24 @@ Result<Layer> OpenRoom::update_layer(Layer layer) {
 }
 
 Result<void> OpenRoom::delete_layer(std::int64_t id) {
-  auto promise = std::make_shared<std::promise<Result<void>>>();
-  auto future = promise->get_future();
-  boost::asio::post(strand_, [self = shared_from_this(), id, promise] {
-    // In the order of edits: none of the layer's may be on its way to a journal that no longer knows it.
-    self->pipeline_->when_idle([self, id, promise] {
-      auto deleted = self->parts_.store.delete_layer(id);
-      if (deleted)
-        self->on_strand([&] {
-          LayerState gone;
-          {
-            std::lock_guard lock(self->mutex_);
-            auto found = self->layers_.find(id);
-            if (found == self->layers_.end()) return;
-            gone = std::move(found->second);
-            self->layers_.erase(found);
-          }
-          self->parts_.renderer.remove_layer(gone.handle);
-          self->tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::deleted, gone.layer); });
-          self->sort_layers_changed();
-        });
-      promise->set_value(std::move(deleted));
+  // In the order of edits: none of the layer's may be on its way to a journal that no longer knows it.
+  return exclusively<void>([this, id]() -> Result<void> {
+    if (auto deleted = parts_.store.delete_layer(id); !deleted) return deleted;
+    on_strand([&] {
+      LayerState gone;
+      {
+        std::lock_guard lock(mutex_);
+        auto found = layers_.find(id);
+        if (found == layers_.end()) return;
+        gone = std::move(found->second);
+        layers_.erase(found);
+      }
+      parts_.renderer.remove_layer(gone.handle);
+      tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::deleted, gone.layer); });
+      sort_layers_changed();
     });
+    return {};
   });
-  return future.get();
 }
 
 Result<Model> OpenRoom::update_model(Model model) {
@@ -326,11 +244,19 @@ void OpenRoom::sort_layers_changed() {
 
 void OpenRoom::edit(EditRequest request, Applied applied, Saved saved) {
   touch();
+  if (!takes_edits_) return saved(fail(503, "Server is stopping", "The server saves what is under way and stops; send the edit again when it is back."));
+  // Counted before it is posted: the strand's own queue has no bound.
+  if (++unanswered_ > parts_.options.max_waiting_edits) {
+    --unanswered_;
+    return saved(fail(429, "Too many edits", "This model has as many waiting edits as it may; send more slowly."));
+  }
   boost::asio::post(strand_, [self = shared_from_this(), request = std::move(request), applied = std::move(applied),
                               saved = std::move(saved)]() mutable {
     // The answer keeps the room alive until it is given.
-    self->pipeline_->edit(std::move(request), std::move(applied),
-                          [self, saved = std::move(saved)](Result<EditAnswer> answer) { saved(std::move(answer)); });
+    self->pipeline_->edit(std::move(request), std::move(applied), [self, saved = std::move(saved)](Result<EditAnswer> answer) {
+      --self->unanswered_;
+      saved(std::move(answer));
+    });
   });
 }
 
@@ -377,6 +303,12 @@ std::unique_ptr<Member> OpenRoom::join(std::string user, Listener* listener, str
   return member;
 }
 
+void OpenRoom::tell(const std::function<void(Listener&)>& tell) {
+  std::lock_guard lock(members_mutex_);
+  for (RoomMember* member : members_)
+    if (member->listener()) tell(*member->listener());
+}
+
 void OpenRoom::leave(RoomMember* member) {
   {
     std::lock_guard lock(members_mutex_);
@@ -411,14 +343,19 @@ bool OpenRoom::deserted(std::chrono::steady_clock::time_point now) const {
   return now - last_used_ > parts_.options.close_after;
 }
 
-bool OpenRoom::idle() {
-  return on_strand([&] { return pipeline_->idle(); });
+void OpenRoom::shut(const Problem& why) {
+  maps_->stop();
+  on_strand([&] {
+    recovery_.shut = true;
+    recovery_.timer.cancel();
+    pipeline_->close(why);
+  });
+  parts_.renderer.remove_model(model_handle());
 }
 
-void OpenRoom::shut() {
-  maps_->stop();
-  on_strand([&] { pipeline_->close({503, "Model is closing", "The server is letting go of this model.", {}}); });
-  parts_.renderer.remove_model(model_handle());
+void OpenRoom::shut_deleted() {
+  on_strand([&] { tell([](Listener& l) { l.model_deleted(); }); });
+  shut({410, "Model deleted", "The model was deleted; nothing can be painted on it any more.", {}});
 }
 
 // ----------------------------------------------------------------------------------------------------- queries
@@ -430,10 +367,6 @@ std::shared_ptr<const mesh::SearchTree> OpenRoom::search_tree() {
 
 Result<std::vector<query::LayerView>> OpenRoom::layer_views(const std::vector<std::string>& refs) const {
   std::vector<query::LayerView> views;
-  if (refs.empty()) {
-    for (const auto& state : layer_states()) views.push_back({state.layer, state.mirror->snapshot()});
-    return views;
-  }
   for (const auto& ref : refs) {
     auto found = state(ref);
     if (!found) return tl::unexpected(found.error());

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 
+#include "room/contents.h"
 #include "room/edit_pipeline.h"
 #include "room/member.h"
 #include "room/room.h"
@@ -18,8 +19,9 @@ struct RoomParts {
   store::JournalWriter& writer;
   render::Renderer& renderer;
   stream::StreamContext stream;
-  boost::asio::thread_pool& strands;  // room strands run here: short work
-  boost::asio::thread_pool& workers;  // bakes, history: long work
+  boost::asio::thread_pool& strands;  // room strands run here: short work, nothing that waits
+  boost::asio::thread_pool& workers;  // bakes, history, loading: long work
+  boost::asio::thread_pool& readers;  // questions to the journal before each edit: they wait for the database only
   RoomOptions options;
 };
 
@@ -61,7 +63,8 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void edit_applied(const Listener::Edit& edit) override;
   void edit_saved(const Listener::Edit& edit) override;
   void edits_unsaved(const std::vector<Listener::Edit>& edits, const Problem& why) override;
-  void reload_from_store() override;
+  void journal_differs() override;
+  void paused() override;
 
   // --- for members
   stream::StreamContext stream_context() const { return parts_.stream; }
@@ -75,19 +78,24 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void gpu_lost();
   bool deserted(std::chrono::steady_clock::time_point now) const;  // nobody for `close_after`
   void touch();
-  bool idle();          // every edit is durable; asks the strand, blocks
-  void shut();          // refuses what waits and lets go of the GPU; blocks
+  void take_no_edits() { takes_edits_ = false; }  // new ones are refused
+  bool idle() const { return unanswered_ == 0; }  // every edit is durable or refused
+  void shut(const Problem& why);                  // refuses what waits and what comes, lets go of the GPU; blocks
+  void shut_deleted();                            // as the model was deleted: people are told first
   std::int64_t id() const { return model_id_; }
 
  private:
   template <class Work>
   auto on_strand(Work work) const;                       // runs there and waits for the result
-  template <class Tell>
-  void tell(Tell tell);                                  // every listener
-  Result<LayerState> put_on_gpu(const Layer& layer, std::shared_ptr<TileMirror> mirror, render::ModelHandle model) const;
-  Result<std::shared_ptr<TileMirror>> load_mirror(const Layer& layer) const;
-  Result<void> add_to_gpu(bool from_store);              // model and all layers; blocks
-  void rebuild(bool from_store);
+  void tell(const std::function<void(Listener&)>& tell);  // every listener
+  // Runs `work` on a worker when every edit before it is durable. No edit starts meanwhile, and no recovery. Blocks.
+  template <class T>
+  Result<T> exclusively(std::function<Result<T>()> work);
+  // recovery.cpp
+  void recover();
+  void on_gpu_filled(int losses_before, const Result<GpuContents>& contents);
+  void on_journal_read(Result<JournalContents> contents);
+  void retry_recovery(const Problem& why);
   void sort_layers_changed();
   std::shared_ptr<const mesh::SearchTree> search_tree();
   Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs) const;
@@ -100,14 +108,29 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   const std::shared_ptr<SurfaceMaps> maps_;
   std::shared_ptr<EditPipeline> pipeline_;
 
-  mutable std::mutex mutex_;                 // model_, layers_, model_handle_, tree_, last_used_
+  // Changed on the strand, under `mutex_`; so read on the strand without it, and elsewhere under it.
+  mutable std::mutex mutex_;
   Model model_;
-  std::map<std::int64_t, LayerState> layers_;  // changed on the strand only
+  std::map<std::int64_t, LayerState> layers_;
   render::ModelHandle model_handle_ = 0;
-  std::shared_ptr<const mesh::SearchTree> tree_;
+  std::chrono::steady_clock::time_point last_used_;  // under `mutex_` everywhere
+
   std::once_flag tree_once_;
-  std::chrono::steady_clock::time_point last_used_;
+  std::shared_ptr<const mesh::SearchTree> tree_;
   std::atomic<std::int64_t> sequence_{0}, durable_{0};
+  std::atomic<std::size_t> unanswered_{0};  // edits, and changes of layers that wait for them
+  std::atomic<bool> takes_edits_{true};
+
+  struct Recovery {  // on the strand
+    explicit Recovery(const Strand& strand) : timer(strand) {}
+    bool gpu_lacks_all = false;
+    bool journal_differs = false;
+    bool working = false;  // one of them is being mended
+    bool shut = false;
+    int gpu_losses = 0;
+    std::chrono::milliseconds retry_in{};
+    boost::asio::steady_timer timer;
+  } recovery_;
 
   mutable std::recursive_mutex members_mutex_;  // recursive: a listener may ask for presence while it is told
   std::vector<RoomMember*> members_;

@@ -43,11 +43,9 @@ Result<render::Frame> OpenRoom::picture(const Camera& camera, std::optional<std:
     if (at) {
       auto past = parts_.store.load_tiles(item.layer, at);
       if (!past) return tl::unexpected(past.error());
-      auto mirror = std::make_shared<TileMirror>(item.layer.type, item.layer.resolution);
-      mirror->put(past->tiles, *at);
-      auto copy = put_on_gpu(item.layer, std::move(mirror), model);
+      auto copy = add_layer(parts_.renderer, model, item.layer, past->tiles);
       if (!copy) return tl::unexpected(copy.error());
-      handle = copy->handle;
+      handle = *copy;
       borrowed.layers.push_back(handle);
     }
     request.layers.push_back({handle, item.palette, static_cast<float>(item.layer.opacity)});

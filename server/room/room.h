@@ -33,6 +33,7 @@ class Listener {
   enum class LayerChange { created, changed, deleted };
   virtual void layer_changed(LayerChange change, const Layer& layer) = 0;
   virtual void model_changed(const Model& model) = 0;
+  virtual void model_deleted() = 0;  // nothing else follows
   virtual void presence_changed() = 0;
 };
 
@@ -76,7 +77,8 @@ class Room {
   virtual std::int64_t sequence() const = 0;
   virtual std::int64_t durable_sequence() const = 0;
 
-  // `applied` when it is visible (may be empty), `saved` when it is durable or has failed: exactly one call of `saved`.
+  // `applied` when it is visible (may be empty), `saved` when it is durable or has failed: exactly one call of `saved`. What is
+  // refused for the number of edits is so at once, on the calling thread.
   using Applied = std::function<void(const EditAnswer&)>;
   using Saved = std::function<void(Result<EditAnswer>)>;
   virtual void edit(EditRequest request, Applied applied, Saved saved) = 0;
@@ -90,7 +92,8 @@ class Room {
   virtual Result<void> delete_layer(std::int64_t id) = 0;
   virtual Result<Model> update_model(Model model) = 0;
 
-  // Queries; may take a while the first time (search tree, surface map), so call from a worker thread.
+  // Queries; may take a while the first time (search tree, surface map), so call from a worker thread. Values of the given
+  // layers only.
   virtual Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers) = 0;
   virtual Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
                                                              const std::vector<std::string>& layers) = 0;
@@ -105,8 +108,9 @@ class Room {
 
 struct RoomOptions {
   std::chrono::seconds close_after{60};        // after the last user left
-  std::size_t max_waiting_edits = 512;         // more are refused (429)
+  std::size_t max_waiting_edits = 512;         // of a room, not yet answered; more are refused (429)
   std::chrono::milliseconds retry_for{30'000}; // commits that fail
+  std::chrono::milliseconds drain_for{40'000}; // longer than commits are retried
 };
 
 // Opens rooms on first use and closes them after the last user left.
@@ -118,7 +122,9 @@ class Rooms {
   Result<std::shared_ptr<Room>> open(const std::string& model_ref);
   void forget(std::int64_t model_id);  // the model was deleted: members are told, the room closes
   std::size_t open_rooms() const;
-  void drain();                        // waits until every edit is durable or refused; no new ones are taken
+  // Refuses new edits, and returns when every other is durable or refused, after `drain_for` at the latest: then what still waits
+  // is refused.
+  void drain();
 
  private:
   struct Impl;

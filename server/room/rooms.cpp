@@ -12,7 +12,11 @@ namespace {
 
 constexpr int kStrandThreads = 2;
 constexpr int kWorkerThreads = 2;
+constexpr int kReaderThreads = 2;
 constexpr auto kSweepEvery = std::chrono::seconds(5);
+
+const Problem kClosing{503, "Model is closing", "The server is letting go of this model; try again in a moment.", {}};
+const Problem kStopping{503, "Server is stopping", "Try again when it is back.", {}};
 
 }  // namespace
 
@@ -22,7 +26,8 @@ struct Rooms::Impl {
         writer(store, {options.retry_for, 256u << 20}),
         strands(kStrandThreads),
         workers(kWorkerThreads),
-        parts{store, writer, renderer, stream, strands, workers, options} {
+        readers(kReaderThreads),
+        parts{store, writer, renderer, stream, strands, workers, readers, options} {
     renderer.on_context_lost([this] {
       std::lock_guard lock(mutex);
       ++context_losses;
@@ -39,9 +44,10 @@ struct Rooms::Impl {
     }
     sweeper.join();
     renderer.on_context_lost({});
-    for (auto& [id, room] : rooms) room->shut();
+    for (auto& [id, room] : rooms) room->shut(kStopping);
     writer.drain();
     workers.join();
+    readers.join();
     strands.join();
     rooms.clear();
   }
@@ -64,8 +70,8 @@ struct Rooms::Impl {
       std::vector<std::shared_ptr<OpenRoom>> leaving;
       const auto now = std::chrono::steady_clock::now();
       for (auto found = rooms.begin(); !stopping && found != rooms.end();) {
-        // Ours is the only reference: no request is looking at it.
-        if (found->second.use_count() == 1 && found->second->deserted(now) && found->second->idle()) {
+        // Ours is the only reference: no request is looking at it, and no edit waits for an answer.
+        if (found->second.use_count() == 1 && found->second->deserted(now)) {
           leaving.push_back(std::move(found->second));
           found = rooms.erase(found);
         } else {
@@ -74,7 +80,7 @@ struct Rooms::Impl {
       }
       lock.unlock();
       for (auto& room : leaving) {
-        room->shut();
+        room->shut(kClosing);
         log::info("closed model " + std::to_string(room->id()) + ", nobody is looking");
       }
       leaving.clear();
@@ -84,14 +90,15 @@ struct Rooms::Impl {
 
   render::Renderer& renderer;
   store::JournalWriter writer;
-  boost::asio::thread_pool strands, workers;
+  boost::asio::thread_pool strands, workers, readers;
   const RoomParts parts;
   std::mutex mutex;
   std::condition_variable changed;
   std::map<std::int64_t, std::shared_ptr<OpenRoom>> rooms;
-  std::set<std::int64_t> opening;
+  std::set<std::int64_t> opening, deleted_meanwhile;
   std::atomic<int> context_losses{0};
   bool stopping = false;
+  bool draining = false;
   std::thread sweeper;
 };
 
@@ -109,8 +116,8 @@ Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref) {
   {
     std::unique_lock lock(impl_->mutex);
     // One at a time loads a model; the others wait for it.
-    impl_->changed.wait(lock, [&] { return impl_->stopping || !impl_->opening.contains(model->id); });
-    if (impl_->stopping) return fail(503, "Server is stopping", "Try again when it is back.");
+    impl_->changed.wait(lock, [&] { return impl_->stopping || impl_->draining || !impl_->opening.contains(model->id); });
+    if (impl_->stopping || impl_->draining) return tl::unexpected(kStopping);
     if (auto found = impl_->rooms.find(model->id); found != impl_->rooms.end()) {
       found->second->touch();
       return found->second;
@@ -118,10 +125,17 @@ Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref) {
     impl_->opening.insert(model->id);
   }
   auto room = OpenRoom::open(impl_->parts, std::to_string(model->id));
-  std::lock_guard lock(impl_->mutex);
+  std::unique_lock lock(impl_->mutex);
   impl_->opening.erase(model->id);
   impl_->changed.notify_all();
+  const bool deleted = impl_->deleted_meanwhile.erase(model->id) > 0;
   if (!room) return tl::unexpected(room.error());
+  if (deleted || impl_->draining) {
+    lock.unlock();
+    (*room)->shut(kClosing);
+    if (!deleted) return tl::unexpected(kStopping);
+    return fail(404, "Not found", "The model was deleted.");
+  }
   impl_->rooms[model->id] = *room;
   if (impl_->context_losses != losses_before) (*room)->gpu_lost();  // it was filled in vain
   return std::static_pointer_cast<Room>(*room);
@@ -131,12 +145,13 @@ void Rooms::forget(std::int64_t model_id) {
   std::shared_ptr<OpenRoom> room;
   {
     std::lock_guard lock(impl_->mutex);
+    if (impl_->opening.contains(model_id)) impl_->deleted_meanwhile.insert(model_id);
     auto found = impl_->rooms.find(model_id);
     if (found == impl_->rooms.end()) return;
     room = std::move(found->second);
     impl_->rooms.erase(found);
   }
-  room->shut();
+  room->shut_deleted();
 }
 
 std::size_t Rooms::open_rooms() const {
@@ -148,10 +163,18 @@ void Rooms::drain() {
   std::vector<std::shared_ptr<OpenRoom>> rooms;
   {
     std::lock_guard lock(impl_->mutex);
+    impl_->draining = true;  // a room that is being opened is not kept
+    impl_->changed.notify_all();
     for (auto& [id, room] : impl_->rooms) rooms.push_back(room);
   }
-  for (auto& room : rooms)
-    while (!room->idle()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  for (auto& room : rooms) room->take_no_edits();
+  const auto deadline = std::chrono::steady_clock::now() + impl_->parts.options.drain_for;
+  for (auto& room : rooms) {
+    while (!room->idle() && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (room->idle()) continue;
+    log::error("model " + std::to_string(room->id()) + ": edits still wait and are refused, since the server stops");
+    room->shut(kStopping);
+  }
   impl_->writer.drain();
 }
 

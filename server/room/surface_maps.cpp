@@ -64,14 +64,14 @@ void SurfaceMaps::start(int resolution) {
 
 void SurfaceMaps::upload(int resolution, MapPtr map, render::ModelHandle model) {
   renderer_.add_surface_map(model, map, [self = shared_from_this(), resolution, map, model](Result<void> done) {
-    if (done) return self->finish(resolution, map);
-    // The model's handle changed while the map was on its way (lost context): try again with the new one.
+    // The model's handle may have changed while the map was on its way (lost context): then once more, with the new one.
     render::ModelHandle now = 0;
     {
       std::lock_guard lock(self->mutex_);
       now = self->model_;
     }
     if (now != model) return self->upload(resolution, map, now);
+    if (done) return self->finish(resolution, map);
     self->finish(resolution, tl::unexpected(done.error()));
   });
 }

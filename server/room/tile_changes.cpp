@@ -83,11 +83,22 @@ std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& wis
   return changes;
 }
 
-TileChange resolve_change(const TileMap& tiles, TileAddress address, ValueType type,
-                          std::span<const PastRevision> newest_first, const TileMask& texels) {
-  auto before = tile_or_empty(tiles, address, type);
-  auto after = std::make_shared<const TileData>(resolve_tile(*before, newest_first, texels));
-  return {address, std::move(before), std::move(after), texels};
+TileChange painted_change(TileAddress address, std::shared_ptr<const TileData> before, const TileMask& written,
+                          const TileData& read_back) {
+  auto after = std::make_shared<TileData>(*before);
+  copy_texels(read_back, written, *after);
+  return {address, std::move(before), std::move(after), written};
+}
+
+std::vector<TileAddress> differing_tiles(const TileMap& a, const TileMap& b) {
+  std::vector<TileAddress> addresses;
+  for (const auto& [address, tile] : a) {
+    auto other = b.find(address);
+    if (other == b.end() || !(*other->second == *tile)) addresses.push_back(address);
+  }
+  for (const auto& [address, tile] : b)
+    if (!a.contains(address)) addresses.push_back(address);
+  return addresses;
 }
 
 }  // namespace strata::room

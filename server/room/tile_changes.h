@@ -2,10 +2,8 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
-#include "core/history.h"
 #include "core/tile_mirror.h"
 #include "mesh/surface_map.h"
 
@@ -35,8 +33,12 @@ std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type, co
 std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& wished, ValueType type,
                                         const mesh::SurfaceMap& map);
 
-// One tile after the rule of undo and redo was applied to `texels` (core/history.h).
-TileChange resolve_change(const TileMap& tiles, TileAddress address, ValueType type,
-                          std::span<const PastRevision> newest_first, const TileMask& texels);
+// What a stroke did to a tile: the texels it wrote become what the GPU holds there, and nothing else changes, whatever the GPU
+// holds in the rest of the tile.
+TileChange painted_change(TileAddress address, std::shared_ptr<const TileData> before, const TileMask& written,
+                          const TileData& read_back);
+
+// Tiles that are not the same in both.
+std::vector<TileAddress> differing_tiles(const TileMap& a, const TileMap& b);
 
 }  // namespace strata::room

@@ -35,13 +35,20 @@ Result<Store::HistoryPage> Store::history(std::int64_t layer_id, int limit, int 
   });
 }
 
-Result<std::optional<JournalRow>> Store::find_edit(std::int64_t model_id, const Uuid& id) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::optional<JournalRow>> {
+Result<Store::JournalState> Store::journal_state(std::int64_t model_id, std::span<const Uuid> ids) {
+  PgArray wanted(oid::kUuid);
+  for (const Uuid& id : ids) wanted.add(id);
+  return impl_->pool.read([&](PgConnection& connection) -> Result<JournalState> {
+    auto model = connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
+    if (!model) return tl::unexpected(model.error());
+    if (model->rows() == 0) return not_found("model", std::to_string(model_id));
+    JournalState state{model->integer(0, 0), {}};
+    if (ids.empty()) return state;
     auto rows = connection.query("SELECT sequence, id, stroke, user_name, op, record, answer, time, in_force FROM edits "
-                                 "WHERE model_id = $1 AND id = $2", Params().integer(model_id).uuid(id));
+                                 "WHERE model_id = $1 AND id = any($2)", Params().integer(model_id).array(wanted));
     if (!rows) return tl::unexpected(rows.error());
-    if (rows->rows() == 0) return std::optional<JournalRow>();
-    return std::optional<JournalRow>(read_row(*rows, 0));
+    for (int i = 0; i < rows->rows(); ++i) state.known.push_back(read_row(*rows, i));
+    return state;
   });
 }
 

@@ -77,15 +77,16 @@ class Store {
   // --- journal (reads; writes go through JournalWriter)
   // All tiles of a layer after `at_sequence` (nothing: the newest).
   Result<TileMirror::Snapshot> load_tiles(const Layer& layer, std::optional<std::int64_t> at_sequence = {});
-  // Every revision of these tiles, newest first, with what their edits are now.
-  struct TileHistory { TileAddress tile; std::vector<PastRevision> newest_first; };
-  Result<std::vector<TileHistory>> load_history(const Layer& layer, std::span<const TileAddress> tiles);
+  // Revisions of a tile that are older than `before`, newest first, `limit` at most, with what their edits are now.
+  Result<std::vector<PastRevision>> tile_history(const Layer& layer, TileAddress tile, std::int64_t before, int limit);
   // Tiles that the given edits wrote, with the union of their written masks.
   struct WrittenTiles { TileAddress tile; TileMask written; };
   Result<std::vector<WrittenTiles>> written_by(const Layer& layer, std::span<const std::int64_t> sequences);
   struct HistoryPage { std::vector<JournalRow> rows; std::int64_t total = 0; };
   Result<HistoryPage> history(std::int64_t layer_id, int limit, int offset);
-  Result<std::optional<JournalRow>> find_edit(std::int64_t model_id, const Uuid& id);
+  // The model's last sequence, and those of the messages that were in the journal after it was read.
+  struct JournalState { std::int64_t last_sequence = 0; std::vector<JournalRow> known; };
+  Result<JournalState> journal_state(std::int64_t model_id, std::span<const Uuid> ids);
   // The sequences (ascending) of the newest stroke of `user` on the layer that is in force / that is undone and not
   // followed by a newer in-force stroke of the same user; empty when there is none.
   Result<std::vector<std::int64_t>> undoable(std::int64_t layer_id, const std::string& user);

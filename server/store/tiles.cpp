@@ -124,31 +124,21 @@ Result<TileMirror::Snapshot> Store::load_tiles(const Layer& layer, std::optional
   });
 }
 
-Result<std::vector<Store::TileHistory>> Store::load_history(const Layer& layer, std::span<const TileAddress> tiles) {
-  PgArray xs(oid::kInt2), ys(oid::kInt2);
-  for (const TileAddress& tile : tiles) {
-    xs.add_int2(static_cast<std::int16_t>(tile.x));
-    ys.add_int2(static_cast<std::int16_t>(tile.y));
-  }
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<TileHistory>> {
-    std::vector<TileHistory> histories;
-    auto read = connection.each_row(
-        "SELECT r.tile_y, r.tile_x, r.sequence, e.writer, e.in_force, r.difference "
-        "FROM (SELECT DISTINCT x, y FROM unnest($3::smallint[], $4::smallint[]) AS t (x, y)) t "
-        "JOIN tile_revisions r ON r.layer_id = $1 AND r.tile_x = t.x AND r.tile_y = t.y "
+Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAddress tile, std::int64_t before, int limit) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<PastRevision>> {
+    auto rows = connection.query(
+        "SELECT r.sequence, e.writer, e.in_force, r.difference FROM tile_revisions r "
         "JOIN edits e ON e.model_id = $2 AND e.sequence = r.sequence "
-        "ORDER BY r.tile_y, r.tile_x, r.sequence DESC",
-        Params().integer(layer.id).integer(layer.model_id).array(xs).array(ys), [&](const PgResult& row) -> Result<void> {
-          const TileAddress address = read_address(row, 0);
-          auto revision = decode_revision(address, layer.type, row.bytes(0, 5));
-          if (!revision) return tl::unexpected(revision.error());
-          if (histories.empty() || histories.back().tile != address) histories.push_back({address, {}});
-          histories.back().newest_first.push_back(
-              {row.integer(0, 2), row.boolean(0, 3), row.boolean(0, 4), std::move(*revision)});
-          return {};
-        });
-    if (!read) return tl::unexpected(read.error());
-    return histories;
+        "WHERE r.layer_id = $1 AND r.tile_y = $3 AND r.tile_x = $4 AND r.sequence < $5 ORDER BY r.sequence DESC LIMIT $6",
+        Params().integer(layer.id).integer(layer.model_id).integer(tile.y).integer(tile.x).integer(before).integer(limit));
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<PastRevision> revisions;
+    for (int i = 0; i < rows->rows(); ++i) {
+      auto revision = decode_revision(tile, layer.type, rows->bytes(i, 3));
+      if (!revision) return tl::unexpected(revision.error());
+      revisions.push_back({rows->integer(i, 0), rows->boolean(i, 1), rows->boolean(i, 2), std::move(*revision)});
+    }
+    return revisions;
   });
 }
 

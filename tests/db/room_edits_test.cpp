@@ -166,6 +166,7 @@ struct UnsavedEars : room::Listener {
   }
   void layer_changed(LayerChange, const Layer&) override {}
   void model_changed(const Model&) override {}
+  void model_deleted() override {}
   void presence_changed() override {}
 };
 

@@ -137,22 +137,26 @@ TEST_F(History, every_revision_of_a_tile_comes_newest_first_and_leads_back_to_no
   auto entry = painter_.entry(31, "undo");
   entry.disable = {29, 30};
   ASSERT_TRUE(save(writer_, entry));
-  const std::vector<TileAddress> tiles{{0, 0}, {1, 0}, {1, 0}, {7, 7}};
-  const auto histories = store_->load_history(layer_, tiles).value();
-  ASSERT_EQ(histories.size(), 2u);
-  for (const auto& history : histories) {
-    auto current = painter_.content().contains(history.tile) ? painter_.content().at(history.tile) : TileData(layer_.type);
+  for (const TileAddress tile : {TileAddress{0, 0}, TileAddress{1, 0}}) {
+    auto current = painter_.content().contains(tile) ? painter_.content().at(tile) : TileData(layer_.type);
     std::int64_t before = 1000;
-    for (const auto& past : history.newest_first) {
-      EXPECT_LT(past.sequence, before);
-      before = past.sequence;
-      EXPECT_TRUE(past.writer);
-      EXPECT_EQ(past.in_force, past.sequence < 29);
-      EXPECT_EQ(past.revision.address, history.tile);
-      apply(past.revision, current);
+    for (;;) {
+      const auto page = store_->tile_history(layer_, tile, before, 4).value();
+      EXPECT_LE(page.size(), 4u);
+      if (page.empty()) break;
+      for (const auto& past : page) {
+        EXPECT_LT(past.sequence, before);
+        before = past.sequence;
+        EXPECT_TRUE(past.writer);
+        EXPECT_EQ(past.in_force, past.sequence < 29);
+        EXPECT_EQ(past.revision.address, tile);
+        apply(past.revision, current);
+      }
     }
+    EXPECT_LT(before, 1000);
     EXPECT_TRUE(current == TileData(layer_.type));
   }
+  EXPECT_TRUE(store_->tile_history(layer_, {7, 7}, 1000, 4)->empty());
 }
 
 TEST_F(History, pages_are_newest_first_and_rows_are_whole) {
@@ -166,8 +170,12 @@ TEST_F(History, pages_are_newest_first_and_rows_are_whole) {
   EXPECT_EQ(page.total, 5);
   ASSERT_EQ(page.rows.size(), 2u);
   EXPECT_EQ(page.rows[0].sequence, 4);
-  const auto found = store_->find_edit(model_.id, entries[2].id).value();
-  ASSERT_TRUE(found);
+  const std::vector<Uuid> asked{random_uuid(), entries[2].id};
+  const auto state = store_->journal_state(model_.id, asked).value();
+  EXPECT_EQ(state.last_sequence, 5);
+  ASSERT_EQ(state.known.size(), 1u);
+  const auto* found = &state.known[0];
+  EXPECT_EQ(found->id, entries[2].id);
   EXPECT_EQ(found->sequence, 3);
   EXPECT_EQ(found->record, entries[2].record);
   EXPECT_EQ(found->answer, entries[2].answer);
@@ -176,8 +184,8 @@ TEST_F(History, pages_are_newest_first_and_rows_are_whole) {
   EXPECT_EQ(found->stroke, entries[2].stroke);
   EXPECT_TRUE(found->in_force);
   EXPECT_LT(std::chrono::abs(found->time - entries[2].time), std::chrono::microseconds(1));
-  EXPECT_FALSE(store_->find_edit(model_.id, random_uuid()).value());
-  EXPECT_FALSE(store_->find_edit(model_.id + 1, entries[2].id).value());
+  EXPECT_EQ(store_->journal_state(model_.id, {})->last_sequence, 5);
+  EXPECT_EQ(store_->journal_state(model_.id + 1, asked).error().status, 404);
   EXPECT_EQ(store_->history(999, 10, 0).error().status, 404);
   EXPECT_TRUE(store_->history(layer_.id, 10, 100)->rows.empty());
 }

@@ -1,6 +1,6 @@
 #include "support/room_fixture.h"
 
-#include <future>
+#include <thread>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "mesh/demo_pot.h"
@@ -70,7 +70,7 @@ void RoomTest::TearDown() {
   store_.reset();
 }
 
-void RoomTest::restart() {
+void RoomTest::restart(std::uint64_t gpu_memory) {
   rooms_.reset();
   encoder_.reset();
   renderer_.reset();
@@ -80,6 +80,7 @@ void RoomTest::restart() {
   render::RendererOptions options;
   options.shader_dir = shader_dir().string();
   options.debug = true;
+  options.gpu_memory_bytes = gpu_memory;
   auto renderer = render::Renderer::start(options);
   ASSERT_TRUE(renderer) << renderer.error().detail;
   renderer_ = std::move(*renderer);
@@ -130,11 +131,55 @@ room::EditRequest RoomTest::stroke(const Layer& layer, double value, std::vector
   return request(layer, std::move(edit), user);
 }
 
-Result<room::EditAnswer> RoomTest::send(room::EditRequest edit) {
+std::future<Result<room::EditAnswer>> RoomTest::start(room::EditRequest edit) {
   auto promise = std::make_shared<std::promise<Result<room::EditAnswer>>>();
   auto future = promise->get_future();
   room()->edit(std::move(edit), {}, [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
-  return future.get();
+  return future;
+}
+
+Result<room::EditAnswer> RoomTest::send(room::EditRequest edit) { return start(std::move(edit)).get(); }
+
+Result<room::EditAnswer> RoomTest::send_until_taken(const room::EditRequest& edit) {
+  Result<room::EditAnswer> answer = fail(503, "", "");
+  for (int i = 0; i < 6000 && !answer && answer.error().status == 503; ++i) {
+    answer = send(edit);
+    if (!answer) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return answer;
+}
+
+void RoomTest::expect_room_equals_journal(const Layer& layer) {
+  const auto live = room()->tiles(layer.slug, {});
+  ASSERT_TRUE(live) << live.error().detail;
+  const auto stored = store_->load_tiles(layer);
+  ASSERT_TRUE(stored) << stored.error().detail;
+  EXPECT_TRUE(equal(live->tiles, stored->tiles));
+  EXPECT_EQ(live->sequence, stored->sequence);
+  EXPECT_EQ(room()->durable_sequence(), store_->last_sequence(model_.id).value());
+}
+
+void RoomTest::expect_picture_of_journal() {
+  // A second renderer that has never painted: what it shows comes from the journal alone.
+  render::RendererOptions options;
+  options.shader_dir = shader_dir().string();
+  auto renderer = render::Renderer::start(options);
+  ASSERT_TRUE(renderer) << renderer.error().detail;
+  Result<render::Frame> expected = fail(503, "", "");
+  {
+    room::Rooms rooms(*store_, **renderer, stream::StreamContext{renderer->get(), encoder_.get()}, {});
+    auto fresh = rooms.open("pot");
+    ASSERT_TRUE(fresh) << fresh.error().detail;
+    expected = (*fresh)->picture(camera({0.3, -1, 0.4}), {});
+  }
+  ASSERT_TRUE(expected) << expected.error().detail;
+  Result<render::Frame> shown = fail(503, "", "");
+  for (int i = 0; i < 3000 && !(shown && shown->pixels == expected->pixels); ++i) {
+    shown = room()->picture(camera({0.3, -1, 0.4}), {});
+    if (!shown || shown->pixels != expected->pixels) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  ASSERT_TRUE(shown) << shown.error().detail;
+  EXPECT_EQ(shown->pixels, expected->pixels);
 }
 
 bool equal(const TileMap& a, const TileMap& b) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <condition_variable>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -21,7 +22,7 @@ class RoomTest : public ::testing::Test {
   void TearDown() override;
 
   // Closes every room and opens the server's parts anew on the same database, as a restart does.
-  void restart();
+  void restart(std::uint64_t gpu_memory = 0);
   std::shared_ptr<room::Room> room();
   Layer make_layer(ValueType type, int resolution = 2048, const std::string& name = "Layer");
 
@@ -32,6 +33,13 @@ class RoomTest : public ::testing::Test {
   room::EditRequest request(const Layer& layer, decltype(room::EditRequest::edit) edit, const std::string& user = "anna") const;
   // Sends and waits until it is durable or refused.
   Result<room::EditAnswer> send(room::EditRequest request);
+  // Sends again what was refused for the moment (503), as a client does.
+  Result<room::EditAnswer> send_until_taken(const room::EditRequest& request);
+  std::future<Result<room::EditAnswer>> start(room::EditRequest request);
+  // What the journal holds of the layer, and that the room holds the same.
+  void expect_room_equals_journal(const Layer& layer);
+  // The picture of the room, once the GPU shows what the journal holds; fails when that never comes.
+  void expect_picture_of_journal();
 
   std::string dsn_;
   Model model_;

@@ -38,7 +38,9 @@ class OneTileLayer {
         written = entry.revision.written;
       }
     undone_[sequence] = !in_force;
-    push(false, written, resolve_tile(tile_, newest_first_, written));
+    TileResolver resolver(tile_, written);
+    for (const auto& entry : newest_first_) resolver.add(entry);
+    push(false, written, std::move(resolver).finish());
   }
 
   void expect_equals_oracle() const {

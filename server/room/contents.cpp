@@ -1,0 +1,61 @@
+#include "room/contents.h"
+
+#include "room/await.h"
+#include "room/tile_changes.h"
+
+namespace strata::room {
+
+Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id, const std::vector<LayerState>& held) {
+  JournalContents contents;
+  // Before the tiles: were they to hold more, the next commit would find out and have everything read again.
+  auto last = store.last_sequence(model_id);
+  if (!last) return tl::unexpected(last.error());
+  contents.last_sequence = *last;
+  auto layers = store.layers(model_id);
+  if (!layers) return tl::unexpected(layers.error());
+  for (Layer& layer : *layers) {
+    auto tiles = store.load_tiles(layer);
+    if (!tiles) return tl::unexpected(tiles.error());
+    for (const LayerState& old : held) {
+      if (old.layer.id != layer.id) continue;
+      auto differing = differing_tiles(old.mirror->snapshot().tiles, tiles->tiles);
+      if (!differing.empty()) contents.differing[layer.id] = std::move(differing);
+    }
+    auto mirror = std::make_shared<TileMirror>(layer.type, layer.resolution);
+    mirror->put(tiles->tiles, tiles->sequence);
+    auto palette = std::make_shared<const Palette>(layer.palette);
+    contents.layers.push_back({std::move(layer), 0, std::move(mirror), std::move(palette)});
+  }
+  return contents;
+}
+
+Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model, const Layer& layer,
+                                      const TileMap& tiles) {
+  auto handle = await<render::LayerHandle>(
+      [&](auto done) { renderer.add_layer(model, layer.type, layer.resolution, std::move(done)); });
+  if (!handle || tiles.empty()) return handle;
+  std::vector<render::TileUpload> uploads;
+  for (const auto& [address, data] : tiles) uploads.push_back({address, data});
+  auto written = await<void>([&](auto done) { renderer.load_tiles(*handle, std::move(uploads), std::move(done)); });
+  if (written) return handle;
+  renderer.remove_layer(*handle);
+  return tl::unexpected(written.error());
+}
+
+Result<GpuContents> fill_gpu(render::Renderer& renderer, const std::shared_ptr<const mesh::Geometry>& geometry,
+                             const std::vector<LayerState>& layers) {
+  auto model = await<render::ModelHandle>([&](auto done) { renderer.add_model(geometry, std::move(done)); });
+  if (!model) return tl::unexpected(model.error());
+  GpuContents contents{*model, {}};
+  for (const LayerState& layer : layers) {
+    auto handle = add_layer(renderer, *model, layer.layer, layer.mirror->snapshot().tiles);
+    if (!handle) {
+      renderer.remove_model(*model);
+      return tl::unexpected(handle.error());
+    }
+    contents.layers[layer.layer.id] = *handle;
+  }
+  return contents;
+}
+
+}  // namespace strata::room

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "mesh/geometry.h"
+#include "room/layer_state.h"
+#include "store/store.h"
+
+namespace strata::room {
+
+// What an open room holds: layers as the journal has them, and their copies on the GPU. All functions block.
+
+struct JournalContents {
+  std::int64_t last_sequence = 0;
+  std::vector<LayerState> layers;  // with mirrors, without handles
+  std::map<std::int64_t, std::vector<TileAddress>> differing;  // by layer: the tiles that `held` has otherwise
+};
+Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id, const std::vector<LayerState>& held);
+
+struct GpuContents {
+  render::ModelHandle model = 0;
+  std::map<std::int64_t, render::LayerHandle> layers;  // by id
+};
+// A model and its layers, from their mirrors: all of it or nothing.
+Result<GpuContents> fill_gpu(render::Renderer& renderer, const std::shared_ptr<const mesh::Geometry>& geometry,
+                             const std::vector<LayerState>& layers);
+Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model, const Layer& layer,
+                                      const TileMap& tiles);
+
+}  // namespace strata::room
