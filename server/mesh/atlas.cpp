@@ -45,12 +45,6 @@ std::vector<glm::vec2> lay_out(const ChartSurface& surface, std::span<const Char
   return uvs;
 }
 
-// Widest gap first: at lowest_resolution the gutter rings of neighbours (2 texels each) then stay apart.
-std::optional<Packing> pack_with_gap(std::span<const Outline> outlines, double guess, int resolution) {
-  for (const int gap : {4, 2})
-    if (auto packing = pack_densely(outlines, guess, resolution, gap)) return packing;
-  return std::nullopt;
-}
 
 // Faces that share a texel with an earlier one at any of the verified resolutions.
 std::vector<std::uint32_t> faces_in_conflict(const TriangleMesh& mesh, std::span<const glm::vec2> uvs,
@@ -73,6 +67,17 @@ tl::unexpected<Problem> no_room(std::size_t charts, int resolution) {
                   std::to_string(resolution) + " × " + std::to_string(resolution) +
                   " texels can hold apart. Weld or clean the mesh, or import it with a higher lowest resolution.",
               "lowest_resolution");
+}
+
+// Widest gap first: at lowest_resolution the gutter rings of neighbours (2 texels each) then stay apart.
+Result<Packing> pack_with_gap(std::span<const Outline> outlines, double guess, int resolution,
+                              const Progress& progress) {
+  for (const int gap : {4, 2}) {
+    auto packing = pack_densely(outlines, guess, resolution, gap, progress);
+    if (packing) return std::move(*packing);
+    if (progress.cancelled()) return cancelled_problem();
+  }
+  return no_room(outlines.size(), resolution);
 }
 
 struct Unwrap {
@@ -106,8 +111,8 @@ Result<Unwrap> unwrap_once(const ChartSurface& surface, int attempt, int lowest_
   if (!charts) return cancelled_problem();
   progress.report(options.progress_to, "Packing the charts");
   auto outlines = make_outlines(surface, *charts);
-  auto packing = pack_with_gap(outlines, options.texels_per_unit, lowest_resolution);
-  if (!packing) return no_room(charts->size(), lowest_resolution);
+  auto packing = pack_with_gap(outlines, options.texels_per_unit, lowest_resolution, progress);
+  if (!packing) return tl::unexpected(packing.error());
   const double texels = area_in_planes(surface, *charts) * packing->texels_per_unit * packing->texels_per_unit;
   return Unwrap{std::move(*charts), std::move(outlines), std::move(*packing), texels / (side * side)};
 }
@@ -144,8 +149,8 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
     if (conflicts.empty()) break;
     split_off(surface, conflicts, charts);
     outlines = make_outlines(surface, charts);
-    auto repacked = pack_with_gap(outlines, packing.texels_per_unit, lowest_resolution);
-    if (!repacked) return no_room(charts.size(), lowest_resolution);
+    auto repacked = pack_with_gap(outlines, packing.texels_per_unit, lowest_resolution, progress);
+    if (!repacked) return tl::unexpected(repacked.error());
     packing = std::move(*repacked);
   }
   progress.report(0.95, "Measuring the unfolded surface");

@@ -18,6 +18,7 @@ constexpr int kEdgeMargin = 1;  // texels kept free along the rim of the atlas
 struct Profile {
   std::vector<std::int16_t> bottom, top;
   int width() const { return static_cast<int>(bottom.size()); }
+  bool operator==(const Profile&) const = default;
 };
 
 // No single rule packs every set of charts best; each is quick, so several are tried.
@@ -112,14 +113,15 @@ class Skyline {
   Skyline(int side, int gap)
       : side_(side),
         gap_(gap),
-        heights_(static_cast<std::size_t>(side) + 2 * gap, static_cast<std::int16_t>(kEdgeMargin - gap)) {}
+        heights_(static_cast<std::size_t>(side) + 2 * gap + kColumnsAtOnce,
+                 static_cast<std::int16_t>(kEdgeMargin - gap)) {}
 
   struct Spot {
     int x = -1, y = 0;
     std::int64_t cost = std::numeric_limits<std::int64_t>::max();
   };
 
-  // The place with the least waste below the chart.
+  // The place with the least cost of waste below the chart and height.
   Spot find(const Profile& profile, int height, const Strategy& strategy) {
     const int width = profile.width(), reach = width + 2 * gap_;
     Spot best;
@@ -134,18 +136,17 @@ class Skyline {
       floor_[i] = static_cast<std::int16_t>(lowest - gap_);
       bottom_sum += floor_[i];
     }
-    sums_.resize(heights_.size() + 1);
-    sums_[0] = 0;
-    for (std::size_t i = 0; i < heights_.size(); ++i) sums_[i + 1] = sums_[i] + heights_[i];
+    const auto* first = heights_.data() + kEdgeMargin;
+    std::int64_t filled = std::accumulate(first, first + reach, std::int64_t{0});  // of the columns below the chart
+    Columns lowest;
     for (int x = kEdgeMargin; x + width + kEdgeMargin <= side_; ++x) {
+      const int column = (x - kEdgeMargin) % kColumnsAtOnce;
+      if (column == 0) lowest = lowest_places(x);
       const std::int16_t* line = heights_.data() + x;  // heights_ begins gap columns left of column 0
-      std::int16_t y = std::numeric_limits<std::int16_t>::min();
-      for (int i = 0; i < reach; ++i) {
-        const auto needed = static_cast<std::int16_t>(line[i] - floor_[i]);
-        y = needed > y ? needed : y;
-      }
+      if (x > kEdgeMargin) filled += line[reach - 1] - line[-1];
+      const std::int16_t y = lowest[column];
       if (y + height + kEdgeMargin > side_) continue;
-      const std::int64_t waste = std::int64_t{y} * reach + bottom_sum - (sums_[x + reach] - sums_[x]);
+      const std::int64_t waste = std::int64_t{y} * reach + bottom_sum - filled;
       const std::int64_t cost =
           strategy.waste_weight * waste + strategy.height_weight * std::int64_t{y + height} * width;
       if (cost < best.cost) best = {x, y, cost};
@@ -159,9 +160,27 @@ class Skyline {
   }
 
  private:
+  static constexpr int kColumnsAtOnce = 64;
+  using Columns = std::array<std::int16_t, kColumnsAtOnce>;
+
+  // The lowest y, for x and the columns after it, at which a chart with this `floor_` clears what lies there. The inner
+  // loop has a fixed length: compilers make vectors of it.
+  Columns lowest_places(int x) const {
+    Columns lowest;
+    lowest.fill(std::numeric_limits<std::int16_t>::min());
+    for (std::size_t i = 0; i < floor_.size(); ++i) {
+      const std::int16_t* line = heights_.data() + x + i;
+      for (int k = 0; k < kColumnsAtOnce; ++k) {
+        const auto needed = static_cast<std::int16_t>(line[k] - floor_[i]);
+        lowest[k] = needed > lowest[k] ? needed : lowest[k];
+      }
+    }
+    return lowest;
+  }
+
   const int side_, gap_;
-  std::vector<std::int16_t> heights_, floor_;
-  std::vector<std::int64_t> sums_;
+  std::vector<std::int16_t> heights_;  // and some columns more, so that whole runs can be read
+  std::vector<std::int16_t> floor_;    // of the chart that is looked for, relative to its y
 };
 
 }  // namespace
@@ -241,16 +260,21 @@ std::vector<std::uint32_t> ordered(std::span<const Shape> shapes, Order order) {
   return result;
 }
 
-std::optional<std::vector<Placement>> place(std::span<const Shape> shapes, int side, int gap,
-                                            const Strategy& strategy) {
+std::optional<std::vector<Placement>> place(std::span<const Shape> shapes, int side, int gap, const Strategy& strategy,
+                                            const Progress& progress) {
   std::vector<Placement> placements(shapes.size());
   Skyline skyline(side, gap);
   for (const auto i : ordered(shapes, strategy.order)) {
+    if (progress.cancelled()) return std::nullopt;
     const Shape& shape = shapes[i];
     Skyline::Spot best;
     int best_turn = 0;
     for (int turn = 0; turn < 4; ++turn) {
-      const auto spot = skyline.find(shape.turned[turn], turn % 2 == 0 ? shape.box.y : shape.box.x, strategy);
+      const Profile& profile = shape.turned[turn];
+      // Small charts look the same from most sides.
+      if (std::find(shape.turned.begin(), shape.turned.begin() + turn, profile) != shape.turned.begin() + turn)
+        continue;
+      const auto spot = skyline.find(profile, turn % 2 == 0 ? shape.box.y : shape.box.x, strategy);
       if (spot.cost < best.cost) best = spot, best_turn = turn;
     }
     if (best.x < 0) return std::nullopt;
@@ -260,39 +284,54 @@ std::optional<std::vector<Placement>> place(std::span<const Shape> shapes, int s
   return placements;
 }
 
-}  // namespace
-
-std::optional<Packing> pack(std::span<const Outline> outlines, double texels_per_unit, int side, int gap) {
+// At one density; empty where they do not fit, or when cancelled.
+std::optional<Packing> pack(std::span<const Outline> outlines, double texels_per_unit, int side, int gap,
+                            const Progress& progress) {
   const auto shapes = make_shapes(outlines, texels_per_unit, side, gap);
   if (!shapes) return std::nullopt;
   for (const Strategy& strategy : kStrategies) {
-    if (auto placements = place(*shapes, side, gap, strategy)) return Packing{texels_per_unit, std::move(*placements)};
+    auto placements = place(*shapes, side, gap, strategy, progress);
+    if (placements) return Packing{texels_per_unit, std::move(*placements)};
     if (outlines.size() >= kManyCharts) break;
   }
   return std::nullopt;
 }
 
-std::optional<Packing> pack_densely(std::span<const Outline> outlines, double first_guess, int side, int gap) {
+// A density at which every chart is a single texel: there is no use in one below.
+double least_density(std::span<const Outline> outlines) {
+  float largest = 0;
+  for (const Outline& outline : outlines) largest = std::max({largest, outline.size.x, outline.size.y});
+  return largest > 0 ? 0.999 / double(largest) : 1;
+}
+
+}  // namespace
+
+std::optional<Packing> pack_densely(std::span<const Outline> outlines, double first_guess, int side, int gap,
+                                    const Progress& progress) {
   constexpr double kStep = 1.08;
-  constexpr int kLargestShrink = 200;  // steps of kStep down: a factor of 5 million
+  const auto texels_each = std::size_t(gap + 1) * std::size_t(gap + 1);
+  if (outlines.size() * texels_each > std::size_t(side + gap) * std::size_t(side + gap)) return std::nullopt;
   double low = first_guess, high = first_guess * kStep;
-  std::optional<Packing> best = pack(outlines, low, side, gap);
+  std::optional<Packing> best = pack(outlines, low, side, gap, progress);
   if (best) {
-    while (auto denser = pack(outlines, high, side, gap)) best = std::move(denser), low = high, high *= kStep;
+    while (auto denser = pack(outlines, high, side, gap, progress)) best = std::move(denser), low = high, high *= kStep;
   } else {
-    for (int i = 0; !best && i < kLargestShrink; ++i) {
-      high = low, low /= kStep;
-      best = pack(outlines, low, side, gap);
+    const double least = least_density(outlines);
+    while (!best) {
+      if (low <= least || progress.cancelled()) return std::nullopt;
+      high = low;
+      low = std::max(low / kStep, least);
+      best = pack(outlines, low, side, gap, progress);
     }
-    if (!best) return std::nullopt;
   }
   for (int i = 0; i < 4; ++i) {
     const double middle = (low + high) / 2;
-    if (auto packing = pack(outlines, middle, side, gap))
+    if (auto packing = pack(outlines, middle, side, gap, progress))
       best = std::move(packing), low = middle;
     else
       high = middle;
   }
+  if (progress.cancelled()) return std::nullopt;
   return best;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/progress.h"
 #include "mesh/charts.h"
 
 namespace strata::mesh {
@@ -53,11 +54,10 @@ struct Packing {
   std::vector<Placement> placements;
 };
 
-// Lays all charts into a square of `side` texels at the given density so that `gap` whole texels stay between any two
-// of them, by the skyline method with four turns. Empty where they do not fit.
-std::optional<Packing> pack(std::span<const Outline> outlines, double texels_per_unit, int side, int gap);
-
-// The densest packing, within about 1 %, searched from `first_guess`. Empty where even a single texel each is too much.
-std::optional<Packing> pack_densely(std::span<const Outline> outlines, double first_guess, int side, int gap);
+// Lays all charts into a square of `side` texels at the densest scale, within about 1 %, searched from `first_guess`,
+// so that `gap` whole texels stay between any two of them: by the skyline method with four turns. Empty where even a
+// single texel each is too much, or when cancelled.
+std::optional<Packing> pack_densely(std::span<const Outline> outlines, double first_guess, int side, int gap,
+                                    const Progress& progress);
 
 }  // namespace strata::mesh

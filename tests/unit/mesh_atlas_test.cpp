@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <thread>
 
+#include "mesh/packing.h"
 #include "mesh/uv_islands.h"
 #include "support/meshes.h"
 #include "support/scan_atlas.h"
@@ -208,6 +210,41 @@ TEST(mesh_atlas, refuses_more_pieces_than_texels_can_hold_apart) {
   ASSERT_FALSE(atlas);
   EXPECT_EQ(atlas.error().status, 422);
   EXPECT_THAT(atlas.error().detail, testing::HasSubstr("higher lowest resolution"));
+}
+
+TEST(mesh_atlas, refuses_a_soup_of_faces_before_it_tries_to_pack_it) {
+  // Packing so many takes minutes; that even single texels do not fit is known at once.
+  Progress progress;
+  const auto atlas = make_atlas(test::separate_triangles(200'000), 1024, progress);
+  ASSERT_FALSE(atlas);
+  EXPECT_EQ(atlas.error().status, 422);
+  EXPECT_THAT(atlas.error().detail, testing::HasSubstr("200000 separate pieces"));
+}
+
+TEST(mesh_atlas, stops_packing_when_cancelled) {
+  Progress progress;
+  std::thread canceller([&] {
+    while (progress.message() != "Packing the charts") std::this_thread::yield();
+    progress.cancel();
+  });
+  const auto atlas = make_atlas(test::separate_triangles(200'000), 2048, progress);
+  canceller.join();
+  ASSERT_FALSE(atlas);
+  EXPECT_EQ(atlas.error().status, 499);
+}
+
+TEST(mesh_atlas, charts_of_a_single_texel_each_are_packed_or_refused_but_not_shrunk_for_ever) {
+  // 600 would fit by their area with the gaps, but no more than 24 fit beside each other between the rims.
+  std::vector<Outline> outlines(600);
+  for (auto& outline : outlines) {
+    outline.segments = {{0, 0}, {1, 1}};
+    outline.size = {1, 1};
+  }
+  EXPECT_FALSE(pack_densely(outlines, 1000, 72, 2, Progress{}));
+  outlines.resize(400);
+  const auto packing = pack_densely(outlines, 1000, 72, 2, Progress{});
+  ASSERT_TRUE(packing);
+  EXPECT_EQ(packing->placements.size(), 400u);
 }
 
 TEST(mesh_atlas, refuses_a_mesh_without_area) {
