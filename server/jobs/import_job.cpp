@@ -15,18 +15,14 @@ namespace {
 // Layers of any size from here on fit the atlas: its gaps are made for the coarsest.
 constexpr int kLowestResolution = 2048;
 constexpr int kHighestResolution = 16384;
+constexpr std::size_t kLongestName = 200;
+constexpr std::size_t kLongestFilename = 255;
 
 // Shares of the whole import, as measured on scans of 100 000 to 1 000 000 triangles.
 constexpr double kRead = 0.15, kUnfolded = 0.8, kBuilt = 0.85;
 
-// The last part of a user's path, which may come from any system.
-std::string base_name(const std::string& filename) {
-  const auto slash = filename.find_last_of("/\\");
-  return slash == std::string::npos ? filename : filename.substr(slash + 1);
-}
-
 std::string stem(const std::string& filename) {
-  const std::string base = base_name(filename);
+  const std::string base = base_filename(filename);
   const auto dot = base.find_last_of('.');
   return dot == std::string::npos || dot == 0 ? base : base.substr(0, dot);
 }
@@ -35,19 +31,6 @@ bool is_crs(const std::string& crs) {
   constexpr std::string_view kPrefix = "EPSG:";
   const std::size_t digits = crs.size() - std::min(crs.size(), kPrefix.size());
   return crs.starts_with(kPrefix) && digits >= 1 && digits <= 7 && is_all_digits(crs.substr(kPrefix.size()));
-}
-
-Result<void> check(const ImportRequest& request) {
-  if (base_name(request.filename).empty())
-    return fail(422, "File name missing", "Give the file's name; its ending (.ply, .obj) tells the format.", "filename");
-  if (!request.up.empty() && request.up != "x" && request.up != "y" && request.up != "z")
-    return fail(422, "Unknown direction", "`up` is x, y or z.", "up");
-  if (!request.crs.empty() && !is_crs(request.crs))
-    return fail(422, "Unknown coordinate system", "A coordinate system is given as EPSG:n, for example EPSG:25830.", "crs");
-  const int resolution = request.resolution;
-  if (resolution != 0 && (resolution < kLowestResolution || resolution > kHighestResolution || !std::has_single_bit(unsigned(resolution))))
-    return fail(422, "Resolution not usable", "The resolution of layers is 2048, 4096, 8192 or 16384.", "resolution");
-  return {};
 }
 
 Result<void> refuse_repairs(const std::vector<Repair>& repairs) {
@@ -83,7 +66,37 @@ void describe_form(Model& model, const mesh::TriangleMesh& mesh, const mesh::Geo
 
 }  // namespace
 
-Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress) {
+std::string base_filename(std::string_view path) {
+  const auto slash = path.find_last_of("/\\");
+  if (slash != std::string_view::npos) path.remove_prefix(slash + 1);
+  std::string out;
+  for (const char c : path)
+    if (static_cast<unsigned char>(c) >= 32 && c != 127) out += c;
+  if (out == "." || out == "..") out.clear();
+  if (out.size() > kLongestFilename) out.erase(0, out.size() - kLongestFilename);  // the end holds the extension
+  return out;
+}
+
+Result<void> check(const ImportRequest& request) {
+  if (request.name.size() > kLongestName) return fail(422, "Name too long", "A name has at most 200 bytes.", "name");
+  if (!request.up.empty() && request.up != "x" && request.up != "y" && request.up != "z")
+    return fail(422, "Unknown direction", "`up` is x, y or z.", "up");
+  if (!request.crs.empty() && !is_crs(request.crs))
+    return fail(422, "Unknown coordinate system", "A coordinate system is given as EPSG:n, for example EPSG:25830.", "crs");
+  const int resolution = request.resolution;
+  if (resolution != 0 && (resolution < kLowestResolution || resolution > kHighestResolution || !std::has_single_bit(unsigned(resolution))))
+    return fail(422, "Resolution not usable", "The resolution of layers is 2048, 4096, 8192 or 16384.", "resolution");
+  std::string extension = std::filesystem::path(base_filename(request.filename)).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (extension.empty())
+    return fail(422, "File name missing", "Give the file's name, such as NAME.ply or NAME.obj: its ending names the format.", "filename");
+  if (extension != ".ply" && extension != ".obj")
+    return fail(415, "Format not taken", "'" + extension + "' files are not taken; send PLY or OBJ.", "filename");
+  return {};
+}
+
+Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,
+                           const store::FirstAnswer<Model>& answer) {
   if (auto good = check(request); !good) return tl::unexpected(good.error());
   const auto project = store.project(request.project);
   if (!project) return tl::unexpected(project.error());
@@ -123,9 +136,9 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   *loaded = {};  // the mesh is in the geometry now; large scans need the memory
   *atlas = {};
   fresh.geometry = mesh::encode_geometry(geometry);
-  fresh.sources.push_back({base_name(request.filename), request.file});
+  fresh.sources.push_back({base_filename(request.filename), request.file});
   progress.report(0.5, "Saving");
-  auto created = store.create_model(fresh, [&progress] { return progress.cancelled(); });
+  auto created = store.create_model(fresh, [&progress] { return progress.cancelled(); }, answer);
   if (created) progress.report(1, "Done");
   return created;
 }

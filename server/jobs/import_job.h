@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "core/progress.h"
 #include "store/store.h"
@@ -20,8 +21,16 @@ struct ImportRequest {
   bool strict = false;            // refuse a file that needs repair
 };
 
-// File → mesh → atlas → geometry → one transaction. Everything or nothing: a bad file or a cancel leaves nothing behind.
-Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress);
+// Whether everything but the file's content can be used, before a file travels: 422 or 415, with the field's name.
+Result<void> check(const ImportRequest& request);
+
+// The last part of a user's path, which may come from any system, without control characters; at most 255 bytes.
+std::string base_filename(std::string_view path);
+
+// File → mesh → atlas → geometry → one transaction, which also keeps the caller's answer. Everything or nothing: a bad file or a
+// cancel leaves nothing behind.
+Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,
+                           const store::FirstAnswer<Model>& answer = {});
 
 // The demo project: the pot of mesh::make_demo_pot with two filled layers, `cracks` and `pieces` (as in the paper's
 // figure 1), painted by rule on its surface map. Idempotent: returns the model there already is.

@@ -1,6 +1,7 @@
 #include "jobs/job_queue.h"
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -54,7 +55,8 @@ struct JobQueue::Impl {
   std::condition_variable changed;
   std::map<std::int64_t, Job> jobs;   // by id: in order of asking
   std::deque<std::int64_t> waiting;
-  std::int64_t last_id = 0;
+  // In milliseconds: nobody asks for a thousand jobs a second, second after second.
+  std::int64_t last_id = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
   bool stopping = false;
   std::thread thread;
 
@@ -133,7 +135,7 @@ std::optional<JobStatus> JobQueue::status(std::int64_t id) const {
 std::vector<JobStatus> JobQueue::all() const {
   std::lock_guard lock(impl_->mutex);
   std::vector<JobStatus> all;
-  for (const auto& [id, job] : impl_->jobs) all.push_back(snapshot(job));
+  for (auto job = impl_->jobs.rbegin(); job != impl_->jobs.rend(); ++job) all.push_back(snapshot(job->second));
   return all;
 }
 

@@ -21,7 +21,8 @@ struct JobStatus {
   std::optional<std::int64_t> model;
 };
 
-// Long work, one at a time on a thread of its own, in order of asking. Finished jobs are remembered (the newest 1000).
+// Long work, one at a time on a thread of its own, in order of asking. Finished jobs are remembered (the newest 1000) until the
+// queue goes; ids are higher than those of every queue before, so that an id of then is never another job now.
 class JobQueue {
  public:
   JobQueue();
@@ -29,7 +30,7 @@ class JobQueue {
   using Work = std::function<Result<std::int64_t>(Progress&)>;  // the model's id
   Result<std::int64_t> add(Work work);  // refused (503) when 64 wait
   std::optional<JobStatus> status(std::int64_t id) const;
-  std::vector<JobStatus> all() const;
+  std::vector<JobStatus> all() const;  // newest first
   bool cancel(std::int64_t id);
 
  private:

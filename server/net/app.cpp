@@ -43,10 +43,11 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       rooms_(rooms),
       auth_(store, options_.owner_token),
       answers_(store),
+      edit_book_(store),
       files_(options_.static_dir),
       shared_(make_shared_state(options_, store)),
       workers_(options_.worker_threads, options_.max_waiting_requests),
-      context_{options_, store, rooms, jobs, renderer, auth_, *shared_->metrics, workers_} {
+      context_{options_, store, rooms, jobs, renderer, auth_, edit_book_, *shared_->metrics, workers_} {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
   add_project_routes(router_, context_);
@@ -122,22 +123,27 @@ std::optional<Response> App::admit(Request& request, const Route& route) {
   if (changes(request.method))
     if (auto own = check_same_origin(request, options_.allowed_origins); !own) return problem_response(own.error());
   if (auto known = check_query(route, request); !known) return problem_response(known.error());
+  if (route.check)
+    if (auto good = route.check(request); !good) return problem_response(good.error());
   if (request.header("idempotency-key").size() > kMaxKey)
     return problem_response({400, "Key too long", "An Idempotency-Key has at most 255 characters.", "Idempotency-Key"});
   return std::nullopt;
 }
 
 void App::handle(const Request& request, const Route& route, const Respond& respond) {
-  const std::string_view key = request.header("idempotency-key");
-  const bool remembered = route.keeps_answer && !key.empty();
+  const bool remembered = route.keeps_answer && !request.header("idempotency-key").empty();
   if (remembered) {
-    auto kept = answers_.begin(request, key);
+    auto kept = answers_.begin(request);
     if (!kept) return respond(kept.error());
-    if (*kept) return respond(std::move(**kept));
+    if (*kept) {
+      auto response = route.replay ? route.replay(request, **kept) : Result<Response>(response_of(**kept));
+      if (!response) return respond(response.error());
+      return respond(std::move(response->with("Idempotency-Replayed", "true")));
+    }
   }
   // Handlers that keep their answer reply before they return, so the request is still there.
-  const Respond answer = remembered ? Respond([this, &request, key, respond](Response response) {
-                                        answers_.finish(request, key, response);
+  const Respond answer = remembered ? Respond([this, &request, respond](Response response) {
+                                        answers_.end(request);
                                         respond(std::move(response));
                                       })
                                     : respond;

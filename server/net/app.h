@@ -56,6 +56,7 @@ class App {
   room::Rooms& rooms_;
   Authenticator auth_;
   AnswerBook answers_;
+  EditBook edit_book_;
   StaticFiles files_;
   std::shared_ptr<LiveShared> shared_;
   WorkerPool workers_;

@@ -64,7 +64,7 @@ Result<std::string> Authenticator::session_for_token(const std::string& token) {
   if (!principal) return tl::unexpected(principal.error());
   if (!*principal) {
     if (token.size() > kMaxTokenLength) return unknown_secret();
-    auto by_link = store_.redeem_owner_link(token);
+    auto by_link = store_.redeem_owner_link(token, kSessionLifetime);
     if (!by_link) return tl::unexpected(by_link.error());
     if (!*by_link) return unknown_secret();
     return **by_link;
@@ -74,7 +74,7 @@ Result<std::string> Authenticator::session_for_token(const std::string& token) {
 }
 
 Result<std::string> Authenticator::session_for_link(const std::string& link) {
-  auto session = store_.redeem_owner_link(link);
+  auto session = store_.redeem_owner_link(link, kSessionLifetime);
   if (!session) return tl::unexpected(session.error());
   if (!*session) return fail(401, "Link not valid", "This sign-in link is unknown or revoked. The server prints a valid one when it starts.", "link");
   return **session;

@@ -12,7 +12,7 @@
 namespace strata::net {
 
 constexpr std::string_view kSessionCookie = "strata_session";
-constexpr std::chrono::hours kSessionLifetime{24 * 30};
+constexpr std::chrono::hours kSessionLifetime{24 * 90};
 constexpr std::size_t kMinOwnerTokenLength = 32;
 
 // Tells who sends a request: by bearer token, or by the session cookie. Thread-safe; may ask the database, so call it on a

@@ -23,9 +23,14 @@ struct Route {
   std::optional<Role> role = Role::viewer;  // least role that may call it; empty: open to everyone
   std::vector<std::string> query{};     // parameters it knows; others are refused
   bool any_query = false;
+  // Refuses by what stands in the address, before the body is read.
+  std::function<Result<void>(const Request& request)> check{};
   BodyKind body = BodyKind::none;
   std::uint64_t max_body = 0;           // bytes
-  bool keeps_answer = false;            // Idempotency-Key is answered from the store of answers
+  // The handler keeps its answer with what it does (`first_answer`); a repeat of its Idempotency-Key gets it without the handler…
+  bool keeps_answer = false;
+  // …or what this makes of what was kept.
+  std::function<Result<Response>(const Request& request, const nlohmann::json& kept)> replay{};
 };
 
 // Finds the route of a request. Filled before the server starts, read-only (so thread-safe) afterwards.

@@ -33,25 +33,29 @@ void add_sequences(Response& response, std::int64_t shown, std::int64_t durable)
   response.with("Strata-Sequence", std::to_string(shown)).with("Strata-Durable-Sequence", std::to_string(durable));
 }
 
-Uuid edit_id(const Request& request) {
+Uuid edit_id(const Request& request, const Layer& layer, std::string_view operation) {
   const auto key = request.header("idempotency-key");
   if (key.empty()) return random_uuid();
-  return uuid_of_text(request.user() + '\n' + std::string(name(request.method)) + '\n' + request.path + '\n' + std::string(key));
+  return uuid_of_text(request.user() + '\n' + std::to_string(layer.id) + '\n' + std::string(operation) + '\n' + std::string(key));
 }
 
-void apply_edit(const std::shared_ptr<room::Room>& room, room::EditRequest request, const RouteContext& context,
+void apply_edit(const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room, room::EditRequest edit,
                 const Respond& respond) {
+  const bool keyed = !request.header("idempotency-key").empty();
+  if (keyed)
+    if (auto same = context.edit_book.begin(room->model().id, edit); !same) return respond(same.error());
   room->edit(
-      std::move(request),
+      std::move(edit),
       [&metrics = context.metrics](const room::EditAnswer& answer) {
         if (!answer.repeated) ++metrics.edits_applied;
       },
-      [&metrics = context.metrics, respond](Result<room::EditAnswer> answer) {
+      [&context, keyed, id = edit.id, respond](Result<room::EditAnswer> answer) {
+        if (keyed) context.edit_book.end(id);
         if (!answer) {
-          ++metrics.edits_refused;
+          ++context.metrics.edits_refused;
           return respond(answer.error());
         }
-        if (!answer->repeated) ++metrics.edits_saved;
+        if (!answer->repeated) ++context.metrics.edits_saved;
         respond(json_response(room::to_json(*answer)).with("Strata-Sequence", std::to_string(answer->sequence)));
       });
 }

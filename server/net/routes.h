@@ -6,6 +6,7 @@
 
 #include "jobs/job_queue.h"
 #include "net/auth.h"
+#include "net/edit_book.h"
 #include "net/metrics.h"
 #include "net/router.h"
 #include "net/server_options.h"
@@ -24,6 +25,7 @@ struct RouteContext {
   jobs::JobQueue& jobs;
   render::Renderer& renderer;
   Authenticator& auth;
+  EditBook& edit_book;
   Metrics& metrics;
   WorkerPool& workers;
 };
@@ -58,10 +60,11 @@ Result<void> check_if_match(const Request& request, std::int64_t version);
 // Strata-Sequence: what a read shows; Strata-Durable-Sequence: what is safe.
 void add_sequences(Response& response, std::int64_t shown, std::int64_t durable);
 
-// The edit's id: from the Idempotency-Key, so that a repeat gets the journal's first answer; random without one.
-Uuid edit_id(const Request& request);
-// Hands the edit to the room and answers once it is durable or refused.
-void apply_edit(const std::shared_ptr<room::Room>& room, room::EditRequest request, const RouteContext& context,
+// The edit's id: from the Idempotency-Key, so that a repeat gets the journal's first answer; random without one. `operation` is
+// the kind of call; a layer is the same by whatever address it was reached.
+Uuid edit_id(const Request& request, const Layer& layer, std::string_view operation);
+// Hands the edit to the room and answers once it is durable or refused. A key of another edit is refused.
+void apply_edit(const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room, room::EditRequest edit,
                 const Respond& respond);
 
 // Slug of a wish or of the name; a wished slug of digits only is refused.

@@ -41,13 +41,13 @@ Handler editing(const RouteContext& context, Make make) {
     if (!target) return respond(target.error());
     Result<room::EditRequest> edit = make(request, *target);
     if (!edit) return respond(edit.error());
-    apply_edit(target->room, std::move(*edit), context, respond);
+    apply_edit(context, request, target->room, std::move(*edit), respond);
   };
 }
 
 room::EditRequest bare_edit(const Request& request, const Target& target, std::string op) {
   room::EditRequest edit;
-  edit.id = edit_id(request);
+  edit.id = edit_id(request, target.layer, op);
   edit.user = request.user();
   edit.layer_id = target.layer.id;
   edit.record = {{"op", std::move(op)}};
@@ -81,7 +81,7 @@ void add_edit_routes(Router& router, const RouteContext& context) {
   change(layer + "/edits", editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
            auto asked = body_of<protocol::Edit>(request);
            if (!asked) return tl::unexpected(asked.error());
-           return edit_request(*asked, target.layer, target.room->model(), edit_id(request), request.user());
+           return edit_request(*asked, target.layer, target.room->model(), edit_id(request, target.layer, "edit"), request.user());
          }));
   change(layer + "/undo", editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
            if (auto empty = check_empty(request); !empty) return tl::unexpected(empty.error());

@@ -3,6 +3,8 @@
 #include "core/log.h"
 #include "core/uuid.h"
 #include "jobs/import_job.h"
+#include "net/answer_book.h"
+#include "net/import_book.h"
 #include "net/routes.h"
 #include "net/upload.h"
 #include "net/wire.h"
@@ -11,9 +13,6 @@ namespace strata::net {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kMaxName = 200;
-constexpr std::size_t kMaxCrs = 15;
 
 // A file that goes away with its last owner, also when the job never runs.
 class TemporaryFile {
@@ -32,16 +31,10 @@ class TemporaryFile {
   fs::path path_;
 };
 
-bool is_crs(const std::string& text) {
-  return text.size() > 5 && text.size() <= kMaxCrs && text.starts_with("EPSG:") &&
-         text.find_first_not_of("0123456789", 5) == std::string::npos;
-}
-
 // Everything but the file, from the query.
 Result<jobs::ImportRequest> import_request(const RouteContext& context, const Request& request) {
   jobs::ImportRequest asked;
   asked.name = request.query_or("name", {});
-  if (asked.name.size() > kMaxName) return fail(422, "Name too long", "A name has at most 200 bytes.", "name");
   asked.project = request.query_or("project", "default");
   if (auto project = context.store.project(asked.project); !project) {
     Problem problem = project.error();
@@ -53,69 +46,95 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
     if (!asked.unit) return fail(422, "Unknown unit", "The unit is mm, cm or m.", "unit");
   }
   asked.up = request.query_or("up", {});
-  if (!asked.up.empty() && asked.up != "x" && asked.up != "y" && asked.up != "z")
-    return fail(422, "Unknown direction", "Up is x, y or z.", "up");
   asked.crs = request.query_or("crs", {});
-  if (!asked.crs.empty() && !is_crs(asked.crs)) return fail(422, "Unknown coordinate system", "Write it as EPSG:n.", "crs");
   if (auto text = request.query_or("resolution", {}); !text.empty()) {
-    auto resolution = parse_integer(text, 256, 16384, "resolution");
-    if (!resolution || (*resolution & (*resolution - 1)) != 0)
-      return fail(422, "Resolution not usable", "The resolution is a power of two from 256 to 16384.", "resolution");
+    auto resolution = parse_integer(text, 1, INT32_MAX, "resolution");
+    if (!resolution) return tl::unexpected(resolution.error());
     asked.resolution = static_cast<int>(*resolution);
   }
   const std::string strict = request.query_or("strict", "false");
   if (strict != "true" && strict != "false") return fail(422, "Neither true nor false", "`strict` is true or false.", "strict");
   asked.strict = strict == "true";
-  asked.filename = base_filename(request.query_or("filename", {}));
+  asked.filename = jobs::base_filename(request.query_or("filename", {}));
   return asked;
 }
 
-Result<Response> start_import(const RouteContext& context, const Request& request) {
+// Before the upload; its name may be in there.
+Result<void> check_import(const RouteContext& context, const Request& request) {
+  auto asked = import_request(context, request);
+  if (!asked) return tl::unexpected(asked.error());
+  if (asked->filename.empty()) asked->filename = "named in the body.ply";
+  return jobs::check(*asked);
+}
+
+// The upload under a name of its own: the request's file goes with the answer, the job needs it longer.
+Result<std::shared_ptr<TemporaryFile>> keep_upload(const Request& request, const fs::path& file, const fs::path& folder) {
+  if (file != request.body_file) return std::make_shared<TemporaryFile>(file);
+  const fs::path kept = folder / (to_string(random_uuid()) + ".upload");
+  std::error_code error;
+  fs::rename(file, kept, error);
+  if (error) return fail(500, "Upload lost", "The uploaded file could not be kept: " + error.message());
+  return std::make_shared<TemporaryFile>(kept);
+}
+
+Result<Response> accepted(const RouteContext& context, std::int64_t job) {
+  const auto status = context.jobs.status(job);
+  return json_response(status ? to_json(*status) : nlohmann::json{{"id", job}, {"state", "queued"}, {"progress", 0}, {"message", ""}}, 202)
+      .with("Location", "/api/v1/jobs/" + std::to_string(job));
+}
+
+Result<Response> start_import(const RouteContext& context, ImportBook& book, const Request& request) {
+  auto known = book.find(request);
+  if (!known) return tl::unexpected(known.error());
+  if (*known) return std::move(accepted(context, **known)->with("Idempotency-Replayed", "true"));
   auto asked = import_request(context, request);
   if (!asked) return tl::unexpected(asked.error());
   auto upload = take_upload(request, context.options.upload_dir);
   if (!upload) return tl::unexpected(upload.error());
-  std::shared_ptr<TemporaryFile> file;
-  if (upload->file == request.body_file) {
-    // The request's file goes with the answer; the job needs its own name for it.
-    const fs::path kept = context.options.upload_dir / (to_string(random_uuid()) + ".upload");
-    std::error_code error;
-    fs::rename(request.body_file, kept, error);
-    if (error) return fail(500, "Upload lost", "The uploaded file could not be kept: " + error.message());
-    file = std::make_shared<TemporaryFile>(kept);
-  } else {
-    file = std::make_shared<TemporaryFile>(upload->file);
-  }
+  auto file = keep_upload(request, upload->file, context.options.upload_dir);
+  if (!file) return tl::unexpected(file.error());
   if (asked->filename.empty()) asked->filename = upload->filename;
-  const std::string extension = to_lower(fs::path(asked->filename).extension().string());
-  if (extension.empty())
-    return fail(422, "File name missing", "Give ?filename=NAME.ply (or .obj): the ending names the format.", "filename");
-  if (extension != ".ply" && extension != ".obj")
-    return fail(415, "Format not taken", "'" + extension + "' files are not taken; send PLY or OBJ.", "filename");
-  asked->file = file->path();
+  if (auto good = jobs::check(*asked); !good) return tl::unexpected(good.error());
+  asked->file = (*file)->path();
 
-  auto job = context.jobs.add([&store = context.store, asked = *asked, file](Progress& progress) -> Result<std::int64_t> {
-    auto model = jobs::import_model(store, asked, progress);
+  const store::FirstAnswer<Model> answer{scoped_key(request), [print = fingerprint(request)](const Model& model) {
+                                           return nlohmann::json{{"request", print}, {"model", model.id}};
+                                         }};
+  auto job = context.jobs.add([&store = context.store, asked = *asked, file = *file, answer](Progress& progress) -> Result<std::int64_t> {
+    auto model = jobs::import_model(store, asked, progress, answer);
     if (!model) return tl::unexpected(model.error());
     return model->id;
   });
   if (!job) return tl::unexpected(job.error());
-  auto status = context.jobs.status(*job);
-  return json_response(status ? to_json(*status) : nlohmann::json{{"id", *job}, {"state", "queued"}, {"progress", 0}, {"message", ""}}, 202)
-      .with("Location", "/api/v1/jobs/" + std::to_string(*job));
+  book.started(request, *job);
+  return accepted(context, *job);
+}
+
+// The import succeeded. Its job is known where this server did it.
+Result<Response> repeat_import(const RouteContext& context, ImportBook& book, const Request& request, const nlohmann::json& kept) {
+  auto known = book.find(request);
+  if (!known) return tl::unexpected(known.error());
+  auto job = *known ? Result<std::int64_t>(**known) : book.finished(request, kept.at("model").get<std::int64_t>());
+  if (!job) return tl::unexpected(job.error());
+  return accepted(context, *job);
 }
 
 }  // namespace
 
 void add_import_routes(Router& router, const RouteContext& context) {
+  auto book = std::make_shared<ImportBook>(context.jobs);
   router.add({.method = Method::post,
               .pattern = "/api/v1/models",
-              .handler = answering([&context](const Request& request) { return start_import(context, request); }),
+              .handler = answering([&context, book](const Request& request) { return start_import(context, *book, request); }),
               .role = Role::curator,
               .query = {"name", "project", "unit", "up", "crs", "resolution", "filename", "strict"},
+              .check = [&context](const Request& request) { return check_import(context, request); },
               .body = BodyKind::file,
               .max_body = context.options.max_upload_bytes,
-              .keeps_answer = true});
+              .keeps_answer = true,
+              .replay = [&context, book](const Request& request, const nlohmann::json& kept) {
+                return repeat_import(context, *book, request, kept);
+              }});
 }
 
 }  // namespace strata::net

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "net/answer_book.h"
 #include "net/routes.h"
 
 namespace strata::net {
@@ -71,11 +72,14 @@ Result<Response> create_layer(const RouteContext& context, const Request& reques
   const Model model = (*room)->model();
   auto layer = new_layer(*asked, model, (*room)->layers());
   if (!layer) return tl::unexpected(layer.error());
-  auto created = (*room)->create_layer(std::move(*layer));
+  const auto answer = [model_slug = model.slug](const Layer& made) {
+    return json_response(to_json(made), 201)
+        .with("Location", "/api/v1/models/" + model_slug + "/layers/" + made.slug)
+        .with("ETag", etag_of(made.version));
+  };
+  auto created = (*room)->create_layer(std::move(*layer), first_answer<Layer>(request, answer));
   if (!created) return tl::unexpected(created.error());
-  return json_response(to_json(*created), 201)
-      .with("Location", "/api/v1/models/" + model.slug + "/layers/" + created->slug)
-      .with("ETag", etag_of(created->version));
+  return answer(*created);
 }
 
 Result<Response> change_layer(const RouteContext& context, const Request& request) {
@@ -97,9 +101,10 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   if (asked->opacity) layer->opacity = *asked->opacity;
   if (asked->visible) layer->visible = *asked->visible;
   if (asked->order) layer->order = *asked->order;
-  auto changed = (*room)->update_layer(std::move(*layer));
+  const auto answer = [](const Layer& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
+  auto changed = (*room)->update_layer(std::move(*layer), first_answer<Layer>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
-  return json_response(to_json(*changed)).with("ETag", etag_of(changed->version));
+  return answer(*changed);
 }
 
 Result<Response> delete_layer(const RouteContext& context, const Request& request) {
@@ -108,7 +113,8 @@ Result<Response> delete_layer(const RouteContext& context, const Request& reques
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
   if (auto fresh = check_if_match(request, layer->version); !fresh) return tl::unexpected(fresh.error());
-  if (auto gone = (*room)->delete_layer(layer->id); !gone) return tl::unexpected(gone.error());
+  auto gone = (*room)->delete_layer(layer->id, first_answer<>(request, [] { return empty_response(204); }));
+  if (!gone) return tl::unexpected(gone.error());
   return empty_response(204);
 }
 

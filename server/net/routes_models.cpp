@@ -1,5 +1,6 @@
 #include <map>
 
+#include "net/answer_book.h"
 #include "net/routes.h"
 
 namespace strata::net {
@@ -81,9 +82,12 @@ Result<Response> change_model(const RouteContext& context, const Request& reques
   Model model = (*room)->model();
   if (auto fresh = check_if_match(request, model.version); !fresh) return tl::unexpected(fresh.error());
   if (auto fits = apply_patch(*asked, model); !fits) return tl::unexpected(fits.error());
-  auto changed = (*room)->update_model(std::move(model));
+  auto slug = project_slug(context, model.project_id);
+  if (!slug) return tl::unexpected(slug.error());
+  const auto answer = [slug = *slug](const Model& now) { return json_response(to_json(now, slug)).with("ETag", etag_of(now.version)); };
+  auto changed = (*room)->update_model(std::move(model), first_answer<Model>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
-  return model_answer(context, request, *changed);
+  return answer(*changed);
 }
 
 Result<Response> source(const RouteContext& context, const Request& request) {
@@ -132,7 +136,8 @@ void add_model_routes(Router& router, const RouteContext& context) {
                 auto model = context.store.model(request.param("model"));
                 if (!model) return tl::unexpected(model.error());
                 if (auto fresh = check_if_match(request, model->version); !fresh) return tl::unexpected(fresh.error());
-                if (auto gone = context.store.delete_model(model->id); !gone) return tl::unexpected(gone.error());
+                auto gone = context.store.delete_model(model->id, first_answer<>(request, [] { return empty_response(204); }));
+                if (!gone) return tl::unexpected(gone.error());
                 context.rooms.forget(model->id);
                 return empty_response(204);
               }),

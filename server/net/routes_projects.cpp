@@ -1,3 +1,4 @@
+#include "net/answer_book.h"
 #include "net/routes.h"
 
 namespace strata::net {
@@ -25,11 +26,12 @@ Result<Response> create_project(const RouteContext& context, const Request& requ
   project.name = asked->name;
   project.slug = *slug;
   project.description = asked->description;
-  auto created = context.store.create_project(std::move(project));
+  const auto answer = [](const Project& made) {
+    return json_response(to_json(made), 201).with("Location", "/api/v1/projects/" + made.slug).with("ETag", etag_of(made.version));
+  };
+  auto created = context.store.create_project(std::move(project), first_answer<Project>(request, answer));
   if (!created) return tl::unexpected(created.error());
-  return json_response(to_json(*created), 201)
-      .with("Location", "/api/v1/projects/" + created->slug)
-      .with("ETag", etag_of(created->version));
+  return answer(*created);
 }
 
 Result<Response> change_project(const RouteContext& context, const Request& request) {
@@ -40,9 +42,10 @@ Result<Response> change_project(const RouteContext& context, const Request& requ
   if (!asked) return tl::unexpected(asked.error());
   if (asked->name) project->name = *asked->name;
   if (asked->description) project->description = *asked->description;
-  auto changed = context.store.update_project(std::move(*project));
+  const auto answer = [](const Project& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
+  auto changed = context.store.update_project(std::move(*project), first_answer<Project>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
-  return json_response(to_json(*changed)).with("ETag", etag_of(changed->version));
+  return answer(*changed);
 }
 
 }  // namespace
@@ -79,7 +82,8 @@ void add_project_routes(Router& router, const RouteContext& context) {
                 auto project = context.store.project(request.param("project"));
                 if (!project) return tl::unexpected(project.error());
                 if (auto fresh = check_if_match(request, project->version); !fresh) return tl::unexpected(fresh.error());
-                if (auto gone = context.store.delete_project(project->id); !gone) return tl::unexpected(gone.error());
+                auto gone = context.store.delete_project(project->id, first_answer<>(request, [] { return empty_response(204); }));
+                if (!gone) return tl::unexpected(gone.error());
                 return empty_response(204);
               }),
               .role = Role::administrator,

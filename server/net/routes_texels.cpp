@@ -1,5 +1,6 @@
 #include <fstream>
 
+#include "net/digest.h"
 #include "net/routes.h"
 #include "query/raster.h"
 
@@ -59,12 +60,12 @@ void write_texels(const RouteContext& context, const Request& request, const Res
   auto tiles = (*format)->decode(*layer, bytes);
   if (!tiles) return respond(tiles.error());
   room::EditRequest edit;
-  edit.id = edit_id(request);
+  edit.id = edit_id(request, *layer, "import");
   edit.user = request.user();
   edit.layer_id = layer->id;
-  edit.record = {{"op", "import"}, {"format", (*format)->extension}, {"bytes", request.body_bytes}};
+  edit.record = {{"op", "import"}, {"format", (*format)->extension}, {"bytes", request.body_bytes}, {"sha256", sha256_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()})}};
   edit.edit = room::ImportEdit{std::move(*tiles)};
-  apply_edit(*room, std::move(edit), context, respond);
+  apply_edit(context, request, *room, std::move(edit), respond);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/uuid.h"
+#include "jobs/import_job.h"
 
 namespace strata::net {
 namespace {
@@ -97,7 +98,7 @@ Result<Upload> take_part(const Request& request, std::string_view body, const fs
     if (!name.empty()) {
       if (found) return fail(415, "More than one file", kAccepted, "body");
       found = true;
-      upload.filename = base_filename(name);
+      upload.filename = jobs::base_filename(name);
       content = content_end > content_begin ? body.substr(content_begin, content_end - content_begin) : std::string_view();
     }
     at = content_end + separator.size();
@@ -118,17 +119,6 @@ Result<Upload> take_part(const Request& request, std::string_view body, const fs
 
 }  // namespace
 
-std::string base_filename(std::string_view name) {
-  const auto slash = name.find_last_of("/\\");
-  if (slash != std::string_view::npos) name.remove_prefix(slash + 1);
-  std::string out;
-  for (char c : name)
-    if (static_cast<unsigned char>(c) >= 32 && c != 127) out += c;
-  if (out == "." || out == "..") out.clear();
-  if (out.size() > 255) out.erase(0, out.size() - 255);  // the end holds the extension
-  return out;
-}
-
 Result<Upload> take_upload(const Request& request, const fs::path& folder) {
   const MappedFile mapped(request.body_file);
   if (mapped.view().empty()) return fail(400, "Empty body", kAccepted, "body");
@@ -136,7 +126,7 @@ Result<Upload> take_upload(const Request& request, const fs::path& folder) {
   if (type.starts_with("multipart/form-data")) return take_part(request, mapped.view(), folder);
   if (type.starts_with("multipart/")) return fail(415, "Form not understood", kAccepted, "Content-Type");
   if (is_archive(mapped.view())) return archive_refused();
-  return Upload{request.body_file, base_filename(parameter(request.header("content-disposition"), "filename"))};
+  return Upload{request.body_file, jobs::base_filename(parameter(request.header("content-disposition"), "filename"))};
 }
 
 }  // namespace strata::net

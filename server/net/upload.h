@@ -16,7 +16,4 @@ struct Upload {
 // file of its own in `folder`). Archives and several files are refused with what is accepted.
 Result<Upload> take_upload(const Request& request, const std::filesystem::path& folder);
 
-// Last part of a path in either notation, without control characters.
-std::string base_filename(std::string_view name);
-
 }  // namespace strata::net

@@ -153,11 +153,8 @@ nlohmann::json to_json(const query::Statistics& statistics) {
     json["std"] = statistics.std;
   }
   nlohmann::json bins = nlohmann::json::array();
-  for (const auto& bin : statistics.histogram) {
-    nlohmann::json item{{"from", bin.from}, {"to", bin.to}, {"area_m2", bin.area_m2}};
-    if constexpr (requires { bin.texels; }) item["texels"] = bin.texels;
-    bins.push_back(std::move(item));
-  }
+  for (const auto& bin : statistics.histogram)
+    bins.push_back({{"from", bin.from}, {"to", bin.to}, {"texels", bin.texels}, {"area_m2", bin.area_m2}});
   json["histogram"] = std::move(bins);
   nlohmann::json keys = nlohmann::json::array();
   for (const auto& [key, entry] : statistics.keys)

@@ -152,17 +152,17 @@ Result<T> OpenRoom::exclusively(std::function<Result<T>()> work) {
   return result;
 }
 
-Result<Layer> OpenRoom::create_layer(Layer layer) {
+Result<Layer> OpenRoom::create_layer(Layer layer, const store::FirstAnswer<Layer>& answer) {
   layer.model_id = model_id_;
   if (auto ok = check_layer(layer, model()); !ok) return tl::unexpected(ok.error());
-  auto created = exclusively<Layer>([this, layer]() -> Result<Layer> {
+  auto created = exclusively<Layer>([this, layer, answer]() -> Result<Layer> {
     // The GPU first: of what it refuses nothing is in the database.
     auto handle = add_layer(parts_.renderer, model_handle(), layer, {});
     if (!handle) {
       if (handle.error().status == 404) return fail(503, "GPU lost", "The graphics context is being restored; try again in a moment.");
       return tl::unexpected(handle.error());
     }
-    auto made = parts_.store.create_layer(layer);
+    auto made = parts_.store.create_layer(layer, answer);
     if (!made) {
       parts_.renderer.remove_layer(*handle);
       return made;
@@ -182,9 +182,9 @@ Result<Layer> OpenRoom::create_layer(Layer layer) {
   return created;
 }
 
-Result<Layer> OpenRoom::update_layer(Layer layer) {
+Result<Layer> OpenRoom::update_layer(Layer layer, const store::FirstAnswer<Layer>& answer) {
   if (auto ok = check_layer(layer, model()); !ok) return tl::unexpected(ok.error());
-  auto updated = parts_.store.update_layer(std::move(layer));
+  auto updated = parts_.store.update_layer(std::move(layer), answer);
   if (!updated) return updated;
   on_strand([&] {
     {
@@ -201,10 +201,10 @@ Result<Layer> OpenRoom::update_layer(Layer layer) {
   return updated;
 }
 
-Result<void> OpenRoom::delete_layer(std::int64_t id) {
+Result<void> OpenRoom::delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) {
   // In the order of edits: none of the layer's may be on its way to a journal that no longer knows it.
-  return exclusively<void>([this, id]() -> Result<void> {
-    if (auto deleted = parts_.store.delete_layer(id); !deleted) return deleted;
+  return exclusively<void>([this, id, answer]() -> Result<void> {
+    if (auto deleted = parts_.store.delete_layer(id, answer); !deleted) return deleted;
     on_strand([&] {
       LayerState gone;
       {
@@ -222,8 +222,8 @@ Result<void> OpenRoom::delete_layer(std::int64_t id) {
   });
 }
 
-Result<Model> OpenRoom::update_model(Model model) {
-  auto updated = parts_.store.update_model(std::move(model));
+Result<Model> OpenRoom::update_model(Model model, const store::FirstAnswer<Model>& answer) {
+  auto updated = parts_.store.update_model(std::move(model), answer);
   if (!updated) return updated;
   on_strand([&] {
     {

@@ -41,10 +41,10 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void edit(EditRequest request, Applied applied, Saved saved) override;
   std::unique_ptr<Member> join(std::string user, Listener* listener, stream::Viewer::Send send) override;
   std::vector<Presence> presence() const override;
-  Result<Layer> create_layer(Layer layer) override;
-  Result<Layer> update_layer(Layer layer) override;
-  Result<void> delete_layer(std::int64_t id) override;
-  Result<Model> update_model(Model model) override;
+  Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer) override;
+  Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer) override;
+  Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) override;
+  Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer) override;
   Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers) override;
   Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
                                                      const std::vector<std::string>& layers) override;

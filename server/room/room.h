@@ -87,10 +87,10 @@ class Room {
   virtual std::vector<Presence> presence() const = 0;
 
   // Metadata; blocking (database), announced to the listeners.
-  virtual Result<Layer> create_layer(Layer layer) = 0;
-  virtual Result<Layer> update_layer(Layer layer) = 0;
-  virtual Result<void> delete_layer(std::int64_t id) = 0;
-  virtual Result<Model> update_model(Model model) = 0;
+  virtual Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer = {}) = 0;
+  virtual Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer = {}) = 0;
+  virtual Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer = {}) = 0;
+  virtual Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer = {}) = 0;
 
   // Queries; may take a while the first time (search tree, surface map), so call from a worker thread. Values of the given
   // layers only.

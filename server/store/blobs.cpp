@@ -78,7 +78,7 @@ Result<Content> content_of(const std::filesystem::path& file, const std::functio
   return content;
 }
 
-Result<void> keep(PgConnection& connection, const Content& content, const std::function<bool()>& cancelled) {
+Result<void> keep_blob(PgConnection& connection, const Content& content, const std::function<bool()>& cancelled) {
   auto fresh = claim(connection, content.hash, content.bytes);
   if (!fresh) return tl::unexpected(fresh.error());
   if (!*fresh) return {};

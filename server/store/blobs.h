@@ -21,7 +21,7 @@ struct Content {
 };
 Content content_of(Bytes memory);
 Result<Content> content_of(const std::filesystem::path& file, const std::function<bool()>& cancelled);
-Result<void> keep(PgConnection& connection, const Content& content, const std::function<bool()>& cancelled);
+Result<void> keep_blob(PgConnection& connection, const Content& content, const std::function<bool()>& cancelled);
 
 Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha256, std::int64_t bytes);
 

@@ -75,9 +75,9 @@ Result<Layer> Store::layer(std::int64_t model_id, const std::string& ref) {
   });
 }
 
-Result<Layer> Store::create_layer(Layer layer) {
+Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer) {
   if (auto good = check(layer); !good) return tl::unexpected(good.error());
-  return impl_->pool.write([&](PgConnection& connection) -> Result<Layer> {
+  return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
     auto model = connection.query("SELECT 1 FROM models WHERE id = $1 FOR KEY SHARE", Params().integer(layer.model_id));
     if (!model) return tl::unexpected(model.error());
     if (model->rows() == 0) return not_found("model", std::to_string(layer.model_id));
@@ -98,9 +98,9 @@ Result<Layer> Store::create_layer(Layer layer) {
   });
 }
 
-Result<Layer> Store::update_layer(Layer layer) {
+Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer) {
   if (auto good = check(layer); !good) return tl::unexpected(good.error());
-  return impl_->pool.write([&](PgConnection& connection) -> Result<Layer> {
+  return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = connection.query(
         "UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
         "draw_order = $10, records_table = $11, version = version + 1 WHERE id = $1 AND version = $2 "
@@ -117,12 +117,13 @@ Result<Layer> Store::update_layer(Layer layer) {
   });
 }
 
-Result<void> Store::delete_layer(std::int64_t id) {
-  return impl_->pool.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
+Result<void> Store::delete_layer(std::int64_t id, const FirstAnswer<>& answer) {
+  const auto work = [&](PgConnection& connection) -> Result<void> {
     auto done = connection.query("DELETE FROM layers WHERE id = $1", Params().integer(id));
     if (!done) return tl::unexpected(done.error());
     return done->affected() > 0 ? Result<void>{} : not_found("layer", std::to_string(id));
-  });
+  };
+  return impl_->change(answer, work, kBulkLimits);
 }
 
 }  // namespace strata::store

@@ -109,7 +109,7 @@ Result<Model> model_by_id(PgConnection& connection, std::int64_t id) {
 
 }  // namespace
 
-Result<Model> Store::create_model(const NewModel& fresh, const std::function<bool()>& cancelled) {
+Result<Model> Store::create_model(const NewModel& fresh, const std::function<bool()>& cancelled, const FirstAnswer<Model>& answer) {
   if (auto good = check(fresh.model); !good) return tl::unexpected(good.error());
   for (const auto& source : fresh.sources) {
     if (source.name.empty() || source.name.size() > kLongestName)
@@ -122,13 +122,13 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
     if (!content) return tl::unexpected(content.error());
     contents.push_back(std::move(*content));
   }
-  return impl_->pool.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<Model> {
+  const auto work = [&](PgConnection& connection) -> Result<Model> {
     const Sha256 geometry = contents.front().hash;
     std::vector<const Content*> by_hash;
     for (const Content& content : contents) by_hash.push_back(&content);
     std::sort(by_hash.begin(), by_hash.end(), [](const Content* a, const Content* b) { return a->hash < b->hash; });
     for (const Content* content : by_hash)
-      if (auto kept = keep(connection, *content, cancelled); !kept) return tl::unexpected(kept.error());
+      if (auto kept = keep_blob(connection, *content, cancelled); !kept) return tl::unexpected(kept.error());
     const Model& m = fresh.model;
     auto row = insert_with_slug(connection, "SELECT slug::text FROM models WHERE slug LIKE $1", {},
                                 m.slug.empty() ? m.name : m.slug, [&](const std::string& slug) {
@@ -144,7 +144,8 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
     }
     if (cancelled && cancelled()) return cancelled_problem();
     return model_by_id(connection, id);
-  });
+  };
+  return impl_->change(answer, work, kBulkLimits);
 }
 
 Result<std::vector<Model>> Store::models(std::optional<std::int64_t> project_id) {
@@ -170,9 +171,9 @@ Result<Model> Store::model(const std::string& ref) {
   });
 }
 
-Result<Model> Store::update_model(Model m) {
+Result<Model> Store::update_model(Model m, const FirstAnswer<Model>& answer) {
   if (auto good = check(m); !good) return tl::unexpected(good.error());
-  return impl_->pool.write([&](PgConnection& connection) -> Result<Model> {
+  return impl_->change(answer, [&](PgConnection& connection) -> Result<Model> {
     auto row = connection.query(
         "UPDATE models SET name = $1, slug = $2, project_id = $3, unit = $4, unit_assumed = $5, scale_verified = $6, up = $7, "
         "north = $8, crs = $9, default_resolution = $10, inventory_number = $11, owner = $12, creator = $13, captured = $14, "
@@ -186,8 +187,8 @@ Result<Model> Store::update_model(Model m) {
   });
 }
 
-Result<void> Store::delete_model(std::int64_t id) {
-  return impl_->pool.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
+Result<void> Store::delete_model(std::int64_t id, const FirstAnswer<>& answer) {
+  const auto work = [&](PgConnection& connection) -> Result<void> {
     auto used = connection.query("SELECT geometry FROM models WHERE id = $1 UNION "
                                  "SELECT sha256 FROM model_sources WHERE model_id = $1", Params().integer(id));
     if (!used) return tl::unexpected(used.error());
@@ -200,7 +201,8 @@ Result<void> Store::delete_model(std::int64_t id) {
     if (!done) return tl::unexpected(done.error());
     if (done->affected() == 0) return not_found("model", std::to_string(id));
     return drop_unused(connection, hashes);
-  });
+  };
+  return impl_->change(answer, work, kBulkLimits);
 }
 
 Result<std::vector<std::uint8_t>> Store::geometry(std::int64_t model_id) {

@@ -4,8 +4,6 @@
 namespace strata::store {
 namespace {
 
-constexpr std::chrono::hours kSessionLifetime{24 * 90};
-
 std::string_view kind_name(Store::TokenKind kind) {
   switch (kind) {
     case Store::TokenKind::session: return "session";
@@ -41,12 +39,6 @@ Result<std::optional<Store::Principal>> principal(PgConnection& connection, cons
   return std::optional<Store::Principal>({row->text(0, 0), row->text(0, 1), parse_kind(row->text(0, 2))});
 }
 
-Result<void> check_key(const std::string& key) {
-  if (key.empty() || key.size() > kLongestName)
-    return fail(400, "Bad Idempotency-Key", "An Idempotency-Key has 1 to 255 bytes.", "Idempotency-Key");
-  return check_text(key, "Idempotency-Key");
-}
-
 }  // namespace
 
 Result<std::string> Store::create_token(TokenKind kind, const std::string& user, const std::string& role,
@@ -61,12 +53,12 @@ Result<std::optional<Store::Principal>> Store::find_token(const std::string& tok
   return impl_->pool.read([&](PgConnection& connection) { return principal(connection, token); });
 }
 
-Result<std::optional<std::string>> Store::redeem_owner_link(const std::string& link) {
+Result<std::optional<std::string>> Store::redeem_owner_link(const std::string& link, std::chrono::seconds lifetime) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<std::optional<std::string>> {
     auto owner = principal(connection, link);
     if (!owner) return tl::unexpected(owner.error());
     if (!*owner || (*owner)->kind != TokenKind::owner_link) return std::optional<std::string>();
-    auto token = insert_token(connection, TokenKind::session, (*owner)->user, (*owner)->role, kSessionLifetime);
+    auto token = insert_token(connection, TokenKind::session, (*owner)->user, (*owner)->role, lifetime);
     if (!token) return tl::unexpected(token.error());
     return std::optional<std::string>(std::move(*token));
   });
@@ -77,39 +69,6 @@ Result<void> Store::revoke_token(const std::string& token) {
     auto done = connection.query("UPDATE tokens SET revoked = now() WHERE hash = $1 AND revoked IS NULL",
                                  Params().bytes(sha256(token)));
     return done ? Result<void>{} : tl::unexpected(done.error());
-  });
-}
-
-Result<bool> Store::has_owner_link() {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<bool> {
-    auto row = connection.query("SELECT EXISTS (SELECT 1 FROM tokens WHERE kind = 'owner_link' AND revoked IS NULL "
-                                "AND (expires IS NULL OR expires > now()))");
-    if (!row) return tl::unexpected(row.error());
-    return row->boolean(0, 0);
-  });
-}
-
-Result<std::optional<nlohmann::json>> Store::find_answer(const std::string& key) {
-  if (auto good = check_key(key); !good) return tl::unexpected(good.error());
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::optional<nlohmann::json>> {
-    auto row = connection.query("SELECT answer FROM answers WHERE key = $1 AND time > now() - interval '7 days'",
-                                Params().text(key));
-    if (!row) return tl::unexpected(row.error());
-    if (row->rows() == 0) return std::optional<nlohmann::json>();
-    return std::optional<nlohmann::json>(row->json(0, 0));
-  });
-}
-
-// The first answer stays; those past their time make room for it.
-Result<void> Store::keep_answer(const std::string& key, const nlohmann::json& answer) {
-  if (auto good = check_key(key); !good) return good;
-  if (auto good = check_json(answer, "answer"); !good) return good;
-  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
-    auto old = connection.query("DELETE FROM answers WHERE time <= now() - interval '7 days'");
-    if (!old) return tl::unexpected(old.error());
-    auto kept = connection.query("INSERT INTO answers (key, answer) VALUES ($1, $2) ON CONFLICT (key) DO NOTHING",
-                                 Params().text(key).json(answer));
-    return kept ? Result<void>{} : tl::unexpected(kept.error());
   });
 }
 

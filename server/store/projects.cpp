@@ -38,9 +38,9 @@ Result<Project> Store::project(const std::string& ref) {
   });
 }
 
-Result<Project> Store::create_project(Project project) {
+Result<Project> Store::create_project(Project project, const FirstAnswer<Project>& answer) {
   if (auto good = check(project); !good) return tl::unexpected(good.error());
-  return impl_->pool.write([&](PgConnection& connection) -> Result<Project> {
+  return impl_->change(answer, [&](PgConnection& connection) -> Result<Project> {
     auto row = insert_with_slug(
         connection, "SELECT slug::text FROM projects WHERE slug LIKE $1", {},
         project.slug.empty() ? project.name : project.slug, [&](const std::string& slug) {
@@ -53,9 +53,9 @@ Result<Project> Store::create_project(Project project) {
   });
 }
 
-Result<Project> Store::update_project(Project project) {
+Result<Project> Store::update_project(Project project, const FirstAnswer<Project>& answer) {
   if (auto good = check(project); !good) return tl::unexpected(good.error());
-  return impl_->pool.write([&](PgConnection& connection) -> Result<Project> {
+  return impl_->change(answer, [&](PgConnection& connection) -> Result<Project> {
     auto row = connection.query(
         "UPDATE projects SET name = $3, slug = $4, description = $5, version = version + 1 "
         "WHERE id = $1 AND version = $2 RETURNING id, name, slug::text, description, version",
@@ -69,8 +69,8 @@ Result<Project> Store::update_project(Project project) {
   });
 }
 
-Result<void> Store::delete_project(std::int64_t id) {
-  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+Result<void> Store::delete_project(std::int64_t id, const FirstAnswer<>& answer) {
+  return impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
     auto row = connection.query("SELECT slug::text, (SELECT count(*) FROM models WHERE project_id = p.id) "
                                 "FROM projects p WHERE id = $1 FOR UPDATE", Params().integer(id));
     if (!row) return tl::unexpected(row.error());

@@ -12,6 +12,7 @@
 #include "core/layer.h"
 #include "core/model.h"
 #include "core/tile_mirror.h"
+#include "store/first_answer.h"
 #include "store/journal.h"
 #include "store/pg_limits.h"
 
@@ -32,7 +33,7 @@ struct StoreInfo {
 
 // Everything durable. All calls block the calling thread, are thread-safe and take a connection from the pool; when
 // the database is away they return a Problem 503 ("Database unavailable") after trying to reconnect. Constraint
-// failures are a Problem 409, unknown ids 404, a stale `version` 412.
+// failures are a Problem 409, unknown ids 404, a stale `version` 412. Changes keep the caller's answer with them (FirstAnswer).
 class Store {
  public:
   // Connects and applies the missing migrations of `migrations_dir`; a newer schema than known is refused.
@@ -46,9 +47,10 @@ class Store {
   // --- projects; `default` exists from the start. `ref` is an id in digits or a slug.
   Result<std::vector<Project>> projects();
   Result<Project> project(const std::string& ref);
-  Result<Project> create_project(Project project);
-  Result<Project> update_project(Project project);        // where version equals; returns it with version + 1
-  Result<void> delete_project(std::int64_t id);           // refused (409) while it has models, and for `default`
+  Result<Project> create_project(Project project, const FirstAnswer<Project>& answer = {});
+  // Where version equals; returns it with version + 1.
+  Result<Project> update_project(Project project, const FirstAnswer<Project>& answer = {});
+  Result<void> delete_project(std::int64_t id, const FirstAnswer<>& answer = {});  // refused (409) while it has models, and for `default`
 
   // --- models
   struct NewModel {
@@ -57,11 +59,12 @@ class Store {
     struct Source { std::string name; std::filesystem::path file; };
     std::vector<Source> sources;                          // streamed in bit for bit, hashed on the way
   };
-  Result<Model> create_model(const NewModel& model, const std::function<bool()>& cancelled);  // one transaction
+  Result<Model> create_model(const NewModel& model, const std::function<bool()>& cancelled,
+                             const FirstAnswer<Model>& answer = {});  // one transaction
   Result<std::vector<Model>> models(std::optional<std::int64_t> project_id = {});
   Result<Model> model(const std::string& ref);
-  Result<Model> update_model(Model model);
-  Result<void> delete_model(std::int64_t id);
+  Result<Model> update_model(Model model, const FirstAnswer<Model>& answer = {});
+  Result<void> delete_model(std::int64_t id, const FirstAnswer<>& answer = {});
   Result<std::vector<std::uint8_t>> geometry(std::int64_t model_id);
   // Streams a source file in chunks ≤ 1 MiB; `sink` returns false to stop.
   Result<SourceFile> read_source(std::int64_t model_id, const std::string& name,
@@ -70,9 +73,9 @@ class Store {
   // --- layers
   Result<std::vector<Layer>> layers(std::int64_t model_id);  // by order
   Result<Layer> layer(std::int64_t model_id, const std::string& ref);
-  Result<Layer> create_layer(Layer layer);
-  Result<Layer> update_layer(Layer layer);
-  Result<void> delete_layer(std::int64_t id);
+  Result<Layer> create_layer(Layer layer, const FirstAnswer<Layer>& answer = {});
+  Result<Layer> update_layer(Layer layer, const FirstAnswer<Layer>& answer = {});
+  Result<void> delete_layer(std::int64_t id, const FirstAnswer<>& answer = {});
 
   // --- journal (reads; writes go through JournalWriter)
   // All tiles of a layer after `at_sequence` (nothing: the newest).
@@ -96,7 +99,6 @@ class Store {
 
   // --- answers to changing HTTP calls, by Idempotency-Key; kept for 7 days
   Result<std::optional<nlohmann::json>> find_answer(const std::string& key);
-  Result<void> keep_answer(const std::string& key, const nlohmann::json& answer);
 
   // --- people: users, sessions and tokens; secrets are stored hashed (SHA-256 of random 256-bit tokens)
   enum class TokenKind { session, script, owner_link };
@@ -104,9 +106,9 @@ class Store {
   Result<std::string> create_token(TokenKind kind, const std::string& user, const std::string& role,
                                    std::optional<std::chrono::seconds> lifetime);
   Result<std::optional<Principal>> find_token(const std::string& token);
-  Result<std::optional<std::string>> redeem_owner_link(const std::string& link);   // → session token; a link may be used again until revoked
+  // → session token; a link may be used again until revoked
+  Result<std::optional<std::string>> redeem_owner_link(const std::string& link, std::chrono::seconds lifetime);
   Result<void> revoke_token(const std::string& token);
-  Result<bool> has_owner_link();
 
  private:
   Store();

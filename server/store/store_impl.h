@@ -9,11 +9,35 @@
 
 namespace strata::store {
 
+// In the transaction at hand; 409 where a call with this key was answered already.
+Result<void> insert_answer(PgConnection& connection, const std::string& key, const nlohmann::json& answer);
+
+template <class T>
+Result<void> keep(PgConnection& connection, const FirstAnswer<T>& answer, const Result<T>& effect) {
+  return answer.key.empty() ? Result<void>{} : insert_answer(connection, answer.key, answer.make(*effect));
+}
+inline Result<void> keep(PgConnection& connection, const FirstAnswer<>& answer, const Result<void>&) {
+  return answer.key.empty() ? Result<void>{} : insert_answer(connection, answer.key, answer.make());
+}
+
 struct Store::Impl {
   Impl(StoreOptions given) : options(std::move(given)), pool(options.dsn, options.connections, options.limits, options.slot_for) {}
   const StoreOptions options;
   Pool pool;
   std::int64_t schema_version = 0;
+
+  // A transaction that also keeps the answer to who asked for it.
+  template <class Answer, class Work>
+  auto change(const Answer& answer, Work&& work, const PgLimits& limits = kRequestLimits)
+      -> std::invoke_result_t<Work, PgConnection&> {
+    return pool.write_within(limits, [&](PgConnection& connection) {
+      auto effect = work(connection);
+      if (effect)
+        if (auto kept = keep(connection, answer, effect); !kept) effect = tl::unexpected(kept.error());
+      return effect;
+    });
+  }
+
   // Of its own, so that a busy pool is not taken for a database that is away.
   std::mutex probe_mutex;
   std::optional<PgConnection> probe;

@@ -47,48 +47,71 @@ TEST(Tokens, secrets_are_not_in_the_database) {
 
 TEST(Tokens, an_owner_link_opens_sessions_until_it_is_revoked) {
   auto store = test::fresh_store();
-  EXPECT_FALSE(store->has_owner_link().value());
   const auto link = store->create_token(Store::TokenKind::owner_link, "owner", "owner", {}).value();
-  EXPECT_TRUE(store->has_owner_link().value());
-  const auto first = store->redeem_owner_link(link).value();
-  const auto second = store->redeem_owner_link(link).value();
+  const auto first = store->redeem_owner_link(link, seconds(60)).value();
+  const auto second = store->redeem_owner_link(link, seconds(60)).value();
   ASSERT_TRUE(first && second);
   EXPECT_NE(*first, *second);
   EXPECT_EQ(store->find_token(*first).value()->kind, Store::TokenKind::session);
   EXPECT_EQ(store->find_token(*first).value()->role, "owner");
-  EXPECT_FALSE(store->redeem_owner_link(*first).value());  // a session is no link
-  EXPECT_FALSE(store->redeem_owner_link("guess").value());
+  EXPECT_FALSE(store->redeem_owner_link(*first, seconds(60)).value());  // a session is no link
+  EXPECT_FALSE(store->redeem_owner_link("guess", seconds(60)).value());
   ASSERT_TRUE(store->revoke_token(link));
-  EXPECT_FALSE(store->redeem_owner_link(link).value());
-  EXPECT_FALSE(store->has_owner_link().value());
+  EXPECT_FALSE(store->redeem_owner_link(link, seconds(60)).value());
   EXPECT_TRUE(store->find_token(*first).value());
 }
 
-TEST(Answers, a_repeat_gets_the_first_answer_for_seven_days) {
+FirstAnswer<Project> answer_of(const std::string& key) {
+  return {key, [](const Project& made) { return nlohmann::json{{"status", 201}, {"id", made.id}, {"area", 0.1}}; }};
+}
+
+Project named(const std::string& name) {
+  Project project;
+  project.name = name;
+  return project;
+}
+
+TEST(Answers, an_answer_is_kept_with_the_change_for_seven_days) {
   const auto dsn = test::fresh_database();
   auto store = test::open_store(dsn);
   EXPECT_FALSE(store->find_answer("k").value());
-  const nlohmann::json first = {{"status", 202}, {"body", {{"id", 1}, {"area", 0.1}}}};
-  ASSERT_TRUE(store->keep_answer("k", first));
-  ASSERT_TRUE(store->keep_answer("k", {{"status", 500}}));
+  const auto made = store->create_project(named("Villa"), answer_of("k")).value();
+  const nlohmann::json first = {{"status", 201}, {"id", made.id}, {"area", 0.1}};
   EXPECT_EQ(store->find_answer("k").value(), first);
   auto connection = PgConnection::connect(dsn);
   ASSERT_TRUE(connection->script("UPDATE answers SET time = time - interval '6 days 23 hours'"));
   EXPECT_EQ(store->find_answer("k").value(), first);
   ASSERT_TRUE(connection->script("UPDATE answers SET time = time - interval '2 hours'"));
   EXPECT_FALSE(store->find_answer("k").value());
-  ASSERT_TRUE(store->keep_answer("k", {{"status", 200}}));
-  EXPECT_EQ(store->find_answer("k").value()->at("status"), 200);
+  const auto again = store->create_project(named("Villa"), answer_of("k")).value();
+  EXPECT_EQ(store->find_answer("k").value()->at("id"), again.id);
+}
+
+TEST(Answers, of_two_calls_with_one_key_only_one_changes_anything) {
+  auto store = test::fresh_store();
+  ASSERT_TRUE(store->create_project(named("Villa"), answer_of("k")));
+  const auto second = store->create_project(named("Villa"), answer_of("k"));
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().status, 409);
+  EXPECT_EQ(store->projects()->size(), 2u) << "`default` and the first";
+}
+
+TEST(Answers, what_changes_nothing_keeps_no_answer) {
+  auto store = test::fresh_store();
+  EXPECT_FALSE(store->create_project(named(""), answer_of("k")));
+  EXPECT_FALSE(store->delete_project(1, {"gone", [] { return nlohmann::json{{"status", 204}}; }}));
+  EXPECT_FALSE(store->find_answer("k").value());
+  EXPECT_FALSE(store->find_answer("gone").value());
 }
 
 TEST(Answers, bad_keys_are_the_callers_mistake) {
   auto store = test::fresh_store();
-  for (const std::string& key : {std::string(), std::string(256, 'k'), std::string("a\0b", 3), std::string("\xff")}) {
+  EXPECT_EQ(store->find_answer("").error().status, 400);
+  for (const std::string& key : {std::string(256, 'k'), std::string("a\0b", 3), std::string("\xff")}) {
     EXPECT_EQ(store->find_answer(key).error().status, 400);
-    EXPECT_EQ(store->keep_answer(key, {}).error().status, 400);
+    EXPECT_EQ(store->create_project(named("x"), answer_of(key)).error().status, 400);
   }
-  EXPECT_EQ(store->keep_answer("k", {{"text", "\xff"}}).error().status, 400);
-  EXPECT_EQ(store->keep_answer("k", {{"text", std::string("\0", 1)}}).error().status, 400);
+  EXPECT_EQ(store->projects()->size(), 1u);
 }
 
 }  // namespace

@@ -116,6 +116,8 @@ def table(camera):
         ("a scan for an unknown project", "POST", "/models?filename=a.ply&project=nothing", b"ply\n", {}, 404, "project"),
         ("a scan on its side", "POST", "/models?filename=a.ply&up=w", b"ply\n", {}, 422, "up"),
         ("a coordinate system that is none", "POST", "/models?filename=a.ply&crs=here", b"ply\n", {}, 422, "crs"),
+        ("a coordinate system of too many digits", "POST", "/models?filename=a.ply&crs=EPSG:12345678", b"ply\n", {}, 422, "crs"),
+        ("a scan for layers too coarse", "POST", "/models?filename=a.ply&resolution=1024", b"ply\n", {}, 422, "resolution"),
     ]
 
 
@@ -201,6 +203,14 @@ def check_repeats(server, camera):
     other = server.ok("POST", M + "/layers/other/edits", stroke, headers=key).json()
     assert other["sequence"] == first["sequence"] + 1, (first, other)
     assert server.get(L + "/edits").json()["total"] == 1
+    by_id = f"/models/{server.get(M).json()['id']}/layers/{server.get(L).json()['id']}/edits"
+    assert server.ok("POST", by_id, stroke, headers=key).json() == first, "the same layer by another address"
+    for another in ({**stroke, "path": [[300, 200]]}, FILL):
+        refused = server.post(L + "/edits", another, headers=key)
+        assert refused.status == 422 and refused.json()["field"] == "Idempotency-Key", refused
+    assert server.get(L).json()["sequence"] == first["sequence"], "a refused edit painted"
+    statistics = server.ok("GET", L + "/statistics").json()
+    assert sum(bin["texels"] for bin in statistics["histogram"]) == statistics["texels"] == first["texels_changed"], statistics
     again = server.ok("POST", L + "/edits", stroke).json()  # without a key: a new edit, which changes nothing
     assert again["sequence"] == other["sequence"] + 1 and again["texels_changed"] == 0, again
     # The same for what is no edit.
@@ -209,6 +219,44 @@ def check_repeats(server, camera):
     assert server.ok("POST", M + "/layers", {"name": "Once"}, headers=key).json()["id"] == made.json()["id"]
     names = [layer["name"] for layer in server.get(M + "/layers").json()["layers"]]
     assert names.count("Once") == 1, names
+    refused = server.post(M + "/layers", {"name": "Twice"}, headers=key)
+    assert refused.status == 422 and refused.json()["field"] == "Idempotency-Key", refused
+    for method, body in (("PATCH", {"description": "first"}), ("DELETE", None)):
+        repeated = [server.ok(method, M + "/layers/once", body, headers={"Idempotency-Key": method}) for _ in range(2)]
+        assert repeated[0].body == repeated[1].body and "Idempotency-Replayed" in repeated[1].headers, repeated
+
+
+def check_import_repeats(server):
+    """An import with a key is done once, also for those who ask again after the server was restarted."""
+    scan = folded_grid()
+
+    def ask(content=scan):
+        return server.post("/models?filename=once.ply&name=Import+once", content, headers={"Idempotency-Key": "import once"})
+
+    first = ask()
+    assert first.status == 202, first
+    job = server.wait_for_job(first.json()["id"])
+    assert job["state"] == "done", job
+    again = ask()
+    assert again.status == 202 and again.headers["Location"] == first.headers["Location"], (first, again)
+    assert ask(scan + b"\n").status == 422
+    server.ok("POST", "/models?filename=other.ply&name=Other", scan)
+    newest = [known["id"] for known in server.get("/jobs").json()["jobs"]]
+    assert newest == sorted(newest, reverse=True) and first.json()["id"] in newest, newest
+    wait_for(lambda: server.get("/models/other").status == 200, "the other import")
+    server.kill()
+    server.start()
+    assert server.get(f"/jobs/{first.json()['id']}").status == 404, "the jobs of then are forgotten"
+    later = ask()
+    assert later.status == 202, later
+    job_later = server.wait_for_job(later.json()["id"])
+    assert job_later["state"] == "done" and job_later["model"] == job["model"], (job, job_later)
+    assert later.json()["id"] != first.json()["id"]
+    assert ask().headers["Location"] == later.headers["Location"]
+    assert ask(scan + b"\n").status == 422
+    assert [model["name"] for model in server.get("/models").json()["models"]].count("Import once") == 1
+    for model in ("import-once", "other"):
+        server.ok("DELETE", f"/models/{model}")
 
 
 def check_versions(server):
@@ -270,6 +318,7 @@ def main():
         check_sign_in(server)
         check_paths(server)
         check_repeats(server, camera)
+        check_import_repeats(server)
         check_versions(server)
         check_bad_files(server)
         check_cancel(server)

@@ -81,7 +81,8 @@ TEST(JobsQueue, jobs_run_one_at_a_time_in_the_order_of_asking) {
   wait_until_over(queue, last);
   ASSERT_EQ(order.size(), 20u);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(order[i], i);
-  EXPECT_EQ(queue.all().size(), 20u);
+  ASSERT_EQ(queue.all().size(), 20u);
+  EXPECT_EQ(queue.all().front().id, last) << "newest first";
 }
 
 TEST(JobsQueue, progress_shows_while_a_job_runs) {

@@ -345,13 +345,6 @@ TEST(Upload, broken_forms_are_refused) {
   EXPECT_FALSE(take_upload(upload_of(folder.write("2.body", ""), ""), folder.path()));
 }
 
-TEST(Upload, file_names_lose_their_folders) {
-  EXPECT_EQ(base_filename("../../etc/pot.ply"), "pot.ply");
-  EXPECT_EQ(base_filename("C:\\scans\\pot.ply"), "pot.ply");
-  EXPECT_EQ(base_filename(".."), "");
-  EXPECT_EQ(base_filename("a\r\nb.ply"), "ab.ply");
-}
-
 // --- pages and figures
 
 TEST(Docs, text_of_the_contract_cannot_become_markup) {

@@ -75,10 +75,10 @@ class FakeRoom final : public room::Room {
     return std::make_unique<FakeMember>(random_uuid());
   }
   std::vector<room::Presence> presence() const override { return {{random_uuid(), "anna", "#112233", glm::dvec3(1, 2, 3)}}; }
-  Result<Layer> create_layer(Layer layer) override { return layer; }
-  Result<Layer> update_layer(Layer layer) override { return layer; }
-  Result<void> delete_layer(std::int64_t) override { return {}; }
-  Result<Model> update_model(Model model) override { return model; }
+  Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
+  Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
+  Result<void> delete_layer(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
+  Result<Model> update_model(Model model, const store::FirstAnswer<Model>&) override { return model; }
   Result<query::SurfacePoint> position(const glm::dvec3&, const std::vector<std::string>&) override { return query::SurfacePoint{}; }
   Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>&, const std::vector<std::string>&) override {
     return std::vector<query::SurfacePoint>{};

@@ -15,6 +15,8 @@ import threading
 import time
 import urllib.parse
 
+from .contract import Contract
+
 LONG_S = 180
 
 
@@ -56,6 +58,7 @@ class StrataServer:
         self.data = tempfile.mkdtemp(prefix="strata-e2e-", dir="/tmp")
         os.chmod(self.data, 0o755)
         self.process = None
+        self.contract = Contract()
         self.host, self.port, self.link = "127.0.0.1", None, None
         self.log = []
         self.changed = threading.Condition()
@@ -158,7 +161,7 @@ class StrataServer:
         return http.client.HTTPConnection(self.host, port, timeout=LONG_S)
 
     def request(self, method, path, body=None, headers=None, token=True, connection=None):
-        """One request. `path` after /api/v1 unless it starts with //; a dict or list as body is sent as JSON."""
+        """One request; its answer must be one that the contract has. `path` after /api/v1 unless it starts with //; a dict or list as body is sent as JSON."""
         target = path[1:] if path.startswith("//") else "/api/v1" + path
         sent = {}
         if token:
@@ -171,7 +174,9 @@ class StrataServer:
         try:
             link.request(method, target, body=body, headers=sent)
             answer = link.getresponse()
-            return Answer(answer.status, answer.headers, answer.read())
+            read = Answer(answer.status, answer.headers, answer.read())
+            self.contract.check(method, target, read)
+            return read
         finally:
             if connection is None:
                 link.close()

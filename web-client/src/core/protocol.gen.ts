@@ -89,7 +89,7 @@ export type ValueType = "u8" | "u16" | "u32" | "i8" | "i16" | "i32" | "f16" | "f
 export type LayerKind = "numeric" | "database";
 
 /** Texels a side. */
-export type Resolution = 256 | 512 | 1024 | 2048 | 4096 | 8192 | 16384;
+export type Resolution = 2048 | 4096 | 8192 | 16384;
 
 /** Layer. */
 export interface Layer {
@@ -698,6 +698,7 @@ export interface FrameRequest {
 export interface HistogramBin {
   from: number;
   to: number;
+  texels: number;
   area_m2: number;
 }
 

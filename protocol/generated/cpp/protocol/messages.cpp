@@ -1157,6 +1157,7 @@ Result<void> check(const FrameRequest& value, const std::string& field) {
 void read(const nlohmann::json& json, HistogramBin& value) {
   read_member(json, "from", value.from);
   read_member(json, "to", value.to);
+  read_member(json, "texels", value.texels);
   read_member(json, "area_m2", value.area_m2);
 }
 
@@ -1164,6 +1165,7 @@ nlohmann::json to_json(const HistogramBin& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "from", value.from);
   write_member(json, "to", value.to);
+  write_member(json, "texels", value.texels);
   write_member(json, "area_m2", value.area_m2);
   return json;
 }

@@ -940,6 +940,7 @@ inline constexpr Schema kSchemaOf<FrameRequest> = Schema::FrameRequest;
 struct HistogramBin {
   double from = 0;
   double to = 0;
+  int texels = 0;
   double area_m2 = 0;
   bool operator==(const HistogramBin&) const = default;
 };

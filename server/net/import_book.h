@@ -1,0 +1,33 @@
+#pragma once
+
+#include <map>
+#include <mutex>
+
+#include "jobs/job_queue.h"
+#include "net/http_types.h"
+
+namespace strata::net {
+
+// Which job an import's Idempotency-Key started. The server forgets its jobs when it stops; the key of an import that succeeded
+// is in the database with the model's id, and gets a job that is done. Thread-safe.
+class ImportBook {
+ public:
+  explicit ImportBook(jobs::JobQueue& jobs) : jobs_(jobs) {}
+
+  // Nothing: the key is new, or its job is forgotten. 422: it was used with another body.
+  Result<std::optional<std::int64_t>> find(const Request& request);
+  void started(const Request& request, std::int64_t job);
+  // The job of an import that an earlier server finished.
+  Result<std::int64_t> finished(const Request& request, std::int64_t model);
+
+ private:
+  struct Started {
+    std::int64_t job;
+    std::string fingerprint;
+  };
+  jobs::JobQueue& jobs_;
+  std::mutex mutex_;
+  std::map<std::string, Started> started_;  // by scoped key
+};
+
+}  // namespace strata::net

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace strata::store {
+
+// The answer to a call with an Idempotency-Key, kept in the transaction of the call's effect: either both are there or neither,
+// whatever dies in between. `make` turns the effect (what was created or changed) into the answer; it may run more than once.
+template <class... Effect>
+struct FirstAnswer {
+  std::string key;  // empty: none is kept
+  std::function<nlohmann::json(const Effect&...)> make;
+};
+
+}  // namespace strata::store

@@ -1,0 +1,71 @@
+#include <gtest/gtest.h>
+
+#include "jobs/import_job.h"
+
+namespace strata::jobs {
+namespace {
+
+ImportRequest good() {
+  ImportRequest request;
+  request.filename = "pot.ply";
+  return request;
+}
+
+std::string refused_field(const ImportRequest& request) {
+  const auto result = check(request);
+  return result ? "" : result.error().field;
+}
+
+TEST(ImportRequest, what_a_scan_may_be_asked_for_is_checked_without_its_bytes) {
+  EXPECT_TRUE(check(good()));
+  for (const int resolution : {2048, 4096, 8192, 16384}) {
+    ImportRequest request = good();
+    request.resolution = resolution;
+    EXPECT_TRUE(check(request)) << resolution;
+  }
+  for (const int resolution : {-1, 1, 256, 1024, 3000, 32768}) {
+    ImportRequest request = good();
+    request.resolution = resolution;
+    EXPECT_EQ(refused_field(request), "resolution") << resolution;
+  }
+  for (const char* crs : {"EPSG:", "EPSG:12345678", "epsg:25830", "EPSG:258x0", "25830"}) {
+    ImportRequest request = good();
+    request.crs = crs;
+    EXPECT_EQ(refused_field(request), "crs") << crs;
+  }
+  ImportRequest far = good();
+  far.crs = "EPSG:1234567";
+  EXPECT_TRUE(check(far));
+  ImportRequest aside = good();
+  aside.up = "w";
+  EXPECT_EQ(refused_field(aside), "up");
+  ImportRequest long_name = good();
+  long_name.name = std::string(201, 'n');
+  EXPECT_EQ(refused_field(long_name), "name");
+}
+
+TEST(ImportRequest, the_ending_names_the_format) {
+  for (const char* name : {"pot.PLY", "a.b.obj", "folder/pot.ply", "C:\\scans\\pot.Obj"}) {
+    ImportRequest request = good();
+    request.filename = name;
+    EXPECT_TRUE(check(request)) << name;
+  }
+  ImportRequest request = good();
+  request.filename = "pot.stl";
+  EXPECT_EQ(check(request).error().status, 415);
+  request.filename = "pot";
+  EXPECT_EQ(check(request).error().status, 422);
+  request.filename = "";
+  EXPECT_EQ(check(request).error().field, "filename");
+}
+
+TEST(ImportRequest, file_names_lose_their_folders) {
+  EXPECT_EQ(base_filename("../../etc/pot.ply"), "pot.ply");
+  EXPECT_EQ(base_filename("C:\\scans\\pot.ply"), "pot.ply");
+  EXPECT_EQ(base_filename(".."), "");
+  EXPECT_EQ(base_filename("a\r\nb.ply"), "ab.ply");
+  EXPECT_EQ(base_filename(std::string(300, 'x') + ".ply").size(), 255u);
+}
+
+}  // namespace
+}  // namespace strata::jobs
