@@ -75,9 +75,6 @@ Result<LoadedMesh> parse(Format format, std::span<const std::uint8_t> bytes, Pro
             : "The file holds " + std::to_string(loaded->mesh.positions.size()) +
                   " vertices but no triangle: a point cloud cannot carry layers. Mesh it before importing it.");
   }
-  if (loaded->mesh.triangles.size() > 0xfffffffeu) {
-    return refuse_file("More than 1 431 655 764 triangles; split the mesh.");
-  }
   return loaded;
 }
 

@@ -8,6 +8,10 @@
 
 namespace strata::mesh {
 
+// More are refused while a file is read: strips and polygons make many triangles of few bytes. Enough for the densest
+// scans, and 600 MB of indices.
+constexpr std::size_t kMaxTriangles = 50'000'000;
+
 struct LoadedMesh {
   TriangleMesh mesh;
   std::vector<Repair> repairs;  // what was dropped or joined on the way, with counts; never silent
@@ -16,8 +20,9 @@ struct LoadedMesh {
 // Reads a PLY (ascii, little and big endian, any scalar types) or OBJ (geometry, uv, `v x y z r g b`) by the extension
 // of `filename`. Exactly equal positions are welded; degenerate and duplicate triangles and unused vertices are dropped
 // and reported. Refused with a message that names the fault and its place: unreadable or truncated files, counts that
-// the file cannot hold, indices out of range, NaN or infinite coordinates (with their number), no triangle at all.
-// Memory stays within 4 × the file + 200 MB. Thread: any.
+// the file cannot hold, polygons of more than kMaxPolygonCorners, more than kMaxTriangles, indices out of range, NaN or
+// infinite coordinates (with their number), no triangle at all. Memory stays within 4 × the file + 200 MB where
+// coordinates have 4 bytes and faces are lists; strips add at most 12 bytes for each of kMaxTriangles. Thread: any.
 Result<LoadedMesh> load_mesh(const std::filesystem::path& file, const std::string& filename, Progress& progress);
 
 // The same for a file that is already in memory.

@@ -16,8 +16,8 @@ constexpr std::size_t kMaxNumbers = 8;
 // once.
 class ObjReader {
  public:
-  ObjReader(std::span<const std::uint8_t> bytes, Progress& progress)
-      : bytes_(bytes), progress_(progress), faces_(loaded_.mesh) {}
+  ObjReader(std::span<const std::uint8_t> bytes, Progress& progress, std::size_t max_triangles)
+      : bytes_(bytes), progress_(progress), faces_(loaded_.mesh, max_triangles) {}
 
   Result<LoadedMesh> read() {
     if (auto counted = count_lines(); !counted) return tl::unexpected(counted.error());
@@ -48,9 +48,10 @@ class ObjReader {
     if (faces == 0)
       return refuse_file(positions > 0 ? "The OBJ has vertices but no faces: a point cloud cannot carry layers."
                                        : "The OBJ has no faces; is this an OBJ file?");
-    loaded_.mesh.positions.reserve(positions);
-    uvs_.reserve(uvs);
-    loaded_.mesh.triangles.reserve(3 * faces);
+    // Lines that are shorter than "v 0 0 0", "vt 0" and "f 1 2 3" are refused or make nothing.
+    loaded_.mesh.positions.reserve(std::min<std::uint64_t>(positions, bytes_.size() / 8 + 1));
+    uvs_.reserve(std::min<std::uint64_t>(uvs, bytes_.size() / 5 + 1));
+    faces_.reserve(std::min<std::uint64_t>(faces, bytes_.size() / 8 + 1));
     return {};
   }
 
@@ -107,14 +108,16 @@ class ObjReader {
         corners.clear();
         bool has_uv = true;
         for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+          if (corners.size() == kMaxPolygonCorners) {
+            return FaceBuilder::too_many_corners("line " + std::to_string(lines.line_number()));
+          }
           if (auto corner = read_corner(lines, word, has_uv); corner) {
             corners.push_back(*corner);
           } else {
             return tl::unexpected(corner.error());
           }
         }
-        auto added = faces_.add(corners, has_uv, [&] { return "line " + std::to_string(lines.line_number()); });
-        if (!added) return added;
+        if (auto added = faces_.add(corners, has_uv); !added) return added;
       } else if (keyword == "usemtl") {
         if (materials_.size() < 10000) materials_.emplace(next_word(line));
       } else if (keyword == "l" || keyword == "p" || keyword == "curv" || keyword == "curv2" || keyword == "surf") {
@@ -204,8 +207,8 @@ class ObjReader {
 
 }  // namespace
 
-Result<LoadedMesh> parse_obj(std::span<const std::uint8_t> bytes, Progress& progress) {
-  return ObjReader(bytes, progress).read();
+Result<LoadedMesh> parse_obj(std::span<const std::uint8_t> bytes, Progress& progress, std::size_t max_triangles) {
+  return ObjReader(bytes, progress, max_triangles).read();
 }
 
 }  // namespace strata::mesh

@@ -41,8 +41,13 @@ bool is_real(PlyType type) {
 template <class Source>
 class PlyReader {
  public:
-  PlyReader(Source source, const PlyHeader& header, std::size_t file_bytes, Progress& progress)
-      : source_(source), header_(header), file_bytes_(file_bytes), progress_(progress), faces_(loaded_.mesh) {}
+  PlyReader(Source source, const PlyHeader& header, std::size_t file_bytes, Progress& progress,
+            std::size_t max_triangles)
+      : source_(source),
+        header_(header),
+        file_bytes_(file_bytes),
+        progress_(progress),
+        faces_(loaded_.mesh, max_triangles) {}
 
   Result<LoadedMesh> read() {
     for (const PlyElement& element : header_.elements) {
@@ -118,7 +123,7 @@ class PlyReader {
     // No triangle takes fewer bytes than its list of three.
     const std::uint64_t least =
         source_.rest() / (1 + 3 * (header_.encoding == PlyEncoding::ascii ? 2 : bytes_of(index_list.type)));
-    loaded_.mesh.triangles.reserve(3 * std::min(element.count, least));
+    faces_.reserve(std::min(element.count, least));
     const auto texcoords = element.find({"texcoord", "texcoords"});
     const ColorProperties colors = loaded_.mesh.vertex_colors.empty() ? find_colors(element) : ColorProperties{};
     if (colors.present()) face_colors_.resize(loaded_.mesh.positions.size());
@@ -127,7 +132,6 @@ class PlyReader {
     std::vector<double> values(element.properties.size());
     for (std::uint64_t i = 0; i < element.count; ++i) {
       if (i % kElementsBetweenReports == 0 && !report("Reading faces")) return cancelled_problem();
-      const std::size_t start = source_.offset();
       bool has_uv = !vertex_uvs_.empty();
       uv_list_.clear();
       for (std::size_t k = 0; k < values.size(); ++k) {
@@ -145,9 +149,7 @@ class PlyReader {
         for (std::size_t k = 0; k < corners.size(); ++k) corners[k].uv = {uv_list_[2 * k], uv_list_[2 * k + 1]};
       }
       if (colors.present()) collect_face_color(element, colors, values, corners);
-      auto added =
-          faces_.add(corners, has_uv, [&] { return "face " + std::to_string(i) + ", byte " + std::to_string(start); });
-      if (!added) return added;
+      if (auto added = faces_.add(corners, has_uv); !added) return added;
     }
     return {};
   }
@@ -157,6 +159,9 @@ class PlyReader {
     corners.clear();
     std::int64_t count = 0, index = 0;
     if (!read_count(list, count)) return broken("face", face, faces);
+    if (static_cast<std::uint64_t>(count) > kMaxPolygonCorners) {
+      return FaceBuilder::too_many_corners("face " + std::to_string(face) + " (" + source_.place() + ")");
+    }
     for (std::int64_t k = 0; k < count; ++k) {
       if (!source_.integer(list.type, index)) return broken("face", face, faces);
       if (auto checked = check_index("Face " + std::to_string(face), index); !checked) return checked;
@@ -170,6 +175,10 @@ class PlyReader {
   bool read_uv_list(const PlyProperty& list) {
     std::int64_t count = 0;
     if (!read_count(list, count)) return false;
+    // Longer than any face has: none of its coordinates can be told to a corner.
+    if (static_cast<std::uint64_t>(count) > 2 * kMaxPolygonCorners) {
+      return source_.skip(list.type, static_cast<std::uint64_t>(count));
+    }
     for (std::int64_t k = 0; k < count; ++k) {
       double value = 0;
       if (!source_.value(list.type, value)) return false;
@@ -223,7 +232,8 @@ class PlyReader {
       if (last[0].position == last[1].position || last[1].position == last[2].position ||
           last[0].position == last[2].position)
         continue;
-      faces_.add_triangle(last[odd ? 1 : 0], last[odd ? 0 : 1], last[2], !vertex_uvs_.empty());
+      auto added = faces_.add_triangle(last[odd ? 1 : 0], last[odd ? 0 : 1], last[2], !vertex_uvs_.empty());
+      if (!added) return added;
     }
     return {};
   }
@@ -322,14 +332,14 @@ class PlyReader {
 
 }  // namespace
 
-Result<LoadedMesh> parse_ply(std::span<const std::uint8_t> bytes, Progress& progress) {
+Result<LoadedMesh> parse_ply(std::span<const std::uint8_t> bytes, Progress& progress, std::size_t max_triangles) {
   const Result<PlyHeader> header = parse_ply_header(bytes);
   if (!header) return tl::unexpected(header.error());
   if (header->encoding == PlyEncoding::ascii) {
-    return PlyReader(PlyAsciiSource(bytes, header->data_offset), *header, bytes.size(), progress).read();
+    return PlyReader(PlyAsciiSource(bytes, header->data_offset), *header, bytes.size(), progress, max_triangles).read();
   }
   const PlyBinarySource source(bytes, header->data_offset, header->encoding == PlyEncoding::big_endian);
-  return PlyReader(source, *header, bytes.size(), progress).read();
+  return PlyReader(source, *header, bytes.size(), progress, max_triangles).read();
 }
 
 }  // namespace strata::mesh

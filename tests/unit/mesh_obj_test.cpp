@@ -33,6 +33,15 @@ TEST(MeshObj, a_face_may_name_vertices_that_follow_it) {
   EXPECT_EQ(loaded->mesh.triangle_count(), 1u);
 }
 
+TEST(MeshObj, a_face_of_more_corners_than_are_taken_is_refused_before_they_are_read) {
+  std::string face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
+  for (std::size_t i = 0; i < mesh::kMaxPolygonCorners; ++i) face += i % 2 == 0 ? " 1" : " 2";
+  EXPECT_TRUE(load_text(face + "\nf 1 2 3\n", "a.obj"));
+  const auto loaded = load_text(face + " no_corner\nf 1 2 3\n", "a.obj");
+  ASSERT_FALSE(loaded);
+  EXPECT_THAT(loaded.error().detail, HasSubstr("The face at line 4 has more than 4096 corners"));
+}
+
 TEST(MeshObj, colours_may_be_shares_or_bytes) {
   const auto shares = load_text("v 0 0 0 1 0 .2\nv 1 0 0 0 1 0\nv 0 1 0 0 0 0\nf 1 2 3\n", "a.obj");
   const auto bytes = load_text("v 0 0 0 1 0 0\nv 1 0 0 0 255 0\nv 0 1 0 51 0 7\nf 1 2 3\n", "a.obj");
@@ -123,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadObj{"after_continuation", "v 0 \\\n0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n", "Line 3"},
                     BadObj{"two_numbers", "v 0 0\nf 1 1 1\n", "needs three numbers"},
                     BadObj{"nan", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "1 vertices"},
-                    BadObj{"corners", huge_polygon(), "5000 corners"},
+                    BadObj{"corners", huge_polygon(), "more than 4096 corners"},
                     BadObj{"last_backslash", kThree + "f 1 2 \\", "no triangle"}),
     [](const auto& bad) { return bad.param.name; });
 

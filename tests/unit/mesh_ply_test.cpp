@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/load_formats.h"
+#include "mesh/polygon.h"
 #include "support/mesh_files.h"
 
 namespace {
@@ -161,6 +163,40 @@ TEST(MeshPly, faces_without_texture_coordinates_get_none_and_are_counted) {
       "a.ply");
   ASSERT_TRUE(loaded);
   EXPECT_TRUE(loaded->mesh.corner_uvs.empty());
+}
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+TEST(MeshPly, a_face_of_more_corners_than_are_taken_is_refused_before_they_are_read) {
+  PlyWriter file(PlyWriter::Encoding::little, kSquare + "element face 1\nproperty list int uchar vertex_indices\n");
+  for (int i = 0; i < 4; ++i) file.put(1.0f * (i & 1)).put(1.0f * (i >> 1)).put(0.25f);
+  const int corners = static_cast<int>(mesh::kMaxPolygonCorners) + 1;
+  file.put(corners);
+  for (int i = 0; i < corners; ++i) file.put(std::uint8_t{9});  // no such vertex: not even looked at
+  const auto loaded = load_text(file.bytes(), "a.ply");
+  ASSERT_FALSE(loaded);
+  EXPECT_EQ(loaded.error().status, 422);
+  EXPECT_THAT(loaded.error().detail, HasSubstr("face 0 (byte"));
+  EXPECT_THAT(loaded.error().detail, HasSubstr("more than 4096 corners"));
+}
+
+TEST(MeshPly, more_triangles_than_are_taken_are_refused_whatever_makes_them) {
+  const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
+  const std::string strip = "element tristrips 1\nproperty list int int vertex_indices\n";
+  for (const std::string& text : {ascii(kSquare + strip, vertices + "8 0 1 2 3 0 1 2 3\n"),
+                                  ascii(kSquare + "element face 2\nproperty list int int vertex_indices\n",
+                                        vertices + "5 0 1 2 3 1\n5 0 1 2 3 1\n")}) {
+    Progress progress;
+    const auto most = mesh::parse_ply(bytes_of(text), progress, 6);
+    ASSERT_TRUE(most) << most.error().detail;
+    EXPECT_EQ(most->mesh.triangle_count(), 6u);
+    const auto more = mesh::parse_ply(bytes_of(text), progress, 5);
+    ASSERT_FALSE(more);
+    EXPECT_EQ(more.error().status, 422);
+    EXPECT_THAT(more.error().detail, HasSubstr("more than 5 triangles"));
+  }
 }
 
 struct BadPly {
