@@ -30,13 +30,6 @@ class BoundedQueue {
     items_.pop_front();
     return item;
   }
-  std::optional<T> try_pop() {
-    std::lock_guard lock(mutex_);
-    if (items_.empty()) return std::nullopt;
-    T item = std::move(items_.front());
-    items_.pop_front();
-    return item;
-  }
   void close() {
     std::lock_guard lock(mutex_);
     closed_ = true;

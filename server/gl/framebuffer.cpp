@@ -1,15 +1,17 @@
 #include "gl/framebuffer.h"
 
-#include <cassert>
+#include <string>
 #include <vector>
 
 namespace strata::gl {
 
-Framebuffer::Framebuffer(std::initializer_list<const Texture*> colors, const Texture* depth, std::string_view label) {
+Result<Framebuffer> Framebuffer::create(std::initializer_list<const Texture*> colors, const Texture* depth,
+                                        std::string_view label) {
   GLuint id = 0;
   glCreateFramebuffers(1, &id);
-  object_ = Object<Traits>(id);
-  object_.label(label);
+  Framebuffer framebuffer;
+  framebuffer.object_ = Object<Traits>(id);
+  framebuffer.object_.label(label);
   std::vector<GLenum> targets;
   for (const Texture* color : colors) {
     const auto target = static_cast<GLenum>(GL_COLOR_ATTACHMENT0 + targets.size());
@@ -22,11 +24,11 @@ Framebuffer::Framebuffer(std::initializer_list<const Texture*> colors, const Tex
   } else {
     glNamedFramebufferDrawBuffers(id, static_cast<GLsizei>(targets.size()), targets.data());
   }
-  assert(complete());
-}
-
-bool Framebuffer::complete() const {
-  return object_ && glCheckNamedFramebufferStatus(id(), GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  const GLenum status = glCheckNamedFramebufferStatus(id, GL_FRAMEBUFFER);
+  if (status == GL_FRAMEBUFFER_COMPLETE) return framebuffer;
+  return fail(503, "GPU cannot draw",
+              "The driver does not take the framebuffer '" + std::string(label) + "' (status " +
+                  std::to_string(status) + "). Update the graphics driver.");
 }
 
 }  // namespace strata::gl

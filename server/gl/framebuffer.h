@@ -3,6 +3,7 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "core/problem.h"
 #include "gl/object.h"
 #include "gl/texture.h"
 
@@ -12,12 +13,12 @@ namespace strata::gl {
 class Framebuffer {
  public:
   Framebuffer() = default;
-  // `depth` may be null. The attachments must make a complete framebuffer (an error of ours otherwise).
-  Framebuffer(std::initializer_list<const Texture*> colors, const Texture* depth, std::string_view label);
+  // `depth` may be null. A Problem 503 when the driver cannot draw into these together.
+  static Result<Framebuffer> create(std::initializer_list<const Texture*> colors, const Texture* depth,
+                                    std::string_view label);
 
   GLuint id() const { return object_.id(); }
   explicit operator bool() const { return static_cast<bool>(object_); }
-  bool complete() const;
 
  private:
   struct Traits {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "mesh/uv_islands.h"
+
 namespace strata::mesh {
 namespace {
 
@@ -82,29 +84,24 @@ class VertexSplitter {
         atlas_(atlas),
         geometry_(geometry),
         normals_(position_normals(mesh)),
-        position_of_(mesh.positions.size(), kNone),
-        first_of_(mesh.positions.size(), kNone) {
+        welder_(mesh.positions.size()),
+        position_of_(mesh.positions.size(), kNone) {
     geometry_.positions.reserve(mesh.positions.size());
     geometry_.vertices.reserve(mesh.positions.size() + mesh.positions.size() / 4);
-    next_.reserve(geometry_.vertices.capacity());
   }
 
   std::uint32_t vertex_for(std::size_t corner) {
     const std::uint32_t source = mesh_.triangles[corner];
     const glm::vec2 uv = corner < atlas_.corner_uvs.size() ? atlas_.corner_uvs[corner] : glm::vec2(0);
-    for (std::uint32_t v = first_of_[source]; v != kNone; v = next_[v]) {
-      if (geometry_.vertices[v].uv == uv) return v;
-    }
+    const auto [index, is_new] = welder_.number(source, uv);
+    if (!is_new) return index;
     if (position_of_[source] == kNone) {
       position_of_[source] = static_cast<std::uint32_t>(geometry_.positions.size());
       geometry_.positions.push_back(mesh_.positions[source]);
     }
-    const auto index = static_cast<std::uint32_t>(geometry_.vertices.size());
     geometry_.vertices.push_back({glm::vec3(mesh_.positions[source] - geometry_.origin), normals_[source], uv,
                                   mesh_.vertex_colors.empty() ? kStoneGrey : mesh_.vertex_colors[source],
                                   position_of_[source]});
-    next_.push_back(first_of_[source]);
-    first_of_[source] = index;
     return index;
   }
 
@@ -113,9 +110,8 @@ class VertexSplitter {
   const Atlas& atlas_;
   Geometry& geometry_;
   std::vector<std::uint32_t> normals_;
+  CornerWelder welder_;
   std::vector<std::uint32_t> position_of_;  // new number of a mesh position
-  std::vector<std::uint32_t> first_of_;     // of a mesh position: head of the list of its vertices
-  std::vector<std::uint32_t> next_;         // of a vertex: the next at its position
 };
 
 }  // namespace

@@ -17,11 +17,9 @@ constexpr std::uint64_t kNoPosition = ~std::uint64_t{0};
 // the same on every GPU. Only occupied 8 × 8 blocks are stored ("slots").
 //
 // - *Surface texels* are those whose centre a triangle covers (OpenGL's rule on vertices snapped to 1/256 texel), and
-// the
-//   nearest texel of a triangle that covers no centre (conservative fill) where no other triangle owns it.
+//   the nearest texel of a triangle that covers no centre (conservative fill) where no other triangle owns it.
 // - *Gutter texels* are the ring of 2 texels around an island; they carry the position of the nearest surface texel of
-// their own
-//   island, so an edit treats them exactly as their owner.
+//   their own island, so an edit treats them exactly as their owner.
 // - Area: each triangle is clipped against the texel grid and each piece is credited to the surface texel that owns the
 //   texel it lies in (its own chart's); the sum is the mesh area.
 struct SurfaceMap {

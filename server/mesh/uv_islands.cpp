@@ -29,28 +29,25 @@ UvIslands find_islands(std::span<const std::uint32_t> indices, std::size_t verte
   return islands;
 }
 
+CornerWelder::Number CornerWelder::number(std::uint32_t position, glm::vec2 uv) {
+  std::uint32_t& head = first_[position];
+  for (std::uint32_t v = head; v != kEnd; v = vertices_[v].next) {
+    if (vertices_[v].uv == uv) return {v, false};
+  }
+  const auto added = static_cast<std::uint32_t>(vertices_.size());
+  vertices_.push_back({uv, head});
+  head = added;
+  return {added, true};
+}
+
 std::size_t weld_corners(std::span<const std::uint32_t> position_of_corner, std::span<const glm::vec2> uv_of_corner,
                          std::size_t position_count, std::vector<std::uint32_t>& indices) {
-  constexpr std::uint32_t kEnd = 0xffffffffu;
-  struct Vertex {
-    glm::vec2 uv;
-    std::uint32_t next;  // of the same position
-  };
-  std::vector<std::uint32_t> first(position_count, kEnd);
-  std::vector<Vertex> vertices;
+  CornerWelder welder(position_count);
   indices.resize(position_of_corner.size());
-  for (std::size_t c = 0; c < position_of_corner.size(); ++c) {
-    auto& head = first[position_of_corner[c]];
-    std::uint32_t v = head;
-    while (v != kEnd && vertices[v].uv != uv_of_corner[c]) v = vertices[v].next;
-    if (v == kEnd) {
-      v = static_cast<std::uint32_t>(vertices.size());
-      vertices.push_back({uv_of_corner[c], head});
-      head = v;
-    }
-    indices[c] = v;
+  for (std::size_t c = 0; c < indices.size(); ++c) {
+    indices[c] = welder.number(position_of_corner[c], uv_of_corner[c]).index;
   }
-  return vertices.size();
+  return welder.count();
 }
 
 }  // namespace strata::mesh

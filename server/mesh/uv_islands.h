@@ -14,10 +14,32 @@ struct UvIslands {
   std::uint32_t count = 0;
 };
 
+// Numbers corners from 0 by first use: the same number exactly where position and UV are equal.
+class CornerWelder {
+ public:
+  explicit CornerWelder(std::size_t position_count) : first_(position_count, kEnd) {}
+
+  struct Number {
+    std::uint32_t index;
+    bool is_new;
+  };
+  Number number(std::uint32_t position, glm::vec2 uv);
+  std::size_t count() const { return vertices_.size(); }
+
+ private:
+  static constexpr std::uint32_t kEnd = 0xffffffffu;
+  struct Vertex {
+    glm::vec2 uv;
+    std::uint32_t next;  // of the same position
+  };
+  std::vector<std::uint32_t> first_;  // of a position: head of the list of its vertices
+  std::vector<Vertex> vertices_;
+};
+
 // `indices`: 3 a triangle, equal exactly where position and UV are equal.
 UvIslands find_islands(std::span<const std::uint32_t> indices, std::size_t vertex_count);
 
-// Such indices for corners given by position index and UV. Returns the number of distinct ones.
+// Such indices by a CornerWelder. Returns the number of distinct ones.
 std::size_t weld_corners(std::span<const std::uint32_t> position_of_corner, std::span<const glm::vec2> uv_of_corner,
                          std::size_t position_count, std::vector<std::uint32_t>& indices);
 

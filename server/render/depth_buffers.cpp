@@ -47,10 +47,12 @@ Result<std::shared_ptr<DepthBuffer>> DepthBuffers::make(const DepthKey& key) {
   if (!share) return tl::unexpected(share.error());
   auto texture = gl::Texture::create_2d(GL_DEPTH_COMPONENT32F, key.width, key.height, "depth");
   if (!texture) return tl::unexpected(texture.error());
+  auto framebuffer = gl::Framebuffer::create({}, &*texture, "depth only");
+  if (!framebuffer) return tl::unexpected(framebuffer.error());
   auto buffer = std::make_shared<DepthBuffer>();
   buffer->share = std::move(*share);
   buffer->texture = std::move(*texture);
-  buffer->framebuffer = gl::Framebuffer({}, &buffer->texture, "depth only");
+  buffer->framebuffer = std::move(*framebuffer);
   buffer->grid_width = (key.width + kCell - 1) / kCell;
   buffer->grid_height = (key.height + kCell - 1) / kCell;
   buffer->grid.resize(static_cast<std::size_t>(buffer->grid_width) * static_cast<std::size_t>(buffer->grid_height));

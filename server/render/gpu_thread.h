@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -55,11 +56,14 @@ class GpuThread {
   // Aborts what waits and joins. Called by the owner, not on the GPU thread.
   void stop();
 
-  // False when the lane is full (unless `always`) or the thread has stopped: the caller answers.
+  // False when the lane is full (unless `always`) or the thread has stopped: the caller answers. `always` is for
+  // removals: one at most for each handle that was given out.
   bool post(Lane lane, Job job, bool always = false);
-  // Runs `reply` on the GPU thread before any other work; on this thread when it has stopped.
+  // Runs `reply` on the GPU thread before any other work; on this thread when it has stopped. Replies have no capacity
+  // of their own: what waits is one for each request that was refused or replaced during a step.
   void post_reply(std::function<void()> reply);
   void wake();  // a frame was queued
+  bool ready() const { return !broken_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -89,7 +93,7 @@ class GpuThread {
   // Of the GPU thread alone.
   std::optional<Job> current_[2];
   std::list<Job> frames_;
-  bool broken_ = false;  // a lost context that could not be replaced yet
+  std::atomic<bool> broken_ = false;  // a lost context that could not be replaced yet; others may read
   Clock::time_point next_recovery_{};
 };
 

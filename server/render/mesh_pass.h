@@ -20,8 +20,9 @@ struct MeshProgress {
   bool cleared = false;
 };
 
-// Draws the full mesh, near parts first, which spares hidden ones their shading: depth alone, or the g-buffer. Both use one vertex stage, so their depths are equal. Each call sets
-// all state it needs: other passes may run between slices. Nothing is culled by facing, because scans are open.
+// Draws the full mesh, near parts first, which spares hidden ones their shading: depth alone, or the g-buffer. Both use
+// one vertex stage, so their depths are equal. Each call sets all state it needs: other passes may run between slices.
+// Nothing is culled by facing, because scans are open.
 class MeshPass {
  public:
   enum class Kind { depth, gbuffer };

@@ -44,9 +44,13 @@ Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& dept
   if (!view.depth || view.depth.use_count() > 1) {
     auto depth = depths.make(key);
     if (!depth) return tl::unexpected(depth.error());
+    auto gbuffer = gl::Framebuffer::create({&view.uv, &view.light}, &(*depth)->texture, "view g-buffer");
+    if (!gbuffer) return tl::unexpected(gbuffer.error());
+    auto shading = gl::Framebuffer::create({&view.picture}, &(*depth)->texture, "view shading");
+    if (!shading) return tl::unexpected(shading.error());
     view.depth = std::move(*depth);
-    view.gbuffer = gl::Framebuffer({&view.uv, &view.light}, &view.depth->texture, "view g-buffer");
-    view.shading = gl::Framebuffer({&view.picture}, &view.depth->texture, "view shading");
+    view.gbuffer = std::move(*gbuffer);
+    view.shading = std::move(*shading);
   }
   view.depth->start(key);
   view.key = key;

@@ -114,10 +114,13 @@ TEST_F(GlWrapper, a_texture_array_knows_its_size) {
 TEST_F(GlWrapper, a_framebuffer_moves_and_is_complete) {
   auto color = Texture::create_2d(GL_R32UI, 4, 4, "color");
   auto depth = Texture::create_2d(GL_DEPTH_COMPONENT32F, 4, 4, "depth");
-  const auto make = [&] { return Framebuffer({&*color}, &*depth, "test framebuffer"); };
-  EXPECT_TRUE(make().complete());
-  EXPECT_TRUE(Framebuffer({}, &*depth, "depth only").complete());
+  const auto make = [&] { return std::move(*Framebuffer::create({&*color}, &*depth, "test framebuffer")); };
+  EXPECT_TRUE(Framebuffer::create({}, &*depth, "depth only"));
   expect_moves(make(), make(), glIsFramebuffer);
+  auto small = Texture::create_array(GL_R32UI, 4, 4, 2, "layered");
+  const auto refused = Framebuffer::create({&*color, &*small}, nullptr, "layered and not");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().status, 503);
 }
 
 TEST_F(GlWrapper, a_vertex_array_moves) {

@@ -65,11 +65,17 @@ Result<void> PaperEditor::make_textures() {
   if (!edited) return tl::unexpected(edited.error());
   edited_ = std::move(*edited);
   fill(edited_, 0);
-  editing_ = gl::Framebuffer({&data_, &mask_, &edited_}, nullptr, "paper editing");
-  padding_ = gl::Framebuffer({&data_, &mask_}, nullptr, "paper padding");
-  coverage_target_ = gl::Framebuffer({&coverage_}, nullptr, "paper coverage");
-  outline_target_ = gl::Framebuffer({&outline_}, nullptr, "paper outline");
-  return {};
+  const auto make = [](gl::Framebuffer& target, std::initializer_list<const gl::Texture*> colors,
+                       const char* label) -> Result<void> {
+    auto made = gl::Framebuffer::create(colors, nullptr, label);
+    if (!made) return tl::unexpected(made.error());
+    target = std::move(*made);
+    return {};
+  };
+  if (auto made = make(editing_, {&data_, &mask_, &edited_}, "paper editing"); !made) return made;
+  if (auto made = make(padding_, {&data_, &mask_}, "paper padding"); !made) return made;
+  if (auto made = make(coverage_target_, {&coverage_}, "paper coverage"); !made) return made;
+  return make(outline_target_, {&outline_}, "paper outline");
 }
 
 void PaperEditor::make_outline() {
