@@ -38,6 +38,7 @@ int run(const ImportOptions& options) {
     request.filename = std::filesystem::path(file).filename().string();
     if (!options.unit.empty()) request.unit = parse_unit(options.unit);
     if (!std::filesystem::is_regular_file(request.file)) return report({400, "No such file", file, {}});
+    if (auto good = jobs::check(request); !good) return report(good.error());
     Progress progress;
     auto model = [&] {
       ProgressLine line(progress);

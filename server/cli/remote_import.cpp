@@ -16,6 +16,33 @@ struct Reply {
   std::string body;
 };
 
+tl::unexpected<Problem> not_strata(const std::string& what) {
+  return fail(502, "Not a Strata server", what + " is not what a Strata server answers. Is the address right, and is nothing in between?");
+}
+
+// The JSON object in a reply, with these members.
+Result<nlohmann::json> object_in(const Reply& reply, std::initializer_list<const char*> members) {
+  auto json = nlohmann::json::parse(reply.body, nullptr, false);
+  if (!json.is_object()) return not_strata("The answer");
+  for (const char* member : members)
+    if (!json.contains(member)) return not_strata(std::string("An answer without `") + member + "`");
+  return json;
+}
+
+std::string text_of(const nlohmann::json& object, const char* member) {
+  if (!object.is_object()) return {};
+  const auto found = object.find(member);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+// As the server tells it; of what it does not tell, the status and what is known here.
+Problem problem_of(const nlohmann::json& json, int status, const std::string& title, const std::string& detail) {
+  Problem problem{status, text_of(json, "title"), text_of(json, "detail"), text_of(json, "field")};
+  if (problem.title.empty()) problem.title = title;
+  if (problem.detail.empty()) problem.detail = detail;
+  return problem;
+}
+
 size_t collect(char* data, size_t size, size_t count, void* body) {
   static_cast<std::string*>(body)->append(data, size * count);
   return size * count;
@@ -72,11 +99,8 @@ class Client {
     if (code != CURLE_OK) return fail(503, "Server not reached", base_ + ": " + curl_easy_strerror(code));
     curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &reply.status);
     if (reply.status >= 400) {
-      const auto json = nlohmann::json::parse(reply.body, nullptr, false);
-      if (json.is_object())
-        return fail(static_cast<int>(reply.status), json.value("title", "Refused"), json.value("detail", reply.body),
-                    json.value("field", ""));
-      return fail(static_cast<int>(reply.status), "Refused", "The server answered " + std::to_string(reply.status) + ".");
+      return tl::unexpected(problem_of(nlohmann::json::parse(reply.body, nullptr, false), static_cast<int>(reply.status), "Refused",
+                                       "The server answered " + std::to_string(reply.status) + "."));
     }
     return reply;
   }
@@ -108,26 +132,27 @@ Result<std::string> import_remotely(const std::string& server_url, const std::st
   Client client(server_url, token);
   auto posted = client.post_file(import_path(client, request), request.file, progress);
   if (!posted) return tl::unexpected(posted.error());
-  const auto accepted = nlohmann::json::parse(posted->body, nullptr, false);
-  if (!accepted.is_object() || !accepted.contains("id"))
-    return fail(502, "Not a Strata server", "The answer to the upload names no job.");
-  const std::string job_path = "/api/v1/jobs/" + accepted["id"].dump();
+  const auto accepted = object_in(*posted, {"id"});
+  if (!accepted) return tl::unexpected(accepted.error());
+  const std::string job_path = "/api/v1/jobs/" + accepted->at("id").dump();
   while (true) {
     auto polled = client.get(job_path);
     if (!polled) return tl::unexpected(polled.error());
-    const auto job = nlohmann::json::parse(polled->body, nullptr, false);
-    const std::string state = job.value("state", "");
+    const auto job = object_in(*polled, {"state", "progress"});
+    if (!job) return tl::unexpected(job.error());
+    const std::string state = text_of(*job, "state");
     if (state == "done") {
-      auto model = client.get("/api/v1/models/" + job["model"].dump());
+      if (!job->contains("model")) return not_strata("A job that is done without a model");
+      auto answer = client.get("/api/v1/models/" + job->at("model").dump());
+      if (!answer) return tl::unexpected(answer.error());
+      const auto model = object_in(*answer, {"id", "name"});
       if (!model) return tl::unexpected(model.error());
-      return nlohmann::json::parse(model->body, nullptr, false).dump(2);
+      return model->dump(2);
     }
-    if (state == "failed" || state == "cancelled") {
-      const auto problem = job.value("problem", nlohmann::json::object());
-      return fail(problem.value("status", 400), problem.value("title", "Import " + state), problem.value("detail", state),
-                  problem.value("field", ""));
-    }
-    progress.report(job.value("progress", 0.0), job.value("message", ""));
+    if (state == "failed" || state == "cancelled")
+      return tl::unexpected(problem_of(job->value("problem", nlohmann::json()), 422, "Import " + state, state));
+    if (state != "queued" && state != "running") return not_strata("A job of the state `" + state + "`");
+    progress.report(job->at("progress").is_number() ? job->at("progress").get<double>() : 0, text_of(*job, "message"));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
 }

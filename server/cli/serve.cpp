@@ -50,12 +50,15 @@ Result<Address> parse_listen(const std::string& text) {
   return address;
 }
 
-Result<std::string> owner_token() {
+// For CLI11: what cannot be an address is wrong usage.
+std::string check_listen(const std::string& text) {
+  const auto address = parse_listen(text);
+  return address || address.error().status != 400 ? std::string() : address.error().detail;
+}
+
+std::string owner_token() {
   const char* token = std::getenv("STRATA_OWNER_TOKEN");
-  if (!token || !*token) return std::string();
-  if (std::string_view(token).size() < 32)
-    return fail(400, "Owner token too short", "STRATA_OWNER_TOKEN has at least 32 characters.", "STRATA_OWNER_TOKEN");
-  return std::string(token);
+  return token ? token : "";
 }
 
 // Signals are taken by `wait_for_end`, not by handlers: blocked before any thread starts, they are inherited blocked.
@@ -79,8 +82,6 @@ void wait_for_end(const sigset_t& ending) {
 int run(const ServeOptions& options) {
   auto address = parse_listen(options.listen);
   if (!address) return report(address.error());
-  auto token = owner_token();
-  if (!token) return report(token.error());
   const sigset_t ending = block_signals();
 
   const InstallDirs dirs = install_dirs();
@@ -108,7 +109,7 @@ int run(const ServeOptions& options) {
   server_options.static_dir = dirs.web_client;
   server_options.protocol_dir = dirs.protocol;
   server_options.upload_dir = options.data.data / "uploads";
-  server_options.owner_token = *token;
+  server_options.owner_token = owner_token();
   auto server = net::Server::start(server_options, store, rooms, jobs, **renderer);
   if (!server) return report(server.error());
 
@@ -132,7 +133,10 @@ Command add_serve(CLI::App& app) {
   auto* command = app.add_subcommand("serve", "Run the server");
   auto options = std::make_shared<ServeOptions>();
   add_data_options(*command, options->data);
-  command->add_option("--listen", options->listen, "HOST:PORT; port 0 takes a free one")->envname("STRATA_LISTEN")->capture_default_str();
+  command->add_option("--listen", options->listen, "HOST:PORT; port 0 takes a free one")
+      ->envname("STRATA_LISTEN")
+      ->check(check_listen)
+      ->capture_default_str();
   command->add_option("--origin", options->origins, "Further web origins that may connect (repeat)")->envname("STRATA_ORIGIN");
   command->add_option("--gpu-memory", options->gpu_memory, "Budget of GPU memory, e.g. 4GiB (default: what the driver has)")
       ->envname("STRATA_GPU_MEMORY")

@@ -47,7 +47,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       files_(options_.static_dir),
       shared_(make_shared_state(options_, store)),
       workers_(options_.worker_threads, options_.max_waiting_requests),
-      context_{options_, store, rooms, jobs, renderer, auth_, edit_book_, *shared_->metrics, workers_} {
+      context_{options_, store, rooms, jobs, renderer, auth_, edit_book_, live_sockets_, *shared_->metrics, workers_} {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
   add_project_routes(router_, context_);
@@ -167,10 +167,16 @@ Result<App::LiveEntry> App::admit_live(Request& request) {
   if (!room) return tl::unexpected(room.error());
   auto project = store_.project(std::to_string((*room)->model().project_id));
   if (!project) return tl::unexpected(project.error());
-  return LiveEntry{std::move(*room), project->slug, *request.principal};
+  return LiveEntry{std::move(*room), project->slug, *request.principal, Authenticator::secret_of(request)};
 }
 
-std::shared_ptr<LiveSession> App::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) const {
+bool App::is_still_welcome(const std::string& secret, Role role) {
+  auto principal = auth_.identify_token(secret);
+  return !principal || (*principal && (*principal)->role == role);
+}
+
+std::shared_ptr<LiveSession> App::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) {
+  live_sockets_.add(socket, entry.secret);
   return std::make_shared<LiveSession>(shared_, std::move(entry.room), std::move(entry.project_slug), std::move(entry.principal),
                                        std::move(socket));
 }

@@ -8,6 +8,7 @@
 #include "net/answer_book.h"
 #include "net/auth.h"
 #include "net/live_session.h"
+#include "net/live_sockets.h"
 #include "net/router.h"
 #include "net/routes.h"
 #include "net/server_options.h"
@@ -42,9 +43,13 @@ class App {
     std::shared_ptr<room::Room> room;
     std::string project_slug;
     Principal principal;
+    std::string secret;  // that the person showed
   };
   Result<LiveEntry> admit_live(Request& request);
-  std::shared_ptr<LiveSession> make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) const;
+  std::shared_ptr<LiveSession> make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket);
+  // Whether who came in with this may stay as who it was (blocks). While the database is away nobody is sent out.
+  bool is_still_welcome(const std::string& secret, Role role);
+  LiveSockets& live_sockets() { return live_sockets_; }
 
   void stop_workers();
 
@@ -58,6 +63,7 @@ class App {
   AnswerBook answers_;
   EditBook edit_book_;
   StaticFiles files_;
+  LiveSockets live_sockets_;
   std::shared_ptr<LiveShared> shared_;
   WorkerPool workers_;
   Router router_;

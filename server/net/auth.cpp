@@ -9,6 +9,7 @@ namespace {
 constexpr std::chrono::seconds kRememberFor{10};
 constexpr std::size_t kMaxRemembered = 4096;
 constexpr std::size_t kMaxTokenLength = 512;
+constexpr std::string_view kScheme = "bearer ";
 
 tl::unexpected<Problem> unknown_secret() {
   return fail(401, "Not signed in", "This token or session is unknown, expired or revoked. Sign in again, or make a new token.");
@@ -41,21 +42,21 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
   return principal;
 }
 
-Result<std::optional<Principal>> Authenticator::identify(const Request& request) {
+std::string Authenticator::secret_of(const Request& request) {
   const std::string authorization(request.header("authorization"));
-  if (!authorization.empty()) {
-    constexpr std::string_view kScheme = "bearer ";
-    if (to_lower(authorization.substr(0, kScheme.size())) != kScheme)
-      return fail(401, "Not signed in", "The Authorization header is `Bearer TOKEN`.", "Authorization");
-    auto principal = identify_token(authorization.substr(kScheme.size()));
-    if (principal && !*principal) return unknown_secret();
-    return principal;
-  }
-  const std::string session = cookie_value(request.header("cookie"), kSessionCookie);
-  if (session.empty()) return std::nullopt;
-  auto principal = identify_token(session);
-  if (principal && !*principal) return unknown_secret();
-  if (principal) (*principal)->by_cookie = true;
+  if (authorization.empty()) return cookie_value(request.header("cookie"), kSessionCookie);
+  return to_lower(authorization.substr(0, kScheme.size())) == kScheme ? authorization.substr(kScheme.size()) : std::string();
+}
+
+Result<std::optional<Principal>> Authenticator::identify(const Request& request) {
+  const bool by_cookie = request.header("authorization").empty();
+  const std::string secret = secret_of(request);
+  if (secret.empty() && by_cookie) return std::nullopt;
+  if (secret.empty()) return fail(401, "Not signed in", "The Authorization header is `Bearer TOKEN`.", "Authorization");
+  auto principal = identify_token(secret);
+  if (!principal) return principal;
+  if (!*principal) return unknown_secret();
+  (*principal)->by_cookie = by_cookie;
   return principal;
 }
 

@@ -25,6 +25,8 @@ class Authenticator {
   // Empty: no secret was sent. 401: one was sent that is unknown, expired or revoked. 503: the database is away.
   Result<std::optional<Principal>> identify(const Request& request);
   Result<std::optional<Principal>> identify_token(const std::string& token);
+  // What the request shows: a bearer token, else the session's cookie; empty when neither.
+  static std::string secret_of(const Request& request);
 
   // A new browser session for who holds the token (a script's, the owner's, or the secret of an owner link) or the link.
   Result<std::string> session_for_token(const std::string& token);

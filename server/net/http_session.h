@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "net/app.h"
-#include "net/live_sockets.h"
 
 namespace strata::net {
 
@@ -15,7 +14,6 @@ namespace strata::net {
 struct Connections {
   std::weak_ptr<boost::asio::io_context> io;
   App& app;
-  LiveSockets live;
   std::atomic<int> requests_at_work{0};
   std::atomic<int> streams_at_work{0};
   std::atomic<bool> stopping{false};

@@ -9,27 +9,41 @@
 
 namespace strata::net {
 
-// The open WebSockets, so that a stopping server can say goodbye. Thread-safe.
+// The open WebSockets: a stopping server says goodbye to all, and who signs out is gone everywhere. Thread-safe.
 class LiveSockets {
  public:
-  void add(std::weak_ptr<LiveSocket> socket) {
+  // `secret`: what the person showed to come in.
+  void add(std::weak_ptr<LiveSocket> socket, std::string secret) {
     std::lock_guard lock(mutex_);
-    std::erase_if(sockets_, [](const auto& known) { return known.expired(); });
-    sockets_.push_back(std::move(socket));
+    std::erase_if(entries_, [](const Entry& known) { return known.socket.expired(); });
+    entries_.push_back({std::move(socket), std::move(secret)});
   }
   void close_all(int code, const std::string& reason) {
-    std::vector<std::weak_ptr<LiveSocket>> sockets;
-    {
-      std::lock_guard lock(mutex_);
-      sockets.swap(sockets_);
-    }
-    for (const auto& weak : sockets)
-      if (auto socket = weak.lock()) socket->close(code, reason);
+    close_if([](const Entry&) { return true; }, code, reason);
+  }
+  void close_those_of(const std::string& secret, int code, const std::string& reason) {
+    close_if([&](const Entry& entry) { return entry.secret == secret; }, code, reason);
   }
 
  private:
+  struct Entry {
+    std::weak_ptr<LiveSocket> socket;
+    std::string secret;
+  };
+  template <class Choice>
+  void close_if(Choice chosen, int code, const std::string& reason) {
+    std::vector<std::shared_ptr<LiveSocket>> sockets;
+    {
+      std::lock_guard lock(mutex_);
+      for (const Entry& entry : entries_)
+        if (chosen(entry))
+          if (auto socket = entry.socket.lock()) sockets.push_back(std::move(socket));
+    }
+    for (const auto& socket : sockets) socket->close(code, reason);
+  }
+
   std::mutex mutex_;
-  std::vector<std::weak_ptr<LiveSocket>> sockets_;
+  std::vector<Entry> entries_;
 };
 
 }  // namespace strata::net

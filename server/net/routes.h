@@ -7,6 +7,7 @@
 #include "jobs/job_queue.h"
 #include "net/auth.h"
 #include "net/edit_book.h"
+#include "net/live_sockets.h"
 #include "net/metrics.h"
 #include "net/router.h"
 #include "net/server_options.h"
@@ -26,6 +27,7 @@ struct RouteContext {
   render::Renderer& renderer;
   Authenticator& auth;
   EditBook& edit_book;
+  LiveSockets& live_sockets;
   Metrics& metrics;
   WorkerPool& workers;
 };

@@ -70,8 +70,10 @@ void add_auth_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context, secure](const Request& request) -> Result<Response> {
                 // A script's token stays valid: it is revoked by name, not by using it here.
                 if (request.principal->by_cookie) {
-                  auto ended = context.auth.end_session(cookie_value(request.header("cookie"), kSessionCookie));
+                  const std::string session = Authenticator::secret_of(request);
+                  auto ended = context.auth.end_session(session);
                   if (!ended) return tl::unexpected(ended.error());
+                  context.live_sockets.close_those_of(session, kClosePolicy, "signed out");
                 }
                 return empty_response(204).with("Set-Cookie", Authenticator::clear_cookie(secure));
               })});

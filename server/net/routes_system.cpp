@@ -7,7 +7,7 @@ namespace {
 Response readiness(const RouteContext& context) {
   nlohmann::json reasons = nlohmann::json::array();
   if (!context.store.ready()) reasons.push_back("The database does not answer.");
-  if (context.renderer.info().version.empty()) reasons.push_back("There is no GL context.");
+  if (!context.renderer.ready()) reasons.push_back("The graphics context was lost and cannot be replaced yet.");
   const bool ready = reasons.empty();
   return json_response({{"ready", ready}, {"reasons", reasons}}, ready ? 200 : 503);
 }

@@ -76,7 +76,7 @@ struct Server::Impl {
   Impl(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs, render::Renderer& renderer)
       : app(std::move(options), store, rooms, jobs, renderer),
         io(std::make_shared<asio::io_context>(app.options().http_threads)),
-        connections(new Connections{io, app, {}, 0, 0, false}),
+        connections(new Connections{io, app, 0, 0, false}),
         acceptor(*io) {}
 
   asio::awaitable<void> accept() {
@@ -142,7 +142,7 @@ void Server::stop() {
     boost::system::error_code ignored;
     impl.acceptor.close(ignored);
   });
-  impl.connections->live.close_all(kCloseGoingAway, "the server stops");
+  impl.app.live_sockets().close_all(kCloseGoingAway, "the server stops");
   wait_until([&] { return impl.app.metrics().open_sockets.load() == 0; }, kGoodbye);
   wait_until([&] { return impl.connections->requests_at_work.load() == 0; }, kAnswers);
   impl.app.stop_workers();

@@ -27,6 +27,7 @@ constexpr seconds kHandshake{10};
 constexpr seconds kIdle{60};    // with pings in between
 constexpr seconds kStalled{60}; // one message that cannot be sent: the client does not read
 constexpr seconds kClosing{5};
+constexpr seconds kRecheck{30};  // whether the person is still signed in
 // Beyond the protocol's limit a message is refused with a problem; beyond this one the connection ends.
 constexpr std::size_t kMaxMessage = 4u << 20;
 constexpr std::size_t kMaxQueuedTexts = 4096;
@@ -36,7 +37,8 @@ constexpr std::size_t kMaxQueuedFrames = 64;  // credit allows a few frames of a
 class WebSocketSession final : public LiveSocket, public std::enable_shared_from_this<WebSocketSession> {
  public:
   WebSocketSession(beast::tcp_stream stream, std::shared_ptr<Connections> connections)
-      : ws_(std::move(stream)), connections_(std::move(connections)), stall_timer_(ws_.get_executor()), close_timer_(ws_.get_executor()) {
+      : ws_(std::move(stream)), connections_(std::move(connections)), stall_timer_(ws_.get_executor()), close_timer_(ws_.get_executor()),
+        recheck_timer_(ws_.get_executor()) {
     ++connections_->app.metrics().open_sockets;
   }
 
@@ -45,12 +47,14 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
     prepare();
     auto [accept_error] = co_await ws_.async_accept(request, kUseResult);
     if (!accept_error) {
+      const auto watch = [self, secret = entry.secret, role = entry.principal.role] { return self->watch_sign_in(secret, role); };
       live_ = connections_->app.make_session(std::move(entry), weak_from_this());
-      connections_->live.add(weak_from_this());
+      asio::co_spawn(ws_.get_executor(), watch, asio::detached);
       co_await read();
       live_->on_closed();
     }
     over_ = true;
+    recheck_timer_.cancel();
     stall_timer_.cancel();
     close_timer_.cancel();
     --connections_->app.metrics().open_sockets;
@@ -107,6 +111,21 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
         if (done.status != 200) start_close(kCloseTryAgain, "server too busy");
       }
       buffer.consume(buffer.size());
+    }
+  }
+
+  // A session may be ended, or a token revoked, by another server or by its age.
+  asio::awaitable<void> watch_sign_in(std::string secret, Role role) {
+    auto self = shared_from_this();
+    while (!over_ && !closing_) {
+      recheck_timer_.expires_after(kRecheck);
+      auto [error] = co_await recheck_timer_.async_wait(kUseResult);
+      if (error || over_ || closing_) co_return;
+      const Work ask = [&app = connections_->app, secret, role](const Respond& respond) {
+        respond(empty_response(app.is_still_welcome(secret, role) ? 200 : 401));
+      };
+      const Response answer = co_await on_worker(connections_, ws_.get_executor(), ask);
+      if (answer.status == 401) start_close(kClosePolicy, "signed out");
     }
   }
 
@@ -184,7 +203,7 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
   websocket::stream<beast::tcp_stream> ws_;
   const std::shared_ptr<Connections> connections_;
   std::shared_ptr<LiveSession> live_;
-  asio::steady_timer stall_timer_, close_timer_;
+  asio::steady_timer stall_timer_, close_timer_, recheck_timer_;
   std::deque<std::string> texts_;
   std::deque<stream::FrameBytes> frames_;
   std::size_t queued_bytes_ = 0;

@@ -134,6 +134,8 @@ GpuInfo Renderer::info() const {
   return impl_->info;
 }
 
+bool Renderer::ready() const { return impl_->thread.ready(); }
+
 std::uint64_t Renderer::gpu_bytes_used() const { return impl_->memory.used(); }
 
 std::uint64_t Renderer::layer_bytes_used(LayerHandle layer) const {

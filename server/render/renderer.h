@@ -101,6 +101,7 @@ class Renderer {
   ~Renderer();  // asks to stop and joins
 
   GpuInfo info() const;
+  bool ready() const;  // false while a lost context cannot be replaced: what is asked for meanwhile is refused
   std::uint64_t gpu_bytes_used() const;
   std::uint64_t layer_bytes_used(LayerHandle layer) const;   // page table and pages
   int debug_errors() const;

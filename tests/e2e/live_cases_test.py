@@ -39,6 +39,35 @@ def check_upgrade(server):
         assert live.hello()["model"]["slug"] == "grid"
 
 
+def check_sign_out(server):
+    """Who signs out is out everywhere: the connections of the session end, those of others live on."""
+    def sign_in():
+        login = server.post("/login", {"token": server.token}, token=False, headers={"Origin": server.url})
+        return login.headers["Set-Cookie"].split(";")[0]
+
+    mine, other = sign_in(), sign_in()
+    with LiveClient(server, "grid", token="", cookie=mine, origin=server.url) as one, \
+            LiveClient(server, "grid", token="", cookie=mine, origin=server.url) as two, \
+            LiveClient(server, "grid", token="", cookie=other, origin=server.url) as third:
+        for live in (one, two, third):
+            live.hello()
+        server.ok("POST", "/logout", token=False, headers={"Cookie": mine, "Origin": server.url})
+        for live in (one, two):
+            try:
+                while True:
+                    live.receive()
+            except Closed as closed:
+                assert closed.code == 1008, closed.code
+        third.send({"op": "pick", "id": "still here", "camera": camera_from(server.get(M).json(), [0, 0, 1], up=(0, 1, 0)), "x": 320, "y": 240})
+        assert third.receive_until("picked")["hit"]
+    try:
+        LiveClient(server, "grid", token="", cookie=mine, origin=server.url)
+    except Refused as refused:
+        assert refused.status == 401, refused
+    else:
+        raise AssertionError("a session that ended came in again")
+
+
 def check_bad_messages(server):
     """Every invalid fixture of the protocol gets a problem that names the field, and the connection lives on."""
     fixtures = sorted(glob.glob(os.path.join(ROOT, "protocol", "fixtures", "invalid", "*.json")))
@@ -182,6 +211,7 @@ def main():
         for name in ("Marks", "Other"):
             server.ok("POST", M + "/layers", {"name": name, "type": "u8"})
         check_upgrade(server)
+        check_sign_out(server)
         check_bad_messages(server)
         check_slow_client(server)
         answered = check_end(server)

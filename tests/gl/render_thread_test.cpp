@@ -40,6 +40,7 @@ class Lanes : public testing::Test {
     hooks.stop = [] {};
     hooks.lost = [this] { return lost_.exchange(false); };
     hooks.recover = [this]() -> Result<void> {
+      if (broken_) return fail(503, "GPU lost", "No driver.");
       note("recovered");
       return {};
     };
@@ -78,7 +79,7 @@ class Lanes : public testing::Test {
   std::mutex mutex_;
   std::vector<std::string> log_;
   std::deque<Job> frames_;
-  std::atomic<bool> lost_{false};
+  std::atomic<bool> lost_{false}, broken_{false};
   std::optional<GpuThread> thread_;
 };
 
@@ -190,6 +191,20 @@ TEST_F(Lanes, a_lost_context_answers_all_that_waits_and_goes_on) {
   thread_->post(Lane::ordered, noted("after"));
   const auto log = finish();
   EXPECT_EQ(log, (std::vector<std::string>{"edit 503 GPU lost", "upload 503 GPU lost", "recovered", "after"}));
+}
+
+TEST_F(Lanes, the_thread_is_not_ready_while_a_lost_context_cannot_be_replaced) {
+  start();
+  EXPECT_TRUE(thread_->ready());
+  broken_ = true;
+  lost_ = true;
+  thread_->wake();
+  while (thread_->ready()) std::this_thread::yield();
+  thread_->post(Lane::ordered, noted("edit"));
+  EXPECT_EQ(finish(), (std::vector<std::string>{"edit 503 GPU lost"}));
+  broken_ = false;
+  while (!thread_->ready()) std::this_thread::yield();
+  EXPECT_EQ(finish().back(), "recovered");
 }
 
 TEST_F(Lanes, stopping_answers_what_waits) {

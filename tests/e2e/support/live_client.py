@@ -29,7 +29,7 @@ class Closed(Exception):
 
 
 class LiveClient:
-    def __init__(self, server, model, origin=None, token=None, receive_buffer=None, subprotocol="strata.v1"):
+    def __init__(self, server, model, origin=None, token=None, cookie=None, receive_buffer=None, subprotocol="strata.v1"):
         port = server.port
         if port is None:
             raise ConnectionRefusedError("the server is down")
@@ -46,6 +46,8 @@ class LiveClient:
         secret = server.token if token is None else token
         if secret:
             lines.append("Authorization: Bearer " + secret)
+        if cookie:
+            lines.append("Cookie: " + cookie)
         if origin:
             lines.append("Origin: " + origin)
         self.socket.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
