@@ -8,6 +8,7 @@
 #include "cli/install_dirs.h"
 #include "cli/open_database.h"
 #include "render/renderer.h"
+#include "store/inspect.h"
 
 namespace strata::cli {
 namespace {
@@ -65,15 +66,34 @@ void check_gpu(Report& report) {
     report.warn("Layer resolution", "at most " + std::to_string(info.max_texture_size), "Use layers of up to that resolution.");
 }
 
+void check_schema(Report& report, const store::DatabaseState& state) {
+  const std::string versions = "version " + std::to_string(state.schema_version) + ", this program has " + std::to_string(state.known_version);
+  if (state.schema_version > state.known_version)
+    report.bad("Schema", versions, "The database is newer: start the version of Strata that wrote it, or a later one.");
+  else if (state.schema_version < state.known_version)
+    report.good("Schema", versions + ": brought up to date by the next start");
+  else
+    report.good("Schema", "version " + std::to_string(state.schema_version));
+}
+
+void check_connection(Report& report, const std::string& dsn, const std::string& which) {
+  auto state = store::inspect_database(dsn, install_dirs().migrations);
+  if (!state) return report.bad("PostgreSQL", state.error().title, state.error().detail);
+  report.good("PostgreSQL", state->server_version + ", " + which);
+  if (state->encoding != "UTF8") report.bad("Encoding", state->encoding, "Strata needs a database made with ENCODING 'UTF8'.");
+  check_schema(report, *state);
+  report.good("Database size", gib(double(state->bytes)));
+}
+
+// Only looks: nothing is made, started or migrated, and a server that runs is not disturbed.
 void check_database(Report& report, const DataOptions& options) {
-  auto database = open_database(options);
-  if (!database) return report.bad("PostgreSQL", database.error().title, database.error().detail);
-  auto info = (*database)->store->info();
-  if (!info) return report.bad("PostgreSQL", info.error().title, info.error().detail);
-  report.good("PostgreSQL", info->server_version + (options.database.empty() ? ", private cluster in " + options.data.string()
-                                                                             : ", external"));
-  report.good("Schema", "version " + std::to_string(info->schema_version));
-  report.good("Database size", gib(double(info->database_bytes)));
+  if (!options.database.empty()) return check_connection(report, options.database, "external");
+  const auto state = store::Cluster::inspect(options.data);
+  const std::string where = "private cluster in " + options.data.string();
+  if (state.running) return check_connection(report, state.dsn, where + ", a server is running");
+  if (state.trouble) return report.bad("PostgreSQL", state.trouble->title, state.trouble->detail);
+  if (state.version == 0) return report.good("PostgreSQL", "installed; " + where + " is made at the first start");
+  report.good("PostgreSQL", std::to_string(state.version) + ", " + where + ", not running");
 }
 
 void check_machine(Report& report, const std::filesystem::path& data) {

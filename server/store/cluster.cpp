@@ -41,6 +41,27 @@ std::string quoted(const std::string& value) {
   return out + "'";
 }
 
+// Where the socket lies: in the folder, or in a short one where its path would be too long for a socket.
+fs::path socket_folder(const fs::path& folder) {
+  if ((folder / ".s.PGSQL.5432.lock").string().size() <= kLongestSocketPath) return folder;
+  return "/tmp/strata-" + to_hex(sha256(folder.string())).substr(0, 16);
+}
+
+std::string dsn_of(const fs::path& sockets, const std::string& database) {
+  return "host=" + quoted(sockets.string()) + " port=5432 user=strata dbname=" + quoted(database);
+}
+
+fs::path postgres_folder(const fs::path& data_dir) {
+  std::error_code error;
+  return fs::absolute(data_dir, error).lexically_normal() / "postgres";
+}
+
+int version_of(const fs::path& data) {
+  int major = 0;
+  if (std::ifstream version(data / "PG_VERSION"); version) version >> major;
+  return major;
+}
+
 }  // namespace
 
 struct Cluster::Impl {
@@ -114,7 +135,7 @@ struct Cluster::Impl {
     if (!who) return tl::unexpected(who.error());
     user = std::move(*who);
     std::error_code error;
-    folder = fs::absolute(data_dir, error).lexically_normal() / "postgres";
+    folder = postgres_folder(data_dir);
     data = folder / "pgdata";
     log_file = folder / "postgres.log";
     if (auto given = give_folder(folder, user); !given) return given;
@@ -124,9 +145,8 @@ struct Cluster::Impl {
       return fail(409, "Data folder in use",
                   "Another Strata server uses " + data_dir.string() + ". Stop it, or choose another --data.");
 
-    sockets = folder;
-    if ((folder / ".s.PGSQL.5432.lock").string().size() > kLongestSocketPath) {
-      sockets = "/tmp/strata-" + to_hex(sha256(folder.string())).substr(0, 16);
+    sockets = socket_folder(folder);
+    if (sockets != folder) {
       if (mkdir(sockets.c_str(), 0700) == 0 && user.switch_user && chown(sockets.c_str(), user.uid, user.gid) != 0)
         return fail(500, "Socket folder not usable", "Cannot give " + sockets.string() + " to " + user.name + ".");
       struct stat info {};
@@ -136,8 +156,7 @@ struct Cluster::Impl {
     if (fs::exists(log_file, error) && fs::file_size(log_file, error) > kLargestLog)
       fs::rename(log_file, folder / "postgres.log.1", error);
 
-    int major = 0;
-    if (std::ifstream version(data / "PG_VERSION"); version) version >> major;
+    const int major = version_of(data);
     auto found = find_programs(major);
     if (!found) return tl::unexpected(found.error());
     programs = *found;
@@ -179,9 +198,7 @@ struct Cluster::Impl {
     return owner == postmaster;
   }
 
-  std::string dsn(const std::string& database) const {
-    return "host=" + quoted(sockets.string()) + " port=5432 user=strata dbname=" + quoted(database);
-  }
+  std::string dsn(const std::string& database) const { return dsn_of(sockets, database); }
 
   // After a `kill -9` of the postmaster its orphans hold the lock file and the shared memory until they notice, so a
   // start that fails at once is tried again every 100 ms.
@@ -228,6 +245,17 @@ struct Cluster::Impl {
 
 Cluster::Cluster() : impl_(std::make_unique<Impl>()) {}
 Cluster::~Cluster() = default;
+
+Cluster::State Cluster::inspect(const fs::path& data_dir) {
+  const fs::path folder = postgres_folder(data_dir);
+  State state;
+  state.version = version_of(folder / "pgdata");
+  state.dsn = dsn_of(socket_folder(folder), "strata");
+  state.running = state.version > 0 && PQping((state.dsn + " connect_timeout=5").c_str()) == PQPING_OK;
+  if (auto programs = find_programs(state.version); !programs) state.trouble = programs.error();
+  if (auto user = database_user(); !user) state.trouble = user.error();
+  return state;
+}
 
 Result<std::unique_ptr<Cluster>> Cluster::start(const fs::path& data_dir) {
   std::unique_ptr<Cluster> cluster(new Cluster);

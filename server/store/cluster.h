@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/problem.h"
@@ -13,6 +14,15 @@ namespace strata::store {
 // "parent died" signal follows the thread that forked. See cluster_process.cpp for the other traps.
 class Cluster {
  public:
+  // What a folder holds, without making, starting or changing anything.
+  struct State {
+    int version = 0;                 // major, of the PostgreSQL that made the data; 0: there is none yet
+    bool running = false;            // a server has it open; `dsn` leads there
+    std::string dsn;
+    std::optional<Problem> trouble;  // why it cannot be started
+  };
+  static State inspect(const std::filesystem::path& data_dir);
+
   // Everything lies in `data_dir`/postgres. `data_dir` must be reachable by the database user when the server runs as
   // root; the error says what to do. A second server on the same folder is refused (409).
   static Result<std::unique_ptr<Cluster>> start(const std::filesystem::path& data_dir);

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <thread>
 
+#include "store/inspect.h"
 #include "store/migrations.h"
 #include "store/pg.h"
 #include "support/test_cluster.h"
@@ -135,6 +136,19 @@ TEST(Migrations, the_schema_file_is_what_a_fresh_database_has) {
   const fs::path file = fs::path(STRATA_SOURCE_DIR) / "db/schema.sql";
   if (std::getenv("STRATA_UPDATE_GOLDEN")) write(file, dumped);
   EXPECT_EQ(read(file), dumped) << "see tests/db/dump_schema.sh";
+}
+
+TEST(Migrations, looking_at_a_database_does_not_change_it) {
+  const auto dsn = test::fresh_database();
+  const auto tables = [&] { return connect(dsn).query("SELECT count(*) FROM pg_class WHERE relnamespace = 'public'::regnamespace")->integer(0, 0); };
+  const auto empty = inspect_database(dsn, STRATA_MIGRATIONS_DIR).value();
+  EXPECT_EQ(empty.schema_version, 0);
+  EXPECT_EQ(empty.encoding, "UTF8");
+  EXPECT_EQ(tables(), 0);
+  test::open_store(dsn);
+  const auto made = inspect_database(dsn, STRATA_MIGRATIONS_DIR).value();
+  EXPECT_EQ(made.schema_version, made.known_version);
+  EXPECT_GT(made.bytes, 0u);
 }
 
 }  // namespace

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "core/problem.h"
+
+namespace strata::store {
+
+// What a database holds, without changing it.
+struct DatabaseState {
+  std::string server_version, encoding;
+  std::int64_t schema_version = 0;  // 0: no migration was applied yet
+  std::int64_t known_version = 0;   // of the newest migration here
+  std::uint64_t bytes = 0;
+};
+Result<DatabaseState> inspect_database(const std::string& dsn, const std::filesystem::path& migrations_dir);
+
+}  // namespace strata::store
