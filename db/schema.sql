@@ -264,6 +264,8 @@ CREATE INDEX models_project ON public.models USING btree (project_id);
 
 CREATE INDEX tile_revisions_edit ON public.tile_revisions USING btree (layer_id, sequence);
 
+CREATE INDEX tile_revisions_key ON public.tile_revisions USING btree (layer_id, tile_y, tile_x, sequence) WHERE (key_tile IS NOT NULL);
+
 CREATE INDEX tokens_user ON public.tokens USING btree (user_name);
 
 ALTER TABLE ONLY public.blob_chunks

@@ -80,6 +80,43 @@ TEST_F(Journal, damaged_revisions_are_a_problem_and_not_a_crash) {
   EXPECT_EQ(store_->written_by(painter.layer(), first).error().status, 500);
 }
 
+TEST_F(Journal, opening_a_layer_reads_nothing_older_than_the_last_whole_tiles) {
+  Painter painter(test::make_layer(*store_, model_.id), 3, 8);
+  JournalWriter writer(*store_, {});
+  for (int i = 1; i <= 100; ++i) ASSERT_TRUE(save(writer, painter.paint(i, 1, 2)));
+  // What is older would not decode, but at= needs it.
+  ASSERT_TRUE(PgConnection::connect(dsn_)->script(
+      "UPDATE tile_revisions r SET difference = '\\x00' WHERE sequence < (SELECT max(sequence) FROM tile_revisions k "
+      "WHERE k.tile_x = r.tile_x AND k.tile_y = r.tile_y AND k.key_tile IS NOT NULL)"));
+  EXPECT_TRUE(content_of(store_->load_tiles(painter.layer()).value()) == painter.content());
+  EXPECT_EQ(store_->load_tiles(painter.layer(), 5).error().status, 500);
+}
+
+TEST_F(Journal, deleting_the_layer_of_the_newest_edit_leaves_a_gap_and_the_journal_goes_on) {
+  Painter kept(test::make_layer(*store_, model_.id, ValueType::u8, "kept"), 1);
+  Painter gone(test::make_layer(*store_, model_.id, ValueType::u8, "gone"), 2);
+  {
+    JournalWriter writer(*store_, {});
+    ASSERT_TRUE(save(writer, kept.paint(1, 2, 4)));
+    ASSERT_TRUE(save(writer, gone.paint(2, 2, 4)));
+    ASSERT_TRUE(store_->delete_layer(gone.layer().id));
+    EXPECT_EQ(store_->last_sequence(model_.id).value(), 2) << "a sequence is given once";
+    EXPECT_FALSE(save(writer, kept.entry(2)));
+    ASSERT_TRUE(save(writer, kept.paint(3, 2, 4)));
+  }
+  // The same after a restart.
+  store_ = test::open_store(dsn_);
+  JournalWriter writer(*store_, {});
+  ASSERT_TRUE(save(writer, kept.paint(4, 2, 4)));
+  EXPECT_EQ(store_->last_sequence(model_.id).value(), 4);
+  std::vector<std::int64_t> sequences;
+  const auto history = store_->history(kept.layer().id, 10, 0).value();
+  for (const auto& row : history.rows) sequences.push_back(row.sequence);
+  EXPECT_EQ(sequences, (std::vector<std::int64_t>{4, 3, 1}));
+  EXPECT_TRUE(content_of(store_->load_tiles(kept.layer()).value()) == kept.content());
+  EXPECT_EQ(store_->load_tiles(kept.layer(), 2)->sequence, 1);
+}
+
 TEST_F(Journal, three_painted_layers_of_4096_load_in_well_under_a_second_and_a_half) {
   std::vector<Layer> layers;
   JournalWriter writer(*store_, {});
