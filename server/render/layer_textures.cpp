@@ -31,19 +31,17 @@ LayerTextures::~LayerTextures() {
 
 Result<PageId> LayerTextures::ensure_page(TileAddress tile) {
   if (const PageId present = page(tile); present != shader::kNoPage) return present;
-  auto added = ensure_page_for_upload(tile);
-  if (added) pool_.clear(*added);
+  auto added = pool_.allocate();
+  if (!added) return added;
+  pool_.clear(*added);
+  put_page(tile, *added);
   return added;
 }
 
-Result<PageId> LayerTextures::ensure_page_for_upload(TileAddress tile) {
-  if (const PageId present = page(tile); present != shader::kNoPage) return present;
-  auto added = pool_.allocate();
-  if (!added) return added;
-  tables_.set(index(tile), *added);
-  ++pages_in_chunk_[*added >> shader::kPageChunkShift];
+void LayerTextures::put_page(TileAddress tile, PageId page) {
+  tables_.set(index(tile), page);
+  ++pages_in_chunk_[page >> shader::kPageChunkShift];
   *bytes_ += pool_.bytes_per_page();
-  return added;
 }
 
 void LayerTextures::free_page(TileAddress tile) {

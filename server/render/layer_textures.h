@@ -29,8 +29,8 @@ class LayerTextures {
   PageId page(TileAddress tile) const { return tables_.at(index(tile)); }  // kNoPage when empty
   // An empty page where there is none.
   Result<PageId> ensure_page(TileAddress tile);
-  // For callers that upload the whole tile next: a new page's content is undefined.
-  Result<PageId> ensure_page_for_upload(TileAddress tile);
+  // Takes a page of the pool for a tile that has none.
+  void put_page(TileAddress tile, PageId page);
   void free_page(TileAddress tile);
 
   // Table and pages. The counter outlives the layer, so that any thread may ask.

@@ -116,7 +116,8 @@ class Renderer {
 
   void add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done);
   void remove_layer(LayerHandle layer);
-  // Sets whole tiles (fill, undo, import); done after the GPU has them. In order with strokes.
+  // Sets whole tiles (fill, undo, import); done after the GPU has them. In order with strokes. Frames that are drawn before
+  // `done` may show some of the tiles as they were.
   void write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done);
   // The same for what a new layer holds from the start: it may be shown and painted only after `done`, and edits and frames of
   // others go first.

@@ -54,41 +54,46 @@ Step SurfaceMapUpload::step(GpuScene& scene) {
 }
 
 Step TilesUpload::step(GpuScene& scene) {
-  const auto step = advance(scene);
-  if (step) return *step;
-  if (const auto layer = scene.layer(layer_); layer) {
-    for (const TileAddress tile : fresh_) (*layer)->textures->free_page(tile);
+  const auto complete = advance(scene);
+  if (!complete) {
+    abort(complete.error());
+    return Step::done;
   }
-  abort(step.error());
+  if (!*complete) return Step::yield;
+  give_back_pages();
+  done_({});
   return Step::done;
 }
 
-Result<Step> TilesUpload::advance(GpuScene& scene) {
+void TilesUpload::abort(const Problem& problem) {
+  give_back_pages();
+  done_(tl::unexpected(problem));
+}
+
+void TilesUpload::give_back_pages() {
+  for (const PageId page : pages_) pool_->free(page);
+  pages_.clear();
+}
+
+Result<bool> TilesUpload::advance(GpuScene& scene) {
   auto layer = scene.layer(layer_);
   if (!layer) return tl::unexpected(layer.error());
   LayerTextures& textures = *(*layer)->textures;
+  pool_ = &textures.pool();
   if (prepared_ < tiles_.size()) {
     const std::size_t end = std::min(prepared_ + kTilesPreparedPerStep, tiles_.size());
     for (; prepared_ < end; ++prepared_) {
       if (auto prepared = prepare(textures, tiles_[prepared_]); !prepared) return tl::unexpected(prepared.error());
     }
-    return Step::more;
+    return false;
   }
   const std::size_t end = std::min(written_ + kTilesWrittenPerStep, tiles_.size());
   for (; written_ < end; ++written_) {
-    const TileUpload& tile = tiles_[written_];
-    if (is_empty(tile)) {
-      textures.free_page(tile.address);
-      continue;
-    }
-    auto page = textures.ensure_page_for_upload(tile.address);
-    if (!page) return tl::unexpected(page.error());
-    textures.pool().upload(*page, *tile.data);
+    if (auto written = write(textures, tiles_[written_]); !written) return tl::unexpected(written.error());
   }
-  if (written_ < tiles_.size()) return Step::more;
+  if (written_ < tiles_.size()) return false;
   if (auto flushed = scene.tables().flush(); !flushed) return tl::unexpected(flushed.error());
-  done_({});
-  return Step::done;
+  return true;
 }
 
 Result<void> TilesUpload::prepare(LayerTextures& layer, const TileUpload& tile) {
@@ -96,13 +101,33 @@ Result<void> TilesUpload::prepare(LayerTextures& layer, const TileUpload& tile) 
     return fail(422, "Tile out of range", "A tile's address must lie inside the layer.", "tiles");
   }
   if (is_empty(tile)) return {};
-  if (tile.data->values.size() != static_cast<std::size_t>(kTexelsPerTile * layer.pool().texel_bytes())) {
+  if (tile.data->values.size() != static_cast<std::size_t>(kTexelsPerTile * pool_->texel_bytes())) {
     return fail(422, "Tile of another type", "A tile must hold 128 x 128 values of the layer's type.", "tiles");
   }
   if (layer.page(tile.address) != shader::kNoPage) return {};
-  auto page = layer.ensure_page_for_upload(tile.address);
+  auto page = pool_->allocate();
   if (!page) return tl::unexpected(page.error());
-  fresh_.push_back(tile.address);
+  pages_.push_back(*page);
+  return {};
+}
+
+Result<void> TilesUpload::write(LayerTextures& layer, const TileUpload& tile) {
+  if (is_empty(tile)) {
+    layer.free_page(tile.address);
+    return {};
+  }
+  if (const PageId present = layer.page(tile.address); present != shader::kNoPage) {
+    pool_->upload(present, *tile.data);
+    return {};
+  }
+  if (pages_.empty()) {  // it had one when it was prepared
+    auto page = pool_->allocate();
+    if (!page) return tl::unexpected(page.error());
+    pages_.push_back(*page);
+  }
+  pool_->upload(pages_.back(), *tile.data);
+  layer.put_page(tile.address, pages_.back());
+  pages_.pop_back();
   return {};
 }
 

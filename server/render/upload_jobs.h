@@ -34,24 +34,27 @@ class SurfaceMapUpload {
   std::unique_ptr<SurfaceMapTextures> textures_;
 };
 
-// All pages are made before the first tile is written: a Problem leaves the layer as it was. A new page is not cleared,
-// so nobody may see the layer meanwhile.
+// All pages are had before the first tile is written: a Problem leaves the layer as it was. A page is seen only once it
+// holds its tile, so that frames may be drawn between the steps.
 class TilesUpload {
  public:
   TilesUpload(LayerHandle layer, std::vector<TileUpload> tiles, Renderer::Done<void> done)
       : layer_(layer), tiles_(std::move(tiles)), done_(std::move(done)) {}
   Step step(GpuScene& scene);
-  void abort(const Problem& problem) { done_(tl::unexpected(problem)); }
+  void abort(const Problem& problem);
 
  private:
-  Result<Step> advance(GpuScene& scene);
+  Result<bool> advance(GpuScene& scene);  // true when complete
   Result<void> prepare(LayerTextures& layer, const TileUpload& tile);
+  Result<void> write(LayerTextures& layer, const TileUpload& tile);
+  void give_back_pages();
 
   const LayerHandle layer_;
   const std::vector<TileUpload> tiles_;
   Renderer::Done<void> done_;
   std::size_t prepared_ = 0, written_ = 0;  // tiles
-  std::vector<TileAddress> fresh_;          // pages were made for these
+  PagePool* pool_ = nullptr;                // of the layer
+  std::vector<PageId> pages_;               // of `pool_`, for tiles that have none yet
 };
 
 }  // namespace strata::render
