@@ -383,6 +383,12 @@ void LiveSession::presence_changed() {
   });
 }
 
+void LiveSession::view_refused(std::uint32_t view_id, const Problem& why) {
+  Problem problem = why;
+  problem.detail = "View " + std::to_string(view_id) + " cannot be drawn: " + why.detail;
+  refuse(problem, std::string());
+}
+
 void LiveSession::send_presence() {
   {
     std::lock_guard lock(mutex_);

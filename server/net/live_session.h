@@ -35,7 +35,7 @@ struct LiveLimits {
   double messages_per_second = 500;
   double burst = 1000;
   int max_refusals = 2000;   // more refused for speed than taken, then the connection is closed
-  int views = 4;             // as many as a room draws for one connection
+  int views = room::Member::kMaxViews;
   std::chrono::milliseconds presence_every{50};
 };
 
@@ -74,6 +74,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void model_changed(const Model& model) override;
   void model_deleted() override;
   void presence_changed() override;
+  void view_refused(std::uint32_t view_id, const Problem& why) override;
 
  private:
   struct BatchName {

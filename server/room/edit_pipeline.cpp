@@ -8,6 +8,7 @@
 #include <new>
 
 #include "core/log.h"
+#include "room/gpu_problem.h"
 
 namespace strata::room {
 namespace {
@@ -49,12 +50,6 @@ std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& c
   }
   if (box.min.x > box.max.x) return std::nullopt;
   return box;
-}
-
-// The room has the layer, so a handle that the renderer does not know is one of a context that was lost.
-Problem gpu_problem(const Problem& why) {
-  if (why.status != 404) return why;
-  return {503, "GPU lost", "The graphics context is being restored; send the edit again.", {}};
 }
 
 }  // namespace
@@ -105,14 +100,14 @@ void EditPipeline::ask_journal() {
   }
   if (ids.empty() && !verifying) return;
   asking_ = true;
-  boost::asio::post(parts_.readers, [&store = parts_.store, model_id = host_->pipeline_model().id, ids = std::move(ids), was_away = journal_away_,
-                                     done = then([this, verifying](const Result<store::Store::JournalState>& state) {
-                                       on_journal(verifying, state);
-                                     })]() mutable {
+  using State = Result<store::Store::JournalState>;
+  boost::asio::post(parts_.readers, [&store = parts_.store, model_id = host_->pipeline_model().id, ids = std::move(ids),
+                                     was_away = journal_away_,
+                                     done = then([this, verifying](const State& state) { on_journal(verifying, state); })]() mutable {
     // The pool waits for a database that restarts. Once is enough: those who come later hear at once that it is away.
     if (was_away && !store.ready())
-      return done(Result<store::Store::JournalState>(
-          fail(503, "Database unavailable", "The database does not answer, so nothing can be saved. Viewing goes on; try again shortly.")));
+      return done(State(fail(503, "Database unavailable",
+                             "The database does not answer, so nothing can be saved. Viewing goes on; try again shortly.")));
     done(store.journal_state(model_id, ids));
   });
 }
@@ -130,11 +125,12 @@ void EditPipeline::on_journal(bool verifying, const Result<store::Store::Journal
     }
     return;
   }
-  // A commit whose answer was lost may have happened after all: the journal is right, the room is not. Until the room holds what the
-  // journal has, no repeat may hear that its edit is there, so all is asked again then. (And a question from before `verify_`
-  // was set tells nothing.)
+  // A commit whose answer was lost may have happened after all: the journal is right, the room is not. Until the room holds what
+  // the journal has, no repeat may hear that its edit is there, so all is asked again then. (And a question from before
+  // `verify_` was set tells nothing.)
   if (verifying && state->last_sequence == durable_) verify_ = false;
-  if (std::any_of(state->known.begin(), state->known.end(), [&](const auto& row) { return row.sequence > durable_; })) verify_ = true;
+  const auto is_beyond = [&](const store::JournalRow& row) { return row.sequence > durable_; };
+  if (std::any_of(state->known.begin(), state->known.end(), is_beyond)) verify_ = true;
   if (!verify_) return on_known(state->known);
   for (Waiting& item : waiting_)
     if (item.lookup == Waiting::Lookup::asked) item.lookup = Waiting::Lookup::none;
@@ -148,7 +144,8 @@ void EditPipeline::on_known(const std::vector<store::JournalRow>& known) {
                          ? std::find_if(known.begin(), known.end(), [&](const auto& r) { return r.id == item.request.id; })
                          : known.end();
     if (row != known.end()) {
-      const EditAnswer first{row->sequence, row->answer.value("texels_changed", std::uint64_t{0}), row->answer.value("area_m2", 0.0), true};
+      const EditAnswer first{row->sequence, row->answer.value("texels_changed", std::uint64_t{0}),
+                             row->answer.value("area_m2", 0.0), true};
       if (item.applied) item.applied(first);
       answer(item.request.id, item.saved, first);
       continue;
@@ -220,7 +217,7 @@ bool EditPipeline::map_ready(int resolution) {
     if (map || waiting_.empty() || waiting_.front().work) return;
     Waiting item = std::move(waiting_.front());
     waiting_.pop_front();
-    refuse(item, map.error());
+    refuse(item, gpu_problem(map.error()));
   }));
   return false;
 }
@@ -254,14 +251,13 @@ void EditPipeline::stroke_done(Waiting& item, Result<render::StrokeOutcome> outc
 void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
   busy_ = true;
   auto item = std::make_shared<Waiting>(std::move(taken));
-  boost::asio::post(parts_.workers, [this, self = shared_from_this(), item, meta = layer.layer, tiles = layer.mirror->snapshot().tiles,
-                                     done = then([this, item](Result<Computed> computed) {
-                                       upload_computed(item, std::move(computed));
-                                     })]() mutable {
+  auto done = then([this, item](Result<Computed> computed) { upload_computed(item, std::move(computed)); });
+  boost::asio::post(parts_.workers, [this, self = shared_from_this(), item, meta = layer.layer,
+                                     tiles = layer.mirror->snapshot().tiles, done = std::move(done)]() mutable {
     try {
       done(compute(item->request, meta, tiles));
     } catch (const std::bad_alloc&) {
-      done(Result<Computed>(fail(503, "Out of memory", "The server has not the memory for this edit at the moment; try again later.")));
+      done(Result<Computed>(fail(503, "Out of memory", "The server lacks the memory for this edit at the moment; try again later.")));
     }
   });
 }
@@ -478,8 +474,8 @@ void EditPipeline::roll_back_when_answered() {
   for (auto& pending : taken_back) answer(pending.event.id, pending.saved, tl::unexpected(why));
 }
 
-// Writes what the mirrors hold where the GPU may hold something else. First the tiles that are empty: that frees the pages which
-// the others may need.
+// Writes what the mirrors hold where the GPU may hold something else. First the tiles that are empty: that frees the pages
+// which the others may need.
 bool EditPipeline::repair() {
   std::erase_if(stale_, [&](const auto& entry) { return !host_->find_layer(entry.first); });
   if (stale_.empty()) return false;
@@ -555,6 +551,10 @@ void EditPipeline::journal_read(std::int64_t last_sequence) {
   sequence_ = durable_ = last_sequence;  // nothing is pending: the last rollback took all of it
   verify_ = false;
   since_key_tile_.clear();
+}
+
+void EditPipeline::gpu_lacks(std::int64_t layer_id, const std::vector<TileAddress>& tiles) {
+  stale_[layer_id].insert(tiles.begin(), tiles.end());
 }
 
 void EditPipeline::resume() {

@@ -76,7 +76,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void gpu_filled() { stale_.clear(); }  // while paused: from the mirrors
   // While paused: the mirrors now hold what the journal has, up to `last_sequence`; the GPU has not got `tiles` of a layer yet.
   void journal_read(std::int64_t last_sequence);
-  void gpu_lacks(std::int64_t layer_id, const std::vector<TileAddress>& tiles) { stale_[layer_id].insert(tiles.begin(), tiles.end()); }
+  void gpu_lacks(std::int64_t layer_id, const std::vector<TileAddress>& tiles);
   void resume();
 
   void refuse_waiting(const Problem& why);

@@ -3,11 +3,6 @@
 #include "room/open_room.h"
 
 namespace strata::room {
-namespace {
-
-constexpr std::size_t kMaxViews = 4;  // of one connection
-
-}  // namespace
 
 RoomMember::RoomMember(std::shared_ptr<OpenRoom> room, std::string user, std::string color, Listener* listener,
                        stream::Viewer::Send send)
@@ -21,12 +16,15 @@ RoomMember::~RoomMember() {
 RoomMember::View* RoomMember::view(std::uint32_t view_id, bool make) {
   auto found = views_.find(view_id);
   if (found != views_.end()) return &found->second;
-  if (!make || views_.size() >= kMaxViews) return nullptr;
+  if (!make || views_.size() >= static_cast<std::size_t>(kMaxViews)) return nullptr;
   View& made = views_[view_id];
   stream::Viewer::Options options;
   options.view_id = view_id;
   options.sequence = room_->sequence();
-  made.viewer = stream::Viewer::create(room_->stream_context(), room_->model_handle(), options, send_);
+  made.viewer = stream::Viewer::create(room_->stream_context(), room_->model_handle(), options, send_,
+                                       [listener = listener_, view_id](const Problem& why) {
+                                         if (listener) listener->view_refused(view_id, why);
+                                       });
   made.viewer->set_layers(styles(made));
   return &made;
 }

@@ -7,6 +7,7 @@
 
 #include "core/log.h"
 #include "core/slug.h"
+#include "room/gpu_problem.h"
 
 namespace strata::room {
 namespace {
@@ -158,10 +159,7 @@ Result<Layer> OpenRoom::create_layer(Layer layer, const store::FirstAnswer<Layer
   auto created = exclusively<Layer>([this, layer, answer]() -> Result<Layer> {
     // The GPU first: of what it refuses nothing is in the database.
     auto handle = add_layer(parts_.renderer, model_handle(), layer, {});
-    if (!handle) {
-      if (handle.error().status == 404) return fail(503, "GPU lost", "The graphics context is being restored; try again in a moment.");
-      return tl::unexpected(handle.error());
-    }
+    if (!handle) return tl::unexpected(gpu_problem(handle.error()));
     auto made = parts_.store.create_layer(layer, answer);
     if (!made) {
       parts_.renderer.remove_layer(*handle);
@@ -244,7 +242,8 @@ void OpenRoom::sort_layers_changed() {
 
 void OpenRoom::edit(EditRequest request, Applied applied, Saved saved) {
   touch();
-  if (!takes_edits_) return saved(fail(503, "Server is stopping", "The server saves what is under way and stops; send the edit again when it is back."));
+  if (!takes_edits_)
+    return saved(fail(503, "Server is stopping", "The server saves what is under way and stops; send the edit again when it is back."));
   // Counted before it is posted: the strand's own queue has no bound.
   if (++unanswered_ > parts_.options.max_waiting_edits) {
     --unanswered_;
@@ -407,7 +406,7 @@ Result<query::Statistics> OpenRoom::statistics(const std::string& layer) {
   auto found = state(layer);
   if (!found) return tl::unexpected(found.error());
   auto map = maps_->wait(found->layer.resolution);
-  if (!map) return tl::unexpected(map.error());
+  if (!map) return tl::unexpected(gpu_problem(map.error()));
   return query::statistics({found->layer, found->mirror->snapshot()}, **map, geometry_->origin, model().metres());
 }
 

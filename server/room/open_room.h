@@ -122,13 +122,14 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   std::atomic<bool> takes_edits_{true};
 
   struct Recovery {  // on the strand
+    static constexpr std::chrono::milliseconds kFirstRetry{250}, kLastRetry{8000};
     explicit Recovery(const Strand& strand) : timer(strand) {}
     bool gpu_lacks_all = false;
     bool journal_differs = false;
     bool working = false;  // one of them is being mended
     bool shut = false;
     int gpu_losses = 0;
-    std::chrono::milliseconds retry_in{};
+    std::chrono::milliseconds retry_in = kFirstRetry;
     boost::asio::steady_timer timer;
   } recovery_;
 

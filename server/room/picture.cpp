@@ -1,5 +1,6 @@
 // One rendered picture for a script: a view of its own, drawn once.
 #include "room/await.h"
+#include "room/gpu_problem.h"
 #include "room/open_room.h"
 
 namespace strata::room {
@@ -44,19 +45,21 @@ Result<render::Frame> OpenRoom::picture(const Camera& camera, std::optional<std:
       auto past = parts_.store.load_tiles(item.layer, at);
       if (!past) return tl::unexpected(past.error());
       auto copy = add_layer(parts_.renderer, model, item.layer, past->tiles);
-      if (!copy) return tl::unexpected(copy.error());
+      if (!copy) return tl::unexpected(gpu_problem(copy.error()));
       handle = *copy;
       borrowed.layers.push_back(handle);
     }
     request.layers.push_back({handle, item.palette, static_cast<float>(item.layer.opacity)});
   }
   auto view = await<render::ViewHandle>([&](auto done) { parts_.renderer.add_view(model, std::move(done)); });
-  if (!view) return tl::unexpected(view.error());
+  if (!view) return tl::unexpected(gpu_problem(view.error()));
   borrowed.view = request.view = *view;
   request.camera = camera;
   request.width = camera.width;
   request.height = camera.height;
-  return await<render::Frame>([&](auto done) { parts_.renderer.draw(std::move(request), std::move(done)); });
+  auto frame = await<render::Frame>([&](auto done) { parts_.renderer.draw(std::move(request), std::move(done)); });
+  if (!frame) return tl::unexpected(gpu_problem(frame.error()));
+  return frame;
 }
 
 }  // namespace strata::room

@@ -1,19 +1,12 @@
-// How an open room recovers: its copies on the GPU are made anew after a lost context, its mirrors after the journal turned out to
-// hold more than they do. Both happen while the pipeline is paused and nothing is under way, so nothing else changes the layers.
-// What fails is tried again until the room is shut; who waits for it is refused after each try.
+// How an open room recovers: its copies on the GPU are made anew after a lost context, its mirrors after the journal turned out
+// to hold more than they do. Both happen while the pipeline is paused and nothing is under way, so nothing else changes the
+// layers. What fails is tried again until the room is shut; who waits for it is refused after each try.
 #include <boost/asio/post.hpp>
 
 #include "core/log.h"
 #include "room/open_room.h"
 
 namespace strata::room {
-namespace {
-
-constexpr auto kFirstRetry = std::chrono::milliseconds(250);
-constexpr auto kLastRetry = std::chrono::milliseconds(8000);
-
-}  // namespace
-
 void OpenRoom::gpu_lost() {
   boost::asio::post(strand_, [self = shared_from_this()] {
     ++self->recovery_.gpu_losses;
@@ -37,16 +30,20 @@ void OpenRoom::recover() {
     parts_.renderer.remove_model(model_handle());  // there may not be room for both
     boost::asio::post(parts_.workers, [self = shared_from_this(), losses = recovery_.gpu_losses] {
       auto contents = fill_gpu(self->parts_.renderer, self->geometry_, self->layer_states());
-      boost::asio::post(self->strand_, [self, losses, contents = std::move(contents)] { self->on_gpu_filled(losses, contents); });
+      boost::asio::post(self->strand_, [self, losses, contents = std::move(contents)] {
+        self->on_gpu_filled(losses, contents);
+      });
     });
   } else if (recovery_.journal_differs) {
     recovery_.working = true;
     boost::asio::post(parts_.workers, [self = shared_from_this()] {
       auto contents = read_journal(self->parts_.store, self->model_id_, self->layer_states());
-      boost::asio::post(self->strand_, [self, contents = std::move(contents)]() mutable { self->on_journal_read(std::move(contents)); });
+      boost::asio::post(self->strand_, [self, contents = std::move(contents)]() mutable {
+        self->on_journal_read(std::move(contents));
+      });
     });
   } else {
-    recovery_.retry_in = kFirstRetry;
+    recovery_.retry_in = Recovery::kFirstRetry;
     pipeline_->resume();
   }
 }
@@ -127,7 +124,7 @@ void OpenRoom::retry_recovery(const Problem& why) {
   log::warning("model " + std::to_string(model_id_) + " could not be loaded again, trying again: " + why.title + ": " + why.detail);
   pipeline_->refuse_waiting({503, "Model is reloading", "The model is being loaded again, which failed for now: " + why.detail, {}});
   recovery_.timer.expires_after(recovery_.retry_in);
-  recovery_.retry_in = std::min(2 * recovery_.retry_in, kLastRetry);
+  recovery_.retry_in = std::min(2 * recovery_.retry_in, Recovery::kLastRetry);
   recovery_.timer.async_wait([self = shared_from_this()](const boost::system::error_code& cancelled) {
     if (!cancelled) self->recover();
   });

@@ -35,6 +35,8 @@ class Listener {
   virtual void model_changed(const Model& model) = 0;
   virtual void model_deleted() = 0;  // nothing else follows
   virtual void presence_changed() = 0;
+  // Of this person's own view, and on the GPU thread: it cannot be drawn as asked for, until something changes.
+  virtual void view_refused(std::uint32_t view_id, const Problem& why) = 0;
 };
 
 // Layers as one person sees them; what is not set follows the layer's default.
@@ -56,6 +58,7 @@ class Room;
 // One connection in a room. Methods are thread-safe and return at once. Destroying it leaves the room.
 class Member {
  public:
+  static constexpr int kMaxViews = 4;
   virtual ~Member() = default;
   virtual Uuid session() const = 0;
   virtual void camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) = 0;

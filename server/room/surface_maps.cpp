@@ -53,7 +53,7 @@ void SurfaceMaps::start(int resolution) {
     }
     if (!map) {
       auto baked = mesh::bake_surface_map(*self->geometry_, resolution, self->progress_);
-      if (!baked) return self->finish(resolution, tl::unexpected(baked.error()));
+      if (!baked) return self->finish(resolution, tl::unexpected(baked.error()), model);
       map = std::make_shared<const mesh::SurfaceMap>(std::move(*baked));
       std::lock_guard lock(self->mutex_);
       self->entries_[resolution].baked = map;
@@ -64,23 +64,22 @@ void SurfaceMaps::start(int resolution) {
 
 void SurfaceMaps::upload(int resolution, MapPtr map, render::ModelHandle model) {
   renderer_.add_surface_map(model, map, [self = shared_from_this(), resolution, map, model](Result<void> done) {
-    // The model's handle may have changed while the map was on its way (lost context): then once more, with the new one.
-    render::ModelHandle now = 0;
-    {
-      std::lock_guard lock(self->mutex_);
-      now = self->model_;
-    }
-    if (now != model) return self->upload(resolution, map, now);
-    if (done) return self->finish(resolution, map);
-    self->finish(resolution, tl::unexpected(done.error()));
+    self->finish(resolution, done ? Result<MapPtr>(map) : tl::unexpected(done.error()), model);
   });
 }
 
-void SurfaceMaps::finish(int resolution, Result<MapPtr> result) {
+void SurfaceMaps::finish(int resolution, Result<MapPtr> result, render::ModelHandle model) {
   std::vector<Ready> waiting;
   {
-    std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
     Entry& entry = entries_[resolution];
+    // The model's handle may have changed while the map was on its way (lost context): then once more, with the new one.
+    if (entry.baked && model_ != model) {
+      model = model_;
+      MapPtr again = entry.baked;
+      lock.unlock();
+      return upload(resolution, std::move(again), model);
+    }
     entry.working = false;
     entry.on_gpu = result.has_value();
     waiting.swap(entry.waiting);

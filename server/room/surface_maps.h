@@ -43,7 +43,7 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
   };
   void start(int resolution);                              // with the lock held
   void upload(int resolution, MapPtr map, render::ModelHandle model);
-  void finish(int resolution, Result<MapPtr> result);
+  void finish(int resolution, Result<MapPtr> result, render::ModelHandle model);
 
   const std::shared_ptr<const mesh::Geometry> geometry_;
   render::Renderer& renderer_;

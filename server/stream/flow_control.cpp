@@ -6,7 +6,13 @@ namespace strata::stream {
 
 void FlowControl::on_ready() { ready_ = true; }
 
+void FlowControl::on_news() {
+  news_ = true;
+  refused_ = false;
+}
+
 void FlowControl::on_reset() {
+  on_news();
   ready_ = false;
   out_.reset();
   boxes_.clear();
@@ -18,6 +24,7 @@ void FlowControl::on_camera(std::uint64_t camera_seq, const Camera& camera, bool
   camera_seq_ = camera_seq;
   moving_ = moving;
   if (camera_ == camera) return;
+  on_news();
   if (camera_waits_) ++dropped_;
   camera_ = camera;
   camera_waits_ = true;
@@ -33,23 +40,28 @@ void FlowControl::add_box(const Box& box) {
 }
 
 void FlowControl::on_change(const Box& box, std::int64_t sequence) {
+  on_news();
   sequence_ = std::max(sequence_, sequence);
   add_box(box);
 }
 
 void FlowControl::on_change_everywhere(std::int64_t sequence) {
+  on_news();
   sequence_ = std::max(sequence_, sequence);
   everything_waits_ = true;
 }
 
-void FlowControl::on_style() { everything_waits_ = true; }
+void FlowControl::on_style() {
+  on_news();
+  everything_waits_ = true;
+}
 
 void FlowControl::on_ack(std::uint64_t frame) { acked_ = std::max(acked_, std::min(frame, last_frame_)); }
 
 void FlowControl::on_quiet() { moving_ = false; }
 
 std::optional<FlowControl::Draw> FlowControl::next() {
-  if (!ready_ || !camera_ || out_) return std::nullopt;
+  if (!ready_ || !camera_ || out_ || refused_) return std::nullopt;
   if (last_frame_ - acked_ >= static_cast<std::uint64_t>(window_)) return std::nullopt;
   const bool refine = refine_waits_ && !moving_;
   if (!everything_waits_ && !refine && boxes_.empty()) return std::nullopt;
@@ -63,6 +75,7 @@ std::optional<FlowControl::Draw> FlowControl::next() {
   }
   boxes_.clear();
   camera_waits_ = false;
+  news_ = false;
   out_ = draw;
   return draw;
 }
@@ -84,6 +97,12 @@ bool FlowControl::on_failed(std::uint64_t ticket) {
   else
     everything_waits_ = true;
   out_.reset();
+  return true;
+}
+
+bool FlowControl::on_refused(std::uint64_t ticket) {
+  if (!on_failed(ticket)) return false;
+  refused_ = !news_;
   return true;
 }
 

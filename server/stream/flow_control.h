@@ -18,6 +18,7 @@ namespace strata::stream {
 // 4. Nothing changed → nothing is drawn. A camera equal to the one on screen only renumbers later frames.
 // 5. Frames of a moving camera are of lower quality; once the camera is still (a message says so, or `on_quiet`) the
 //    picture is drawn once more at full quality. Edits are always of full quality.
+// 6. What was refused is not drawn again before something changes: it would be refused again.
 //
 // Not thread-safe: the viewer calls it under its lock.
 class FlowControl {
@@ -58,6 +59,8 @@ class FlowControl {
   std::optional<Numbered> on_drawn(std::uint64_t ticket, bool sent);
   // The draw failed; its changes wait again. False when the ticket is void.
   bool on_failed(std::uint64_t ticket);
+  // The same, for what was asked for.
+  bool on_refused(std::uint64_t ticket);
 
   bool wants_quiet_timer() const { return moving_; }
   std::uint64_t dropped() const { return dropped_; }
@@ -65,6 +68,7 @@ class FlowControl {
 
  private:
   void add_box(const Box& box);
+  void on_news();
 
   const int window_;
   bool ready_ = false;
@@ -77,6 +81,8 @@ class FlowControl {
   std::vector<Box> boxes_;       // changes that no draw has taken
   std::int64_t sequence_;
   std::optional<Draw> out_;      // the draw under way
+  bool news_ = false;            // something changed since `out_` was given out
+  bool refused_ = false;         // and nothing changed since
   std::uint64_t tickets_ = 0;
   std::uint64_t last_frame_ = 0;
   std::uint64_t acked_ = 0;

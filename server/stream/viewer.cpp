@@ -6,6 +6,7 @@
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -28,11 +29,14 @@ constexpr JpegSettings kMovingPicture{75, false};
 constexpr JpegSettings kStillPicture{90, true};
 
 bool is_superseded(const Problem& problem) { return problem.status == 409; }
+// Of what was asked for, not of the state of the GPU: the same again has the same answer.
+bool is_refusal(const Problem& problem) { return problem.status == 422; }
 
 }  // namespace
 
 struct Viewer::Impl {
-  Impl(StreamContext stream, Options o, Send s) : context(stream), options(o), send(std::move(s)), flow(o.window, o.sequence) {}
+  Impl(StreamContext stream, Options o, Send s, Refused r)
+      : context(stream), options(o), send(std::move(s)), refused(std::move(r)), flow(o.window, o.sequence) {}
 
   // A drawn picture on its way to the encoder.
   struct Picture {
@@ -44,8 +48,10 @@ struct Viewer::Impl {
   const StreamContext context;
   const Options options;
 
-  std::recursive_mutex send_mutex;  // held while `send` runs, so that `close` waits for it; taken before `mutex`
+  std::recursive_mutex send_mutex;  // held while `send` or `refused` runs, so that `close` waits for it; taken before `mutex`
   Send send;
+  Refused refused;
+  std::string told;  // the detail of what `refused` was told since the last picture; under `send_mutex`
 
   mutable std::mutex mutex;
   FlowControl flow;
@@ -101,9 +107,10 @@ FrameBytes frame_message(const FlowControl::Draw& draw, const FlowControl::Numbe
 
 Viewer::Viewer() = default;
 
-std::shared_ptr<Viewer> Viewer::create(StreamContext context, render::ModelHandle model, Options options, Send send) {
+std::shared_ptr<Viewer> Viewer::create(StreamContext context, render::ModelHandle model, Options options, Send send,
+                                       Refused refused) {
   std::shared_ptr<Viewer> viewer(new Viewer());
-  viewer->impl_ = std::make_unique<Impl>(context, options, std::move(send));
+  viewer->impl_ = std::make_unique<Impl>(context, options, std::move(send), std::move(refused));
   viewer->impl_->model = model;
   viewer->add_view();
   return viewer;
@@ -302,13 +309,27 @@ void Viewer::on_drawn(const FlowControl::Draw& draw, render::Frame frame) {
 }
 
 void Viewer::on_failed(std::uint64_t ticket, const Problem& problem) {
+  const bool refused = is_refusal(problem);
   {
     std::lock_guard lock(impl_->mutex);
-    if (impl_->closed || !impl_->flow.on_failed(ticket)) return;
+    if (impl_->closed || !(refused ? impl_->flow.on_refused(ticket) : impl_->flow.on_failed(ticket))) return;
   }
   if (is_superseded(problem)) return step();
+  if (refused) {
+    tell(problem);
+    return step();
+  }
   log::debug("A frame was not drawn and will be tried again: " + problem.title);
   retry_later([](Viewer& viewer) { viewer.step(); });
+}
+
+void Viewer::tell(const Problem& why) {
+  std::lock_guard sending(impl_->send_mutex);
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (impl_->closed) return;
+  }
+  if (std::exchange(impl_->told, why.detail) != why.detail && impl_->refused) impl_->refused(why);
 }
 
 // One picture of a viewer is encoded at a time: that keeps frames in order and `send` from running twice at once.
@@ -350,6 +371,7 @@ void Viewer::on_encoded(const std::vector<std::uint8_t>& jpeg, double encode_ms)
         impl_->stats.last_encode_ms = encode_ms;
       }
     }
+    impl_->told.clear();
     if (message) impl_->send(std::move(message));
   }
   encode_next();

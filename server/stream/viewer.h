@@ -25,7 +25,7 @@ using FrameBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
 // the newest camera wins; frames echo the camera's number; at most `window` frames are sent but not acknowledged; when there is
 // no credit nothing is drawn, and what changed meanwhile is drawn once credit returns; nothing changed → nothing sent;
 // a frame of a moving camera is followed by a full-quality one within 250 ms of the last input; quality never falls
-// while painting. Thread-safe; `send` is called on encoder threads, in frame order, never concurrently.
+// while painting. Thread-safe; `send` is called on encoder threads, in frame order, `refused` on the GPU thread; never concurrently.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   struct Options {
@@ -35,8 +35,11 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     std::int64_t sequence = 0;      // of the scene at the start
   };
   using Send = std::function<void(FrameBytes)>;
+  // Why nothing can be drawn as asked for (422). Told once; the next camera, layers or edit are tried again.
+  using Refused = std::function<void(const Problem&)>;
 
-  static std::shared_ptr<Viewer> create(StreamContext context, render::ModelHandle model, Options options, Send send);
+  static std::shared_ptr<Viewer> create(StreamContext context, render::ModelHandle model, Options options, Send send,
+                                        Refused refused = {});
   ~Viewer();
 
   void set_camera(std::uint64_t camera_seq, const Camera& camera, bool moving);
@@ -47,7 +50,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   void ack(std::uint64_t frame);
   // After a lost context: the model has a new handle; everything is drawn anew.
   void reset_model(render::ModelHandle model, std::vector<render::LayerStyle> layers);
-  void close();  // nothing is sent after it returns
+  void close();  // neither `send` nor `refused` is called after it returns
 
   struct Stats {
     std::uint64_t frames = 0, bytes = 0, dropped = 0;
@@ -62,6 +65,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   void step();
   void on_drawn(const FlowControl::Draw& draw, render::Frame frame);
   void on_failed(std::uint64_t ticket, const Problem& problem);
+  void tell(const Problem& why);
   void encode_next();
   void on_encoded(const std::vector<std::uint8_t>& jpeg, double encode_ms);
   void wait_for_quiet();

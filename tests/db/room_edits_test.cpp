@@ -168,6 +168,7 @@ struct UnsavedEars : room::Listener {
   void model_changed(const Model&) override {}
   void model_deleted() override {}
   void presence_changed() override {}
+  void view_refused(std::uint32_t, const Problem&) override {}
 };
 
 void execute(const std::string& dsn, const char* sql) {

@@ -1,4 +1,5 @@
-// Faults: the GPU's memory is used up or its context goes, the database is away or holds more than the room knows, the room closes.
+// Faults: the GPU's memory is used up or its context goes, the database is away or holds more than the room knows, the room
+// closes.
 // Whatever happens, what was answered as saved is in the journal, and the room and the GPU hold what the journal holds.
 #include <libpq-fe.h>
 
@@ -26,6 +27,7 @@ class Ears : public room::Listener {
   void model_changed(const Model&) override {}
   void model_deleted() override { count(deleted_); }
   void presence_changed() override { count(presence_); }
+  void view_refused(std::uint32_t, const Problem&) override {}
 
   void wait_for_applied(int wanted) { wait(applied_, wanted); }
   void wait_for_presence(int wanted) { wait(presence_, wanted); }
@@ -65,13 +67,21 @@ class RoomRecovery : public RoomTest {
  protected:
   void execute(const char* sql) { Connection(dsn_).execute(sql); }
 
-  // Restarts with the GPU memory that painting and viewing take now: not enough for another slice of pages of
-  // four bytes (20 MiB).
-  void restart_with_tight_gpu(const Layer& layer) {
-    ASSERT_TRUE(send(stroke(layer, 5, {{320, 240}}, 20)));
-    ASSERT_TRUE(room()->picture(camera({0.3, -1, 0.4}), {}));
-    restart(renderer_->gpu_bytes_used() + (9u << 20));
-    ASSERT_TRUE(room()->statistics(layer.slug));
+  // Leaves the GPU so full that no layer more can be filled, and returns one that was not; painting and viewing still work.
+  Layer fill_gpu(const Layer& first) {
+    EXPECT_TRUE(send(stroke(first, 5, {{320, 240}}, 20)));
+    EXPECT_TRUE(room()->picture(camera({0.3, -1, 0.4}), {}));
+    restart(renderer_->gpu_bytes_used() + (9u << 20));  // a slice of pages of four bytes takes 20 MiB
+    EXPECT_TRUE(room()->statistics(first.slug));
+    for (int i = 0; i < 20; ++i) {
+      const Layer next = make_layer(ValueType::u32, 2048, "layer-" + std::to_string(i));
+      const Answer filled = send(request(next, room::FillEdit{false, 3}));
+      if (filled) continue;
+      EXPECT_EQ(filled.error().status, 503);
+      return next;
+    }
+    ADD_FAILURE() << "all fitted";
+    return first;
   }
 
   // Commits an edit behind the room's back, as a commit does whose answer was lost.
@@ -123,15 +133,8 @@ TEST(TileChanges, a_stroke_changes_what_it_wrote_whatever_the_gpu_holds_elsewher
 // --- the GPU
 
 TEST_F(RoomRecovery, a_fill_that_does_not_fit_the_gpu_is_refused_and_leaves_all_as_it_was) {
-  const Layer layer = make_layer(ValueType::u32, 4096);
-  restart_with_tight_gpu(layer);
-  ASSERT_TRUE(send(stroke(layer, 6, {{330, 240}}, 20)));
-  const auto before = room()->tiles("layer", {});
-  const auto fill = send(request(layer, room::FillEdit{false, 3}));
-  ASSERT_FALSE(fill);
-  EXPECT_EQ(fill.error().status, 503);
-  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles, before->tiles));
-  EXPECT_EQ(room()->sequence(), 2);
+  const Layer layer = fill_gpu(make_layer(ValueType::u32));
+  EXPECT_TRUE(room()->tiles(layer.slug, {})->tiles.empty());
   const auto next = send_until_taken(stroke(layer, 7, {{310, 250}}, 20));
   ASSERT_TRUE(next) << next.error().detail;
   expect_room_equals_journal(layer);
@@ -141,11 +144,9 @@ TEST_F(RoomRecovery, a_fill_that_does_not_fit_the_gpu_is_refused_and_leaves_all_
 TEST_F(RoomRecovery, what_was_erased_comes_back_when_other_paint_has_taken_its_pages) {
   options_.retry_for = std::chrono::milliseconds(500);
   restart();
-  const Layer a = make_layer(ValueType::u32, 4096, "a");
-  const Layer b = make_layer(ValueType::u32, 4096, "b");
+  const Layer a = make_layer(ValueType::u32, 2048, "a");
   ASSERT_TRUE(send(request(a, room::FillEdit{false, 3})));
-  restart_with_tight_gpu(a);
-  ASSERT_TRUE(send_until_taken(stroke(a, 6, {{330, 240}}, 20)));
+  const Layer b = fill_gpu(a);
   const auto saved = room()->tiles("a", {});
   Ears ears;
   auto member = room()->join("anna", &ears, [](stream::FrameBytes) {});
@@ -161,7 +162,7 @@ TEST_F(RoomRecovery, what_was_erased_comes_back_when_other_paint_has_taken_its_p
   blocker.execute("rollback");
 
   EXPECT_TRUE(test::equal(room()->tiles("a", {})->tiles, saved->tiles));
-  EXPECT_TRUE(room()->tiles("b", {})->tiles.empty());
+  EXPECT_TRUE(room()->tiles(b.slug, {})->tiles.empty());
   expect_picture_of_journal();
   ASSERT_TRUE(send_until_taken(stroke(a, 8, {{300, 240}}, 20)));
   expect_room_equals_journal(a);
@@ -217,7 +218,8 @@ TEST_F(RoomRecovery, layers_made_changed_and_deleted_while_the_gpu_comes_back_st
     EXPECT_EQ(room()->layer("kept")->name, renamed.name);
   }
   const Layer last = room()->layer("made-4").value();
-  ASSERT_TRUE(send_until_taken(stroke(last, 9, {{320, 240}}, 20)));
+  const auto painted = send_until_taken(stroke(last, 9, {{320, 240}}, 20));
+  ASSERT_TRUE(painted) << painted.error().title << ": " << painted.error().detail;
   EXPECT_EQ(room()->layer("kept")->name, "Round 5");
   std::vector<std::string> here, stored;
   for (const auto& layer : room()->layers()) here.push_back(layer.slug + "/" + layer.name);

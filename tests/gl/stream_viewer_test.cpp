@@ -154,6 +154,34 @@ class StreamViewer : public ::testing::Test {
   std::list<Client> clients_;  // they outlive the viewers, which call them
 };
 
+TEST_F(StreamViewer, what_cannot_be_drawn_is_told_once_and_tried_again_when_something_changes) {
+  Client& client = new_client();
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<Problem> told;
+  auto view = Viewer::create({&renderer_.get(), &encoder_}, model_, {}, client.send(), [&](const Problem& why) {
+    std::lock_guard lock(mutex);
+    told.push_back(why);
+    changed.notify_all();
+  });
+  client.attach(view, true);
+  viewers_.push_back(view);
+  auto without_colors = styles();
+  without_colors[0].palette = std::make_shared<const Palette>(Palette{});
+  view->set_layers(without_colors);
+  view->set_camera(1, camera(0), false);
+  {
+    std::unique_lock lock(mutex);
+    ASSERT_TRUE(changed.wait_for(lock, kPatience, [&] { return !told.empty(); }));
+    EXPECT_EQ(told[0].status, 422);
+  }
+  view->set_camera(2, camera(0.1), false);  // refused again, but not told again
+  view->set_layers(styles());
+  client.wait_for([](const FrameHeader& h) { return h.camera_seq == 2; });
+  std::lock_guard lock(mutex);
+  EXPECT_EQ(told.size(), 1u);
+}
+
 TEST_F(StreamViewer, a_still_camera_gives_one_whole_picture_of_full_quality) {
   Client& client = new_client();
   Viewer::Options options;

@@ -138,6 +138,21 @@ struct Live : testing::Test {
   const std::string stroke = to_string(random_uuid());
 };
 
+TEST_F(Live, a_deleted_model_is_told_before_the_connection_ends) {
+  hello();
+  session->model_deleted();
+  ASSERT_EQ(socket->of("model").size(), 1u);
+  EXPECT_EQ(socket->of("model")[0]["event"], "deleted");
+  EXPECT_EQ(socket->close_code, kCloseGoingAway);
+}
+
+TEST_F(Live, a_view_that_cannot_be_drawn_is_a_problem) {
+  hello();
+  session->view_refused(2, {422, "Palette not usable", "A palette has points.", "layers"});
+  ASSERT_EQ(socket->of("problem").size(), 1u);
+  EXPECT_EQ(socket->of("problem")[0]["status"], 422);
+}
+
 TEST_F(Live, every_message_it_sends_keeps_the_contract) {
   hello();
   say(begin(stroke));

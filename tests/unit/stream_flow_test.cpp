@@ -51,6 +51,23 @@ TEST(StreamFlow, nothing_is_drawn_before_the_view_exists_and_a_camera_came) {
   EXPECT_FALSE(other.next());
 }
 
+TEST(StreamFlow, what_was_refused_waits_for_something_to_change) {
+  FlowControl flow = ready(2);
+  flow.on_camera(1, camera_at(1), false);
+  auto draw = flow.next();
+  ASSERT_TRUE(draw);
+  EXPECT_TRUE(flow.on_refused(draw->ticket));
+  flow.on_ack(0);
+  EXPECT_FALSE(flow.next());
+  flow.on_style();
+  draw = flow.next();
+  ASSERT_TRUE(draw);
+  EXPECT_FALSE(draw->changed) << "the refused draw gave back that everything waits";
+  flow.on_camera(2, camera_at(2), false);  // changed while it was drawn
+  EXPECT_TRUE(flow.on_refused(draw->ticket));
+  EXPECT_TRUE(flow.next());
+}
+
 TEST(StreamFlow, the_newest_camera_wins_and_the_others_are_counted_as_dropped) {
   FlowControl flow = ready(2);
   flow.on_camera(1, camera_at(1), true);
