@@ -302,7 +302,14 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       }
       response = problem_response({404, "Not found", "The file is gone.", {}});
     }
-    if (method == Method::head) co_return co_await send_head(response, response.body.size(), keep_alive);
+    if (method == Method::head) co_return co_await send_head(response, std::max(response.bytes.size(), response.body.size()), keep_alive);
+    if (!response.bytes.empty()) {
+      http::response<http::vector_body<std::uint8_t>> message;
+      put_head(message, response, keep_alive);
+      message.body() = std::move(response.bytes);
+      message.content_length(message.body().size());
+      co_return co_await write(message);
+    }
     http::response<http::string_body> message;
     put_head(message, response, keep_alive);
     message.body() = std::move(response.body);

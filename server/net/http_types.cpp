@@ -1,5 +1,7 @@
 #include "net/http_types.h"
 
+#include "protocol/parse.h"
+
 #include <algorithm>
 #include <atomic>
 #include <charconv>
@@ -67,7 +69,10 @@ Response json_response(const nlohmann::json& json, int status) {
 }
 
 Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_type) {
-  return text_response(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), std::move(content_type));
+  Response response;
+  response.with("Content-Type", std::move(content_type));
+  response.bytes = std::move(bytes);
+  return response;
 }
 
 Response text_response(std::string text, std::string content_type) {
@@ -83,15 +88,8 @@ Response empty_response(int status) {
   return response;
 }
 
-nlohmann::json to_json(const Problem& problem) {
-  nlohmann::json json{
-      {"type", "about:blank"}, {"title", problem.title}, {"status", problem.status}, {"detail", problem.detail}};
-  if (!problem.field.empty()) json["field"] = problem.field;
-  return json;
-}
-
 Response problem_response(const Problem& problem) {
-  Response response = json_response(to_json(problem), problem.status);
+  Response response = json_response(protocol::problem_body(problem), problem.status);
   response.headers = {{"Content-Type", "application/problem+json"}};
   if (problem.status == 401) response.with("WWW-Authenticate", "Bearer realm=\"strata\"");
   if (problem.status == 429 || problem.status == 503) response.with("Retry-After", "1");

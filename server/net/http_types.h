@@ -59,7 +59,9 @@ struct Response {
   int status = 200;
   Headers headers;
   std::string body;
-  std::filesystem::path file;  // sent in place of `body` when not empty
+  std::vector<std::uint8_t> bytes;  // sent in place of `body` when not empty
+  std::filesystem::path file;       // the same
+  std::shared_ptr<const void> held; // let go once the answer is sent
   // Bytes made while they are sent, in place of `body`. `write` runs on a worker and stops when the sink says false.
   using Sink = std::function<bool(std::span<const std::uint8_t>)>;
   struct Stream {
@@ -77,7 +79,6 @@ Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_typ
 Response text_response(std::string text, std::string content_type);
 Response empty_response(int status);                 // 204, 304
 Response problem_response(const Problem& problem);   // RFC 9457
-nlohmann::json to_json(const Problem& problem);
 std::string_view reason_phrase(int status);
 
 // The one answer to a request; may be called from any thread. The first call counts; when the last copy goes without one, the

@@ -25,6 +25,11 @@ class LoginGate {
   TokenBucket bucket_{kLoginsPerSecond, kLoginBurst};
 };
 
+// Through a proxy that speaks https: then the cookie must not travel without it.
+bool came_by_https(const Request& request) {
+  return request.header("x-forwarded-proto") == "https" || request.header("origin").starts_with("https://");
+}
+
 Response me(const Principal& principal) {
   return json_response({{"user", principal.user}, {"role", std::string(name(principal.role))}});
 }
@@ -33,17 +38,16 @@ Response me(const Principal& principal) {
 
 void add_auth_routes(Router& router, const RouteContext& context) {
   auto gate = std::make_shared<LoginGate>();
-  const bool secure = context.options.secure_cookies;
 
   router.add({.method = Method::get,
               .pattern = "/login",
-              .handler = answering([&context, gate, secure](const Request& request) -> Result<Response> {
+              .handler = answering([&context, gate](const Request& request) -> Result<Response> {
                 if (auto free = gate->pass(); !free) return tl::unexpected(free.error());
                 auto session = context.auth.session_for_link(request.query_or("link", {}));
                 if (!session) return tl::unexpected(session.error());
                 return empty_response(303)
                     .with("Location", "/")
-                    .with("Set-Cookie", Authenticator::set_cookie(*session, secure))
+                    .with("Set-Cookie", Authenticator::set_cookie(*session, came_by_https(request)))
                     .with("Cache-Control", "no-store");
               }),
               .role = std::nullopt,
@@ -51,7 +55,7 @@ void add_auth_routes(Router& router, const RouteContext& context) {
 
   router.add({.method = Method::post,
               .pattern = "/api/v1/login",
-              .handler = answering([&context, gate, secure](const Request& request) -> Result<Response> {
+              .handler = answering([&context, gate](const Request& request) -> Result<Response> {
                 if (auto free = gate->pass(); !free) return tl::unexpected(free.error());
                 auto asked = body_of<protocol::Login>(request);
                 if (!asked) return tl::unexpected(asked.error());
@@ -59,7 +63,7 @@ void add_auth_routes(Router& router, const RouteContext& context) {
                 if (!session) return tl::unexpected(session.error());
                 auto principal = context.auth.identify_token(*session);
                 if (!principal) return tl::unexpected(principal.error());
-                return me(principal->value()).with("Set-Cookie", Authenticator::set_cookie(*session, secure));
+                return me(principal->value()).with("Set-Cookie", Authenticator::set_cookie(*session, came_by_https(request)));
               }),
               .role = std::nullopt,
               .body = BodyKind::memory,
@@ -67,7 +71,7 @@ void add_auth_routes(Router& router, const RouteContext& context) {
 
   router.add({.method = Method::post,
               .pattern = "/api/v1/logout",
-              .handler = answering([&context, secure](const Request& request) -> Result<Response> {
+              .handler = answering([&context](const Request& request) -> Result<Response> {
                 // A script's token stays valid: it is revoked by name, not by using it here.
                 if (request.principal->by_cookie) {
                   const std::string session = Authenticator::secret_of(request);
@@ -75,7 +79,7 @@ void add_auth_routes(Router& router, const RouteContext& context) {
                   if (!ended) return tl::unexpected(ended.error());
                   context.live_sockets.close_those_of(session, kClosePolicy, "signed out");
                 }
-                return empty_response(204).with("Set-Cookie", Authenticator::clear_cookie(secure));
+                return empty_response(204).with("Set-Cookie", Authenticator::clear_cookie(came_by_https(request)));
               })});
 
   router.add({.method = Method::get, .pattern = "/api/v1/me", .handler = answering([](const Request& request) -> Result<Response> {

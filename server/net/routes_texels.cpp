@@ -1,11 +1,13 @@
-#include <fstream>
-
+#include "net/byte_budget.h"
 #include "net/digest.h"
+#include "net/mapped_file.h"
 #include "net/routes.h"
 #include "query/raster.h"
 
 namespace strata::net {
 namespace {
+
+constexpr std::uint64_t kMaxRasterBytes = (16384ull * 16384 * 2 * 4) + (1u << 20);  // of the largest layer
 
 struct Format {
   const char* extension;
@@ -23,7 +25,12 @@ Result<const Format*> format_of(const Request& request) {
   return fail(404, "Unknown raster format", "Texels are there as texels.tif, texels.png and texels.npy.", "format");
 }
 
-Result<Response> read_texels(const RouteContext& context, const Request& request) {
+// Uncompressed, with the valid plane; TIFF keeps that in the value's type, too.
+std::uint64_t raster_bytes(const Layer& layer) {
+  return std::uint64_t(layer.resolution) * layer.resolution * 2 * std::uint64_t(bytes_per_texel(layer.type)) + (1u << 20);
+}
+
+Result<Response> read_texels(const RouteContext& context, ByteBudget& budget, const Request& request) {
   auto format = format_of(request);
   if (!format) return tl::unexpected(format.error());
   auto room = context.rooms.open(request.param("model"));
@@ -36,34 +43,58 @@ Result<Response> read_texels(const RouteContext& context, const Request& request
     if (!sequence) return tl::unexpected(sequence.error());
     at = *sequence;
   }
+  auto held = budget.take(raster_bytes(*layer));
+  if (!held) return tl::unexpected(held.error());
   auto snapshot = (*room)->tiles(layer->slug, at);
   if (!snapshot) return tl::unexpected(snapshot.error());
   auto bytes = (*format)->encode(*layer, snapshot->tiles);
   if (!bytes) return tl::unexpected(bytes.error());
   Response response = bytes_response(std::move(*bytes), (*format)->media_type);
+  response.held = std::move(*held);
   response.with("Content-Disposition", "attachment; filename*=UTF-8''" + percent_encode(layer->slug + "." + (*format)->extension));
   add_sequences(response, at.value_or(snapshot->sequence), (*room)->durable_sequence());
   return response;
 }
 
-void write_texels(const RouteContext& context, const Request& request, const Respond& respond) {
+Result<void> check_size(const Layer& layer, std::uint64_t bytes) {
+  if (bytes <= raster_bytes(layer)) return {};
+  return fail(413, "Raster too large", "A raster of this layer has at most " + std::to_string(raster_bytes(layer)) + " bytes.", "body");
+}
+
+// Before the body, where its length is told.
+Result<void> check_raster(const RouteContext& context, const Request& request) {
+  auto format = format_of(request);
+  if (!format) return tl::unexpected(format.error());
+  auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  auto layer = context.store.layer(model->id, request.param("layer"));
+  if (!layer) return tl::unexpected(layer.error());
+  const std::string_view length = request.header("content-length");
+  if (length.empty()) return {};
+  auto bytes = parse_integer(length, 0, INT64_MAX, "Content-Length");
+  if (!bytes) return tl::unexpected(bytes.error());
+  return check_size(*layer, static_cast<std::uint64_t>(*bytes));
+}
+
+void write_texels(const RouteContext& context, ByteBudget& budget, const Request& request, const Respond& respond) {
   auto format = format_of(request);
   if (!format) return respond(format.error());
   auto room = context.rooms.open(request.param("model"));
   if (!room) return respond(room.error());
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return respond(layer.error());
-  std::vector<std::uint8_t> bytes(request.body_bytes);
-  std::ifstream file(request.body_file, std::ios::binary);
-  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size())))
-    return respond(Problem{400, "Empty body", "Send the raster file as the body.", "body"});
-  auto tiles = (*format)->decode(*layer, bytes);
+  if (auto fits = check_size(*layer, request.body_bytes); !fits) return respond(fits.error());
+  auto held = budget.take(raster_bytes(*layer));
+  if (!held) return respond(held.error());
+  const MappedFile file(request.body_file);
+  if (file.bytes().empty()) return respond(Problem{400, "Empty body", "Send the raster file as the body.", "body"});
+  auto tiles = (*format)->decode(*layer, file.bytes());
   if (!tiles) return respond(tiles.error());
   room::EditRequest edit;
   edit.id = edit_id(request, *layer, "import");
   edit.user = request.user();
   edit.layer_id = layer->id;
-  edit.record = {{"op", "import"}, {"format", (*format)->extension}, {"bytes", request.body_bytes}, {"sha256", sha256_hex({reinterpret_cast<const char*>(bytes.data()), bytes.size()})}};
+  edit.record = {{"op", "import"}, {"format", (*format)->extension}, {"bytes", request.body_bytes}, {"sha256", sha256_hex(file.view())}};
   edit.edit = room::ImportEdit{std::move(*tiles)};
   apply_edit(context, request, *room, std::move(edit), respond);
 }
@@ -72,16 +103,18 @@ void write_texels(const RouteContext& context, const Request& request, const Res
 
 void add_texel_routes(Router& router, const RouteContext& context) {
   const std::string pattern = "/api/v1/models/{model}/layers/{layer}/texels.{format}";
+  auto budget = std::make_shared<ByteBudget>(context.options.max_rasters_at_once);
   router.add({.method = Method::get,
               .pattern = pattern,
-              .handler = answering([&context](const Request& request) { return read_texels(context, request); }),
+              .handler = answering([&context, budget](const Request& request) { return read_texels(context, *budget, request); }),
               .query = {"at"}});
   router.add({.method = Method::put,
               .pattern = pattern,
-              .handler = [&context](const Request& request, const Respond& respond) { write_texels(context, request, respond); },
+              .handler = [&context, budget](const Request& request, const Respond& respond) { write_texels(context, *budget, request, respond); },
               .role = Role::annotator,
+              .check = [&context](const Request& request) { return check_raster(context, request); },
               .body = BodyKind::file,
-              .max_body = context.options.max_raster_bytes});
+              .max_body = kMaxRasterBytes});
 }
 
 }  // namespace strata::net

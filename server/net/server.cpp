@@ -56,9 +56,7 @@ Result<tcp::acceptor> listen(asio::io_context& io, const std::string& host, std:
   };
   boost::system::error_code error;
   tcp::resolver resolver(io);
-  std::string name = host;
-  if (name.size() > 2 && name.front() == '[' && name.back() == ']') name = name.substr(1, name.size() - 2);
-  const auto found = resolver.resolve(name, std::to_string(port), tcp::resolver::passive, error);
+  const auto found = resolver.resolve(host, std::to_string(port), tcp::resolver::passive, error);
   if (error || found.empty()) return refused(error);
   const tcp::endpoint endpoint = found.begin()->endpoint();
   tcp::acceptor acceptor(io);

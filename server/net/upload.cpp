@@ -1,14 +1,11 @@
 #include "net/upload.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cstring>
 #include <fstream>
 
 #include "core/uuid.h"
 #include "jobs/import_job.h"
+#include "net/mapped_file.h"
 
 namespace strata::net {
 namespace {
@@ -16,34 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kAccepted = "Send one PLY or OBJ file as the body, or as the only file of a multipart/form-data form.";
-
-class MappedFile {
- public:
-  explicit MappedFile(const fs::path& path) {
-    std::error_code error;
-    size_ = fs::file_size(path, error);
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0 || error || size_ == 0) {
-      if (descriptor >= 0) ::close(descriptor);
-      size_ = 0;
-      return;
-    }
-    data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor, 0);
-    ::close(descriptor);
-    if (data_ == MAP_FAILED) size_ = 0;
-  }
-  ~MappedFile() {
-    if (size_ > 0) ::munmap(data_, size_);
-  }
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-
-  std::string_view view() const { return {static_cast<const char*>(data_), size_}; }
-
- private:
-  void* data_ = nullptr;
-  std::size_t size_ = 0;
-};
 
 // std::string_view::find is too slow for gigabytes; memmem is vectorised.
 std::size_t find(std::string_view text, std::string_view what, std::size_t from) {

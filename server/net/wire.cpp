@@ -158,7 +158,7 @@ nlohmann::json to_json(const query::Statistics& statistics) {
   json["histogram"] = std::move(bins);
   nlohmann::json keys = nlohmann::json::array();
   for (const auto& [key, entry] : statistics.keys)
-    keys.push_back({{"key", key},
+    keys.push_back({{"key", static_cast<std::int64_t>(key)},  // integer layers only
                     {"texels", entry.texels},
                     {"area_m2", entry.area_m2},
                     {"centroid", vec3(entry.centroid)},

@@ -149,6 +149,9 @@ def check_sign_in(server):
     # The cookie is for this server's own page only.
     login = server.post("/login", {"token": server.token}, token=False, headers={"Origin": server.url})
     assert login.status == 200 and "HttpOnly" in login.headers["Set-Cookie"] and "SameSite" in login.headers["Set-Cookie"], login.headers
+    assert "; Secure" not in login.headers["Set-Cookie"], login.headers
+    proxied = server.post("/login", {"token": server.token}, token=False, headers={"X-Forwarded-Proto": "https"})
+    assert "; Secure" in proxied.headers["Set-Cookie"], proxied.headers
     cookie = {"Cookie": login.headers["Set-Cookie"].split(";")[0]}
     assert server.get("/me", token=False, headers=cookie).json()["role"] == "owner"
     for origin in ({}, {"Origin": "https://elsewhere.example"}, {"Origin": "null"}, {"Origin": server.url + ".elsewhere.example"}):
@@ -190,6 +193,14 @@ def check_paths(server):
         answer = raw_request(server, broken)
         assert not answer or answer.split(b" ")[1][:1] == b"4", (broken[:40], answer[:200])
     assert server.get("//livez").status == 200
+
+
+def check_sizes(server):
+    """A raster may be as large as its layer; what is larger is refused before it travels."""
+    for size, is_refused in ((2 * 2048 * 2048 + 128, False), (10 << 20, True), (3 << 30, True)):
+        answer = raw_request(server, f"PUT /api/v1{L}/texels.npy HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer {server.token}\r\n"
+                                     f"Expect: 100-continue\r\nContent-Length: {size}\r\n\r\n".encode())
+        assert answer.startswith(b"HTTP/1.1 413" if is_refused else b"HTTP/1.1 100"), (size, answer[:300])
 
 
 def check_repeats(server, camera):
@@ -317,6 +328,7 @@ def main():
         check_table(server, camera)
         check_sign_in(server)
         check_paths(server)
+        check_sizes(server)
         check_repeats(server, camera)
         check_import_repeats(server)
         check_versions(server)

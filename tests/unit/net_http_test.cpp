@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/uuid.h"
+#include "net/byte_budget.h"
 #include "net/digest.h"
 #include "net/docs_page.h"
 #include "net/http_types.h"
@@ -343,6 +344,23 @@ TEST(Upload, broken_forms_are_refused) {
     EXPECT_EQ(upload.error().status, 400) << body;
   }
   EXPECT_FALSE(take_upload(upload_of(folder.write("2.body", ""), ""), folder.path()));
+}
+
+TEST(ByteBudget, what_is_held_bounds_what_may_be_taken) {
+  ByteBudget budget(100);
+  auto first = budget.take(60);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(budget.take(50).error().status, 503);
+  auto second = budget.take(40);
+  ASSERT_TRUE(second);
+  auto copy = *first;
+  first->reset();
+  EXPECT_FALSE(budget.take(1)) << "a copy still holds it";
+  copy.reset();
+  second->reset();
+  auto large = budget.take(1000);
+  ASSERT_TRUE(large) << "alone it may be larger than the budget";
+  EXPECT_FALSE(budget.take(1));
 }
 
 // --- pages and figures

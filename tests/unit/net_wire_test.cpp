@@ -171,6 +171,22 @@ TEST(Wire, statistics_of_an_empty_layer_have_no_extremes) {
   EXPECT_TRUE(json["histogram"].empty());
 }
 
+TEST(Wire, statistics_are_as_the_contract_says) {
+  query::Statistics statistics;
+  statistics.texels = 5;
+  statistics.area_m2 = 0.5;
+  statistics.min = 1;
+  statistics.max = 3;
+  statistics.histogram = {{1, 2, 2, 0.2}, {2, 3, 3, 0.3}};
+  statistics.keys[3] = {3, 0.3, {1, 2, 3}, {0, 0, 0}, {2, 4, 6}};
+  for (const auto& json : {to_json(statistics), to_json(query::Statistics{})}) {
+    const auto fits = protocol::parse<protocol::Statistics>(json.dump());
+    EXPECT_TRUE(fits) << fits.error().field << ": " << fits.error().detail;
+  }
+  EXPECT_EQ(to_json(statistics)["histogram"][1]["texels"], 3);
+  EXPECT_EQ(to_json(statistics)["keys"][0]["key"].dump(), "3");
+}
+
 TEST(Wire, times_are_written_in_utc) {
   using namespace std::chrono;
   EXPECT_EQ(utc_text(system_clock::time_point(milliseconds(1'700'000'000'123))), "2023-11-14T22:13:20.123Z");

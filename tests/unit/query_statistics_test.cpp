@@ -6,7 +6,6 @@
 #include <random>
 
 #include "mesh/packed_position.h"
-#include "query/json.h"
 
 namespace strata::query {
 namespace {
@@ -166,9 +165,7 @@ TEST(QueryStatistics, an_empty_layer_has_none) {
   EXPECT_EQ(got.texels, 0u);
   EXPECT_EQ(got.area_m2, 0);
   EXPECT_TRUE(got.histogram.empty());
-  const auto json = to_json(got);
-  EXPECT_FALSE(json.contains("mean"));
-  EXPECT_EQ(json["histogram"].size(), 0u);
+  EXPECT_TRUE(got.keys.empty());
 }
 
 TEST(QueryStatistics, a_constant_layer_has_one_bin_and_no_spread) {
@@ -200,16 +197,6 @@ TEST(QueryStatistics, a_map_of_another_resolution_is_a_mistake_of_the_program) {
   LayerView view;
   view.layer.resolution = 512;
   EXPECT_THROW(statistics(view, map, kOrigin, 1), std::invalid_argument);
-}
-
-TEST(QueryStatistics, as_json_they_have_the_names_of_the_interface) {
-  const mesh::SurfaceMap map = make_map(256, 0.5, 3);
-  const auto json = to_json(statistics(make_layer(ValueType::u8, map, 4, 1), map, kOrigin, 1));
-  for (const char* member : {"texels", "area_m2", "min", "max", "mean", "std", "histogram", "keys"}) EXPECT_TRUE(json.contains(member));
-  ASSERT_EQ(json["keys"].size(), 4u);
-  EXPECT_TRUE(json["keys"][1]["key"].is_number_integer());
-  EXPECT_EQ(json["keys"][1]["key"], 1);
-  EXPECT_EQ(json["keys"][1]["bounds"]["min"].size(), 3u);
 }
 
 TEST(QueryStatistics, a_full_layer_of_4096_is_counted_whole) {

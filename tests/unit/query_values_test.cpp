@@ -5,7 +5,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
-#include "query/json.h"
 
 namespace strata::query {
 namespace {
@@ -79,7 +78,6 @@ TEST(QueryValues, a_point_that_is_not_a_number_hits_nothing) {
   const mesh::SearchTree tree(square());
   const auto point = nearest_point(tree, kOrigin, glm::dvec3(std::numeric_limits<double>::quiet_NaN()), {layer_with(ValueType::u8, 256, 0, 0, 1)});
   EXPECT_FALSE(point.hit);
-  EXPECT_EQ(to_json(point), nlohmann::json({{"hit", false}}));
 }
 
 TEST(QueryValues, a_pixel_picks_what_is_under_it) {
@@ -97,13 +95,6 @@ TEST(QueryValues, a_pixel_picks_what_is_under_it) {
   EXPECT_EQ(point.values[0].value, 9);
   EXPECT_FALSE(pick(tree, kOrigin, camera, 20, 20, {view}).hit) << "beside the square";
   EXPECT_FALSE(pick(tree, kOrigin, camera, -5, 200, {view}).hit) << "outside the window";
-}
-
-TEST(QueryValues, as_json_a_point_has_the_names_of_the_interface) {
-  const mesh::SearchTree tree(square());
-  const auto json = to_json(nearest_point(tree, kOrigin, kOrigin, {layer_with(ValueType::u8, 256, 0, 0, 1)}));
-  for (const char* member : {"hit", "position", "normal", "distance", "uv", "values"}) EXPECT_TRUE(json.contains(member)) << member;
-  EXPECT_EQ(json["values"]["salt"], nlohmann::json({{"valid", false}, {"value", 0}}));
 }
 
 }  // namespace
