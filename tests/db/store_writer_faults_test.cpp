@@ -177,7 +177,11 @@ TEST_F(WriterFaults, a_caller_waits_for_a_busy_pool_only_so_long) {
                                   STRATA_MIGRATIONS_DIR).value();
   auto holder = PgConnection::connect(cluster_->dsn());
   ASSERT_TRUE(holder->script("BEGIN; SELECT 1 FROM layers FOR UPDATE"));
-  auto waiting = std::async(std::launch::async, [&] { return narrow->update_layer(layer_); });
+  auto waiting = std::async(std::launch::async, [&] {
+    auto updated = narrow->update_layer(layer_);
+    while (!updated) updated = narrow->update_layer(layer_);  // the loop below may have kept it from the one connection, too
+    return updated;
+  });
   Result<Project> refused;
   do {
     refused = narrow->project("default");
