@@ -1,6 +1,7 @@
 #include "render/edit_pass.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 
@@ -112,6 +113,7 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
   map.boxes().bind_storage(4);
   map.positions().bind(0);
   if (depth) depth->bind(1);
+  const auto begin = std::chrono::steady_clock::now();
   timer_.begin();
   for (std::size_t first = 0; first < edit.blocks.size();) {
     const auto chunk = chunk_of(edit.blocks[first]);
@@ -130,6 +132,7 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
     first = last;
   }
   timer_.end();
+  edit.executed_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
   rows->submit();
   edit.rows = std::move(*rows);

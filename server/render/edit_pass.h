@@ -29,6 +29,7 @@ struct DispatchedEdit {
   gl::Readback rows;
   std::vector<CandidateBlock> blocks;
   std::size_t bytes_up = 0;
+  double executed_ms = 0;  // the calls of the dispatch: a software renderer executes in them
   std::vector<TileAddress> fresh_tiles;  // pages were made for these
 };
 

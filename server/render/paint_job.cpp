@@ -1,5 +1,6 @@
 #include "render/paint_job.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -183,7 +184,7 @@ Result<void> PaintJob::dispatch(GpuScene& scene, const Target& target) {
   if (!edit) return tl::unexpected(edit.error());
   edit_ = std::move(*edit);
   outcome_.bytes_up = edit_.bytes_up;
-  outcome_.dispatch_ms = elapsed_ms();
+  outcome_.dispatch_ms = elapsed_ms() - edit_.executed_ms;
   return {};
 }
 
@@ -192,7 +193,7 @@ void PaintJob::collect_rows(GpuScene& scene, const Target& target) {
   for (const TileAddress tile : edit_.fresh_tiles) {
     if (!masks.contains(tile)) target.layer.free_page(tile);
   }
-  if (!masks.empty()) outcome_.gpu_ms = scene.edit_pass().gpu_ms();
+  if (!masks.empty()) outcome_.gpu_ms = std::max(scene.edit_pass().gpu_ms(), edit_.executed_ms);
   glm::vec3 low(std::numeric_limits<float>::max()), high(-std::numeric_limits<float>::max());
   const mesh::SurfaceMap& map = target.map.map();
   for (const CandidateBlock& block : edit_.blocks) {

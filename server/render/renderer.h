@@ -47,9 +47,9 @@ struct WrittenTile {
 struct StrokeOutcome {
   std::vector<WrittenTile> tiles;
   glm::vec3 written_min{0}, written_max{0};  // model-space box of the written blocks; for changed screen rectangles
-  double gpu_ms = 0;       // of the dispatch, by timer query
+  double gpu_ms = 0;       // of the dispatch, by timer query; or the call, where the driver executes in it (on CPUs)
   double cull_ms = 0;      // choosing the blocks, on the CPU
-  double dispatch_ms = 0;  // from the start of culling until the commands were given
+  double dispatch_ms = 0;  // from the start of culling until the commands were given, without the dispatch
   std::size_t bytes_up = 0;  // blocks and parameters sent for the dispatch
 };
 

@@ -45,6 +45,7 @@ struct Scene {
 
 struct Measured {
   Samples edit, outcome;          // outcome: until the changed tiles are in main memory
+  Samples cull, gpu;              // parts of the edit
   std::uint64_t texels = 0;       // of the last dab
   std::uint64_t bytes_up = 0, bytes_down = 0;
 };
@@ -131,6 +132,8 @@ void measure_tiles(render::Renderer& renderer, render::LayerHandle layer, const 
   const auto outcome = await<render::StrokeOutcome>([&](auto done) { renderer.paint(layer, dab(scene, center, radius), std::move(done)); });
   measured.outcome.add(now_ms() - start);
   measured.edit.add(outcome.dispatch_ms + outcome.gpu_ms);
+  measured.cull.add(outcome.cull_ms);
+  measured.gpu.add(outcome.gpu_ms);
   measured.texels = 0;
   for (const auto& tile : outcome.tiles) measured.texels += static_cast<std::uint64_t>(tile.written.count());
   measured.bytes_up = outcome.bytes_up;
@@ -175,7 +178,11 @@ nlohmann::json row(const std::string& method, const Scene& scene, int texture, i
                {"texels", measured.texels},
                {"bytes_up", measured.bytes_up},
                {"bytes_down", measured.bytes_down}});
-  if (!measured.outcome.empty()) json["ms_to_main_memory_median"] = measured.outcome.median();
+  if (!measured.outcome.empty()) {
+    json["ms_to_main_memory_median"] = measured.outcome.median();
+    json["ms_cull_median"] = measured.cull.median();
+    json["ms_gpu_median"] = measured.gpu.median();
+  }
   return json;
 }
 
