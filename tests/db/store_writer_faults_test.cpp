@@ -177,15 +177,11 @@ TEST_F(WriterFaults, a_caller_waits_for_a_busy_pool_only_so_long) {
                                   STRATA_MIGRATIONS_DIR).value();
   auto holder = PgConnection::connect(cluster_->dsn());
   ASSERT_TRUE(holder->script("BEGIN; SELECT 1 FROM layers FOR UPDATE"));
-  auto waiting = std::async(std::launch::async, [&] {
-    auto updated = narrow->update_layer(layer_);
-    while (!updated) updated = narrow->update_layer(layer_);  // the loop below may have kept it from the one connection, too
-    return updated;
-  });
-  Result<Project> refused;
-  do {
-    refused = narrow->project("default");
-  } while (refused);
+  auto waiting = std::async(std::launch::async, [&] { return narrow->update_layer(layer_); });
+  while (holder->query("SELECT count(*) FROM pg_stat_activity WHERE wait_event_type = 'Lock'")->integer(0, 0) == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // until it has the connection
+  const auto refused = narrow->project("default");
+  ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, 503);
   EXPECT_EQ(refused.error().title, "Database busy");
   EXPECT_TRUE(narrow->ready()) << "busy is not away";
