@@ -199,7 +199,7 @@ Command add_stream(CLI::App& app) {
   auto* command = app.add_subcommand("stream", "One client: stroke to pixels, moving camera, bytes kept per hour");
   auto options = std::make_shared<Options>();
   command->add_option("--model", options->model, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or a file")->capture_default_str();
-  command->add_option("--layers", options->layers, "Filled layers shown")->capture_default_str();
+  command->add_option("--layers", options->layers, "Filled layers shown; the strokes go to the topmost")->check(CLI::Range(1, 64))->capture_default_str();
   command->add_option("--radius", options->radius, "Brush radius in pixels")->capture_default_str();
   command->add_option("--strokes", options->strokes)->capture_default_str();
   command->add_option("--frames", options->frames)->capture_default_str();
