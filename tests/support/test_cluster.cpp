@@ -86,16 +86,22 @@ std::vector<int> children_of(int parent) {
 
 }  // namespace
 
-Hang::Hang(const store::Cluster& cluster) : stopped_{cluster.postmaster_pid()} {
-  kill(stopped_.front(), SIGSTOP);  // first: then it has no new children
+Hang::Hang(const store::Cluster& cluster) : cluster_(cluster), stopped_{cluster.postmaster_pid()} {
+  ::kill(stopped_.front(), SIGSTOP);  // first: then it has no new children
   for (const int child : children_of(stopped_.front())) {
-    kill(child, SIGSTOP);
+    ::kill(child, SIGSTOP);
     stopped_.push_back(child);
   }
 }
 
 Hang::~Hang() {
-  for (const int pid : stopped_) kill(pid, SIGCONT);
+  for (const int pid : stopped_) ::kill(pid, SIGCONT);
+}
+
+void Hang::kill() {
+  kill_postmaster(cluster_);
+  for (const int pid : stopped_) ::kill(pid, SIGKILL);
+  stopped_.clear();
 }
 
 std::string fresh_database() {

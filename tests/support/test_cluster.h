@@ -23,8 +23,10 @@ class Hang {
   ~Hang();
   Hang(const Hang&) = delete;
   Hang& operator=(const Hang&) = delete;
+  void kill();  // kill -9 of all: none of them does anything more
 
  private:
+  const store::Cluster& cluster_;
   std::vector<int> stopped_;
 };
 
