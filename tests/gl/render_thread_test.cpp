@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <thread>
@@ -57,6 +58,10 @@ class Lanes : public testing::Test {
   void note(const std::string& what) {
     std::lock_guard lock(mutex_);
     log_.push_back(what);
+  }
+  bool was_noted(const std::string& what) {
+    std::lock_guard lock(mutex_);
+    return std::find(log_.begin(), log_.end(), what) != log_.end();
   }
   Job noted(const std::string& name, int steps = 1) {
     return {[this, name, left = std::make_shared<int>(steps)] {
@@ -187,7 +192,7 @@ TEST_F(Lanes, a_lost_context_answers_all_that_waits_and_goes_on) {
   thread_->post(Lane::background, noted("upload"));
   lost_ = true;
   gate.open.set_value();
-  while (lost_) std::this_thread::yield();
+  while (!was_noted("recovered")) std::this_thread::yield();
   thread_->post(Lane::ordered, noted("after"));
   const auto log = finish();
   EXPECT_EQ(log, (std::vector<std::string>{"edit 503 GPU lost", "upload 503 GPU lost", "recovered", "after"}));
