@@ -196,18 +196,18 @@ TEST(Edit, a_radius_far_beyond_the_window_paints_all_that_is_seen) {
 class MapRefusal {
  public:
   explicit MapRefusal(int granted) : real_(epoxy_glMapNamedBufferRange) {
-    granted_ = granted;
-    next_ = real_;
+    granted_left = granted;
+    next_call = real_;
     epoxy_glMapNamedBufferRange = [](GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access) -> void* {
-      return granted_-- == 0 ? nullptr : next_(buffer, offset, length, access);
+      return granted_left-- == 0 ? nullptr : next_call(buffer, offset, length, access);
     };
   }
   ~MapRefusal() { epoxy_glMapNamedBufferRange = real_; }
 
  private:
   const PFNGLMAPNAMEDBUFFERRANGEPROC real_;
-  static inline PFNGLMAPNAMEDBUFFERRANGEPROC next_;
-  static inline int granted_;
+  static inline PFNGLMAPNAMEDBUFFERRANGEPROC next_call;
+  static inline int granted_left;
 };
 
 TEST(Edit, a_stroke_that_is_refused_for_want_of_memory_has_painted_nothing) {

@@ -175,7 +175,7 @@ struct Case {
   std::string name;
   Geometry geometry;
 };
-void PrintTo(const Case& instance, std::ostream* out) {
+void PrintTo(const Case& instance, std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest looks for it
   *out << instance.name;
 }
 
