@@ -57,7 +57,7 @@ class GpuThread {
   void stop();
 
   // False when the lane is full (unless `always`) or the thread has stopped: the caller answers. `always` is for
-  // removals: one at most for each handle that was given out.
+  // removals, one at most for each handle that was given out, and for the one who waits until a lane is done.
   bool post(Lane lane, Job job, bool always = false);
   // Runs `reply` on the GPU thread before any other work; on this thread when it has stopped. Replies have no capacity
   // of their own: what waits is one for each request that was refused or replaced during a step.

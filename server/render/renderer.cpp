@@ -220,6 +220,18 @@ void Renderer::lose_context_for_test() {
   impl_->thread.wake();
 }
 
+void Renderer::finish() {
+  for (const Lane lane : {Lane::ordered, Lane::background}) {
+    std::promise<void> reached;
+    Job job{[&] {
+              reached.set_value();
+              return Step::done;
+            },
+            [&](const Problem&) { reached.set_value(); }};
+    if (impl_->thread.post(lane, std::move(job), true)) reached.get_future().wait();
+  }
+}
+
 void Renderer::run_on_gpu_thread_for_test(std::function<void()> work) {
   std::promise<void> ran;
   impl_->post_simple<void>([&](Result<void>) { ran.set_value(); },

@@ -130,6 +130,9 @@ class Renderer {
   void remove_view(ViewHandle view);
   void draw(FrameRequest request, Done<Frame> done);
 
+  // Returns when all that was asked before, frames excepted, is answered. Blocks.
+  void finish();
+
   // Called on the GPU thread after a lost context was replaced: every handle given before is void. There is one callback: a new
   // one takes the place of the last, an empty one removes it. The last is not running any more when this returns.
   void on_context_lost(std::function<void()> callback);

@@ -68,7 +68,6 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void when_idle(Work work);
 
   std::int64_t sequence() const { return sequence_; }
-  std::int64_t durable_sequence() const { return durable_; }
 
   // Starts nothing more, and tells the host as soon as nothing is under way: then the layers' handles and mirrors may be
   // changed. Journal entries may still be on their way, but none is taken back before `resume`.

@@ -5,7 +5,6 @@
 
 #include "core/log.h"
 #include "core/slug.h"
-#include "room/await.h"
 #include "room/open_room.h"
 
 namespace strata::room {
@@ -49,16 +48,9 @@ struct Rooms::Impl {
     writer.drain();
     workers.join();
     readers.join();
-    finish_gpu_work();
+    renderer.finish();  // nothing comes back to strands that are gone
     strands.join();
     rooms.clear();
-  }
-
-  // What was asked of the GPU before is answered when this returns: nothing comes back to strands that are gone. Both questions are
-  // refused, in their turn.
-  void finish_gpu_work() {
-    (void)await<render::ViewHandle>([&](auto done) { renderer.add_view(0, std::move(done)); });
-    (void)await<void>([&](auto done) { renderer.add_surface_map(0, nullptr, std::move(done)); });
   }
 
   std::shared_ptr<OpenRoom> find(const std::string& ref) {
