@@ -1,57 +1,10 @@
 #include "mesh/load.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cstring>
-
+#include "core/mapped_file.h"
 #include "mesh/load_formats.h"
 
 namespace strata::mesh {
 namespace {
-
-// A file as read-only memory. The file must not shrink meanwhile: uploads and imports are finished before they are
-// read.
-class MappedFile {
- public:
-  MappedFile() = default;
-  MappedFile(MappedFile&& other) noexcept
-      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
-  MappedFile& operator=(MappedFile&&) = delete;
-  ~MappedFile() {
-    if (data_) ::munmap(data_, size_);
-  }
-
-  static Result<MappedFile> open(const std::filesystem::path& file) {
-    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) return refuse_file("The file cannot be opened: " + std::string(std::strerror(errno)) + ".");
-    MappedFile mapped;
-    struct stat status {};
-    const bool regular = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
-    if (regular && status.st_size > 0) {
-      void* data = ::mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
-      if (data != MAP_FAILED) {
-        mapped.data_ = data;
-        mapped.size_ = static_cast<std::size_t>(status.st_size);
-        ::madvise(data, mapped.size_, MADV_SEQUENTIAL);
-      }
-    }
-    const int error = errno;
-    ::close(descriptor);
-    if (!regular) return refuse_file("This is not a regular file.");
-    if (status.st_size > 0 && !mapped.data_)
-      return refuse_file("The file cannot be read: " + std::string(std::strerror(error)) + ".");
-    return mapped;
-  }
-
-  std::span<const std::uint8_t> bytes() const { return {static_cast<const std::uint8_t*>(data_), size_}; }
-
- private:
-  void* data_ = nullptr;
-  std::size_t size_ = 0;
-};
 
 enum class Format { ply, obj };
 
@@ -85,7 +38,7 @@ Result<LoadedMesh> load_mesh(const std::filesystem::path& file, const std::strin
   if (!format) return tl::unexpected(format.error());
   auto loaded = [&]() -> Result<LoadedMesh> {
     const auto mapped = MappedFile::open(file);
-    if (!mapped) return tl::unexpected(mapped.error());
+    if (!mapped) return refuse_file(mapped.error().detail);
     return parse(*format, mapped->bytes(), progress);
   }();  // unmapped here: `repair` needs the memory
   if (!loaded) return loaded;

@@ -201,11 +201,6 @@ std::optional<int> PlyElement::find(std::initializer_list<std::string_view> name
   return std::nullopt;
 }
 
-bool PlyElement::has_list() const {
-  return std::any_of(properties.begin(), properties.end(),
-                     [](const PlyProperty& p) { return p.count_type.has_value(); });
-}
-
 std::uint64_t PlyElement::least_bytes(bool ascii) const {
   std::uint64_t sum = 0;
   for (const PlyProperty& property : properties)

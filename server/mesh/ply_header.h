@@ -26,7 +26,6 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 
   std::optional<int> find(std::initializer_list<std::string_view> names) const;  // index of the first that is there
-  bool has_list() const;
   // Least bytes that one such element takes (a list may be empty; ascii needs a digit and a blank a value).
   std::uint64_t least_bytes(bool ascii) const;
 };

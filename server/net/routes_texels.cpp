@@ -1,6 +1,6 @@
+#include "core/mapped_file.h"
 #include "net/byte_budget.h"
 #include "net/digest.h"
-#include "net/mapped_file.h"
 #include "net/routes.h"
 #include "query/raster.h"
 
@@ -86,15 +86,15 @@ void write_texels(const RouteContext& context, ByteBudget& budget, const Request
   if (auto fits = check_size(*layer, request.body_bytes); !fits) return respond(fits.error());
   auto held = budget.take(raster_bytes(*layer));
   if (!held) return respond(held.error());
-  const MappedFile file(request.body_file);
-  if (file.bytes().empty()) return respond(Problem{400, "Empty body", "Send the raster file as the body.", "body"});
-  auto tiles = (*format)->decode(*layer, file.bytes());
+  const auto file = MappedFile::open(request.body_file);
+  if (!file || file->bytes().empty()) return respond(Problem{400, "Empty body", "Send the raster file as the body.", "body"});
+  auto tiles = (*format)->decode(*layer, file->bytes());
   if (!tiles) return respond(tiles.error());
   room::EditRequest edit;
   edit.id = edit_id(request, *layer, "import");
   edit.user = request.user();
   edit.layer_id = layer->id;
-  edit.record = {{"op", "import"}, {"format", (*format)->extension}, {"bytes", request.body_bytes}, {"sha256", sha256_hex(file.view())}};
+  edit.record = {{"op", "import"}, {"format", (*format)->extension}, {"bytes", request.body_bytes}, {"sha256", sha256_hex(file->view())}};
   edit.edit = room::ImportEdit{std::move(*tiles)};
   apply_edit(context, request, *room, std::move(edit), respond);
 }

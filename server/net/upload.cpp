@@ -3,9 +3,9 @@
 #include <cstring>
 #include <fstream>
 
+#include "core/mapped_file.h"
 #include "core/uuid.h"
 #include "jobs/import_job.h"
-#include "net/mapped_file.h"
 
 namespace strata::net {
 namespace {
@@ -89,12 +89,12 @@ Result<Upload> take_part(const Request& request, std::string_view body, const fs
 }  // namespace
 
 Result<Upload> take_upload(const Request& request, const fs::path& folder) {
-  const MappedFile mapped(request.body_file);
-  if (mapped.view().empty()) return fail(400, "Empty body", kAccepted, "body");
+  const auto mapped = MappedFile::open(request.body_file);
+  if (!mapped || mapped->view().empty()) return fail(400, "Empty body", kAccepted, "body");
   const std::string type = to_lower(request.header("content-type"));
-  if (type.starts_with("multipart/form-data")) return take_part(request, mapped.view(), folder);
+  if (type.starts_with("multipart/form-data")) return take_part(request, mapped->view(), folder);
   if (type.starts_with("multipart/")) return fail(415, "Form not understood", kAccepted, "Content-Type");
-  if (is_archive(mapped.view())) return archive_refused();
+  if (is_archive(mapped->view())) return archive_refused();
   return Upload{request.body_file, jobs::base_filename(parameter(request.header("content-disposition"), "filename"))};
 }
 

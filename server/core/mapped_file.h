@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "core/problem.h"
+
+namespace strata {
+
+// A file as read-only memory. The file must not shrink meanwhile: uploads and imports are finished before they are read.
+class MappedFile {
+ public:
+  // A Problem 422 that says why a file cannot be read. An empty file has no bytes.
+  static Result<MappedFile> open(const std::filesystem::path& file);
+  MappedFile(MappedFile&& other) noexcept;
+  MappedFile& operator=(MappedFile&&) = delete;
+  ~MappedFile();
+
+  std::span<const std::uint8_t> bytes() const { return {static_cast<const std::uint8_t*>(data_), size_}; }
+  std::string_view view() const { return {static_cast<const char*>(data_), size_}; }
+
+ private:
+  MappedFile() = default;
+
+  void* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace strata
