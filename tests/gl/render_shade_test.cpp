@@ -46,6 +46,22 @@ class Shade : public testing::Test {
     const auto got = pixel(renderer_.draw(request_), 100, 90);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(got[i], unlit[i] * lit, 2.0) << "channel " << i;
   }
+  // A bumpy sphere with an empty layer, seen whole.
+  struct Sphere {
+    render::LayerHandle layer;
+    std::shared_ptr<const Palette> palette;
+    render::FrameRequest request;  // without layers
+  };
+  Sphere add_sphere(int width, int height) {
+    const auto model = renderer_.add(make_scene(bumpy_sphere(30), 512));
+    Sphere sphere{renderer_.add_layer(model, ValueType::u8, 512),
+                  std::make_shared<const Palette>(default_palette(ValueType::u8, false)), {}};
+    sphere.request.view = renderer_.add_view(model);
+    sphere.request.camera = perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, width, height);
+    sphere.request.width = width, sphere.request.height = height;
+    return sphere;
+  }
+
   TestRenderer renderer_;
   Scene scene_;
   render::ModelHandle model_;
@@ -134,14 +150,7 @@ TEST_F(Shade, more_layers_than_one_draw_takes_are_all_shown) {
 }
 
 TEST_F(Shade, a_large_picture_is_shaded_in_bands_without_a_seam) {
-  const auto scene = make_scene(bumpy_sphere(30), 512);
-  const auto model = renderer_.add(scene);
-  const auto layer = renderer_.add_layer(model, ValueType::u8, 512);
-  auto palette = std::make_shared<Palette>(default_palette(ValueType::u8, false));
-  render::FrameRequest request;
-  request.view = renderer_.add_view(model);
-  request.camera = perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 2048, 1800);
-  request.width = 2048, request.height = 1800;
+  auto [layer, palette, request] = add_sphere(2048, 1800);
   for (int i = 0; i < 3; ++i) request.layers.push_back({layer, palette, 0.5f});
   renderer_.paint(layer, dab(request.camera, 1024, 900, 500, 100));
   const auto picture = renderer_.draw(request);
@@ -179,14 +188,7 @@ TEST_F(Shade, the_top_row_of_the_picture_is_the_top_of_the_view) {
 }
 
 TEST_F(Shade, a_reshaded_rectangle_equals_a_full_redraw) {
-  const auto scene = make_scene(bumpy_sphere(30), 512);
-  const auto model = renderer_.add(scene);
-  const auto layer = renderer_.add_layer(model, ValueType::u8, 512);
-  auto palette = std::make_shared<Palette>(default_palette(ValueType::u8, false));
-  render::FrameRequest request;
-  request.view = renderer_.add_view(model);
-  request.camera = perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 640, 480);
-  request.width = 640, request.height = 480;
+  auto [layer, palette, request] = add_sphere(640, 480);
   request.layers = {{layer, palette, 0.8f}};
   auto picture = renderer_.draw(request);
   ASSERT_EQ(picture.rect, (render::PixelRect{0, 0, 640, 480}));
