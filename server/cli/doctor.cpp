@@ -63,11 +63,13 @@ void check_gpu(Report& report) {
                                      std::to_string(info.max_texture_units) + ", image units " +
                                      std::to_string(info.max_image_units));
   if (info.max_texture_size < 8192)
-    report.warn("Layer resolution", "at most " + std::to_string(info.max_texture_size), "Use layers of up to that resolution.");
+    report.warn("Layer resolution", "at most " + std::to_string(info.max_texture_size),
+                "Use layers of up to that resolution.");
 }
 
 void check_schema(Report& report, const store::DatabaseState& state) {
-  const std::string versions = "version " + std::to_string(state.schema_version) + ", this program has " + std::to_string(state.known_version);
+  const std::string versions =
+      "version " + std::to_string(state.schema_version) + ", this program has " + std::to_string(state.known_version);
   if (state.schema_version > state.known_version)
     report.bad("Schema", versions, "The database is newer: start the version of Strata that wrote it, or a later one.");
   else if (state.schema_version < state.known_version)
@@ -80,7 +82,8 @@ void check_connection(Report& report, const std::string& dsn, const std::string&
   auto state = store::inspect_database(dsn, install_dirs().migrations);
   if (!state) return report.bad("PostgreSQL", state.error().title, state.error().detail);
   report.good("PostgreSQL", state->server_version + ", " + which);
-  if (state->encoding != "UTF8") report.bad("Encoding", state->encoding, "Strata needs a database made with ENCODING 'UTF8'.");
+  if (state->encoding != "UTF8")
+    report.bad("Encoding", state->encoding, "Strata needs a database made with ENCODING 'UTF8'.");
   check_schema(report, *state);
   report.good("Database size", gib(double(state->bytes)));
 }

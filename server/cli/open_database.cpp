@@ -10,7 +10,9 @@ void add_data_options(CLI::App& command, DataOptions& options) {
   command.add_option("--data", options.data, "Folder of the private database and of uploads under way")
       ->envname("STRATA_DATA")
       ->capture_default_str();
-  command.add_option("--database", options.database, "Use this PostgreSQL (libpq connection string) instead of a private one")
+  command
+      .add_option("--database", options.database,
+                  "Use this PostgreSQL (libpq connection string) instead of a private one")
       ->envname("STRATA_DATABASE");
 }
 
@@ -19,7 +21,8 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) 
   std::error_code error;
   std::filesystem::create_directories(options.data, error);
   if (error)
-    return fail(500, "Data folder cannot be made", options.data.string() + ": " + error.message() + ". Name another with --data.");
+    return fail(500, "Data folder cannot be made",
+                options.data.string() + ": " + error.message() + ". Name another with --data.");
   store::StoreOptions store_options;
   store_options.dsn = options.database;
   if (options.database.empty()) {
@@ -35,8 +38,8 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) 
 }
 
 int report(const Problem& problem) {
-  std::cerr << "strata: " << problem.title << ": " << problem.detail << (problem.field.empty() ? "" : " (" + problem.field + ")")
-            << std::endl;
+  std::cerr << "strata: " << problem.title << ": " << problem.detail
+            << (problem.field.empty() ? "" : " (" + problem.field + ")") << std::endl;
   return 1;
 }
 

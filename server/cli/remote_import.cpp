@@ -17,7 +17,8 @@ struct Reply {
 };
 
 tl::unexpected<Problem> not_strata(const std::string& what) {
-  return fail(502, "Not a Strata server", what + " is not what a Strata server answers. Is the address right, and is nothing in between?");
+  return fail(502, "Not a Strata server",
+              what + " is not what a Strata server answers. Is the address right, and is nothing in between?");
 }
 
 // The JSON object in a reply, with these members.
@@ -70,21 +71,22 @@ class Client {
     if (!in) return fail(400, "File cannot be read", file.string());
     curl_easy_setopt(curl_.get(), CURLOPT_POST, 1L);
     curl_easy_setopt(curl_.get(), CURLOPT_READDATA, in.get());
-    curl_easy_setopt(curl_.get(), CURLOPT_POSTFIELDSIZE_LARGE, static_cast<curl_off_t>(std::filesystem::file_size(file)));
+    curl_easy_setopt(curl_.get(), CURLOPT_POSTFIELDSIZE_LARGE,
+                     static_cast<curl_off_t>(std::filesystem::file_size(file)));
     curl_easy_setopt(curl_.get(), CURLOPT_NOPROGRESS, 0L);
     curl_easy_setopt(curl_.get(), CURLOPT_XFERINFODATA, &progress);
-    curl_easy_setopt(curl_.get(), CURLOPT_XFERINFOFUNCTION,
-                     +[](void* p, curl_off_t, curl_off_t, curl_off_t total, curl_off_t now) {
-                       auto& watched = *static_cast<Progress*>(p);
-                       if (total > 0) watched.report(double(now) / double(total), "Sending the file");
-                       return watched.cancelled() ? 1 : 0;
-                     });
+    curl_easy_setopt(
+        curl_.get(), CURLOPT_XFERINFOFUNCTION, +[](void* p, curl_off_t, curl_off_t, curl_off_t total, curl_off_t now) {
+          auto& watched = *static_cast<Progress*>(p);
+          if (total > 0) watched.report(double(now) / double(total), "Sending the file");
+          return watched.cancelled() ? 1 : 0;
+        });
     return perform(path);
   }
 
   std::string escape(const std::string& text) {
-    std::unique_ptr<char, void (*)(void*)> out(curl_easy_escape(curl_.get(), text.c_str(), static_cast<int>(text.size())),
-                                               &curl_free);
+    std::unique_ptr<char, void (*)(void*)> out(
+        curl_easy_escape(curl_.get(), text.c_str(), static_cast<int>(text.size())), &curl_free);
     return out.get();
   }
 
@@ -99,7 +101,8 @@ class Client {
     if (code != CURLE_OK) return fail(503, "Server not reached", base_ + ": " + curl_easy_strerror(code));
     curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &reply.status);
     if (reply.status >= 400) {
-      return tl::unexpected(problem_of(nlohmann::json::parse(reply.body, nullptr, false), static_cast<int>(reply.status), "Refused",
+      return tl::unexpected(problem_of(nlohmann::json::parse(reply.body, nullptr, false),
+                                       static_cast<int>(reply.status), "Refused",
                                        "The server answered " + std::to_string(reply.status) + "."));
     }
     return reply;

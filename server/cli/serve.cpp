@@ -32,9 +32,11 @@ struct Address {
 
 Result<Address> parse_listen(const std::string& text) {
   const auto colon = text.rfind(':');
-  if (colon == std::string::npos) return fail(400, "Listen address", "Give HOST:PORT, for example 127.0.0.1:8080.", "--listen");
+  if (colon == std::string::npos)
+    return fail(400, "Listen address", "Give HOST:PORT, for example 127.0.0.1:8080.", "--listen");
   Address address{text.substr(0, colon), 0};
-  if (address.host.size() > 2 && address.host.front() == '[') address.host = address.host.substr(1, address.host.size() - 2);
+  if (address.host.size() > 2 && address.host.front() == '[')
+    address.host = address.host.substr(1, address.host.size() - 2);
   const std::string port = text.substr(colon + 1);
   char* end = nullptr;
   const long number = std::strtol(port.c_str(), &end, 10);
@@ -43,10 +45,11 @@ Result<Address> parse_listen(const std::string& text) {
   address.port = static_cast<std::uint16_t>(number);
   // Accounts are what would protect a server that others can reach.
   if (address.host != "127.0.0.1" && address.host != "::1" && address.host != "localhost")
-    return fail(403, "Listen address not allowed",
-                "This server has no accounts, so it listens on loopback only (127.0.0.1). Reach it from elsewhere through an SSH "
-                "tunnel or a proxy that signs people in.",
-                "--listen");
+    return fail(
+        403, "Listen address not allowed",
+        "This server has no accounts, so it listens on loopback only (127.0.0.1). Reach it from elsewhere through an SSH "
+        "tunnel or a proxy that signs people in.",
+        "--listen");
   return address;
 }
 
@@ -113,7 +116,8 @@ int run(const ServeOptions& options) {
   auto server = net::Server::start(server_options, store, rooms, jobs, **renderer);
   if (!server) return report(server.error());
 
-  const std::string url = "http://" + (address->host == "::1" ? "[::1]" : address->host) + ":" + std::to_string((*server)->port());
+  const std::string url =
+      "http://" + (address->host == "::1" ? "[::1]" : address->host) + ":" + std::to_string((*server)->port());
   std::cout << "listening on " << url << std::endl;
   auto link = store.create_token(store::Store::TokenKind::owner_link, "owner", "owner", std::chrono::hours(24));
   if (!link) return report(link.error());
@@ -137,8 +141,11 @@ Command add_serve(CLI::App& app) {
       ->envname("STRATA_LISTEN")
       ->check(check_listen)
       ->capture_default_str();
-  command->add_option("--origin", options->origins, "Further web origins that may connect (repeat)")->envname("STRATA_ORIGIN");
-  command->add_option("--gpu-memory", options->gpu_memory, "Budget of GPU memory, e.g. 4GiB (default: what the driver has)")
+  command->add_option("--origin", options->origins, "Further web origins that may connect (repeat)")
+      ->envname("STRATA_ORIGIN");
+  command
+      ->add_option("--gpu-memory", options->gpu_memory,
+                   "Budget of GPU memory, e.g. 4GiB (default: what the driver has)")
       ->envname("STRATA_GPU_MEMORY")
       ->transform(CLI::AsSizeValue(false));
   command->add_flag("--gl-debug", options->debug, "Ask the driver for debug messages (slow)");

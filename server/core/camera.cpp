@@ -26,16 +26,18 @@ bool is_invertible(const glm::dmat4& m) {
 Result<void> validate(const Camera& camera, const std::string& field) {
   auto size = [&](int value, const char* side) -> Result<void> {
     if (value < 1 || value > kMaxViewSize)
-      return fail(422, "Size out of range", "A camera's window is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.",
-                  field + "." + side);
+      return fail(422, "Size out of range",
+                  "A camera's window is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", field + "." + side);
     return {};
   };
   if (auto ok = size(camera.width, "width"); !ok) return ok;
   if (auto ok = size(camera.height, "height"); !ok) return ok;
   auto matrix = [&](const glm::dmat4& m, const char* name) -> Result<void> {
-    if (!is_finite(m)) return fail(422, "Matrix not finite", "Every element must be a finite number.", field + "." + name);
+    if (!is_finite(m))
+      return fail(422, "Matrix not finite", "Every element must be a finite number.", field + "." + name);
     if (!is_invertible(m))
-      return fail(422, "Matrix is singular", "The matrix has no inverse, so nothing can be seen with it.", field + "." + name);
+      return fail(422, "Matrix is singular", "The matrix has no inverse, so nothing can be seen with it.",
+                  field + "." + name);
     return {};
   };
   if (auto ok = matrix(camera.view, "view"); !ok) return ok;

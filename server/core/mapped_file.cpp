@@ -12,7 +12,9 @@
 namespace strata {
 namespace {
 
-tl::unexpected<Problem> unreadable(std::string detail) { return fail(422, "File not readable", std::move(detail), "file"); }
+tl::unexpected<Problem> unreadable(std::string detail) {
+  return fail(422, "File not readable", std::move(detail), "file");
+}
 
 }  // namespace
 

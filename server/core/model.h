@@ -29,11 +29,11 @@ struct AtlasReport {
   std::string source;  // "file": UVs of the scan were kept; "made": unwrapped here
   int lowest_resolution = 2048;
   int charts = 0;
-  double coverage = 0;           // share of texels that lie on the surface, at lowest_resolution
-  double overlap = 0;            // share of covered texels with more than one owner, at lowest_resolution
-  double stretch_mean = 0;       // area-weighted surface area per uv area, relative to the mean
+  double coverage = 0;      // share of texels that lie on the surface, at lowest_resolution
+  double overlap = 0;       // share of covered texels with more than one owner, at lowest_resolution
+  double stretch_mean = 0;  // area-weighted surface area per uv area, relative to the mean
   double stretch_p99 = 0;
-  double texel_area_max = 0;     // unit², largest surface area of one texel at lowest_resolution
+  double texel_area_max = 0;  // unit², largest surface area of one texel at lowest_resolution
 };
 
 struct Repair {
@@ -55,15 +55,15 @@ struct Model {
   Unit unit = Unit::m;
   bool unit_assumed = true;
   bool scale_verified = false;
-  std::string up = "z";     // "x", "y" or "z"
-  std::string north;        // free: degrees from +y, or empty
-  std::string crs;          // "EPSG:n" or empty
-  glm::dvec3 origin{0};     // model space is world minus origin
+  std::string up = "z";  // "x", "y" or "z"
+  std::string north;     // free: degrees from +y, or empty
+  std::string crs;       // "EPSG:n" or empty
+  glm::dvec3 origin{0};  // model space is world minus origin
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;
   glm::dvec3 bounds_min{0};  // world
   glm::dvec3 bounds_max{0};
-  double area = 0;           // unit²
+  double area = 0;  // unit²
   AtlasReport atlas;
   std::vector<Repair> repairs;
   std::vector<SourceFile> source_files;

@@ -19,9 +19,12 @@ Result<Rgba> parse_color(const nlohmann::json& json, const std::string& field) {
     int byte = 0;
     for (std::size_t k = i; k < i + 2; ++k) {
       const char c = static_cast<char>(std::tolower(static_cast<unsigned char>(text[k])));
-      if (c >= '0' && c <= '9') byte = byte * 16 + (c - '0');
-      else if (c >= 'a' && c <= 'f') byte = byte * 16 + (c - 'a' + 10);
-      else return wrong();
+      if (c >= '0' && c <= '9')
+        byte = byte * 16 + (c - '0');
+      else if (c >= 'a' && c <= 'f')
+        byte = byte * 16 + (c - 'a' + 10);
+      else
+        return wrong();
     }
     color[i / 2] = static_cast<std::uint8_t>(byte);
   }
@@ -64,10 +67,14 @@ Result<Palette> palette_from_json(const nlohmann::json& json, const std::string&
   if (!json.is_object()) return fail(422, "Palette not usable", "A palette is an object.", field);
   Palette palette;
   const std::string mode = json.value("mode", std::string("linear"));
-  if (mode == "linear") palette.mode = PaletteMode::linear;
-  else if (mode == "step") palette.mode = PaletteMode::step;
-  else if (mode == "categorical") palette.mode = PaletteMode::categorical;
-  else return wrong("mode", "The mode is linear, step or categorical.");
+  if (mode == "linear")
+    palette.mode = PaletteMode::linear;
+  else if (mode == "step")
+    palette.mode = PaletteMode::step;
+  else if (mode == "categorical")
+    palette.mode = PaletteMode::categorical;
+  else
+    return wrong("mode", "The mode is linear, step or categorical.");
 
   const auto points = json.find("points");
   if (points != json.end()) {
@@ -112,8 +119,9 @@ nlohmann::json to_json(const Palette& palette) {
 
 Palette default_palette(ValueType type, bool categorical) {
   if (categorical) {
-    static constexpr Rgba kOkabeIto[] = {{230, 159, 0, 255}, {86, 180, 233, 255}, {0, 158, 115, 255}, {240, 228, 66, 255},
-                                         {0, 114, 178, 255}, {213, 94, 0, 255},   {204, 121, 167, 255}};
+    static constexpr Rgba kOkabeIto[] = {{230, 159, 0, 255},  {86, 180, 233, 255}, {0, 158, 115, 255},
+                                         {240, 228, 66, 255}, {0, 114, 178, 255},  {213, 94, 0, 255},
+                                         {204, 121, 167, 255}};
     Palette palette{PaletteMode::categorical, 1, 7, {}, {}};
     for (int i = 0; i < 7; ++i) palette.points.push_back({double(i + 1), kOkabeIto[i], {}});
     return palette;
@@ -143,8 +151,8 @@ Rgba color_of(const Palette& palette, double value) {
     return generated_color(static_cast<std::uint32_t>(static_cast<std::int64_t>(value)));
   }
   const double v = std::clamp(value, palette.min, palette.max);
-  auto above = std::upper_bound(points.begin(), points.end(), v,
-                                [](double x, const Palette::Point& p) { return x < p.at; });
+  auto above =
+      std::upper_bound(points.begin(), points.end(), v, [](double x, const Palette::Point& p) { return x < p.at; });
   if (above == points.begin()) return points.front().color;
   const auto below = above - 1;
   if (palette.mode == PaletteMode::step || above == points.end()) return below->color;

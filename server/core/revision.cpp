@@ -46,7 +46,8 @@ void append(std::vector<std::uint8_t>& raw, const void* data, std::size_t bytes)
 
 }  // namespace
 
-TileRevision make_revision(TileAddress address, const TileData& before, const TileData& after, const TileMask& written) {
+TileRevision make_revision(TileAddress address, const TileData& before, const TileData& after,
+                           const TileMask& written) {
   TileRevision revision{address, written, after};
   apply(TileRevision{address, {}, before}, revision.difference);
   return revision;
@@ -68,7 +69,8 @@ std::vector<std::uint8_t> encode_revision(const TileRevision& revision) {
 
 Result<TileRevision> decode_revision(TileAddress address, ValueType type, std::span<const std::uint8_t> bytes) {
   TileRevision revision{address, {}, TileData(type)};
-  auto raw = decompress(kRevisionVersion, bytes_per_texel(type), 2 * mask_bytes() + revision.difference.values.size(), bytes);
+  auto raw =
+      decompress(kRevisionVersion, bytes_per_texel(type), 2 * mask_bytes() + revision.difference.values.size(), bytes);
   if (!raw) return tl::unexpected(raw.error());
   std::memcpy(revision.written.words.data(), raw->data(), mask_bytes());
   std::memcpy(revision.difference.valid.words.data(), raw->data() + mask_bytes(), mask_bytes());

@@ -45,9 +45,9 @@ struct TileData {
   explicit TileData(ValueType type) : values(std::size_t{kTexelsPerTile} * strata::bytes_per_texel(type)) {}
   bool operator==(const TileData&) const = default;
 
-  std::uint32_t bits(int texel) const;                 // bits of the texel, 0 when invalid
-  void write(int texel, std::uint32_t bits);           // sets the value and the valid flag
-  void clear(int texel);                               // erases: value 0, invalid
+  std::uint32_t bits(int texel) const;        // bits of the texel, 0 when invalid
+  void write(int texel, std::uint32_t bits);  // sets the value and the valid flag
+  void clear(int texel);                      // erases: value 0, invalid
   int texel_bytes() const { return static_cast<int>(values.size() / kTexelsPerTile); }
 };
 

@@ -50,8 +50,8 @@ Result<std::uint32_t> encode_value(ValueType type, double value) {
   if (!std::isfinite(value)) return fail(422, "Value not finite", "A value must be a finite number.", "value");
   if (value < t.lowest || value > t.highest)
     return fail(422, "Value out of range",
-                "This layer holds values of type " + std::string(t.name) + ", from " + std::to_string(t.lowest) + " to " +
-                    std::to_string(t.highest) + ".",
+                "This layer holds values of type " + std::string(t.name) + ", from " + std::to_string(t.lowest) +
+                    " to " + std::to_string(t.highest) + ".",
                 "value");
   if (!t.floating && value != std::floor(value))
     return fail(422, "Value not a whole number",

@@ -19,8 +19,8 @@ Result<Buffer> Buffer::create(std::size_t bytes, Use use, std::string_view label
   buffer.object_.label(label);
   buffer.size_ = bytes;
   if (use == Use::read_back) {
-    buffer.mapped_ = static_cast<const std::byte*>(
-        glMapNamedBufferRange(id, 0, static_cast<GLsizeiptr>(bytes), kMapping));
+    buffer.mapped_ =
+        static_cast<const std::byte*>(glMapNamedBufferRange(id, 0, static_cast<GLsizeiptr>(bytes), kMapping));
     if (!buffer.mapped_) {
       return fail(503, "GPU out of memory", "The driver could not map the buffer '" + std::string(label) + "'.");
     }

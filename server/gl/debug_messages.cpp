@@ -11,7 +11,8 @@ namespace {
 
 void GLAPIENTRY on_message(GLenum, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* message,
                            const void* user) {
-  if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR && severity != GL_DEBUG_SEVERITY_HIGH) return;
+  if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR && severity != GL_DEBUG_SEVERITY_HIGH)
+    return;
   // An allocation that does not fit is told to its caller by check_memory; it is no mistake of ours.
   if (id == GL_OUT_OF_MEMORY) return;
   auto* messages = static_cast<DebugMessages*>(const_cast<void*>(user));

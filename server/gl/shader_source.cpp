@@ -26,7 +26,8 @@ Result<void> append(const std::filesystem::path& directory, const std::string& f
       continue;
     }
     const auto end = line.find('"', kInclude.size());
-    if (end == std::string::npos) return fail(500, kTitle, file + ": unfinished #include in line " + std::to_string(number));
+    if (end == std::string::npos)
+      return fail(500, kTitle, file + ": unfinished #include in line " + std::to_string(number));
     const std::string name = line.substr(kInclude.size(), end - kInclude.size());
     if (seen.insert(name).second) {
       text += "#line 1 " + std::to_string(seen.size()) + "\n";

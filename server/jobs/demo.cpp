@@ -23,8 +23,8 @@ constexpr const char* kAuthor = "Strata";
 Layer sherds_layer() {
   // Light and dark tones alternate, so that neighbours differ with every colour vision.
   static constexpr Rgba kColors[DemoRules::kSherds] = {
-      {230, 159, 0, 255},   {86, 180, 233, 255}, {0, 114, 178, 255},  {240, 228, 66, 255}, {213, 94, 0, 255},
-      {204, 121, 167, 255}, {120, 94, 240, 255}, {255, 176, 124, 255}, {51, 34, 136, 255},  {170, 221, 221, 255},
+      {230, 159, 0, 255},   {86, 180, 233, 255},  {0, 114, 178, 255},   {240, 228, 66, 255}, {213, 94, 0, 255},
+      {204, 121, 167, 255}, {120, 94, 240, 255},  {255, 176, 124, 255}, {51, 34, 136, 255},  {170, 221, 221, 255},
       {136, 34, 85, 255},   {221, 204, 119, 255}, {153, 153, 153, 255}, {170, 68, 153, 255}};
   Layer layer;
   layer.name = layer.slug = "pieces";
@@ -101,7 +101,8 @@ Result<Model> find_or_create_pot(store::Store& store, double detail, Progress& p
   if (!project) return tl::unexpected(project.error());
   const auto models = store.models(project->id);
   if (!models) return tl::unexpected(models.error());
-  const auto pot = std::find_if(models->begin(), models->end(), [](const Model& model) { return model.name == kModel; });
+  const auto pot =
+      std::find_if(models->begin(), models->end(), [](const Model& model) { return model.name == kModel; });
   return pot != models->end() ? *pot : create_pot(store, *project, detail, progress);
 }
 
@@ -116,7 +117,8 @@ Result<Layer> find_or_create_layer(store::Store& store, const Model& model, Laye
 
 // One fill: every texel that the rule gives a value gets it. Tiles come in the order of their addresses.
 template <class Rule>
-store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer, double metres_per_unit, const Rule& rule) {
+store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer, double metres_per_unit,
+                                 const Rule& rule) {
   store::JournalEntry entry;
   const int tiles = map.resolution / kTileSize, blocks = kTileSize / kBlockSize;
   std::uint64_t texels = 0;
@@ -143,13 +145,15 @@ store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer
         }
       }
       if (!written.any()) continue;
-      entry.revisions.push_back({address, encode_revision(make_revision(address, TileData(layer.type), tile, written)), {}});
+      entry.revisions.push_back(
+          {address, encode_revision(make_revision(address, TileData(layer.type), tile, written)), {}});
     }
   entry.answer = {{"texels_changed", texels}, {"area_m2", area * metres_per_unit * metres_per_unit}};
   return entry;
 }
 
-Result<void> write_entry(store::Store& store, const Model& model, const Layer& layer, const char* rule, store::JournalEntry entry) {
+Result<void> write_entry(store::Store& store, const Model& model, const Layer& layer, const char* rule,
+                         store::JournalEntry entry) {
   const auto last = store.last_sequence(model.id);
   if (!last) return tl::unexpected(last.error());
   entry.model_id = model.id;
@@ -201,7 +205,8 @@ Result<Model> make_demo(store::Store& store, Progress& progress, double detail) 
     }
     progress.report(0.5, "Painting the demo's layers");
     if (cracks->sequence == 0) {
-      auto entry = fill_by_rule(*map, *cracks, pot->metres(), [&](const glm::vec3& p) { return std::uint8_t(rules.at(p).crack); });
+      auto entry = fill_by_rule(*map, *cracks, pot->metres(),
+                                [&](const glm::vec3& p) { return std::uint8_t(rules.at(p).crack); });
       if (progress.cancelled()) return cancelled_problem();
       if (auto saved = write_entry(store, *pot, *cracks, "cracks of the demo pot", std::move(entry)); !saved)
         return tl::unexpected(saved.error());

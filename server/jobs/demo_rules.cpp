@@ -22,7 +22,8 @@ std::vector<glm::dvec3> spread_seeds(const std::vector<glm::dvec3>& candidates, 
   std::size_t next = first % candidates.size();
   for (int i = 0; i < count; ++i) {
     seeds.push_back(candidates[next]);
-    for (std::size_t k = 0; k < candidates.size(); ++k) distance[k] = std::min(distance[k], glm::distance(candidates[k], seeds.back()));
+    for (std::size_t k = 0; k < candidates.size(); ++k)
+      distance[k] = std::min(distance[k], glm::distance(candidates[k], seeds.back()));
     next = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
   }
   return seeds;
@@ -58,7 +59,8 @@ double chance_of(const Cell& cell) {
 }
 
 glm::dvec3 warp(const glm::dvec3& p, double scale, double amount, int octaves) {
-  return p + amount * glm::dvec3(mesh::fractal_noise(p * scale, octaves), mesh::fractal_noise(p * scale + 31.7, octaves),
+  return p + amount * glm::dvec3(mesh::fractal_noise(p * scale, octaves),
+                                 mesh::fractal_noise(p * scale + 31.7, octaves),
                                  mesh::fractal_noise(p * scale + 67.3, octaves));
 }
 

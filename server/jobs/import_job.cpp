@@ -35,8 +35,10 @@ bool is_crs(const std::string& crs) {
 
 Result<void> refuse_repairs(const std::vector<Repair>& repairs) {
   std::string list;
-  for (const auto& repair : repairs) list += (list.empty() ? "" : ", ") + repair.what + " (" + std::to_string(repair.count) + ")";
-  return fail(422, "File needs repair", "It would be imported only after this: " + list + ". Mend the file, or import it without `strict`.",
+  for (const auto& repair : repairs)
+    list += (list.empty() ? "" : ", ") + repair.what + " (" + std::to_string(repair.count) + ")";
+  return fail(422, "File needs repair",
+              "It would be imported only after this: " + list + ". Mend the file, or import it without `strict`.",
               "strict");
 }
 
@@ -82,14 +84,18 @@ Result<void> check(const ImportRequest& request) {
   if (!request.up.empty() && request.up != "x" && request.up != "y" && request.up != "z")
     return fail(422, "Unknown direction", "`up` is x, y or z.", "up");
   if (!request.crs.empty() && !is_crs(request.crs))
-    return fail(422, "Unknown coordinate system", "A coordinate system is given as EPSG:n, for example EPSG:25830.", "crs");
+    return fail(422, "Unknown coordinate system", "A coordinate system is given as EPSG:n, for example EPSG:25830.",
+                "crs");
   const int resolution = request.resolution;
-  if (resolution != 0 && (resolution < kLowestResolution || resolution > kHighestResolution || !std::has_single_bit(unsigned(resolution))))
+  if (resolution != 0 &&
+      (resolution < kLowestResolution || resolution > kHighestResolution || !std::has_single_bit(unsigned(resolution))))
     return fail(422, "Resolution not usable", "The resolution of layers is 2048, 4096, 8192 or 16384.", "resolution");
   std::string extension = std::filesystem::path(base_filename(request.filename)).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   if (extension.empty())
-    return fail(422, "File name missing", "Give the file's name, such as NAME.ply or NAME.obj: its ending names the format.", "filename");
+    return fail(422, "File name missing",
+                "Give the file's name, such as NAME.ply or NAME.obj: its ending names the format.", "filename");
   if (extension != ".ply" && extension != ".obj")
     return fail(415, "Format not taken", "'" + extension + "' files are not taken; send PLY or OBJ.", "filename");
   return {};
@@ -138,7 +144,8 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   fresh.geometry = mesh::encode_geometry(geometry);
   fresh.sources.push_back({base_filename(request.filename), request.file});
   progress.report(0.5, "Saving");
-  auto created = store.create_model(fresh, [&progress] { return progress.cancelled(); }, answer);
+  auto created = store.create_model(
+      fresh, [&progress] { return progress.cancelled(); }, answer);
   if (created) progress.report(1, "Done");
   return created;
 }

@@ -10,15 +10,15 @@
 namespace strata::jobs {
 
 struct ImportRequest {
-  std::filesystem::path file;     // uploaded bytes
-  std::string filename;           // the user's name of it: its extension names the format
-  std::string name;               // of the model; empty: from the file name
+  std::filesystem::path file;  // uploaded bytes
+  std::string filename;        // the user's name of it: its extension names the format
+  std::string name;            // of the model; empty: from the file name
   std::string project = "default";
-  std::optional<Unit> unit;       // empty: metres, `unit_assumed`
-  std::string up;                 // "", "x", "y", "z"
+  std::optional<Unit> unit;  // empty: metres, `unit_assumed`
+  std::string up;            // "", "x", "y", "z"
   std::string crs;
-  int resolution = 0;             // default of new layers; 0: 2048
-  bool strict = false;            // refuse a file that needs repair
+  int resolution = 0;   // default of new layers; 0: 2048
+  bool strict = false;  // refuse a file that needs repair
 };
 
 // Whether everything but the file's content can be used, before a file travels: 422 or 415, with the field's name.

@@ -41,10 +41,12 @@ Result<std::int64_t> run(const JobQueue::Work& work, Progress& progress) {
   try {
     return work(progress);
   } catch (const std::bad_alloc&) {
-    return fail(507, "Not enough memory", "The server has not enough memory for this. Make the file smaller, or give the server more.");
+    return fail(507, "Not enough memory",
+                "The server has not enough memory for this. Make the file smaller, or give the server more.");
   } catch (const std::exception& error) {
     log::error(std::string("A job failed unexpectedly: ") + error.what());
-    return fail(500, "Job failed", "The server could not finish this because of a fault of its own; its log says more.");
+    return fail(500, "Job failed",
+                "The server could not finish this because of a fault of its own; its log says more.");
   }
 }
 
@@ -53,10 +55,12 @@ Result<std::int64_t> run(const JobQueue::Work& work, Progress& progress) {
 struct JobQueue::Impl {
   mutable std::mutex mutex;
   std::condition_variable changed;
-  std::map<std::int64_t, Job> jobs;   // by id: in order of asking
+  std::map<std::int64_t, Job> jobs;  // by id: in order of asking
   std::deque<std::int64_t> waiting;
   // In milliseconds: nobody asks for a thousand jobs a second, second after second.
-  std::int64_t last_id = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  std::int64_t last_id =
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
+          .count();
   bool stopping = false;
   std::thread thread;
 
@@ -114,7 +118,8 @@ Result<std::int64_t> JobQueue::add(Work work) {
   std::lock_guard lock(impl_->mutex);
   if (impl_->stopping) return fail(503, "Server stops", "The server is stopping and takes no new work.");
   if (impl_->waiting.size() >= kMaxWaiting)
-    return fail(503, "Too much waiting work", std::to_string(kMaxWaiting) + " jobs wait already. Try again when some are done.");
+    return fail(503, "Too much waiting work",
+                std::to_string(kMaxWaiting) + " jobs wait already. Try again when some are done.");
   const std::int64_t id = ++impl_->last_id;
   Job& job = impl_->jobs[id];
   job.work = std::move(work);

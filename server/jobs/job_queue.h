@@ -26,9 +26,9 @@ struct JobStatus {
 class JobQueue {
  public:
   JobQueue();
-  ~JobQueue();  // cancels what runs, joins
+  ~JobQueue();                                                  // cancels what runs, joins
   using Work = std::function<Result<std::int64_t>(Progress&)>;  // the model's id
-  Result<std::int64_t> add(Work work);  // refused (503) when 64 wait
+  Result<std::int64_t> add(Work work);                          // refused (503) when 64 wait
   std::optional<JobStatus> status(std::int64_t id) const;
   std::vector<JobStatus> all() const;  // newest first
   bool cancel(std::int64_t id);

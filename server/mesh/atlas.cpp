@@ -45,7 +45,6 @@ std::vector<glm::vec2> lay_out(const ChartSurface& surface, std::span<const Char
   return uvs;
 }
 
-
 // Faces that share a texel with an earlier one at any of the verified resolutions.
 std::vector<std::uint32_t> faces_in_conflict(const TriangleMesh& mesh, std::span<const glm::vec2> uvs,
                                              int lowest_resolution) {

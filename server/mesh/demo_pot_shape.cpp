@@ -87,9 +87,7 @@ const Profile& inner_lower() {
   return profile;
 }
 
-double bump(double distance, double width) {
-  return std::exp(-distance * distance / (width * width));
-}
+double bump(double distance, double width) { return std::exp(-distance * distance / (width * width)); }
 double window(double z, double low, double high, double soft) {
   return glm::smoothstep(low - soft, low + soft, z) * (1 - glm::smoothstep(high - soft, high + soft, z));
 }
@@ -289,9 +287,7 @@ std::uint32_t fracture_color(double t, double broken, const glm::dvec3& p) {
   return pack(glm::mix(clay_color(p) * 0.93, color, broken));
 }
 
-double wall(double z) {
-  return glm::mix(6.0, 4.6, glm::smoothstep(45.0, 85.0, z));
-}
+double wall(double z) { return glm::mix(6.0, 4.6, glm::smoothstep(45.0, 85.0, z)); }
 
 DemoPotShape::Point outside(const glm::dvec2& profile, const glm::dvec2& normal, double angle) {
   const Surface s = outer_surface(angle, profile.y);
@@ -317,10 +313,8 @@ DemoPotShape::Point inside_at(double z, double angle) {
 
 DemoPotShape::Point DemoPotShape::at(Stretch stretch, double t, double angle) {
   switch (stretch) {
-    case Stretch::underside_and_belly:
-      return outside(outer_lower().at(t), outer_lower().normal(t), angle);
-    case Stretch::shoulder_and_neck:
-      return outside_at(glm::mix(kSplitHeight, rim_at(angle).height, t), angle);
+    case Stretch::underside_and_belly: return outside(outer_lower().at(t), outer_lower().normal(t), angle);
+    case Stretch::shoulder_and_neck: return outside_at(glm::mix(kSplitHeight, rim_at(angle).height, t), angle);
     case Stretch::rim: {
       const Break rim = rim_at(angle);
       const glm::dvec3 outer = outside_at(rim.height, angle).position, inner = inside_at(rim.height, angle).position;
@@ -330,8 +324,7 @@ DemoPotShape::Point DemoPotShape::at(Stretch stretch, double t, double angle) {
       p.z += rim.broken * std::sqrt(arch) * (0.5 + 1.1 * fractal_noise(p * 0.55 + 23.0, 3));
       return {p, fracture_color(t, rim.broken, p)};
     }
-    case Stretch::inside_upper:
-      return inside_at(glm::mix(rim_at(angle).height, kSplitHeight, t), angle);
+    case Stretch::inside_upper: return inside_at(glm::mix(rim_at(angle).height, kSplitHeight, t), angle);
     case Stretch::inside_lower: {
       const glm::dvec2 p = inner_lower().at(t);
       return inside(p.x, p.y, angle);
@@ -342,12 +335,9 @@ DemoPotShape::Point DemoPotShape::at(Stretch stretch, double t, double angle) {
 
 double DemoPotShape::radius(Stretch stretch, double t) {
   switch (stretch) {
-    case Stretch::underside_and_belly:
-      return outer_lower().at(t).x;
-    case Stretch::inside_lower:
-      return inner_lower().at(t).x;
-    default:
-      return 30;
+    case Stretch::underside_and_belly: return outer_lower().at(t).x;
+    case Stretch::inside_lower: return inner_lower().at(t).x;
+    default: return 30;
   }
 }
 

@@ -31,12 +31,8 @@ ColorProperties find_colors(const PlyElement& element) {
 }
 
 // Whole-number colours as 0…255; real ones stay as they are.
-double to_byte_scale(PlyType type, double value) {
-  return type == PlyType::u16 ? value / 257.0 : value;
-}
-bool is_real(PlyType type) {
-  return type == PlyType::f32 || type == PlyType::f64;
-}
+double to_byte_scale(PlyType type, double value) { return type == PlyType::u16 ? value / 257.0 : value; }
+bool is_real(PlyType type) { return type == PlyType::f32 || type == PlyType::f64; }
 
 template <class Source>
 class PlyReader {

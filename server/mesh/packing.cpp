@@ -245,12 +245,9 @@ std::vector<std::uint32_t> ordered(std::span<const Shape> shapes, Order order) {
   const auto size_of = [&](std::uint32_t i) -> std::int64_t {
     const glm::ivec2 box = shapes[i].box;
     switch (order) {
-      case Order::box_area:
-        return std::int64_t{box.x} * box.y;
-      case Order::perimeter:
-        return box.x + box.y;
-      default:
-        return std::max(box.x, box.y);
+      case Order::box_area: return std::int64_t{box.x} * box.y;
+      case Order::perimeter: return box.x + box.y;
+      default: return std::max(box.x, box.y);
     }
   };
   std::vector<std::uint32_t> result(shapes.size());

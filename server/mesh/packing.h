@@ -33,17 +33,10 @@ struct Placement {
   glm::dvec2 to_atlas(glm::dvec2 p) const {
     const glm::dvec2 size(box);
     switch (quarter_turns) {
-      case 1:
-        p = {size.y - p.y, p.x};
-        break;
-      case 2:
-        p = size - p;
-        break;
-      case 3:
-        p = {p.y, size.x - p.x};
-        break;
-      default:
-        break;
+      case 1: p = {size.y - p.y, p.x}; break;
+      case 2: p = size - p; break;
+      case 3: p = {p.y, size.x - p.x}; break;
+      default: break;
     }
     return p + glm::dvec2(corner);
   }

@@ -29,9 +29,7 @@ std::optional<PlyType> parse_type(std::string_view name) {
   return std::nullopt;
 }
 
-bool is_integer(PlyType type) {
-  return type != PlyType::f32 && type != PlyType::f64;
-}
+bool is_integer(PlyType type) { return type != PlyType::f32 && type != PlyType::f64; }
 
 std::vector<std::string_view> split(std::string_view line) {
   std::vector<std::string_view> words;
@@ -208,8 +206,6 @@ std::uint64_t PlyElement::least_bytes(bool ascii) const {
   return sum;
 }
 
-Result<PlyHeader> parse_ply_header(std::span<const std::uint8_t> bytes) {
-  return HeaderReader(bytes).read();
-}
+Result<PlyHeader> parse_ply_header(std::span<const std::uint8_t> bytes) { return HeaderReader(bytes).read(); }
 
 }  // namespace strata::mesh

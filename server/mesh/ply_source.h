@@ -26,36 +26,24 @@ class PlyBinarySource {
 
   bool value(PlyType type, double& result) {
     switch (type) {
-      case PlyType::i8:
-        return take<std::int8_t, std::uint8_t>(result);
-      case PlyType::u8:
-        return take<std::uint8_t, std::uint8_t>(result);
-      case PlyType::i16:
-        return take<std::int16_t, std::uint16_t>(result);
-      case PlyType::u16:
-        return take<std::uint16_t, std::uint16_t>(result);
-      case PlyType::i32:
-        return take<std::int32_t, std::uint32_t>(result);
-      case PlyType::u32:
-        return take<std::uint32_t, std::uint32_t>(result);
-      case PlyType::f32:
-        return take<float, std::uint32_t>(result);
-      case PlyType::f64:
-        return take<double, std::uint64_t>(result);
+      case PlyType::i8: return take<std::int8_t, std::uint8_t>(result);
+      case PlyType::u8: return take<std::uint8_t, std::uint8_t>(result);
+      case PlyType::i16: return take<std::int16_t, std::uint16_t>(result);
+      case PlyType::u16: return take<std::uint16_t, std::uint16_t>(result);
+      case PlyType::i32: return take<std::int32_t, std::uint32_t>(result);
+      case PlyType::u32: return take<std::uint32_t, std::uint32_t>(result);
+      case PlyType::f32: return take<float, std::uint32_t>(result);
+      case PlyType::f64: return take<double, std::uint64_t>(result);
     }
     return false;
   }
 
   bool integer(PlyType type, std::int64_t& result) {
     switch (type) {
-      case PlyType::u8:
-        return take<std::uint8_t, std::uint8_t>(result);
-      case PlyType::i32:
-        return take<std::int32_t, std::uint32_t>(result);
-      case PlyType::u32:
-        return take<std::uint32_t, std::uint32_t>(result);
-      default:
-        break;
+      case PlyType::u8: return take<std::uint8_t, std::uint8_t>(result);
+      case PlyType::i32: return take<std::int32_t, std::uint32_t>(result);
+      case PlyType::u32: return take<std::uint32_t, std::uint32_t>(result);
+      default: break;
     }
     double number = 0;
     if (!value(type, number)) return false;

@@ -98,9 +98,7 @@ struct PreparedRay {
   int kx = 0, ky = 1, kz = 2;
 };
 
-bool is_finite(const glm::vec3& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
+bool is_finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 }  // namespace
 

@@ -18,10 +18,10 @@ class SearchTree {
   SearchTree& operator=(const SearchTree&) = delete;
 
   struct Hit {
-    glm::vec3 position;   // model space
-    glm::vec3 normal;     // of the triangle, unit, outward
+    glm::vec3 position;  // model space
+    glm::vec3 normal;    // of the triangle, unit, outward
     glm::vec2 uv;
-    float distance;       // from the query point, or along the ray
+    float distance;  // from the query point, or along the ray
     std::uint32_t triangle;
     glm::vec3 barycentric;
   };

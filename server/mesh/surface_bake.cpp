@@ -16,9 +16,7 @@ namespace {
 constexpr int kMostBands = 32;
 constexpr int kRing = 2;  // texels of gutter
 
-double inside_unit(float value) {
-  return value >= 0 ? std::min(double{value}, 1.0) : 0.0;
-}  // also for NaN
+double inside_unit(float value) { return value >= 0 ? std::min(double{value}, 1.0) : 0.0; }  // also for NaN
 
 struct Offset {
   int x, y;
@@ -230,10 +228,7 @@ namespace {
 class PositionPlane {
  public:
   PositionPlane(const std::array<glm::dvec2, 3>& uv, const std::array<glm::dvec3, 3>& corners)
-      : origin_(uv[0]),
-        base_(corners[0]),
-        along_1_(corners[1] - corners[0]),
-        along_2_(corners[2] - corners[0]) {
+      : origin_(uv[0]), base_(corners[0]), along_1_(corners[1] - corners[0]), along_2_(corners[2] - corners[0]) {
     const glm::dvec2 e1 = uv[1] - uv[0], e2 = uv[2] - uv[0];
     const double twice = e1.x * e2.y - e1.y * e2.x;
     is_line_ = std::abs(twice) <= 1e-12 * (glm::dot(e1, e1) + glm::dot(e2, e2));

@@ -76,8 +76,8 @@ class SurfaceBake {
   std::vector<std::vector<Borrowed>> borrowed_;
   std::vector<std::vector<Leftover>> leftovers_;
   std::vector<std::uint64_t> overlaps_of_band_;
-  std::unique_ptr<std::uint32_t[]> owner_;      // 64 a slot
-  std::unique_ptr<glm::vec3[]> position_;       // 64 a slot, until they are packed; undefined where nothing is owned
+  std::unique_ptr<std::uint32_t[]> owner_;  // 64 a slot
+  std::unique_ptr<glm::vec3[]> position_;   // 64 a slot, until they are packed; undefined where nothing is owned
   struct Box {
     glm::vec3 low{INFINITY}, high{-INFINITY};
   };

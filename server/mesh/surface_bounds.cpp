@@ -40,9 +40,11 @@ void SurfaceBake::box_slots(int band) {
 void SurfaceBake::share_grids() {
   for (const auto& band : borrowed_)
     for (const Borrowed& borrowed : band) {
-      const glm::vec3 step = glm::max(map_.packed_box[borrowed.gutter / 64].step, map_.packed_box[borrowed.owner / 64].step);
+      const glm::vec3 step =
+          glm::max(map_.packed_box[borrowed.gutter / 64].step, map_.packed_box[borrowed.owner / 64].step);
       glm::vec3& position = position_[borrowed.owner];
-      for (int i = 0; i < 3; ++i) position[i] = static_cast<float>(std::nearbyint(double{position[i]} / double{step[i]}) * double{step[i]});
+      for (int i = 0; i < 3; ++i)
+        position[i] = static_cast<float>(std::nearbyint(double{position[i]} / double{step[i]}) * double{step[i]});
     }
   for (const auto& band : borrowed_)
     for (const Borrowed& borrowed : band) position_[borrowed.gutter] = position_[borrowed.owner];
@@ -60,7 +62,8 @@ void SurfaceBake::pack_slots(int band) {
       box.low = glm::min(box.low, position), box.high = glm::max(box.high, position);
     }
     for (int i = 0; i < 3; ++i)
-      packed_box.min[i] = static_cast<float>(std::floor(double{box.low[i]} / double{packed_box.step[i]}) * double{packed_box.step[i]});
+      packed_box.min[i] =
+          static_cast<float>(std::floor(double{box.low[i]} / double{packed_box.step[i]}) * double{packed_box.step[i]});
     auto& bounds = map_.bounds_8[slot];
     bounds.center = (box.low + box.high) * 0.5f;
     float farthest = 0;

@@ -34,9 +34,9 @@ struct SurfaceMap {
   struct PackedBox {
     glm::vec3 min{0}, step{0};
   };
-  std::vector<PackedBox> packed_box;           // a slot
-  std::vector<std::uint64_t> surface_mask;     // a slot: bit (y*8+x) set where the texel is surface (not gutter)
-  std::vector<float> area;                     // 64 a slot, unit²; 0 on gutter
+  std::vector<PackedBox> packed_box;        // a slot
+  std::vector<std::uint64_t> surface_mask;  // a slot: bit (y*8+x) set where the texel is surface (not gutter)
+  std::vector<float> area;                  // 64 a slot, unit²; 0 on gutter
 
   struct Bounds {
     glm::vec3 center{0};

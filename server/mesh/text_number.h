@@ -27,8 +27,6 @@ inline bool parse_integer(std::string_view token, std::int64_t& value) {
   return !token.empty() && stop == end && error == std::errc{};
 }
 
-inline bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
-}
+inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
 
 }  // namespace strata::mesh

@@ -7,7 +7,8 @@ namespace strata::net {
 std::string scoped_key(const Request& request) {
   const std::string_view key = request.header("idempotency-key");
   if (key.empty()) return {};
-  return sha256_hex(request.user() + '\n' + std::string(name(request.method)) + '\n' + request.target + '\n' + std::string(key));
+  return sha256_hex(request.user() + '\n' + std::string(name(request.method)) + '\n' + request.target + '\n' +
+                    std::string(key));
 }
 
 // Bodies in files are told apart by their length: hashing gigabytes to compare a retry is not worth it.
@@ -18,13 +19,17 @@ std::string fingerprint(const Request& request) {
 nlohmann::json kept_answer(const Response& response, std::string request_fingerprint) {
   nlohmann::json headers = nlohmann::json::array();
   for (const auto& [header, value] : response.headers) headers.push_back({header, value});
-  return {{"request", std::move(request_fingerprint)}, {"status", response.status}, {"headers", std::move(headers)}, {"body", response.body}};
+  return {{"request", std::move(request_fingerprint)},
+          {"status", response.status},
+          {"headers", std::move(headers)},
+          {"body", response.body}};
 }
 
 Response response_of(const nlohmann::json& kept) {
   Response response;
   response.status = kept.value("status", 200);
-  for (const auto& header : kept.at("headers")) response.with(header.at(0).get<std::string>(), header.at(1).get<std::string>());
+  for (const auto& header : kept.at("headers"))
+    response.with(header.at(0).get<std::string>(), header.at(1).get<std::string>());
   response.body = kept.value("body", std::string());
   return response;
 }
@@ -34,12 +39,13 @@ Result<std::optional<nlohmann::json>> AnswerBook::begin(const Request& request) 
   {
     std::lock_guard lock(mutex_);
     if (!at_work_.insert(scoped).second)
-      return fail(409, "Still at work", "The first call with this Idempotency-Key has not ended yet; ask again later.", "Idempotency-Key");
+      return fail(409, "Still at work", "The first call with this Idempotency-Key has not ended yet; ask again later.",
+                  "Idempotency-Key");
   }
   auto kept = store_.find_answer(scoped);
   if (kept && *kept && (*kept)->value("request", std::string()) != fingerprint(request))
-    kept = fail(422, "Key used for another call", "This Idempotency-Key was used with another body; take a new key for a new call.",
-                "Idempotency-Key");
+    kept = fail(422, "Key used for another call",
+                "This Idempotency-Key was used with another body; take a new key for a new call.", "Idempotency-Key");
   if (!kept || *kept) end(request);
   return kept;
 }

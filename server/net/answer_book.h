@@ -39,7 +39,8 @@ Response response_of(const nlohmann::json& kept);
 
 // For the call that has the effect: keeps `respond(effect)` with it where the request has a key.
 template <class... Effect>
-store::FirstAnswer<Effect...> first_answer(const Request& request, std::type_identity_t<std::function<Response(const Effect&...)>> respond) {
+store::FirstAnswer<Effect...> first_answer(const Request& request,
+                                           std::type_identity_t<std::function<Response(const Effect&...)>> respond) {
   return {scoped_key(request), [print = fingerprint(request), respond = std::move(respond)](const Effect&... effect) {
             return kept_answer(respond(effect...), print);
           }};

@@ -37,7 +37,8 @@ const Headers& security_headers() {
   return headers;
 }
 
-App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs, render::Renderer& renderer)
+App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
+         render::Renderer& renderer)
     : options_(std::move(options)),
       store_(store),
       rooms_(rooms),
@@ -90,7 +91,8 @@ const Route* App::find_route(Request& request, Response& refusal) const {
   }
   if (match.allowed.empty() && !is_api) match.allowed = {Method::get, Method::head, Method::options};
   if (match.allowed.empty()) {
-    refusal = problem_response({404, "Not found", "There is nothing at " + request.path + ". The addresses are listed at /api/v1/docs.", {}});
+    refusal = problem_response(
+        {404, "Not found", "There is nothing at " + request.path + ". The addresses are listed at /api/v1/docs.", {}});
     return nullptr;
   }
   if (!is_api && (request.method == Method::get || request.method == Method::head)) return &page_;
@@ -110,9 +112,12 @@ Result<void> App::identify(Request& request, std::optional<Role> least) {
   request.principal = std::move(*principal);
   if (!least) return {};
   if (!request.principal)
-    return fail(401, "Not signed in", "Open the sign-in link that the server prints, or send `Authorization: Bearer TOKEN`.");
+    return fail(401, "Not signed in",
+                "Open the sign-in link that the server prints, or send `Authorization: Bearer TOKEN`.");
   if (request.principal->role < *least)
-    return fail(403, "Not allowed", "This takes the role " + std::string(name(*least)) + "; yours is " + std::string(name(request.principal->role)) + ".");
+    return fail(403, "Not allowed",
+                "This takes the role " + std::string(name(*least)) + "; yours is " +
+                    std::string(name(request.principal->role)) + ".");
   return {};
 }
 
@@ -143,9 +148,9 @@ void App::handle(const Request& request, const Route& route, const Respond& resp
   }
   // Handlers that keep their answer reply before they return, so the request is still there.
   const Respond answer = remembered ? Respond([this, &request, respond](Response response) {
-                                        answers_.end(request);
-                                        respond(std::move(response));
-                                      })
+    answers_.end(request);
+    respond(std::move(response));
+  })
                                     : respond;
   try {
     route.handler(request, answer);
@@ -177,8 +182,8 @@ bool App::is_still_welcome(const std::string& secret, Role role) {
 
 std::shared_ptr<LiveSession> App::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) {
   live_sockets_.add(socket, entry.secret);
-  return std::make_shared<LiveSession>(shared_, std::move(entry.room), std::move(entry.project_slug), std::move(entry.principal),
-                                       std::move(socket));
+  return std::make_shared<LiveSession>(shared_, std::move(entry.room), std::move(entry.project_slug),
+                                       std::move(entry.principal), std::move(socket));
 }
 
 }  // namespace strata::net

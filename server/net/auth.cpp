@@ -12,16 +12,19 @@ constexpr std::size_t kMaxTokenLength = 512;
 constexpr std::string_view kScheme = "bearer ";
 
 tl::unexpected<Problem> unknown_secret() {
-  return fail(401, "Not signed in", "This token or session is unknown, expired or revoked. Sign in again, or make a new token.");
+  return fail(401, "Not signed in",
+              "This token or session is unknown, expired or revoked. Sign in again, or make a new token.");
 }
 
 }  // namespace
 
-Authenticator::Authenticator(store::Store& store, std::string owner_token) : store_(store), owner_token_(std::move(owner_token)) {}
+Authenticator::Authenticator(store::Store& store, std::string owner_token)
+    : store_(store), owner_token_(std::move(owner_token)) {}
 
 Result<std::optional<Principal>> Authenticator::identify_token(const std::string& token) {
   if (token.empty() || token.size() > kMaxTokenLength) return std::nullopt;
-  if (!owner_token_.empty() && equal_in_constant_time(token, owner_token_)) return Principal{"owner", Role::owner, false};
+  if (!owner_token_.empty() && equal_in_constant_time(token, owner_token_))
+    return Principal{"owner", Role::owner, false};
   const auto now = std::chrono::steady_clock::now();
   const std::string key = sha256_hex(token);
   {
@@ -45,7 +48,8 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
 std::string Authenticator::secret_of(const Request& request) {
   const std::string authorization(request.header("authorization"));
   if (authorization.empty()) return cookie_value(request.header("cookie"), kSessionCookie);
-  return to_lower(authorization.substr(0, kScheme.size())) == kScheme ? authorization.substr(kScheme.size()) : std::string();
+  return to_lower(authorization.substr(0, kScheme.size())) == kScheme ? authorization.substr(kScheme.size())
+                                                                      : std::string();
 }
 
 Result<std::optional<Principal>> Authenticator::identify(const Request& request) {
@@ -70,14 +74,16 @@ Result<std::string> Authenticator::session_for_token(const std::string& token) {
     if (!*by_link) return unknown_secret();
     return **by_link;
   }
-  return store_.create_token(store::Store::TokenKind::session, (*principal)->user, std::string(name((*principal)->role)),
-                             kSessionLifetime);
+  return store_.create_token(store::Store::TokenKind::session, (*principal)->user,
+                             std::string(name((*principal)->role)), kSessionLifetime);
 }
 
 Result<std::string> Authenticator::session_for_link(const std::string& link) {
   auto session = store_.redeem_owner_link(link, kSessionLifetime);
   if (!session) return tl::unexpected(session.error());
-  if (!*session) return fail(401, "Link not valid", "This sign-in link is unknown or revoked. The server prints a valid one when it starts.", "link");
+  if (!*session)
+    return fail(401, "Link not valid",
+                "This sign-in link is unknown or revoked. The server prints a valid one when it starts.", "link");
   return **session;
 }
 
@@ -90,9 +96,8 @@ Result<void> Authenticator::end_session(const std::string& session_token) {
 }
 
 std::string Authenticator::set_cookie(const std::string& session_token, bool secure) {
-  return std::string(kSessionCookie) + "=" + session_token +
-         "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(std::chrono::seconds(kSessionLifetime).count()) +
-         (secure ? "; Secure" : "");
+  return std::string(kSessionCookie) + "=" + session_token + "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" +
+         std::to_string(std::chrono::seconds(kSessionLifetime).count()) + (secure ? "; Secure" : "");
 }
 
 std::string Authenticator::clear_cookie(bool secure) {

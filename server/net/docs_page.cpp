@@ -30,7 +30,8 @@ std::string type_of(const json& schema) {
   if (schema.contains("const")) return "<code>" + html_escape(schema["const"].dump()) + "</code>";
   if (schema.contains("enum")) {
     std::string text;
-    for (const auto& value : schema["enum"]) text += (text.empty() ? "<code>" : " | <code>") + html_escape(value.dump()) + "</code>";
+    for (const auto& value : schema["enum"])
+      text += (text.empty() ? "<code>" : " | <code>") + html_escape(value.dump()) + "</code>";
     return text;
   }
   for (const char* choice : {"oneOf", "anyOf"}) {
@@ -56,19 +57,22 @@ std::string content_of(const json& contract, const json& holder) {
   return text;
 }
 
-void add_operation(std::string& page, const json& contract, const std::string& path, const std::string& method, const json& operation,
-                   const json& shared_parameters) {
-  page += "<section class=\"operation\"><h3><span class=\"method " + html_escape(method) + "\">" + html_escape(method) + "</span> <code>" +
-          html_escape(path) + "</code></h3>";
-  if (auto summary = text_of(operation, "summary"); !summary.empty()) page += "<p><strong>" + html_escape(summary) + "</strong></p>";
-  if (auto description = text_of(operation, "description"); !description.empty()) page += "<p>" + html_escape(description) + "</p>";
+void add_operation(std::string& page, const json& contract, const std::string& path, const std::string& method,
+                   const json& operation, const json& shared_parameters) {
+  page += "<section class=\"operation\"><h3><span class=\"method " + html_escape(method) + "\">" + html_escape(method) +
+          "</span> <code>" + html_escape(path) + "</code></h3>";
+  if (auto summary = text_of(operation, "summary"); !summary.empty())
+    page += "<p><strong>" + html_escape(summary) + "</strong></p>";
+  if (auto description = text_of(operation, "description"); !description.empty())
+    page += "<p>" + html_escape(description) + "</p>";
   std::string rows;
   for (const json* list : {&shared_parameters, operation.contains("parameters") ? &operation["parameters"] : nullptr}) {
     if (!list || !list->is_array()) continue;
     for (const auto& entry : *list) {
       const json& parameter = resolve(contract, entry);
-      rows += "<tr><td><code>" + html_escape(text_of(parameter, "name")) + "</code></td><td>" + html_escape(text_of(parameter, "in")) +
-              "</td><td>" + (parameter.contains("schema") ? type_of(parameter["schema"]) : "") + "</td><td>" +
+      rows += "<tr><td><code>" + html_escape(text_of(parameter, "name")) + "</code></td><td>" +
+              html_escape(text_of(parameter, "in")) + "</td><td>" +
+              (parameter.contains("schema") ? type_of(parameter["schema"]) : "") + "</td><td>" +
               html_escape(text_of(parameter, "description")) + "</td></tr>";
     }
   }
@@ -77,8 +81,9 @@ void add_operation(std::string& page, const json& contract, const std::string& p
   if (auto responses = operation.find("responses"); responses != operation.end()) {
     page += "<ul>";
     for (const auto& [status, response] : responses->items())
-      page += "<li><code>" + html_escape(status) + "</code> " + html_escape(text_of(resolve(contract, response), "description")) +
-              content_of(contract, response) + "</li>";
+      page += "<li><code>" + html_escape(status) + "</code> " +
+              html_escape(text_of(resolve(contract, response), "description")) + content_of(contract, response) +
+              "</li>";
     page += "</ul>";
   }
   page += "</section>";
@@ -98,8 +103,8 @@ void add_schema(std::string& page, const std::string& name, const json& schema) 
     bool required = false;
     if (auto list = schema.find("required"); list != schema.end())
       for (const auto& item : *list) required = required || item == member;
-    page += "<tr><td><code>" + html_escape(member) + "</code>" + (required ? "" : " <em>optional</em>") + "</td><td>" + type_of(entry) +
-            "</td><td>" + html_escape(text_of(entry, "description")) + "</td></tr>";
+    page += "<tr><td><code>" + html_escape(member) + "</code>" + (required ? "" : " <em>optional</em>") + "</td><td>" +
+            type_of(entry) + "</td><td>" + html_escape(text_of(entry, "description")) + "</td></tr>";
   }
   page += "</table></section>";
 }
@@ -125,15 +130,19 @@ std::string docs_html(const json& contract) {
   const json info = contract.value("info", json::object());
   std::string page =
       "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">"
-      "<title>" + html_escape(info.value("title", "API")) + "</title><link rel=\"stylesheet\" href=\"/api/v1/docs.css\"></head><body><h1>" +
+      "<title>" +
+      html_escape(info.value("title", "API")) +
+      "</title><link rel=\"stylesheet\" href=\"/api/v1/docs.css\"></head><body><h1>" +
       html_escape(info.value("title", "API")) + " <small>" + html_escape(info.value("version", "")) + "</small></h1>";
-  if (auto description = text_of(info, "description"); !description.empty()) page += "<p>" + html_escape(description) + "</p>";
+  if (auto description = text_of(info, "description"); !description.empty())
+    page += "<p>" + html_escape(description) + "</p>";
   page += "<p>The same as a file: <a href=\"/api/v1/openapi.json\">openapi.json</a></p><h2>Addresses</h2>";
   const json paths = contract.value("paths", json::object());
   for (const auto& [path, item] : paths.items()) {
     const json shared = item.value("parameters", json::array());
     for (const auto& [method, operation] : item.items())
-      if (operation.is_object() && operation.contains("responses")) add_operation(page, contract, path, method, operation, shared);
+      if (operation.is_object() && operation.contains("responses"))
+        add_operation(page, contract, path, method, operation, shared);
   }
   const json schemas = contract.value("components", json::object()).value("schemas", json::object());
   if (!schemas.empty()) page += "<h2>Objects</h2>";

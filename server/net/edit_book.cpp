@@ -4,8 +4,8 @@ namespace strata::net {
 namespace {
 
 tl::unexpected<Problem> used_for_another() {
-  return fail(422, "Key used for another edit", "This Idempotency-Key was used with another edit; take a new key for a new one.",
-              "Idempotency-Key");
+  return fail(422, "Key used for another edit",
+              "This Idempotency-Key was used with another edit; take a new key for a new one.", "Idempotency-Key");
 }
 
 }  // namespace
@@ -20,8 +20,10 @@ Result<void> EditBook::begin(std::int64_t model_id, const room::EditRequest& edi
   }
   auto journal = store_.journal_state(model_id, std::span(&edit.id, 1));
   Result<void> good;
-  if (!journal) good = tl::unexpected(journal.error());
-  else if (!journal->known.empty() && journal->known.front().record != edit.record) good = used_for_another();
+  if (!journal)
+    good = tl::unexpected(journal.error());
+  else if (!journal->known.empty() && journal->known.front().record != edit.record)
+    good = used_for_another();
   if (!good) end(edit.id);
   return good;
 }

@@ -27,9 +27,9 @@ using asio::ip::tcp;
 using std::chrono::seconds;
 
 constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
-constexpr seconds kFirstHead{10};        // from connecting to the end of the first head
-constexpr seconds kIdle{60};             // between requests
-constexpr seconds kStall{60};            // a body that does not move
+constexpr seconds kFirstHead{10};  // from connecting to the end of the first head
+constexpr seconds kIdle{60};       // between requests
+constexpr seconds kStall{60};      // a body that does not move
 constexpr std::uint32_t kMaxHead = 8192;
 constexpr std::uint64_t kMaxIgnoredBody = 64 * 1024;  // of a refused request: read to keep the connection
 constexpr std::string_view kSubprotocol = "strata.v1";
@@ -50,7 +50,8 @@ Method method_of(http::verb verb) {
 Result<Request> request_of(const http::request<http::empty_body>& head) {
   Request request;
   request.method = method_of(head.method());
-  for (const auto& field : head) request.headers.emplace_back(to_lower(field.name_string()), std::string(field.value()));
+  for (const auto& field : head)
+    request.headers.emplace_back(to_lower(field.name_string()), std::string(field.value()));
   if (auto parsed = parse_target(head.target(), request); !parsed) return tl::unexpected(parsed.error());
   return request;
 }
@@ -105,8 +106,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     Response refusal;
     if (error == http::error::header_limit) {
       refusal = problem_response({431, "Header too large", "The head of a request has at most 8 KiB.", {}});
-    } else if (error.category() == http::make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream &&
-               error != http::error::partial_message) {
+    } else if (error.category() == http::make_error_code(http::error::bad_method).category() &&
+               error != http::error::end_of_stream && error != http::error::partial_message) {
       refusal = problem_response({400, "Malformed request", "This is not HTTP: " + error.message() + ".", {}});
     } else {
       co_return;
@@ -129,7 +130,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       response = problem_response({429, "Too many requests", "This connection asks too fast; wait a second.", {}});
       co_return co_await refuse(head, *request, response, keep_alive);
     }
-    if (beast::websocket::is_upgrade(head.get()) && App::is_live_address(*request)) co_return co_await upgrade(head, request);
+    if (beast::websocket::is_upgrade(head.get()) && App::is_live_address(*request))
+      co_return co_await upgrade(head, request);
 
     const Route* route = app_.find_route(*request, response);
     if (!route) co_return co_await refuse(head, *request, response, keep_alive);
@@ -153,8 +155,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       }
       Problem problem;
       bool is_read = false;
-      if (route->body == BodyKind::file) is_read = co_await read_to_file(head, *request, max_body, problem);
-      else is_read = co_await read_to_memory(head, *request, max_body, problem);
+      if (route->body == BodyKind::file)
+        is_read = co_await read_to_file(head, *request, max_body, problem);
+      else
+        is_read = co_await read_to_memory(head, *request, max_body, problem);
       if (!is_read) {
         remove_body_file(*request);
         if (problem.title.empty()) co_return false;  // the connection broke
@@ -179,7 +183,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   // Answers without the body being wanted. A small one is read, so that the connection can go on.
-  asio::awaitable<bool> refuse(http::request_parser<http::empty_body>& head, const Request& request, Response& response, bool keep_alive) {
+  asio::awaitable<bool> refuse(http::request_parser<http::empty_body>& head, const Request& request, Response& response,
+                               bool keep_alive) {
     const Method method = request.method;
     if (!head.is_done()) {
       const auto length = head.content_length();
@@ -201,8 +206,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   // False: see the problem; one without a title says that the connection broke.
-  asio::awaitable<bool> read_to_memory(http::request_parser<http::empty_body>& head, Request& request, std::uint64_t max_body,
-                                       Problem& problem) {
+  asio::awaitable<bool> read_to_memory(http::request_parser<http::empty_body>& head, Request& request,
+                                       std::uint64_t max_body, Problem& problem) {
     http::request_parser<http::string_body> parser(std::move(head));
     parser.body_limit(boost::none);
     while (!parser.is_done()) {
@@ -222,8 +227,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return true;
   }
 
-  asio::awaitable<bool> read_to_file(http::request_parser<http::empty_body>& head, Request& request, std::uint64_t max_body,
-                                     Problem& problem) {
+  asio::awaitable<bool> read_to_file(http::request_parser<http::empty_body>& head, Request& request,
+                                     std::uint64_t max_body, Problem& problem) {
     http::request_parser<http::file_body> parser(std::move(head));
     parser.body_limit(boost::none);
     request.body_file = app_.options().upload_dir / (to_string(random_uuid()) + ".body");
@@ -231,7 +236,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     parser.get().body().open(request.body_file.c_str(), beast::file_mode::write_new, file_error);
     if (file_error) {
       log::error("upload folder not writable: " + file_error.message());
-      problem = {507, "No room for uploads", "The server cannot write its upload folder: " + file_error.message() + ".", {}};
+      problem = {
+          507, "No room for uploads", "The server cannot write its upload folder: " + file_error.message() + ".", {}};
       co_return false;
     }
     while (!parser.is_done()) {
@@ -258,7 +264,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   static Problem body_problem(beast::error_code error) {
     const bool malformed = error.category() == http::make_error_code(http::error::bad_chunk).category() &&
                            error != http::error::partial_message && error != http::error::end_of_stream;
-    if (malformed) return {400, "Malformed body", "The body does not follow its framing: " + error.message() + ".", "body"};
+    if (malformed)
+      return {400, "Malformed body", "The body does not follow its framing: " + error.message() + ".", "body"};
     return {};
   }
 
@@ -302,7 +309,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       }
       response = problem_response({404, "Not found", "The file is gone.", {}});
     }
-    if (method == Method::head) co_return co_await send_head(response, std::max(response.bytes.size(), response.body.size()), keep_alive);
+    if (method == Method::head)
+      co_return co_await send_head(response, std::max(response.bytes.size(), response.body.size()), keep_alive);
     if (!response.bytes.empty()) {
       http::response<http::vector_body<std::uint8_t>> message;
       put_head(message, response, keep_alive);
@@ -329,7 +337,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (method == Method::head) co_return co_await send_head(response, response.stream->length, keep_alive);
     const CountAtWork counted(connections_->streams_at_work);
     if (connections_->streams_at_work > std::max(1, app_.options().worker_threads / 2)) {
-      Response refusal = problem_response({503, "Too many downloads", "Ask again when another download has ended.", {}});
+      Response refusal =
+          problem_response({503, "Too many downloads", "Ask again when another download has ended.", {}});
       co_return co_await send(refusal, method, keep_alive);
     }
     const bool head_sent = co_await send_head(response, response.stream->length, true);
@@ -345,7 +354,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       respond(empty_response(200));
     };
     const Response done = co_await on_worker(connections_, stream_.get_executor(), pump);
-    co_return done.status == 200 && *sent == response.stream->length && keep_alive;
+    co_return done.status == 200 && *sent == response.stream->length&& keep_alive;
   }
 
   // On a worker: waits until the piece is sent.
@@ -367,7 +376,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     http::token_list offered(head.get()[http::field::sec_websocket_protocol]);
     Response response;
     if (!offered.exists(kSubprotocol)) {
-      response = problem_response({400, "Subprotocol missing", "Live connections speak strata.v1: name it in Sec-WebSocket-Protocol.", "Sec-WebSocket-Protocol"});
+      response = problem_response({400, "Subprotocol missing",
+                                   "Live connections speak strata.v1: name it in Sec-WebSocket-Protocol.",
+                                   "Sec-WebSocket-Protocol"});
       co_return co_await send(response, Method::get, false);
     }
     auto entry = std::make_shared<App::LiveEntry>();
@@ -415,14 +426,16 @@ void start_http_session(tcp::socket socket, std::shared_ptr<Connections> connect
   socket.set_option(tcp::no_delay(true), ignored);
   auto executor = socket.get_executor();
   auto session = std::make_shared<HttpSession>(std::move(socket), std::move(connections));
-  asio::co_spawn(executor, [session] { return session->run(); }, [](std::exception_ptr failure) {
-    if (!failure) return;
-    try {
-      std::rethrow_exception(failure);
-    } catch (const std::exception& error) {
-      log::error(std::string("a connection failed: ") + error.what());
-    }
-  });
+  asio::co_spawn(
+      executor, [session] { return session->run(); },
+      [](std::exception_ptr failure) {
+        if (!failure) return;
+        try {
+          std::rethrow_exception(failure);
+        } catch (const std::exception& error) {
+          log::error(std::string("a connection failed: ") + error.what());
+        }
+      });
 }
 
 }  // namespace strata::net

@@ -167,7 +167,8 @@ std::string percent_encode(std::string_view text) {
   static constexpr char kDigits[] = "0123456789ABCDEF";
   std::string out;
   for (unsigned char c : text) {
-    if ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' || c == '.' || c == '_' || c == '~') {
+    if ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' || c == '.' ||
+        c == '_' || c == '~') {
       out += static_cast<char>(c);
     } else {
       out += '%';
@@ -218,12 +219,14 @@ Result<void> parse_target(std::string_view target, Request& request) {
   return {};
 }
 
-Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std::int64_t high, const std::string& field) {
+Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std::int64_t high,
+                                   const std::string& field) {
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
     return fail(422, "Number out of range",
-                "'" + field + "' is a whole number from " + std::to_string(low) + " to " + std::to_string(high) + ".", field);
+                "'" + field + "' is a whole number from " + std::to_string(low) + " to " + std::to_string(high) + ".",
+                field);
   return value;
 }
 
@@ -247,7 +250,8 @@ void add_page_links(Response& response, const Request& request, const Page& page
     std::string target = request.target.substr(0, request.target.find('?')) + "?";
     for (const auto& [key, value] : request.query)
       if (key != "limit" && key != "offset") target += percent_encode(key) + "=" + percent_encode(value) + "&";
-    return "<" + target + "limit=" + std::to_string(page.limit) + "&offset=" + std::to_string(offset) + ">; rel=\"" + relation + "\"";
+    return "<" + target + "limit=" + std::to_string(page.limit) + "&offset=" + std::to_string(offset) + ">; rel=\"" +
+           relation + "\"";
   };
   std::string links;
   if (std::int64_t{page.offset} + page.limit < total) links = link(page.offset + page.limit, "next");

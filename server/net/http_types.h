@@ -38,14 +38,14 @@ using Headers = std::vector<std::pair<std::string, std::string>>;
 
 struct Request {
   Method method = Method::get;
-  std::string target;                          // as sent
-  std::string path;                            // decoded, without the query
-  std::vector<std::string> segments;           // of the path, each decoded
-  std::map<std::string, std::string> query;    // decoded
-  std::map<std::string, std::string> params;   // what the route's pattern caught
-  Headers headers;                             // names in lower case
-  std::string body;                            // in memory, or…
-  std::filesystem::path body_file;             // …in a file that is removed after the answer unless a handler moves it
+  std::string target;                         // as sent
+  std::string path;                           // decoded, without the query
+  std::vector<std::string> segments;          // of the path, each decoded
+  std::map<std::string, std::string> query;   // decoded
+  std::map<std::string, std::string> params;  // what the route's pattern caught
+  Headers headers;                            // names in lower case
+  std::string body;                           // in memory, or…
+  std::filesystem::path body_file;            // …in a file that is removed after the answer unless a handler moves it
   std::uint64_t body_bytes = 0;
   std::optional<Principal> principal;
 
@@ -59,9 +59,9 @@ struct Response {
   int status = 200;
   Headers headers;
   std::string body;
-  std::vector<std::uint8_t> bytes;  // sent in place of `body` when not empty
-  std::filesystem::path file;       // the same
-  std::shared_ptr<const void> held; // let go once the answer is sent
+  std::vector<std::uint8_t> bytes;   // sent in place of `body` when not empty
+  std::filesystem::path file;        // the same
+  std::shared_ptr<const void> held;  // let go once the answer is sent
   // Bytes made while they are sent, in place of `body`. `write` runs on a worker and stops when the sink says false.
   using Sink = std::function<bool(std::span<const std::uint8_t>)>;
   struct Stream {
@@ -77,8 +77,8 @@ struct Response {
 Response json_response(const nlohmann::json& json, int status = 200);
 Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_type);
 Response text_response(std::string text, std::string content_type);
-Response empty_response(int status);                 // 204, 304
-Response problem_response(const Problem& problem);   // RFC 9457
+Response empty_response(int status);                // 204, 304
+Response problem_response(const Problem& problem);  // RFC 9457
 std::string_view reason_phrase(int status);
 
 // The one answer to a request; may be called from any thread. The first call counts; when the last copy goes without one, the
@@ -110,6 +110,7 @@ Result<Page> page_of(const Request& request);
 void add_page_links(Response& response, const Request& request, const Page& page, std::int64_t total);
 
 // Whole number in a query parameter or path; refused with the field's name otherwise.
-Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std::int64_t high, const std::string& field);
+Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std::int64_t high,
+                                   const std::string& field);
 
 }  // namespace strata::net

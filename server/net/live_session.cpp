@@ -15,8 +15,8 @@ std::string ref_of(const std::optional<std::string>& id) { return id.value_or(st
 
 }  // namespace
 
-LiveSession::LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room, std::string project_slug,
-                         Principal principal, std::weak_ptr<LiveSocket> socket)
+LiveSession::LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room,
+                         std::string project_slug, Principal principal, std::weak_ptr<LiveSocket> socket)
     : shared_(std::move(shared)),
       room_(std::move(room)),
       project_slug_(std::move(project_slug)),
@@ -33,8 +33,11 @@ LiveSession::Work LiveSession::on_text(const std::string& text) {
   const bool in_time = bucket_.take();
   auto message = protocol::parse_client_message(text, &ref, {shared_->limits.message_bytes, 32});
   if (!in_time) {
-    refuse({429, "Too many messages",
-            "At most " + std::to_string(static_cast<int>(shared_->limits.messages_per_second)) + " messages a second are taken; send this one again later.", {}},
+    refuse({429,
+            "Too many messages",
+            "At most " + std::to_string(static_cast<int>(shared_->limits.messages_per_second)) +
+                " messages a second are taken; send this one again later.",
+            {}},
            ref);
     if (++refusals_ > shared_->limits.max_refusals)
       if (auto socket = socket_.lock()) socket->close(kClosePolicy, "too many messages");
@@ -72,11 +75,12 @@ void LiveSession::on_closed() {
 
 void LiveSession::on(const protocol::Hello& message) {
   if (member()) return refuse({409, "Hello said already", "A connection says hello once.", "op"}, std::string());
-  if (message.accept && std::none_of(message.accept->begin(), message.accept->end(), [](const auto& codec) { return codec == "jpeg"; }))
+  if (message.accept &&
+      std::none_of(message.accept->begin(), message.accept->end(), [](const auto& codec) { return codec == "jpeg"; }))
     return refuse({406, "No common picture format", "Pictures are sent as jpeg.", "accept"}, std::string());
 
-  std::shared_ptr<room::Member> joined = room_->join(
-      principal_.user, this, [socket = socket_, metrics = shared_->metrics](stream::FrameBytes frame) {
+  std::shared_ptr<room::Member> joined =
+      room_->join(principal_.user, this, [socket = socket_, metrics = shared_->metrics](stream::FrameBytes frame) {
         ++metrics->frames_sent;
         metrics->frame_bytes_sent += frame->size();
         if (auto open = socket.lock()) open->send_frame(std::move(frame));
@@ -95,7 +99,8 @@ void LiveSession::on(const protocol::Hello& message) {
   welcome.limits.views = limits.views;
   welcome.limits.frames_in_flight = stream::Viewer::Options{}.window;
   welcome.limits.messages_per_second = static_cast<int>(limits.messages_per_second);
-  for (const auto& stroke : shared_->strokes->open_strokes(owner_)) welcome.strokes.push_back({stroke.stroke, stroke.n});
+  for (const auto& stroke : shared_->strokes->open_strokes(owner_))
+    welcome.strokes.push_back({stroke.stroke, stroke.n});
   send(welcome);
   {
     std::lock_guard lock(mutex_);
@@ -108,7 +113,8 @@ void LiveSession::on(const protocol::CameraUpdate& message) {
   if (!has_view(message.view_id, std::string())) return;
   const Camera camera = protocol::camera_of(message);
   cameras_[message.view_id] = camera;
-  member()->camera(static_cast<std::uint32_t>(message.view_id), static_cast<std::uint64_t>(message.seq), camera, message.moving);
+  member()->camera(static_cast<std::uint32_t>(message.view_id), static_cast<std::uint64_t>(message.seq), camera,
+                   message.moving);
 }
 
 void LiveSession::on(const protocol::LayersUpdate& message) {
@@ -141,7 +147,8 @@ void LiveSession::on(const protocol::StrokeBegin& message) {
   if (!layer) return refuse(layer.error(), message.id);
   auto tool = stroke_tool(message, *layer, room_->model());
   if (!tool) return refuse(tool.error(), message.id);
-  if (auto begun = shared_->strokes->begin(owner_, message.stroke, std::move(*tool)); !begun) refuse(begun.error(), message.id);
+  if (auto begun = shared_->strokes->begin(owner_, message.stroke, std::move(*tool)); !begun)
+    refuse(begun.error(), message.id);
 }
 
 void LiveSession::on(const protocol::StrokeExtend& message) {
@@ -176,8 +183,10 @@ void LiveSession::step_through_history(const Message& message) {
   request.id = message.id;
   request.user = principal_.user;
   request.layer_id = layer->id;
-  if constexpr (std::is_same_v<Message, protocol::Undo>) request.edit = room::UndoEdit{};
-  else request.edit = room::RedoEdit{};
+  if constexpr (std::is_same_v<Message, protocol::Undo>)
+    request.edit = room::UndoEdit{};
+  else
+    request.edit = room::RedoEdit{};
   request.record = {{"op", std::string(Message::kOp)}};
   submit(std::move(request), std::nullopt);
 }
@@ -215,7 +224,8 @@ void LiveSession::on(const protocol::Pick& message) {
   if (!camera)
     if (auto found = cameras_.find(message.view_id); found != cameras_.end()) camera = found->second;
   if (!camera)
-    return refuse({409, "No camera yet", "Send a camera for this view first, or give one with the pick.", "camera"}, ref_of(message.id));
+    return refuse({409, "No camera yet", "Send a camera for this view first, or give one with the pick.", "camera"},
+                  ref_of(message.id));
   const bool posted = shared_->queries->post([self = shared_from_this(), message, camera = *camera] {
     std::vector<std::string> layers;
     for (const auto& layer : self->room_->layers()) layers.push_back(layer.slug);
@@ -232,16 +242,20 @@ void LiveSession::paint(const protocol::StrokeExtend& message) {
   const std::vector<glm::dvec2> path(message.path.begin(), message.path.end());
   auto batch = shared_->strokes->extend(owner_, message.stroke, message.id, message.n, path);
   if (!batch) return refuse(batch.error(), message.id);
-  submit(batch_request(std::move(*batch), message.stroke, message.id, message.n, principal_.user), BatchName{message.stroke, message.n});
+  submit(batch_request(std::move(*batch), message.stroke, message.id, message.n, principal_.user),
+         BatchName{message.stroke, message.n});
 }
 
 void LiveSession::find_start(const protocol::StrokeExtend& message) {
   const auto tool = shared_->strokes->tool(owner_, message.stroke);
   if (!tool) return;
   auto page = shared_->store->history(tool->layer_id, kHistoryToSearch, 0);
-  if (!page) return;  // the stroke starts with a gap rather than not at all; the edit itself will tell that the database is away
+  if (!page)
+    return;  // the stroke starts with a gap rather than not at all; the edit itself will tell that the database is away
   for (const auto& row : page->rows) {
-    if (row.stroke != message.stroke || row.user != principal_.user || !row.record.is_object() || row.record.value("n", -1) != message.n - 1) continue;
+    if (row.stroke != message.stroke || row.user != principal_.user || !row.record.is_object() ||
+        row.record.value("n", -1) != message.n - 1)
+      continue;
     if (auto end = end_of_path(row.record)) shared_->strokes->continue_from(owner_, message.stroke, message.n, *end);
     return;
   }
@@ -291,10 +305,12 @@ void LiveSession::on_applied(const Uuid& id, const std::optional<BatchName>& bat
     std::lock_guard lock(mutex_);
     if (auto found = own_edits_.find(id); found != own_edits_.end()) found->second = true;
   }
-  send(edit_message<protocol::Applied>(id, batch.has_value(), batch ? batch->stroke : Uuid{}, batch ? batch->n : 0, answer));
+  send(edit_message<protocol::Applied>(id, batch.has_value(), batch ? batch->stroke : Uuid{}, batch ? batch->n : 0,
+                                       answer));
 }
 
-void LiveSession::on_saved(const Uuid& id, const std::optional<BatchName>& batch, const Result<room::EditAnswer>& answer) {
+void LiveSession::on_saved(const Uuid& id, const std::optional<BatchName>& batch,
+                           const Result<room::EditAnswer>& answer) {
   bool applied = false;
   {
     std::lock_guard lock(mutex_);
@@ -304,7 +320,8 @@ void LiveSession::on_saved(const Uuid& id, const std::optional<BatchName>& batch
     }
   }
   if (answer)
-    return send(edit_message<protocol::Saved>(id, batch.has_value(), batch ? batch->stroke : Uuid{}, batch ? batch->n : 0, *answer));
+    return send(edit_message<protocol::Saved>(id, batch.has_value(), batch ? batch->stroke : Uuid{},
+                                              batch ? batch->n : 0, *answer));
   if (!applied) {
     ++shared_->metrics->edits_refused;
     return refuse(answer.error(), id);
@@ -440,7 +457,9 @@ bool LiveSession::may_edit(const Uuid& id) {
 
 bool LiveSession::has_view(int view_id, const std::string& ref) {
   if (view_id < shared_->limits.views) return true;
-  refuse({422, "Too many views", "A connection has views 0 to " + std::to_string(shared_->limits.views - 1) + ".", "view_id"}, ref);
+  refuse({422, "Too many views", "A connection has views 0 to " + std::to_string(shared_->limits.views - 1) + ".",
+          "view_id"},
+         ref);
   return false;
 }
 

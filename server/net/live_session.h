@@ -34,7 +34,7 @@ struct LiveLimits {
   std::size_t message_bytes = 256 * 1024;
   double messages_per_second = 500;
   double burst = 1000;
-  int max_refusals = 2000;   // more refused for speed than taken, then the connection is closed
+  int max_refusals = 2000;  // more refused for speed than taken, then the connection is closed
   int views = room::Member::kMaxViews;
   std::chrono::milliseconds presence_every{50};
 };
@@ -57,8 +57,8 @@ constexpr int kCloseTryAgain = 1013;
 // strand; what the room tells arrives on the room's.
 class LiveSession final : public room::Listener, public std::enable_shared_from_this<LiveSession> {
  public:
-  LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room, std::string project_slug, Principal principal,
-              std::weak_ptr<LiveSocket> socket);
+  LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room, std::string project_slug,
+              Principal principal, std::weak_ptr<LiveSocket> socket);
   ~LiveSession() override;
 
   // Work that is returned must run on a worker, and end, before the next message is given.

@@ -5,7 +5,8 @@
 namespace strata::net {
 namespace {
 
-void add(std::string& text, std::string_view name, std::string_view type, std::string_view help, const std::string& value) {
+void add(std::string& text, std::string_view name, std::string_view type, std::string_view help,
+         const std::string& value) {
   text.append("# HELP ").append(name).append(" ").append(help).append("\n");
   text.append("# TYPE ").append(name).append(" ").append(type).append("\n");
   text.append(name).append(" ").append(value).append("\n");
@@ -14,13 +15,17 @@ void add(std::string& text, std::string_view name, std::string_view type, std::s
 }  // namespace
 
 std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
-  std::string text = "# HELP strata_http_requests_total HTTP answers by class of status.\n# TYPE strata_http_requests_total counter\n";
+  std::string text =
+      "# HELP strata_http_requests_total HTTP answers by class of status.\n# TYPE strata_http_requests_total counter\n";
   for (std::size_t i = 1; i < metrics.requests.size(); ++i)
-    text += "strata_http_requests_total{status=\"" + std::to_string(i) + "xx\"} " + std::to_string(metrics.requests[i].load()) + "\n";
+    text += "strata_http_requests_total{status=\"" + std::to_string(i) + "xx\"} " +
+            std::to_string(metrics.requests[i].load()) + "\n";
   auto counter = [&](std::string_view name, std::string_view help, const std::atomic<std::uint64_t>& value) {
     add(text, name, "counter", help, std::to_string(value.load()));
   };
-  auto gauge = [&](std::string_view name, std::string_view help, auto value) { add(text, name, "gauge", help, std::to_string(value)); };
+  auto gauge = [&](std::string_view name, std::string_view help, auto value) {
+    add(text, name, "gauge", help, std::to_string(value));
+  };
   gauge("strata_open_connections", "TCP connections.", metrics.open_connections.load());
   gauge("strata_open_sockets", "WebSocket connections.", metrics.open_sockets.load());
   gauge("strata_open_rooms", "Models in memory.", gauges.open_rooms);

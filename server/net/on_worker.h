@@ -17,12 +17,14 @@ using Work = std::function<void(const Respond&)>;
 // Runs `work(respond)` on a worker and comes back to `executor` with the answer; 503 when too much waits.
 // Give it a named function, not a lambda written into the co_await: GCC 12 destroys captures of such temporaries twice.
 template <class Executor>
-boost::asio::awaitable<Response> on_worker(const std::shared_ptr<Connections>& connections, Executor executor, const Work& work) {
+boost::asio::awaitable<Response> on_worker(const std::shared_ptr<Connections>& connections, Executor executor,
+                                           const Work& work) {
   namespace asio = boost::asio;
   auto initiate = [connections, executor, work](auto handler) {
     auto waiting = std::make_shared<decltype(handler)>(std::move(handler));
     Respond respond([io = connections->io.lock(), executor, waiting](Response response) {
-      asio::post(executor, [waiting, response = std::move(response)]() mutable { std::move (*waiting)(std::move(response)); });
+      asio::post(executor,
+                 [waiting, response = std::move(response)]() mutable { std::move (*waiting)(std::move(response)); });
     });
     auto& workers = connections->app.workers();
     if (!workers.post([work, respond] { work(respond); }))

@@ -39,22 +39,27 @@ Result<void> check_same_origin(const Request& request, const std::vector<std::st
   if (!request.principal && origin.empty()) return {};
   if (!origin.empty()) {
     if (is_own_origin(origin, request.header("host"), allowed)) return {};
-    return fail(403, "Foreign origin", "Changes signed by a cookie are taken from this server's own pages only. Add the origin with --origin, or use a bearer token.",
-                "Origin");
+    return fail(
+        403, "Foreign origin",
+        "Changes signed by a cookie are taken from this server's own pages only. Add the origin with --origin, or use a bearer token.",
+        "Origin");
   }
   if (request.header("sec-fetch-site") == "same-origin") return {};
-  return fail(403, "Origin missing", "Changes signed by a cookie need an Origin header of this server. Scripts use a bearer token.", "Origin");
+  return fail(403, "Origin missing",
+              "Changes signed by a cookie need an Origin header of this server. Scripts use a bearer token.", "Origin");
 }
 
 Result<void> check_upgrade_origin(const Request& request, const std::vector<std::string>& allowed) {
   const auto origin = request.header("origin");
   if (origin.empty()) {
     if (request.principal && !request.principal->by_cookie) return {};
-    return fail(403, "Origin missing", "A connection signed by a cookie needs an Origin header of this server. Scripts use a bearer token.",
+    return fail(403, "Origin missing",
+                "A connection signed by a cookie needs an Origin header of this server. Scripts use a bearer token.",
                 "Origin");
   }
   if (is_own_origin(origin, request.header("host"), allowed)) return {};
-  return fail(403, "Foreign origin", "Live connections are taken from this server's own pages only. Add the origin with --origin.", "Origin");
+  return fail(403, "Foreign origin",
+              "Live connections are taken from this server's own pages only. Add the origin with --origin.", "Origin");
 }
 
 }  // namespace strata::net

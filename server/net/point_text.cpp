@@ -22,7 +22,9 @@ bool take(std::string_view& text, std::string_view word) {
 
 Result<glm::dvec3> parse_point(std::string_view text) {
   auto wrong = [] {
-    return fail(422, "Not a point", "Coordinates are written `POINT Z(x y z)`: three numbers with spaces between, in the model's unit.", "coords");
+    return fail(422, "Not a point",
+                "Coordinates are written `POINT Z(x y z)`: three numbers with spaces between, in the model's unit.",
+                "coords");
   };
   skip_spaces(text);
   if (!take(text, "point")) return wrong();

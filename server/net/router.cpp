@@ -27,7 +27,8 @@ void Router::add(Route route) {
   entries_.push_back(std::move(entry));
 }
 
-bool Router::matches(const Entry& entry, const std::vector<std::string>& segments, std::map<std::string, std::string>& params) {
+bool Router::matches(const Entry& entry, const std::vector<std::string>& segments,
+                     std::map<std::string, std::string>& params) {
   if (entry.segments.size() != segments.size()) return false;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const Segment& segment = entry.segments[i];
@@ -38,7 +39,8 @@ bool Router::matches(const Entry& entry, const std::vector<std::string>& segment
     }
     if (text.size() <= segment.prefix.size() + segment.suffix.size()) return false;
     if (!text.starts_with(segment.prefix) || !text.ends_with(segment.suffix)) return false;
-    params[segment.param] = text.substr(segment.prefix.size(), text.size() - segment.prefix.size() - segment.suffix.size());
+    params[segment.param] =
+        text.substr(segment.prefix.size(), text.size() - segment.prefix.size() - segment.suffix.size());
   }
   return true;
 }

@@ -18,15 +18,15 @@ enum class BodyKind { none, memory, file };
 
 struct Route {
   Method method = Method::get;
-  std::string pattern;                  // "/api/v1/models/{model}/texels.{format}": one {name} per segment
+  std::string pattern;  // "/api/v1/models/{model}/texels.{format}": one {name} per segment
   Handler handler;
   std::optional<Role> role = Role::viewer;  // least role that may call it; empty: open to everyone
-  std::vector<std::string> query{};     // parameters it knows; others are refused
+  std::vector<std::string> query{};         // parameters it knows; others are refused
   bool any_query = false;
   // Refuses by what stands in the address, before the body is read.
   std::function<Result<void>(const Request& request)> check{};
   BodyKind body = BodyKind::none;
-  std::uint64_t max_body = 0;           // bytes
+  std::uint64_t max_body = 0;  // bytes
   // The handler keeps its answer with what it does (`first_answer`); a repeat of its Idempotency-Key gets it without the handler…
   bool keeps_answer = false;
   // …or what this makes of what was kept.
@@ -39,9 +39,9 @@ class Router {
   void add(Route route);
 
   struct Match {
-    const Route* route = nullptr;                // null: see `allowed`
+    const Route* route = nullptr;  // null: see `allowed`
     std::map<std::string, std::string> params;
-    std::vector<Method> allowed;                 // methods of the path; empty: no such path
+    std::vector<Method> allowed;  // methods of the path; empty: no such path
   };
   // HEAD finds the route of GET.
   Match find(Method method, const std::vector<std::string>& segments) const;
@@ -54,7 +54,8 @@ class Router {
     Route route;
     std::vector<Segment> segments;
   };
-  static bool matches(const Entry& entry, const std::vector<std::string>& segments, std::map<std::string, std::string>& params);
+  static bool matches(const Entry& entry, const std::vector<std::string>& segments,
+                      std::map<std::string, std::string>& params);
   std::vector<Entry> entries_;
 };
 

@@ -9,8 +9,10 @@ namespace strata::net {
 Handler answering(std::function<Result<Response>(const Request&)> answer) {
   return [answer = std::move(answer)](const Request& request, const Respond& respond) {
     auto response = answer(request);
-    if (response) respond(std::move(*response));
-    else respond(response.error());
+    if (response)
+      respond(std::move(*response));
+    else
+      respond(response.error());
   };
 }
 
@@ -26,7 +28,8 @@ Response with_etag(Response response, const Request& request, std::int64_t versi
 Result<void> check_if_match(const Request& request, std::int64_t version) {
   const auto wanted = request.header("if-match");
   if (wanted.empty() || wanted == "*" || wanted == etag_of(version)) return {};
-  return fail(412, "Changed meanwhile", "Somebody changed this since you read it; read it again and repeat your change.", "If-Match");
+  return fail(412, "Changed meanwhile",
+              "Somebody changed this since you read it; read it again and repeat your change.", "If-Match");
 }
 
 void add_sequences(Response& response, std::int64_t shown, std::int64_t durable) {
@@ -36,11 +39,12 @@ void add_sequences(Response& response, std::int64_t shown, std::int64_t durable)
 Uuid edit_id(const Request& request, const Layer& layer, std::string_view operation) {
   const auto key = request.header("idempotency-key");
   if (key.empty()) return random_uuid();
-  return uuid_of_text(request.user() + '\n' + std::to_string(layer.id) + '\n' + std::string(operation) + '\n' + std::string(key));
+  return uuid_of_text(request.user() + '\n' + std::to_string(layer.id) + '\n' + std::string(operation) + '\n' +
+                      std::string(key));
 }
 
-void apply_edit(const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room, room::EditRequest edit,
-                const Respond& respond) {
+void apply_edit(const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room,
+                room::EditRequest edit, const Respond& respond) {
   const bool keyed = !request.header("idempotency-key").empty();
   if (keyed)
     if (auto same = context.edit_book.begin(room->model().id, edit); !same) return respond(same.error());
@@ -62,7 +66,8 @@ void apply_edit(const RouteContext& context, const Request& request, const std::
 
 Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& text) {
   if (!wish) return make_slug(text);
-  if (is_all_digits(*wish)) return fail(422, "Slug of digits", "A slug of digits only would be taken for an id; add a letter.", "slug");
+  if (is_all_digits(*wish))
+    return fail(422, "Slug of digits", "A slug of digits only would be taken for an id; add a letter.", "slug");
   return *wish;
 }
 

@@ -66,8 +66,8 @@ void add_sequences(Response& response, std::int64_t shown, std::int64_t durable)
 // the kind of call; a layer is the same by whatever address it was reached.
 Uuid edit_id(const Request& request, const Layer& layer, std::string_view operation);
 // Hands the edit to the room and answers once it is durable or refused. A key of another edit is refused.
-void apply_edit(const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room, room::EditRequest edit,
-                const Respond& respond);
+void apply_edit(const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room,
+                room::EditRequest edit, const Respond& respond);
 
 // Slug of a wish or of the name; a wished slug of digits only is refused.
 Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& name);

@@ -53,21 +53,22 @@ void add_auth_routes(Router& router, const RouteContext& context) {
               .role = std::nullopt,
               .query = {"link"}});
 
-  router.add({.method = Method::post,
-              .pattern = "/api/v1/login",
-              .handler = answering([&context, gate](const Request& request) -> Result<Response> {
-                if (auto free = gate->pass(); !free) return tl::unexpected(free.error());
-                auto asked = body_of<protocol::Login>(request);
-                if (!asked) return tl::unexpected(asked.error());
-                auto session = context.auth.session_for_token(asked->token);
-                if (!session) return tl::unexpected(session.error());
-                auto principal = context.auth.identify_token(*session);
-                if (!principal) return tl::unexpected(principal.error());
-                return me(principal->value()).with("Set-Cookie", Authenticator::set_cookie(*session, came_by_https(request)));
-              }),
-              .role = std::nullopt,
-              .body = BodyKind::memory,
-              .max_body = context.options.max_json_bytes});
+  router.add(
+      {.method = Method::post,
+       .pattern = "/api/v1/login",
+       .handler = answering([&context, gate](const Request& request) -> Result<Response> {
+         if (auto free = gate->pass(); !free) return tl::unexpected(free.error());
+         auto asked = body_of<protocol::Login>(request);
+         if (!asked) return tl::unexpected(asked.error());
+         auto session = context.auth.session_for_token(asked->token);
+         if (!session) return tl::unexpected(session.error());
+         auto principal = context.auth.identify_token(*session);
+         if (!principal) return tl::unexpected(principal.error());
+         return me(principal->value()).with("Set-Cookie", Authenticator::set_cookie(*session, came_by_https(request)));
+       }),
+       .role = std::nullopt,
+       .body = BodyKind::memory,
+       .max_body = context.options.max_json_bytes});
 
   router.add({.method = Method::post,
               .pattern = "/api/v1/logout",
@@ -82,9 +83,9 @@ void add_auth_routes(Router& router, const RouteContext& context) {
                 return empty_response(204).with("Set-Cookie", Authenticator::clear_cookie(came_by_https(request)));
               })});
 
-  router.add({.method = Method::get, .pattern = "/api/v1/me", .handler = answering([](const Request& request) -> Result<Response> {
-                return me(*request.principal);
-              })});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/me",
+              .handler = answering([](const Request& request) -> Result<Response> { return me(*request.principal); })});
 }
 
 }  // namespace strata::net

@@ -78,28 +78,35 @@ void add_edit_routes(Router& router, const RouteContext& context) {
               .pattern = layer + "/edits",
               .handler = answering([&context](const Request& request) { return history(context, request); }),
               .query = {"limit", "offset"}});
-  change(layer + "/edits", editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+  change(layer + "/edits",
+         editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
            auto asked = body_of<protocol::Edit>(request);
            if (!asked) return tl::unexpected(asked.error());
-           return edit_request(*asked, target.layer, target.room->model(), edit_id(request, target.layer, "edit"), request.user());
+           return edit_request(*asked, target.layer, target.room->model(), edit_id(request, target.layer, "edit"),
+                               request.user());
          }));
-  change(layer + "/undo", editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+  change(layer + "/undo",
+         editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
            if (auto empty = check_empty(request); !empty) return tl::unexpected(empty.error());
            auto edit = bare_edit(request, target, "undo");
            edit.edit = room::UndoEdit{};
            return edit;
          }));
-  change(layer + "/redo", editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+  change(layer + "/redo",
+         editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
            if (auto empty = check_empty(request); !empty) return tl::unexpected(empty.error());
            auto edit = bare_edit(request, target, "redo");
            edit.edit = room::RedoEdit{};
            return edit;
          }));
-  change(layer + "/restore", editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+  change(layer + "/restore",
+         editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
            auto asked = body_of<protocol::Restore>(request);
            if (!asked) return tl::unexpected(asked.error());
            if (asked->sequence > target.room->sequence())
-             return fail(422, "Not yet there", "The newest sequence of this model is " + std::to_string(target.room->sequence()) + ".", "sequence");
+             return fail(422, "Not yet there",
+                         "The newest sequence of this model is " + std::to_string(target.room->sequence()) + ".",
+                         "sequence");
            auto edit = bare_edit(request, target, "restore");
            edit.record["sequence"] = asked->sequence;
            edit.edit = room::RestoreEdit{asked->sequence};

@@ -30,8 +30,11 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   auto picture = (*room)->picture(asked->camera, std::move(layers), asked->at);
   if (!picture) return tl::unexpected(picture.error());
   const bool is_png = asked->format == protocol::FrameRequestFormat::png;
-  Response response = is_png ? bytes_response(stream::encode_png(picture->pixels, picture->width, picture->height), "image/png")
-                             : bytes_response(stream::encode_jpeg(picture->pixels, picture->width, picture->height, {kJpegQuality, true}), "image/jpeg");
+  Response response =
+      is_png
+          ? bytes_response(stream::encode_png(picture->pixels, picture->width, picture->height), "image/png")
+          : bytes_response(stream::encode_jpeg(picture->pixels, picture->width, picture->height, {kJpegQuality, true}),
+                           "image/jpeg");
   add_sequences(response, asked->at.value_or(sequence), (*room)->durable_sequence());
   return response;
 }

@@ -53,7 +53,8 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
     asked.resolution = static_cast<int>(*resolution);
   }
   const std::string strict = request.query_or("strict", "false");
-  if (strict != "true" && strict != "false") return fail(422, "Neither true nor false", "`strict` is true or false.", "strict");
+  if (strict != "true" && strict != "false")
+    return fail(422, "Neither true nor false", "`strict` is true or false.", "strict");
   asked.strict = strict == "true";
   asked.filename = jobs::base_filename(request.query_or("filename", {}));
   return asked;
@@ -68,7 +69,8 @@ Result<void> check_import(const RouteContext& context, const Request& request) {
 }
 
 // The upload under a name of its own: the request's file goes with the answer, the job needs it longer.
-Result<std::shared_ptr<TemporaryFile>> keep_upload(const Request& request, const fs::path& file, const fs::path& folder) {
+Result<std::shared_ptr<TemporaryFile>> keep_upload(const Request& request, const fs::path& file,
+                                                   const fs::path& folder) {
   if (file != request.body_file) return std::make_shared<TemporaryFile>(file);
   const fs::path kept = folder / (to_string(random_uuid()) + ".upload");
   std::error_code error;
@@ -79,7 +81,9 @@ Result<std::shared_ptr<TemporaryFile>> keep_upload(const Request& request, const
 
 Result<Response> accepted(const RouteContext& context, std::int64_t job) {
   const auto status = context.jobs.status(job);
-  return json_response(status ? to_json(*status) : nlohmann::json{{"id", job}, {"state", "queued"}, {"progress", 0}, {"message", ""}}, 202)
+  return json_response(status ? to_json(*status)
+                              : nlohmann::json{{"id", job}, {"state", "queued"}, {"progress", 0}, {"message", ""}},
+                       202)
       .with("Location", "/api/v1/jobs/" + std::to_string(job));
 }
 
@@ -100,18 +104,20 @@ Result<Response> start_import(const RouteContext& context, ImportBook& book, con
   const store::FirstAnswer<Model> answer{scoped_key(request), [print = fingerprint(request)](const Model& model) {
                                            return nlohmann::json{{"request", print}, {"model", model.id}};
                                          }};
-  auto job = context.jobs.add([&store = context.store, asked = *asked, file = *file, answer](Progress& progress) -> Result<std::int64_t> {
-    auto model = jobs::import_model(store, asked, progress, answer);
-    if (!model) return tl::unexpected(model.error());
-    return model->id;
-  });
+  auto job = context.jobs.add(
+      [&store = context.store, asked = *asked, file = *file, answer](Progress& progress) -> Result<std::int64_t> {
+        auto model = jobs::import_model(store, asked, progress, answer);
+        if (!model) return tl::unexpected(model.error());
+        return model->id;
+      });
   if (!job) return tl::unexpected(job.error());
   book.started(request, *job);
   return accepted(context, *job);
 }
 
 // The import succeeded. Its job is known where this server did it.
-Result<Response> repeat_import(const RouteContext& context, ImportBook& book, const Request& request, const nlohmann::json& kept) {
+Result<Response> repeat_import(const RouteContext& context, ImportBook& book, const Request& request,
+                               const nlohmann::json& kept) {
   auto known = book.find(request);
   if (!known) return tl::unexpected(known.error());
   auto job = *known ? Result<std::int64_t>(**known) : book.finished(request, kept.at("model").get<std::int64_t>());
@@ -123,18 +129,19 @@ Result<Response> repeat_import(const RouteContext& context, ImportBook& book, co
 
 void add_import_routes(Router& router, const RouteContext& context) {
   auto book = std::make_shared<ImportBook>(context.jobs);
-  router.add({.method = Method::post,
-              .pattern = "/api/v1/models",
-              .handler = answering([&context, book](const Request& request) { return start_import(context, *book, request); }),
-              .role = Role::curator,
-              .query = {"name", "project", "unit", "up", "crs", "resolution", "filename", "strict"},
-              .check = [&context](const Request& request) { return check_import(context, request); },
-              .body = BodyKind::file,
-              .max_body = context.options.max_upload_bytes,
-              .keeps_answer = true,
-              .replay = [&context, book](const Request& request, const nlohmann::json& kept) {
-                return repeat_import(context, *book, request, kept);
-              }});
+  router.add(
+      {.method = Method::post,
+       .pattern = "/api/v1/models",
+       .handler = answering([&context, book](const Request& request) { return start_import(context, *book, request); }),
+       .role = Role::curator,
+       .query = {"name", "project", "unit", "up", "crs", "resolution", "filename", "strict"},
+       .check = [&context](const Request& request) { return check_import(context, request); },
+       .body = BodyKind::file,
+       .max_body = context.options.max_upload_bytes,
+       .keeps_answer = true,
+       .replay = [&context, book](
+                     const Request& request,
+                     const nlohmann::json& kept) { return repeat_import(context, *book, request, kept); }});
 }
 
 }  // namespace strata::net

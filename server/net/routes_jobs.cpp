@@ -11,7 +11,9 @@ Result<jobs::JobStatus> find_job(const RouteContext& context, const Request& req
   return *status;
 }
 
-bool is_over(const jobs::JobStatus& job) { return job.state != jobs::JobState::queued && job.state != jobs::JobState::running; }
+bool is_over(const jobs::JobStatus& job) {
+  return job.state != jobs::JobState::queued && job.state != jobs::JobState::running;
+}
 
 }  // namespace
 
@@ -24,7 +26,8 @@ void add_job_routes(Router& router, const RouteContext& context) {
                 const auto all = context.jobs.all();
                 nlohmann::json list = nlohmann::json::array();
                 const int total = static_cast<int>(all.size());
-                for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json(all[i]));
+                for (int i = page->offset; i < total && i < page->offset + page->limit; ++i)
+                  list.push_back(to_json(all[i]));
                 Response response = json_response({{"jobs", list}, {"total", total}});
                 add_page_links(response, request, *page, total);
                 return response;

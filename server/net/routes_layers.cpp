@@ -49,8 +49,10 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
   layer.table = asked.table;
   layer.resolution = asked.resolution.value_or(std::max(model.default_resolution, model.atlas.lowest_resolution));
   if (layer.resolution < model.atlas.lowest_resolution)
-    return fail(422, "Resolution too low", "Layers of this model have at least " + std::to_string(model.atlas.lowest_resolution) + " texels a side.",
-                "resolution");
+    return fail(
+        422, "Resolution too low",
+        "Layers of this model have at least " + std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+        "resolution");
   layer.unit = asked.unit;
   layer.description = asked.description;
   auto palette = palette_of(asked.palette, layer.type, layer.kind == LayerKind::database);

@@ -54,8 +54,10 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
   if (patch.crs) model.crs = *patch.crs;
   if (patch.default_resolution) {
     if (*patch.default_resolution < model.atlas.lowest_resolution)
-      return fail(422, "Resolution too low", "Layers of this model have at least " + std::to_string(model.atlas.lowest_resolution) + " texels a side.",
-                  "default_resolution");
+      return fail(
+          422, "Resolution too low",
+          "Layers of this model have at least " + std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+          "default_resolution");
     model.default_resolution = *patch.default_resolution;
   }
   auto set = [](std::string& member, const std::optional<std::string>& value) {
@@ -84,7 +86,9 @@ Result<Response> change_model(const RouteContext& context, const Request& reques
   if (auto fits = apply_patch(*asked, model); !fits) return tl::unexpected(fits.error());
   auto slug = project_slug(context, model.project_id);
   if (!slug) return tl::unexpected(slug.error());
-  const auto answer = [slug = *slug](const Model& now) { return json_response(to_json(now, slug)).with("ETag", etag_of(now.version)); };
+  const auto answer = [slug = *slug](const Model& now) {
+    return json_response(to_json(now, slug)).with("ETag", etag_of(now.version));
+  };
   auto changed = (*room)->update_model(std::move(model), first_answer<Model>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   return answer(*changed);
@@ -101,9 +105,10 @@ Result<Response> source(const RouteContext& context, const Request& request) {
     Response response;
     response.with("Content-Type", "application/octet-stream").with("ETag", etag);
     response.with("Content-Disposition", "attachment; filename*=UTF-8''" + percent_encode(file.name));
-    response.stream = Response::Stream{file.bytes, [&store = context.store, id = model->id, wanted](const Response::Sink& sink) {
-                                         (void)store.read_source(id, wanted, sink);  // a short body tells the client
-                                       }};
+    response.stream =
+        Response::Stream{file.bytes, [&store = context.store, id = model->id, wanted](const Response::Sink& sink) {
+                           (void)store.read_source(id, wanted, sink);  // a short body tells the client
+                         }};
     return response;
   }
   return fail(404, "No such file", "The model was not made from a file of this name; see `source_files`.", "name");
@@ -136,7 +141,8 @@ void add_model_routes(Router& router, const RouteContext& context) {
                 auto model = context.store.model(request.param("model"));
                 if (!model) return tl::unexpected(model.error());
                 if (auto fresh = check_if_match(request, model->version); !fresh) return tl::unexpected(fresh.error());
-                auto gone = context.store.delete_model(model->id, first_answer<>(request, [] { return empty_response(204); }));
+                auto gone =
+                    context.store.delete_model(model->id, first_answer<>(request, [] { return empty_response(204); }));
                 if (!gone) return tl::unexpected(gone.error());
                 context.rooms.forget(model->id);
                 return empty_response(204);

@@ -27,7 +27,9 @@ Result<Response> create_project(const RouteContext& context, const Request& requ
   project.slug = *slug;
   project.description = asked->description;
   const auto answer = [](const Project& made) {
-    return json_response(to_json(made), 201).with("Location", "/api/v1/projects/" + made.slug).with("ETag", etag_of(made.version));
+    return json_response(to_json(made), 201)
+        .with("Location", "/api/v1/projects/" + made.slug)
+        .with("ETag", etag_of(made.version));
   };
   auto created = context.store.create_project(std::move(project), first_answer<Project>(request, answer));
   if (!created) return tl::unexpected(created.error());
@@ -81,8 +83,10 @@ void add_project_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context](const Request& request) -> Result<Response> {
                 auto project = context.store.project(request.param("project"));
                 if (!project) return tl::unexpected(project.error());
-                if (auto fresh = check_if_match(request, project->version); !fresh) return tl::unexpected(fresh.error());
-                auto gone = context.store.delete_project(project->id, first_answer<>(request, [] { return empty_response(204); }));
+                if (auto fresh = check_if_match(request, project->version); !fresh)
+                  return tl::unexpected(fresh.error());
+                auto gone = context.store.delete_project(project->id,
+                                                         first_answer<>(request, [] { return empty_response(204); }));
                 if (!gone) return tl::unexpected(gone.error());
                 return empty_response(204);
               }),

@@ -11,7 +11,8 @@ std::vector<std::string> slugs_of(const std::vector<Layer>& layers) {
   return slugs;
 }
 
-Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs, const std::string& field) {
+Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,
+                                       const std::string& field) {
   std::vector<Layer> layers;
   for (const auto& ref : refs) {
     auto layer = room.layer(ref);
@@ -55,9 +56,12 @@ Result<Response> position(const RouteContext& context, const Request& request) {
   auto point = (*room)->position(*coordinates, slugs_of(layers));
   if (!point) return tl::unexpected(point.error());
   Response response;
-  if (format == "csv") response = text_response(points_csv({*point}, slugs_of(layers)), kCsvType);
-  else if (format == "json") response = json_response(protocol::to_json(to_protocol(*point)));
-  else if (!point->hit) return fail(404, "No surface", "The model has no surface to measure at.", "coords");
+  if (format == "csv")
+    response = text_response(points_csv({*point}, slugs_of(layers)), kCsvType);
+  else if (format == "json")
+    response = json_response(protocol::to_json(to_protocol(*point)));
+  else if (!point->hit)
+    return fail(404, "No surface", "The model has no surface to measure at.", "coords");
   else {
     response = json_response(point_coverage(*point, layers, (*room)->model()));
     response.headers = {{"Content-Type", "application/prs.coverage+json"}};
@@ -112,7 +116,8 @@ Result<Response> pick(const RouteContext& context, const Request& request) {
 
 Result<Response> statistics(const RouteContext& context, const Request& request) {
   if (auto include = request.query_or("include", {}); !include.empty())
-    return fail(422, "Not computed here", "pieces, perimeter and quantiles are not available; leave `include` out.", "include");
+    return fail(422, "Not computed here", "pieces, perimeter and quantiles are not available; leave `include` out.",
+                "include");
   auto room = context.rooms.open(request.param("model"));
   if (!room) return tl::unexpected(room.error());
   auto layer = (*room)->layer(request.param("layer"));

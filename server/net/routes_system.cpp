@@ -26,18 +26,24 @@ Result<Response> contract(const RouteContext& context) {
 
 void add_system_routes(Router& router, const RouteContext& context) {
   auto open = [&](std::string pattern, std::function<Result<Response>(const Request&)> answer) {
-    router.add({.method = Method::get, .pattern = std::move(pattern), .handler = answering(std::move(answer)), .role = std::nullopt});
+    router.add({.method = Method::get,
+                .pattern = std::move(pattern),
+                .handler = answering(std::move(answer)),
+                .role = std::nullopt});
   };
   open("/livez", [](const Request&) -> Result<Response> { return text_response("ok\n", "text/plain; charset=utf-8"); });
   open("/readyz", [&context](const Request&) -> Result<Response> { return readiness(context); });
   open("/metrics", [&context](const Request&) -> Result<Response> {
-    return text_response(metrics_text(context.metrics, {context.rooms.open_rooms(), context.renderer.gpu_bytes_used(), context.workers.waiting()}),
+    return text_response(metrics_text(context.metrics, {context.rooms.open_rooms(), context.renderer.gpu_bytes_used(),
+                                                        context.workers.waiting()}),
                          "text/plain; version=0.0.4; charset=utf-8");
   });
   open("/api/v1/openapi.json", [&context](const Request&) { return contract(context); });
   for (const char* pattern : {"/docs", "/api/v1/docs"})
     open(pattern, [&context](const Request&) { return docs_page(context.options.protocol_dir / "openapi.json"); });
-  open("/api/v1/docs.css", [](const Request&) -> Result<Response> { return text_response(std::string(docs_style()), "text/css; charset=utf-8"); });
+  open("/api/v1/docs.css", [](const Request&) -> Result<Response> {
+    return text_response(std::string(docs_style()), "text/css; charset=utf-8");
+  });
 }
 
 }  // namespace strata::net

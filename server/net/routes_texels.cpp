@@ -27,7 +27,8 @@ Result<const Format*> format_of(const Request& request) {
 
 // Uncompressed, with the valid plane; TIFF keeps that in the value's type, too.
 std::uint64_t raster_bytes(const Layer& layer) {
-  return std::uint64_t(layer.resolution) * layer.resolution * 2 * std::uint64_t(bytes_per_texel(layer.type)) + (1u << 20);
+  return std::uint64_t(layer.resolution) * layer.resolution * 2 * std::uint64_t(bytes_per_texel(layer.type)) +
+         (1u << 20);
 }
 
 Result<Response> read_texels(const RouteContext& context, ByteBudget& budget, const Request& request) {
@@ -51,14 +52,16 @@ Result<Response> read_texels(const RouteContext& context, ByteBudget& budget, co
   if (!bytes) return tl::unexpected(bytes.error());
   Response response = bytes_response(std::move(*bytes), (*format)->media_type);
   response.held = std::move(*held);
-  response.with("Content-Disposition", "attachment; filename*=UTF-8''" + percent_encode(layer->slug + "." + (*format)->extension));
+  response.with("Content-Disposition",
+                "attachment; filename*=UTF-8''" + percent_encode(layer->slug + "." + (*format)->extension));
   add_sequences(response, at.value_or(snapshot->sequence), (*room)->durable_sequence());
   return response;
 }
 
 Result<void> check_size(const Layer& layer, std::uint64_t bytes) {
   if (bytes <= raster_bytes(layer)) return {};
-  return fail(413, "Raster too large", "A raster of this layer has at most " + std::to_string(raster_bytes(layer)) + " bytes.", "body");
+  return fail(413, "Raster too large",
+              "A raster of this layer has at most " + std::to_string(raster_bytes(layer)) + " bytes.", "body");
 }
 
 // Before the body, where its length is told.
@@ -87,14 +90,18 @@ void write_texels(const RouteContext& context, ByteBudget& budget, const Request
   auto held = budget.take(raster_bytes(*layer));
   if (!held) return respond(held.error());
   const auto file = MappedFile::open(request.body_file);
-  if (!file || file->bytes().empty()) return respond(Problem{400, "Empty body", "Send the raster file as the body.", "body"});
+  if (!file || file->bytes().empty())
+    return respond(Problem{400, "Empty body", "Send the raster file as the body.", "body"});
   auto tiles = (*format)->decode(*layer, file->bytes());
   if (!tiles) return respond(tiles.error());
   room::EditRequest edit;
   edit.id = edit_id(request, *layer, "import");
   edit.user = request.user();
   edit.layer_id = layer->id;
-  edit.record = {{"op", "import"}, {"format", (*format)->extension}, {"bytes", request.body_bytes}, {"sha256", sha256_hex(file->view())}};
+  edit.record = {{"op", "import"},
+                 {"format", (*format)->extension},
+                 {"bytes", request.body_bytes},
+                 {"sha256", sha256_hex(file->view())}};
   edit.edit = room::ImportEdit{std::move(*tiles)};
   apply_edit(context, request, *room, std::move(edit), respond);
 }
@@ -106,15 +113,18 @@ void add_texel_routes(Router& router, const RouteContext& context) {
   auto budget = std::make_shared<ByteBudget>(context.options.max_rasters_at_once);
   router.add({.method = Method::get,
               .pattern = pattern,
-              .handler = answering([&context, budget](const Request& request) { return read_texels(context, *budget, request); }),
+              .handler = answering(
+                  [&context, budget](const Request& request) { return read_texels(context, *budget, request); }),
               .query = {"at"}});
-  router.add({.method = Method::put,
-              .pattern = pattern,
-              .handler = [&context, budget](const Request& request, const Respond& respond) { write_texels(context, *budget, request, respond); },
-              .role = Role::annotator,
-              .check = [&context](const Request& request) { return check_raster(context, request); },
-              .body = BodyKind::file,
-              .max_body = kMaxRasterBytes});
+  router.add(
+      {.method = Method::put,
+       .pattern = pattern,
+       .handler = [&context, budget](const Request& request,
+                                     const Respond& respond) { write_texels(context, *budget, request, respond); },
+       .role = Role::annotator,
+       .check = [&context](const Request& request) { return check_raster(context, request); },
+       .body = BodyKind::file,
+       .max_body = kMaxRasterBytes});
 }
 
 }  // namespace strata::net

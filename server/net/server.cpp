@@ -41,7 +41,8 @@ Result<void> prepare_upload_dir(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
-    return fail(500, "Upload folder not usable", "The folder " + folder.string() + " cannot be made: " + error.message() + ".");
+    return fail(500, "Upload folder not usable",
+                "The folder " + folder.string() + " cannot be made: " + error.message() + ".");
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string extension = entry.path().extension().string();
     std::error_code ignored;
@@ -52,7 +53,10 @@ Result<void> prepare_upload_dir(const fs::path& folder) {
 
 Result<tcp::acceptor> listen(asio::io_context& io, const std::string& host, std::uint16_t port) {
   auto refused = [&](const boost::system::error_code& error) {
-    return fail(500, "Cannot listen", "Cannot listen on " + host + ":" + std::to_string(port) + ": " + error.message() + ". Choose another address with --listen.", "listen");
+    return fail(500, "Cannot listen",
+                "Cannot listen on " + host + ":" + std::to_string(port) + ": " + error.message() +
+                    ". Choose another address with --listen.",
+                "listen");
   };
   boost::system::error_code error;
   tcp::resolver resolver(io);
@@ -109,10 +113,12 @@ Server::~Server() { stop(); }
 
 std::uint16_t Server::port() const { return impl_->port; }
 
-Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
-                                              render::Renderer& renderer) {
+Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Store& store, room::Rooms& rooms,
+                                              jobs::JobQueue& jobs, render::Renderer& renderer) {
   if (!options.owner_token.empty() && options.owner_token.size() < kMinOwnerTokenLength)
-    return fail(422, "Owner token too short", "STRATA_OWNER_TOKEN has at least 32 characters; make one with `openssl rand -hex 32`.", "STRATA_OWNER_TOKEN");
+    return fail(422, "Owner token too short",
+                "STRATA_OWNER_TOKEN has at least 32 characters; make one with `openssl rand -hex 32`.",
+                "STRATA_OWNER_TOKEN");
   if (auto ready = prepare_upload_dir(options.upload_dir); !ready) return tl::unexpected(ready.error());
   const std::string host = options.host;
   const std::uint16_t port = options.port;

@@ -16,8 +16,8 @@ namespace strata::net {
 class Server {
  public:
   // Listens when it returns. Refused with advice: an address in use, a short owner token, an upload folder that cannot be written.
-  static Result<std::unique_ptr<Server>> start(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
-                                               render::Renderer& renderer);
+  static Result<std::unique_ptr<Server>> start(ServerOptions options, store::Store& store, room::Rooms& rooms,
+                                               jobs::JobQueue& jobs, render::Renderer& renderer);
   ~Server();
 
   std::uint16_t port() const;

@@ -26,7 +26,7 @@ struct ServerOptions {
   std::uint64_t max_rasters_at_once = 2ull << 30;  // bytes of those being read and written
   std::uint64_t max_json_bytes = 1u << 20;
   std::uint64_t max_positions_bytes = 16u << 20;
-  double requests_per_second = 1000;         // of one connection
+  double requests_per_second = 1000;  // of one connection
   double request_burst = 2000;
   LiveLimits live;
 };

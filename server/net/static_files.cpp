@@ -15,7 +15,8 @@ bool is_page(const Request& request) {
 }
 
 bool is_safe(const std::string& segment) {
-  return segment != "." && segment != ".." && segment.find_first_of("/\\") == std::string::npos && !segment.starts_with('.');
+  return segment != "." && segment != ".." && segment.find_first_of("/\\") == std::string::npos &&
+         !segment.starts_with('.');
 }
 
 bool is_inside(const fs::path& file, const fs::path& folder) {
@@ -75,7 +76,11 @@ Response StaticFiles::serve(const Request& request) const {
     if (!is_page(request)) return problem_response(missing);
     file = folder_ / "index.html";
     if (!fs::is_regular_file(file, error))
-      return problem_response({503, "Page not built", "The web page is not part of this installation; the API works. Build web-client and start again.", {}});
+      return problem_response(
+          {503,
+           "Page not built",
+           "The web page is not part of this installation; the API works. Build web-client and start again.",
+           {}});
   }
   file = fs::canonical(file, error);
   if (error || !is_inside(file, folder_)) return problem_response(missing);

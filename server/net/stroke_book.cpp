@@ -16,7 +16,8 @@ StrokeBook::Stroke* StrokeBook::find(const Owner& owner, const Uuid& stroke) {
 }
 
 int StrokeBook::Stroke::saved_through() const {
-  const auto gap = std::find_if_not(batches.begin(), batches.end(), [](const PastBatch& batch) { return batch.is_saved; });
+  const auto gap =
+      std::find_if_not(batches.begin(), batches.end(), [](const PastBatch& batch) { return batch.is_saved; });
   return first_n - 1 + static_cast<int>(gap - batches.begin());
 }
 
@@ -32,7 +33,9 @@ Result<void> StrokeBook::begin(const Owner& owner, const Uuid& stroke, StrokeToo
   forget_old(now);
   if (Stroke* known = find(owner, stroke)) {
     if (!(known->tool == tool))
-      return fail(409, "Stroke known", "A stroke with this id was begun with another layer, value, camera or brush; take a new id.", "stroke");
+      return fail(409, "Stroke known",
+                  "A stroke with this id was begun with another layer, value, camera or brush; take a new id.",
+                  "stroke");
     known->ended = false;
     known->touched = now;
     return {};
@@ -70,9 +73,12 @@ Result<StrokeBook::Batch> StrokeBook::extend(const Owner& owner, const Uuid& str
   if (known->batches.empty() && !known->last) known->first_n = n;
   const int next = known->first_n + static_cast<int>(known->batches.size());
   if (n > next)
-    return fail(409, "Batch out of order", "The next batch of this stroke is number " + std::to_string(next) + ".", "n");
+    return fail(409, "Batch out of order", "The next batch of this stroke is number " + std::to_string(next) + ".",
+                "n");
   if (n < known->first_n)
-    return fail(409, "Batch too old", "Batches before number " + std::to_string(known->first_n) + " of this stroke can no longer be repeated.", "n");
+    return fail(
+        409, "Batch too old",
+        "Batches before number " + std::to_string(known->first_n) + " of this stroke can no longer be repeated.", "n");
   const bool is_new = n == next;
   if (is_new && known->ended) return fail(409, "Stroke ended", "This stroke was ended; begin a new one.", "stroke");
   if (!is_new && known->batches[static_cast<std::size_t>(n - known->first_n)].id != id)
@@ -81,7 +87,8 @@ Result<StrokeBook::Batch> StrokeBook::extend(const Owner& owner, const Uuid& str
   const std::optional<glm::dvec2> start =
       is_new ? known->last : known->batches[static_cast<std::size_t>(n - known->first_n)].start;
   if (path.empty() || path.size() + (start ? 1 : 0) > kMaxPath)
-    return fail(422, "Path too long", "A batch has 1 to " + std::to_string(kMaxPath - 1) + " points; send more batches.", "path");
+    return fail(422, "Path too long",
+                "A batch has 1 to " + std::to_string(kMaxPath - 1) + " points; send more batches.", "path");
   known->touched = now;
   if (is_new) {
     known->batches.push_back({id, start});

@@ -29,9 +29,9 @@ struct StrokeTool {
 class StrokeBook {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::size_t kMaxStrokes = 256;    // of one person in one model
-  static constexpr std::size_t kMaxBatches = 8192;   // remembered of one stroke
-  static constexpr std::size_t kMaxPath = 4096;      // points of an edit, the joining one included
+  static constexpr std::size_t kMaxStrokes = 256;   // of one person in one model
+  static constexpr std::size_t kMaxBatches = 8192;  // remembered of one stroke
+  static constexpr std::size_t kMaxPath = 4096;     // points of an edit, the joining one included
   static constexpr std::chrono::minutes kKeepFor{10};
 
   struct Owner {
@@ -54,8 +54,8 @@ class StrokeBook {
   };
   // Refused: an unknown stroke (404), a batch out of order, a number already taken by another id, an ended stroke (409),
   // a path that is too long with the joining point (422). A repeated id gives the same batch again and advances nothing.
-  Result<Batch> extend(const Owner& owner, const Uuid& stroke, const Uuid& id, int n, const std::vector<glm::dvec2>& path,
-                       Clock::time_point now = Clock::now());
+  Result<Batch> extend(const Owner& owner, const Uuid& stroke, const Uuid& id, int n,
+                       const std::vector<glm::dvec2>& path, Clock::time_point now = Clock::now());
   void saved(const Owner& owner, const Uuid& stroke, int n);
   Result<void> end(const Owner& owner, const Uuid& stroke);
 
@@ -74,12 +74,13 @@ class StrokeBook {
   };
   struct Stroke {
     StrokeTool tool;
-    int first_n = 0;                 // number of batches.front()
+    int first_n = 0;  // number of batches.front()
     std::deque<PastBatch> batches;
     std::optional<glm::dvec2> last;  // where the newest batch ended
     bool ended = false;
     Clock::time_point touched;
-    int saved_through() const;  // a later batch can be saved while an earlier one was refused and waits to be sent again
+    int saved_through()
+        const;  // a later batch can be saved while an earlier one was refused and waits to be sent again
   };
   using Strokes = std::unordered_map<Uuid, Stroke>;
   Stroke* find(const Owner& owner, const Uuid& stroke);

@@ -12,7 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kAccepted = "Send one PLY or OBJ file as the body, or as the only file of a multipart/form-data form.";
+constexpr const char* kAccepted =
+    "Send one PLY or OBJ file as the body, or as the only file of a multipart/form-data form.";
 
 // std::string_view::find is too slow for gigabytes; memmem is vectorised.
 std::size_t find(std::string_view text, std::string_view what, std::size_t from) {
@@ -45,7 +46,9 @@ tl::unexpected<Problem> archive_refused() {
 }
 
 Result<Upload> take_part(const Request& request, std::string_view body, const fs::path& folder) {
-  auto malformed = [] { return fail(400, "Malformed form", "The multipart/form-data body does not follow its boundary.", "body"); };
+  auto malformed = [] {
+    return fail(400, "Malformed form", "The multipart/form-data body does not follow its boundary.", "body");
+  };
   const std::string boundary = "--" + parameter(request.header("content-type"), "boundary");
   if (boundary.size() < 3 || boundary.size() > 74) return malformed();
   const std::string separator = "\r\n" + boundary;
@@ -68,7 +71,8 @@ Result<Upload> take_part(const Request& request, std::string_view body, const fs
       if (found) return fail(415, "More than one file", kAccepted, "body");
       found = true;
       upload.filename = jobs::base_filename(name);
-      content = content_end > content_begin ? body.substr(content_begin, content_end - content_begin) : std::string_view();
+      content =
+          content_end > content_begin ? body.substr(content_begin, content_end - content_begin) : std::string_view();
     }
     at = content_end + separator.size();
   }

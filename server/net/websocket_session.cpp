@@ -24,8 +24,8 @@ using std::chrono::seconds;
 
 constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 constexpr seconds kHandshake{10};
-constexpr seconds kIdle{60};    // with pings in between
-constexpr seconds kStalled{60}; // one message that cannot be sent: the client does not read
+constexpr seconds kIdle{60};     // with pings in between
+constexpr seconds kStalled{60};  // one message that cannot be sent: the client does not read
 constexpr seconds kClosing{5};
 constexpr seconds kRecheck{30};  // whether the person is still signed in
 // Beyond the protocol's limit a message is refused with a problem; beyond this one the connection ends.
@@ -37,7 +37,10 @@ constexpr std::size_t kMaxQueuedFrames = 64;  // credit allows a few frames of a
 class WebSocketSession final : public LiveSocket, public std::enable_shared_from_this<WebSocketSession> {
  public:
   WebSocketSession(beast::tcp_stream stream, std::shared_ptr<Connections> connections)
-      : ws_(std::move(stream)), connections_(std::move(connections)), stall_timer_(ws_.get_executor()), close_timer_(ws_.get_executor()),
+      : ws_(std::move(stream)),
+        connections_(std::move(connections)),
+        stall_timer_(ws_.get_executor()),
+        close_timer_(ws_.get_executor()),
         recheck_timer_(ws_.get_executor()) {
     ++connections_->app.metrics().open_sockets;
   }
@@ -47,7 +50,9 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
     prepare();
     auto [accept_error] = co_await ws_.async_accept(request, kUseResult);
     if (!accept_error) {
-      const auto watch = [self, secret = entry.secret, role = entry.principal.role] { return self->watch_sign_in(secret, role); };
+      const auto watch = [self, secret = entry.secret, role = entry.principal.role] {
+        return self->watch_sign_in(secret, role);
+      };
       live_ = connections_->app.make_session(std::move(entry), weak_from_this());
       asio::co_spawn(ws_.get_executor(), watch, asio::detached);
       co_await read();
@@ -62,13 +67,17 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
 
   // --- LiveSocket, from any thread
   void send_text(std::string text) override {
-    asio::post(ws_.get_executor(), [self = shared_from_this(), text = std::move(text)]() mutable { self->queue_text(std::move(text)); });
+    asio::post(ws_.get_executor(),
+               [self = shared_from_this(), text = std::move(text)]() mutable { self->queue_text(std::move(text)); });
   }
   void send_frame(stream::FrameBytes frame) override {
-    asio::post(ws_.get_executor(), [self = shared_from_this(), frame = std::move(frame)]() mutable { self->queue_frame(std::move(frame)); });
+    asio::post(ws_.get_executor(), [self = shared_from_this(), frame = std::move(frame)]() mutable {
+      self->queue_frame(std::move(frame));
+    });
   }
   void close(int code, std::string reason) override {
-    asio::post(ws_.get_executor(), [self = shared_from_this(), code, reason = std::move(reason)] { self->start_close(code, reason); });
+    asio::post(ws_.get_executor(),
+               [self = shared_from_this(), code, reason = std::move(reason)] { self->start_close(code, reason); });
   }
   void run_after(std::chrono::milliseconds delay, std::function<void()> work) override {
     auto timer = std::make_shared<asio::steady_timer>(ws_.get_executor(), delay);
@@ -133,7 +142,8 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
     if (closing_ || over_) return;
     queued_bytes_ += text.size();
     texts_.push_back(std::move(text));
-    if (texts_.size() > kMaxQueuedTexts || queued_bytes_ > kMaxQueuedBytes) return start_close(kCloseTryAgain, "reading too slowly");
+    if (texts_.size() > kMaxQueuedTexts || queued_bytes_ > kMaxQueuedBytes)
+      return start_close(kCloseTryAgain, "reading too slowly");
     write_next();
   }
 
@@ -207,21 +217,23 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
   std::deque<std::string> texts_;
   std::deque<stream::FrameBytes> frames_;
   std::size_t queued_bytes_ = 0;
-  std::string text_;           // being sent
-  stream::FrameBytes frame_;   // being sent
+  std::string text_;          // being sent
+  stream::FrameBytes frame_;  // being sent
   bool writing_ = false, closing_ = false, close_sent_ = false, over_ = false;
   websocket::close_reason reason_;
 };
 
 }  // namespace
 
-void start_websocket(beast::tcp_stream stream, http::request<http::empty_body> request, std::shared_ptr<Connections> connections,
-                     App::LiveEntry entry) {
+void start_websocket(beast::tcp_stream stream, http::request<http::empty_body> request,
+                     std::shared_ptr<Connections> connections, App::LiveEntry entry) {
   auto executor = stream.get_executor();
   auto session = std::make_shared<WebSocketSession>(std::move(stream), std::move(connections));
   asio::co_spawn(
       executor,
-      [session, request = std::move(request), entry = std::move(entry)]() mutable { return session->run(std::move(request), std::move(entry)); },
+      [session, request = std::move(request), entry = std::move(entry)]() mutable {
+        return session->run(std::move(request), std::move(entry));
+      },
       [](std::exception_ptr failure) {
         if (!failure) return;
         try {

@@ -26,8 +26,10 @@ Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Mod
   StrokeBatch batch;
   batch.camera = stroke.camera;
   batch.shape = stroke.shape;
-  if (stroke.radius_px) batch.radius_px = *stroke.radius_px;
-  else if (stroke.radius_mm) batch.radius_world = in_model_units(*stroke.radius_mm, model.unit);
+  if (stroke.radius_px)
+    batch.radius_px = *stroke.radius_px;
+  else if (stroke.radius_mm)
+    batch.radius_world = in_model_units(*stroke.radius_mm, model.unit);
   batch.through = stroke.through;
   batch.erase = stroke.erase;
   batch.value_bits = *bits;
@@ -56,8 +58,8 @@ nlohmann::json vec3(const glm::dvec3& v) { return nlohmann::json::array({v.x, v.
 
 double in_model_units(double millimetres, Unit unit) { return millimetres * 0.001 / metres_per(unit); }
 
-Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer, const Model& model, const Uuid& id,
-                                       const std::string& user) {
+Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer, const Model& model,
+                                       const Uuid& id, const std::string& user) {
   room::EditRequest request;
   request.id = id;
   request.user = user;
@@ -89,7 +91,8 @@ Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& 
   return tool;
 }
 
-room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n, const std::string& user) {
+room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n,
+                                const std::string& user) {
   room::EditRequest request;
   request.id = id;
   request.user = user;
@@ -169,8 +172,10 @@ nlohmann::json to_json(const query::Statistics& statistics) {
 
 nlohmann::json to_json(const jobs::JobStatus& job) {
   static constexpr const char* kStates[] = {"queued", "running", "done", "failed", "cancelled"};
-  nlohmann::json json{
-      {"id", job.id}, {"state", kStates[static_cast<int>(job.state)]}, {"progress", job.progress}, {"message", job.message}};
+  nlohmann::json json{{"id", job.id},
+                      {"state", kStates[static_cast<int>(job.state)]},
+                      {"progress", job.progress},
+                      {"message", job.message}};
   if (job.problem) json["problem"] = protocol::problem_body(*job.problem);
   if (job.model) json["model"] = *job.model;
   return json;
@@ -178,18 +183,24 @@ nlohmann::json to_json(const jobs::JobStatus& job) {
 
 std::string utc_text(std::chrono::system_clock::time_point time) {
   const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(time.time_since_epoch()).count();
-  const std::time_t seconds = static_cast<std::time_t>(milliseconds >= 0 ? milliseconds / 1000 : (milliseconds - 999) / 1000);
+  const std::time_t seconds =
+      static_cast<std::time_t>(milliseconds >= 0 ? milliseconds / 1000 : (milliseconds - 999) / 1000);
   std::tm utc{};
   gmtime_r(&seconds, &utc);
   char text[40];
   const std::size_t length = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
-  std::snprintf(text + length, sizeof text - length, ".%03dZ", static_cast<int>(milliseconds - std::int64_t{seconds} * 1000));
+  std::snprintf(text + length, sizeof text - length, ".%03dZ",
+                static_cast<int>(milliseconds - std::int64_t{seconds} * 1000));
   return text;
 }
 
 nlohmann::json to_json(const store::JournalRow& row) {
-  nlohmann::json json{{"sequence", row.sequence}, {"id", to_string(row.id)}, {"stroke", to_string(row.stroke)},
-                      {"user", row.user},         {"op", row.op},            {"time", utc_text(row.time)},
+  nlohmann::json json{{"sequence", row.sequence},
+                      {"id", to_string(row.id)},
+                      {"stroke", to_string(row.stroke)},
+                      {"user", row.user},
+                      {"op", row.op},
+                      {"time", utc_text(row.time)},
                       {"in_force", row.in_force}};
   if (row.answer.is_object())
     for (const char* member : {"texels_changed", "area_m2"})
@@ -207,8 +218,9 @@ std::string points_csv(const std::vector<query::SurfacePoint>& points, const std
       continue;
     }
     text += "true";
-    for (double value : {point.position.x, point.position.y, point.position.z, double(point.normal.x), double(point.normal.y),
-                         double(point.normal.z), point.distance, double(point.uv.x), double(point.uv.y)})
+    for (double value :
+         {point.position.x, point.position.y, point.position.z, double(point.normal.x), double(point.normal.y),
+          double(point.normal.z), point.distance, double(point.uv.x), double(point.uv.y)})
       text += "," + number(value);
     for (const auto& layer : layers) {
       text += ",";
@@ -230,7 +242,8 @@ nlohmann::json point_coverage(const query::SurfacePoint& point, const std::vecto
     nlohmann::json value;
     for (const auto& entry : point.values)
       if (entry.layer == layer.slug && entry.valid) value = entry.value;
-    ranges[layer.slug] = {{"type", "NdArray"}, {"dataType", is_float(layer.type) ? "float" : "integer"}, {"values", {value}}};
+    ranges[layer.slug] = {
+        {"type", "NdArray"}, {"dataType", is_float(layer.type) ? "float" : "integer"}, {"values", {value}}};
   }
   nlohmann::json system{{"type", "GeographicCRS"}};
   if (model.crs.starts_with("EPSG:")) system["id"] = "http://www.opengis.net/def/crs/EPSG/0/" + model.crs.substr(5);

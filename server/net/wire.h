@@ -21,10 +21,11 @@ namespace strata::net {
 double in_model_units(double millimetres, Unit unit);
 
 // `edit` for the layer; its `record` is the edit as asked.
-Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer, const Model& model, const Uuid& id,
-                                       const std::string& user);
+Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer, const Model& model,
+                                       const Uuid& id, const std::string& user);
 Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer, const Model& model);
-room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n, const std::string& user);
+room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n,
+                                const std::string& user);
 
 // Where the path of a stroke's batch ended, from its journal record; nothing when the record is of another kind.
 std::optional<glm::dvec2> end_of_path(const nlohmann::json& record);

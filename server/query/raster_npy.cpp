@@ -20,9 +20,9 @@ std::string dtype_of(ValueType type) {
 std::string descr_of(ValueType type) { return "[('value','" + dtype_of(type) + "'),('valid','|b1')]"; }
 
 struct Header {
-  std::string descr;      // without blanks, with single quotes
+  std::string descr;  // without blanks, with single quotes
   bool fortran_order = false;
-  std::string shape;      // "(2048,2048)"
+  std::string shape;  // "(2048,2048)"
   std::size_t data_at = 0;
 };
 
@@ -45,7 +45,8 @@ Result<Header> read_header(std::span<const std::uint8_t> bytes) {
   auto damaged = [] { return refuse_raster("This is not a NumPy file, or its header is damaged."); };
   if (bytes.size() < 12 || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) return damaged();
   const int version = bytes[6];
-  if (version < 1 || version > 3) return refuse_raster("NumPy format version " + std::to_string(version) + " is not known.");
+  if (version < 1 || version > 3)
+    return refuse_raster("NumPy format version " + std::to_string(version) + " is not known.");
   const std::size_t start = version == 1 ? 10 : 12;
   std::size_t length = bytes[8] | bytes[9] << 8;
   if (version > 1) length |= std::size_t(bytes[10]) << 16 | std::size_t(bytes[11]) << 24;
@@ -65,7 +66,8 @@ Result<Header> read_header(std::span<const std::uint8_t> bytes) {
 Result<void> check_shape(const Layer& layer, const Header& header) {
   const std::string side = std::to_string(layer.resolution);
   if (header.shape == "(" + side + "," + side + ")") return {};
-  return refuse_raster("The array's shape is " + header.shape.substr(0, 100) + ", but the layer needs " + raster_needs(layer) + ".");
+  return refuse_raster("The array's shape is " + header.shape.substr(0, 100) + ", but the layer needs " +
+                       raster_needs(layer) + ".");
 }
 
 }  // namespace
@@ -82,7 +84,8 @@ Result<std::vector<std::uint8_t>> encode_npy(const Layer& layer, const TileMap& 
   const std::size_t row_bytes = std::size_t(layer.resolution) * (width + 1);
   std::vector<std::uint8_t> out(kMagic.begin(), kMagic.end());
   out.reserve(kBefore + header.size() + row_bytes * layer.resolution);
-  out.insert(out.end(), {1, 0, static_cast<std::uint8_t>(header.size()), static_cast<std::uint8_t>(header.size() >> 8)});
+  out.insert(out.end(),
+             {1, 0, static_cast<std::uint8_t>(header.size()), static_cast<std::uint8_t>(header.size() >> 8)});
   out.insert(out.end(), header.begin(), header.end());
 
   const TileRows rows(layer, tiles);
@@ -113,8 +116,9 @@ Result<TileMap> decode_npy(const Layer& layer, std::span<const std::uint8_t> byt
   const auto side = static_cast<std::size_t>(layer.resolution);
   const std::span<const std::uint8_t> data = bytes.subspan(header->data_at);
   if (data.size() != side * side * (width + 1))
-    return refuse_raster("The file holds " + std::to_string(data.size()) + " bytes of texels, but its header promises " +
-                         std::to_string(side * side * (width + 1)) + ". It was cut or is damaged.");
+    return refuse_raster("The file holds " + std::to_string(data.size()) +
+                         " bytes of texels, but its header promises " + std::to_string(side * side * (width + 1)) +
+                         ". It was cut or is damaged.");
   TileMapBuilder builder(layer);
   const std::uint8_t* texel = data.data();
   for (int row = 0; row < layer.resolution; ++row)

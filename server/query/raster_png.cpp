@@ -77,8 +77,8 @@ std::string describe(int color_type, int bit_depth) {
 Result<std::vector<std::uint8_t>> encode_png(const Layer& layer, const TileMap& tiles) {
   if (!fits_png(layer.type))
     return fail(406, "Not possible as PNG",
-                "PNG holds whole numbers from 0 to 65535 only, and this layer's values are " + std::string(name(layer.type)) +
-                    ". Ask for texels.tif or texels.npy.");
+                "PNG holds whole numbers from 0 to 65535 only, and this layer's values are " +
+                    std::string(name(layer.type)) + ". Ask for texels.tif or texels.npy.");
   const int width = bytes_per_texel(layer.type);
   const TileRows rows(layer, tiles);
   std::vector<std::uint32_t> bits(layer.resolution);
@@ -115,8 +115,8 @@ Result<std::vector<std::uint8_t>> encode_png(const Layer& layer, const TileMap& 
 Result<TileMap> decode_png(const Layer& layer, std::span<const std::uint8_t> bytes) {
   if (!fits_png(layer.type))
     return fail(415, "Not possible as PNG",
-                "PNG holds whole numbers from 0 to 65535 only, and this layer's values are " + std::string(name(layer.type)) +
-                    ". Send texels.tif or texels.npy.",
+                "PNG holds whole numbers from 0 to 65535 only, and this layer's values are " +
+                    std::string(name(layer.type)) + ". Send texels.tif or texels.npy.",
                 "texels");
   const int width = bytes_per_texel(layer.type);
   Reader reader;
@@ -130,7 +130,9 @@ Result<TileMap> decode_png(const Layer& layer, std::span<const std::uint8_t> byt
         png_read_info(png, reader.info);
       }))
     return damaged();
-  if (auto size = check_raster_size(layer, png_get_image_width(png, reader.info), png_get_image_height(png, reader.info)); !size)
+  if (auto size =
+          check_raster_size(layer, png_get_image_width(png, reader.info), png_get_image_height(png, reader.info));
+      !size)
     return tl::unexpected(size.error());
   const int color_type = png_get_color_type(png, reader.info), bit_depth = png_get_bit_depth(png, reader.info);
   if (color_type != PNG_COLOR_TYPE_GRAY_ALPHA || bit_depth != 8 * width)
@@ -142,7 +144,8 @@ Result<TileMap> decode_png(const Layer& layer, std::span<const std::uint8_t> byt
 
   TileMapBuilder builder(layer);
   std::vector<std::uint8_t> line(std::size_t(layer.resolution) * 2 * width);
-  if (!guarded(png, [&] { png_read_update_info(png, reader.info); }) || png_get_rowbytes(png, reader.info) != line.size())
+  if (!guarded(png, [&] { png_read_update_info(png, reader.info); }) ||
+      png_get_rowbytes(png, reader.info) != line.size())
     return damaged();
   for (int row = 0; row < layer.resolution; ++row) {
     if (!guarded(png, [&] { png_read_row(png, line.data(), nullptr); })) return damaged();

@@ -61,7 +61,8 @@ Result<void> TileMapBuilder::put(int x, int file_row, const std::uint8_t* value)
 TileMap TileMapBuilder::finish() {
   TileMap tiles;
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
-    const TileAddress address{static_cast<std::uint16_t>(i % tiles_per_side_), static_cast<std::uint16_t>(i / tiles_per_side_)};
+    const TileAddress address{static_cast<std::uint16_t>(i % tiles_per_side_),
+                              static_cast<std::uint16_t>(i / tiles_per_side_)};
     if (tiles_[i]) tiles.emplace(address, std::move(tiles_[i]));
   }
   return tiles;
@@ -79,8 +80,9 @@ std::string raster_needs(const Layer& layer) {
 Result<void> check_raster_size(const Layer& layer, std::uint64_t width, std::uint64_t height) {
   const auto side = static_cast<std::uint64_t>(layer.resolution);
   if (width == side && height == side) return {};
-  return refuse_raster("The file is " + std::to_string(width) + " × " + std::to_string(height) + ", but the layer needs " +
-                       raster_needs(layer) + ". Export the layer first to see its form, or resample the file.");
+  return refuse_raster("The file is " + std::to_string(width) + " × " + std::to_string(height) +
+                       ", but the layer needs " + raster_needs(layer) +
+                       ". Export the layer first to see its form, or resample the file.");
 }
 
 }  // namespace strata::query

@@ -18,7 +18,7 @@ constexpr std::uint64_t kMaxTileBytes = 256u << 20;  // of a file's own tiles; l
 
 // A file in memory, and libtiff's first complaint about it.
 struct Memory {
-  std::span<const std::uint8_t> in;    // reading
+  std::span<const std::uint8_t> in;          // reading
   std::vector<std::uint8_t>* out = nullptr;  // writing
   std::uint64_t at = 0;
   std::string complaint;
@@ -95,7 +95,8 @@ std::string describe(int samples, int bits, int format) {
   if (format == SAMPLEFORMAT_UINT) kind = "unsigned whole numbers";
   if (format == SAMPLEFORMAT_INT) kind = "signed whole numbers";
   if (format == SAMPLEFORMAT_IEEEFP) kind = "floating-point numbers";
-  return std::to_string(samples) + (samples == 1 ? " sample" : " samples") + " of " + std::to_string(bits) + "-bit " + kind;
+  return std::to_string(samples) + (samples == 1 ? " sample" : " samples") + " of " + std::to_string(bits) + "-bit " +
+         kind;
 }
 
 // Only lossless codecs: the others would change values, and they are the larger attack surface.
@@ -126,7 +127,8 @@ Result<void> check_form(const Layer& layer, TIFF* tiff) {
   const int needed_bits = 8 * bytes_per_texel(layer.type);
   if (samples != 2 || bits != needed_bits || format != sample_format(layer.type))
     return refuse_raster("The TIFF has " + describe(samples, bits, format) + ", but the layer needs " +
-                         describe(2, needed_bits, sample_format(layer.type)) + " (the value, then 1 where it is valid and 0 elsewhere).");
+                         describe(2, needed_bits, sample_format(layer.type)) +
+                         " (the value, then 1 where it is valid and 0 elsewhere).");
   if (planes != PLANARCONFIG_CONTIG)
     return refuse_raster("The TIFF keeps its two samples in separate planes; save it interleaved (by pixel).");
   if (!is_lossless(compression) || !TIFFIsCODECConfigured(compression))
@@ -136,7 +138,8 @@ Result<void> check_form(const Layer& layer, TIFF* tiff) {
 }
 
 // One row of samples, value and valid, into the builder.
-Result<void> put_samples(TileMapBuilder& builder, const Layer& layer, const std::uint8_t* samples, int x, int row, int count) {
+Result<void> put_samples(TileMapBuilder& builder, const Layer& layer, const std::uint8_t* samples, int x, int row,
+                         int count) {
   const int width = bytes_per_texel(layer.type);
   for (int i = 0; i < count; ++i, samples += 2 * width) {
     std::uint32_t valid = 0;
@@ -148,7 +151,8 @@ Result<void> put_samples(TileMapBuilder& builder, const Layer& layer, const std:
 }
 
 tl::unexpected<Problem> damaged(const Memory& file) {
-  return refuse_raster("The TIFF cannot be read: " + (file.complaint.empty() ? std::string("damaged") : file.complaint) + ".");
+  return refuse_raster(
+      "The TIFF cannot be read: " + (file.complaint.empty() ? std::string("damaged") : file.complaint) + ".");
 }
 
 Result<void> read_tiles(const Layer& layer, TIFF* tiff, const Memory& file, TileMapBuilder& builder) {
@@ -167,7 +171,8 @@ Result<void> read_tiles(const Layer& layer, TIFF* tiff, const Memory& file, Tile
       if (TIFFReadTile(tiff, tile.data(), left, top, 0, 0) != static_cast<tmsize_t>(tile.size())) return damaged(file);
       const int columns = static_cast<int>(std::min(tile_width, side - left));
       for (std::uint32_t y = 0; y < std::min(tile_height, side - top); ++y)
-        if (auto put = put_samples(builder, layer, tile.data() + y * row_bytes, left, top + y, columns); !put) return put;
+        if (auto put = put_samples(builder, layer, tile.data() + y * row_bytes, left, top + y, columns); !put)
+          return put;
     }
   return {};
 }
@@ -220,7 +225,8 @@ Result<std::vector<std::uint8_t>> encode_tiff(const Layer& layer, const TileMap&
   for (int top = 0; top < side; top += kTiffTile) {
     const int height = std::min(kTiffTile, side - top);
     for (int y = 0; y < height; ++y)
-      rows.read(top + y, std::span(bits).subspan(std::size_t(y) * side, side), std::span(valid).subspan(std::size_t(y) * side, side));
+      rows.read(top + y, std::span(bits).subspan(std::size_t(y) * side, side),
+                std::span(valid).subspan(std::size_t(y) * side, side));
     for (int left = 0; left < side; left += kTiffTile) {
       std::fill(tile.begin(), tile.end(), std::uint8_t{0});
       for (int y = 0; y < height; ++y)

@@ -17,7 +17,8 @@ constexpr int kBlocksPerTile = kTileSize / kBlockSize;
 // The layer's tiles as a dense table: one lookup a block.
 class TileTable {
  public:
-  TileTable(const LayerView& view, int blocks_per_side) : tiles_per_side_((blocks_per_side + kBlocksPerTile - 1) / kBlocksPerTile) {
+  TileTable(const LayerView& view, int blocks_per_side)
+      : tiles_per_side_((blocks_per_side + kBlocksPerTile - 1) / kBlocksPerTile) {
     tiles_.resize(std::size_t(tiles_per_side_) * tiles_per_side_);
     for (const auto& [address, tile] : view.snapshot.tiles)
       if (address.x < tiles_per_side_ && address.y < tiles_per_side_)
@@ -110,16 +111,18 @@ class KeySums {
 
   const mesh::SurfaceMap& map_;
   bool active_;
-  std::vector<std::uint32_t> small_;                         // 8 and 16 bit: index by the bits themselves
+  std::vector<std::uint32_t> small_;  // 8 and 16 bit: index by the bits themselves
   std::unordered_map<std::uint32_t, std::uint32_t> large_;
   std::vector<Sum> sums_;
-  std::uint32_t last_bits_ = 0, last_index_ = kNone;         // neighbours mostly share a value
+  std::uint32_t last_bits_ = 0, last_index_ = kNone;  // neighbours mostly share a value
 };
 
 }  // namespace
 
-Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const glm::dvec3& origin, double metres_per_unit) {
-  if (map.resolution != view.layer.resolution) throw std::invalid_argument("The surface map is of another resolution than the layer.");
+Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const glm::dvec3& origin,
+                      double metres_per_unit) {
+  if (map.resolution != view.layer.resolution)
+    throw std::invalid_argument("The surface map is of another resolution than the layer.");
   const ValueType type = view.layer.type;
   const double m2_per_unit2 = metres_per_unit * metres_per_unit;
   const TileTable tiles(view, map.blocks_per_side);
@@ -148,7 +151,8 @@ Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const 
   // The spread needs the mean and the bins need the limits: a second pass is exact where running sums are not.
   const double range = out.max - out.min;
   const int bins = range > 0 ? kBins : 1;
-  for (int i = 0; i < bins; ++i) out.histogram.push_back({out.min + range * i / bins, out.min + range * (i + 1) / bins, 0, 0});
+  for (int i = 0; i < bins; ++i)
+    out.histogram.push_back({out.min + range * i / bins, out.min + range * (i + 1) / bins, 0, 0});
   double squares = 0;
   for_each_texel(tiles, map, [&](std::uint32_t slot, int texel, std::uint32_t bits) {
     const double value = decode_value(type, bits);

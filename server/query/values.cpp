@@ -7,7 +7,8 @@
 namespace strata::query {
 namespace {
 
-SurfacePoint surface_point(const mesh::SearchTree::Hit& hit, const glm::dvec3& origin, const std::vector<LayerView>& layers) {
+SurfacePoint surface_point(const mesh::SearchTree::Hit& hit, const glm::dvec3& origin,
+                           const std::vector<LayerView>& layers) {
   SurfacePoint point{true, glm::dvec3(hit.position) + origin, hit.normal, hit.distance, hit.uv, {}};
   point.values.reserve(layers.size());
   for (const auto& layer : layers) point.values.push_back(value_at(layer, hit.uv));

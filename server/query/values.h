@@ -29,7 +29,7 @@ struct SurfacePoint {
   bool hit = false;
   glm::dvec3 position{0};  // world
   glm::vec3 normal{0};
-  double distance = 0;     // from the asked point, or along the ray; model units
+  double distance = 0;  // from the asked point, or along the ray; model units
   glm::vec2 uv{0};
   std::vector<LayerValue> values;
 };

@@ -47,8 +47,8 @@ class Culler {
   }
 
  private:
-  void visit_tile(int tile_x, int tile_y, const std::vector<std::uint32_t>& under_tile, std::vector<std::uint32_t>& under_32,
-                  std::vector<std::uint32_t>& under_block) {
+  void visit_tile(int tile_x, int tile_y, const std::vector<std::uint32_t>& under_tile,
+                  std::vector<std::uint32_t>& under_32, std::vector<std::uint32_t>& under_block) {
     const int per_side_32 = map_.resolution / 32;
     for (int i = 0; i < 16; ++i) {
       const int x = tile_x * 4 + i % 4, y = tile_y * 4 + i / 4;
@@ -59,7 +59,8 @@ class Culler {
         if (slot == mesh::kNoSlot || !passes(map_.bounds_8[slot], under_32, under_block)) continue;
         const auto place = static_cast<std::uint32_t>((block_x & 15) | (block_y & 15) << 4);
         const TileAddress tile{static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y)};
-        found_.blocks.push_back({slot, tile, place, list_of(under_block), static_cast<std::uint32_t>(under_block.size())});
+        found_.blocks.push_back(
+            {slot, tile, place, list_of(under_block), static_cast<std::uint32_t>(under_block.size())});
       }
     }
   }
@@ -84,7 +85,8 @@ class Culler {
     if (!found) return found;
     auto& box = found->box;
     box = {box.x0 - kMargin_px, box.y0 - kMargin_px, box.x1 + kMargin_px, box.y1 + kMargin_px};
-    if (box.x1 < 0 || box.y1 < 0 || box.x0 > width_ || box.y0 > height_ || !box.overlaps(path_.box)) return std::nullopt;
+    if (box.x1 < 0 || box.y1 < 0 || box.x0 > width_ || box.y0 > height_ || !box.overlaps(path_.box))
+      return std::nullopt;
     return found;
   }
 
@@ -141,11 +143,15 @@ class Culler {
       return static_cast<int>(std::clamp(std::floor(pixel / shader::kDepthCell), 0.0, count - 1.0));
     };
     const PixelBox& box = window.box;
-    const int x0 = cell(std::max(box.x0, path_.box.x0), grid_.width), x1 = cell(std::min(box.x1, path_.box.x1), grid_.width);
-    const int y0 = cell(std::max(box.y0, path_.box.y0), grid_.height), y1 = cell(std::min(box.y1, path_.box.y1), grid_.height);
+    const int x0 = cell(std::max(box.x0, path_.box.x0), grid_.width),
+              x1 = cell(std::min(box.x1, path_.box.x1), grid_.width);
+    const int y0 = cell(std::max(box.y0, path_.box.y0), grid_.height),
+              y1 = cell(std::min(box.y1, path_.box.y1), grid_.height);
     for (int y = y0; y <= y1; ++y) {
       for (int x = x0; x <= x1; ++x) {
-        if (grid_.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width) + static_cast<std::size_t>(x)] >= nearest) return false;
+        if (grid_.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width) +
+                        static_cast<std::size_t>(x)] >= nearest)
+          return false;
       }
     }
     return true;
@@ -180,8 +186,8 @@ std::size_t Candidates::count_tiles() const {
   return count;
 }
 
-std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int width, int height, const glm::dvec3& center,
-                                        double radius) {
+std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int width, int height,
+                                        const glm::dvec3& center, double radius) {
   const glm::dmat4 rows = glm::transpose(clip_from_model);
   const glm::dvec4 point(center, 1);
   const glm::dvec3 w_row(rows[3]);
@@ -193,15 +199,17 @@ std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int w
   }
   const auto bounds = [&](int row) {
     const glm::dvec3 r(rows[row]);
-    return ratio_bounds(glm::dot(rows[row], point), w, radius, glm::dot(r, r), glm::dot(r, w_row), glm::dot(w_row, w_row));
+    return ratio_bounds(glm::dot(rows[row], point), w, radius, glm::dot(r, r), glm::dot(r, w_row),
+                        glm::dot(w_row, w_row));
   };
   const auto [x0, x1] = bounds(0);
   const auto [y0, y1] = bounds(1);
   const auto [z0, z1] = bounds(2);
   if (z1 < -1 || z0 > 1) return std::nullopt;
-  return WindowBox{{(x0 * 0.5 + 0.5) * width, (y0 * 0.5 + 0.5) * height, (x1 * 0.5 + 0.5) * width, (y1 * 0.5 + 0.5) * height},
-                   z0 * 0.5 + 0.5,
-                   w - w_reach};
+  return WindowBox{
+      {(x0 * 0.5 + 0.5) * width, (y0 * 0.5 + 0.5) * height, (x1 * 0.5 + 0.5) * width, (y1 * 0.5 + 0.5) * height},
+      z0 * 0.5 + 0.5,
+      w - w_reach};
 }
 
 Candidates cull_blocks(const mesh::SurfaceMap& map, const glm::dmat4& clip_from_model, int width, int height,

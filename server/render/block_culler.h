@@ -47,7 +47,7 @@ struct WindowBox {
   PixelBox box;
   double z0 = 0, w0 = 0;
 };
-std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int width, int height, const glm::dvec3& center,
-                                        double radius);
+std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int width, int height,
+                                        const glm::dvec3& center, double radius);
 
 }  // namespace strata::render

@@ -62,9 +62,10 @@ Result<std::vector<TileAddress>> EditPass::make_pages(const std::vector<Candidat
   return fresh;
 }
 
-Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::mat4& clip_from_model, const ToolPath& path,
-                                          const DepthBias& bias, Candidates candidates, const SurfaceMapTextures& map,
-                                          const gl::Texture* depth, LayerTextures& layer, PageTables& tables) {
+Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::mat4& clip_from_model,
+                                          const ToolPath& path, const DepthBias& bias, Candidates candidates,
+                                          const SurfaceMapTextures& map, const gl::Texture* depth, LayerTextures& layer,
+                                          PageTables& tables) {
   DispatchedEdit edit;
   edit.blocks = std::move(candidates.blocks);
   if (edit.blocks.empty()) return edit;
@@ -89,18 +90,21 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
   std::vector<shader::EditBlock> blocks;
   blocks.reserve(edit.blocks.size());
   for (const CandidateBlock& block : edit.blocks) {
-    blocks.push_back({block.slot, layer.page(block.tile), block.segments, block.block_in_tile | block.segment_count << 8});
+    blocks.push_back(
+        {block.slot, layer.page(block.tile), block.segments, block.block_in_tile | block.segment_count << 8});
   }
   const auto uniforms = make_uniforms(stroke, clip_from_model, bias);
   auto rows = readback_->begin(blocks.size() * shader::kEditRowsPerBlock * sizeof(std::uint32_t));
   if (!rows) return give_up(rows.error());
-  for (auto sent : {uniforms_.replace(std::span(&uniforms, 1)), blocks_.replace(std::span<const shader::EditBlock>(blocks)),
-                    segments_.replace(std::span<const shader::EditSegment>(path.segments)),
-                    lists_.replace(std::span<const std::uint32_t>(candidates.segment_lists))}) {
+  for (auto sent :
+       {uniforms_.replace(std::span(&uniforms, 1)), blocks_.replace(std::span<const shader::EditBlock>(blocks)),
+        segments_.replace(std::span<const shader::EditSegment>(path.segments)),
+        lists_.replace(std::span<const std::uint32_t>(candidates.segment_lists))}) {
     if (!sent) return give_up(sent.error());
   }
 
-  edit.bytes_up = sizeof uniforms + blocks.size() * sizeof(shader::EditBlock) + path.segments.size() * sizeof(shader::EditSegment) +
+  edit.bytes_up = sizeof uniforms + blocks.size() * sizeof(shader::EditBlock) +
+                  path.segments.size() * sizeof(shader::EditSegment) +
                   candidates.segment_lists.size() * sizeof(std::uint32_t);
 
   const gl::Program& program = programs_.of(layer.pool().texel_bytes());

@@ -29,7 +29,7 @@ struct DispatchedEdit {
   gl::Readback rows;
   std::vector<CandidateBlock> blocks;
   std::size_t bytes_up = 0;
-  double executed_ms = 0;  // the calls of the dispatch: a software renderer executes in them
+  double executed_ms = 0;                // the calls of the dispatch: a software renderer executes in them
   std::vector<TileAddress> fresh_tiles;  // pages were made for these
 };
 
@@ -53,7 +53,8 @@ class EditPass {
   gl::ReadbackPool* readback_ = nullptr;
   ProgramPerWidth programs_;
   gl::TimerQuery timer_;
-  StreamBuffer uniforms_{"edit uniforms"}, blocks_{"edit blocks"}, segments_{"edit segments"}, lists_{"edit segment lists"};
+  StreamBuffer uniforms_{"edit uniforms"}, blocks_{"edit blocks"}, segments_{"edit segments"},
+      lists_{"edit segment lists"};
 };
 
 }  // namespace strata::render

@@ -59,7 +59,8 @@ Step FrameJob::step(GpuScene& scene) {
   busy_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   if (*step == Step::done) {
     (*view)->drawing = false;
-    if (scene.lost()) return refuse({503, "GPU lost", "The GPU context was lost and is being rebuilt. Ask for the frame again.", {}});
+    if (scene.lost())
+      return refuse({503, "GPU lost", "The GPU context was lost and is being rebuilt. Ask for the frame again.", {}});
     pixels_ = {};
     frame_.render_ms = busy_ms_;
     task_.done(std::move(frame_));
@@ -72,15 +73,19 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   view.last_used = scene.next_use();
   if (auto valid = validate(request.camera); !valid) return valid;
   if (request.width < 1 || request.height < 1 || request.width > kMaxViewSize || request.height > kMaxViewSize) {
-    return fail(422, "Size out of range", "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", "width");
+    return fail(422, "Size out of range", "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.",
+                "width");
   }
   for (const LayerStyle& style : request.layers) {
     auto layer = scene.layer(style.layer);
     if (!layer) return tl::unexpected(layer.error());
-    if ((*layer)->model != view.model) return fail(422, "Layer of another model", "A view shows layers of its own model.", "layers");
-    const bool has_colors = style.palette && (style.palette->mode == PaletteMode::categorical || !style.palette->points.empty());
+    if ((*layer)->model != view.model)
+      return fail(422, "Layer of another model", "A view shows layers of its own model.", "layers");
+    const bool has_colors =
+        style.palette && (style.palette->mode == PaletteMode::categorical || !style.palette->points.empty());
     if (!has_colors || !std::isfinite(style.opacity)) {
-      return fail(422, "Palette not usable", "A layer in a view needs a palette with points, and a finite opacity.", "layers");
+      return fail(422, "Palette not usable", "A layer in a view needs a palette with points, and a finite opacity.",
+                  "layers");
     }
   }
   const DepthKey key{view.model, request.camera.view, request.camera.projection, request.width, request.height};
@@ -105,7 +110,8 @@ Result<void> FrameJob::choose_area(GpuScene& scene, const View& view) {
   auto model = scene.model(view.model);
   if (!model) return tl::unexpected(model.error());
   const mesh::Geometry& geometry = (*model)->mesh->geometry();
-  const glm::dmat4 clip = request.camera.projection * request.camera.view * glm::translate(glm::dmat4(1.0), geometry.origin);
+  const glm::dmat4 clip =
+      request.camera.projection * request.camera.view * glm::translate(glm::dmat4(1.0), geometry.origin);
   frame_.width = request.width;
   frame_.height = request.height;
   frame_.rect = {0, 0, request.width, request.height};

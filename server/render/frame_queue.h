@@ -23,7 +23,7 @@ class FrameQueue {
   explicit FrameQueue(std::size_t max_views) : max_views_(max_views) {}
 
   struct Pushed {
-    bool accepted = false;             // false: too many views wait; the task is in `displaced`
+    bool accepted = false;               // false: too many views wait; the task is in `displaced`
     std::optional<FrameTask> displaced;  // refused, or replaced by the new one
   };
   Pushed push(FrameTask task);

@@ -26,8 +26,8 @@ Result<GpuMemory::Share> GpuMemory::reserve(std::uint64_t bytes, std::string_vie
     if (evict_one_ && evict_one_()) continue;
     const auto mib = [](std::uint64_t n) { return std::to_string((n + (1 << 20) - 1) >> 20) + " MiB"; };
     return fail(503, "GPU memory used up",
-                "The GPU memory budget of " + mib(budget_bytes_) + " is used up: " + mib(bytes) + " more are needed for " +
-                    std::string(what) + ", and " + mib(used_bytes_) +
+                "The GPU memory budget of " + mib(budget_bytes_) + " is used up: " + mib(bytes) +
+                    " more are needed for " + std::string(what) + ", and " + mib(used_bytes_) +
                     " are in use. Close models or layers, or start the server with a larger --gpu-memory.");
   }
   used_bytes_ += bytes;

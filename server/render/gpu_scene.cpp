@@ -123,11 +123,16 @@ ModelHandle GpuScene::add(Model model) {
 
 Result<LayerHandle> GpuScene::add_layer(ModelHandle model_handle, ValueType type, int resolution) {
   if (auto found = model(model_handle); !found) return tl::unexpected(found.error());
-  if (resolution < kLowestResolution || resolution > kHighestResolution || !std::has_single_bit(static_cast<unsigned>(resolution))) {
-    return fail(422, "Resolution out of range", "A layer's resolution is a power of two from 128 to 16384.", "resolution");
+  if (resolution < kLowestResolution || resolution > kHighestResolution ||
+      !std::has_single_bit(static_cast<unsigned>(resolution))) {
+    return fail(422, "Resolution out of range", "A layer's resolution is a power of two from 128 to 16384.",
+                "resolution");
   }
   const int bytes = strata::bytes_per_texel(type);
-  auto textures = LayerTextures::create(type, resolution, tables_, bytes == 1 ? pool_1_ : bytes == 2 ? pool_2_ : pool_4_);
+  auto textures = LayerTextures::create(type, resolution, tables_,
+                                        bytes == 1   ? pool_1_
+                                        : bytes == 2 ? pool_2_
+                                                     : pool_4_);
   if (!textures) return tl::unexpected(textures.error());
   const LayerHandle handle = next_handle();
   layers_.emplace(handle, Layer{model_handle, std::move(*textures)});

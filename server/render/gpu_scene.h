@@ -27,8 +27,8 @@ class GpuScene {
   };
 
   // `generation` goes into handles; `memory` and `messages` must outlive the scene.
-  static Result<std::unique_ptr<GpuScene>> create(const RendererOptions& options, std::uint64_t generation, GpuMemory& memory,
-                                                  gl::DebugMessages& messages);
+  static Result<std::unique_ptr<GpuScene>> create(const RendererOptions& options, std::uint64_t generation,
+                                                  GpuMemory& memory, gl::DebugMessages& messages);
   GpuScene(const GpuScene&) = delete;
   GpuScene& operator=(const GpuScene&) = delete;
   ~GpuScene();

@@ -39,12 +39,12 @@ enum class Lane {
 class GpuThread {
  public:
   struct Hooks {
-    std::function<Result<void>()> start;                    // makes the context; its error ends `start`
-    std::function<void()> stop;                             // destroys it
-    std::function<bool()> lost;                             // asked before each step
-    std::function<Result<void>()> recover;                  // after a loss: all jobs were aborted
-    std::function<std::optional<Job>()> next_frame;         // takes a waiting frame, if any may start
-    std::function<void(const Problem&)> abort_frames;       // answers those still waiting
+    std::function<Result<void>()> start;               // makes the context; its error ends `start`
+    std::function<void()> stop;                        // destroys it
+    std::function<bool()> lost;                        // asked before each step
+    std::function<Result<void>()> recover;             // after a loss: all jobs were aborted
+    std::function<std::optional<Job>()> next_frame;    // takes a waiting frame, if any may start
+    std::function<void(const Problem&)> abort_frames;  // answers those still waiting
   };
 
   explicit GpuThread(std::size_t capacity) : capacity_(capacity) {}

@@ -12,7 +12,8 @@ Result<std::unique_ptr<LayerTextures>> LayerTextures::create(ValueType type, int
   return std::unique_ptr<LayerTextures>(new LayerTextures(type, resolution, tables, pool, *offset));
 }
 
-LayerTextures::LayerTextures(ValueType type, int resolution, PageTables& tables, PagePool& pool, std::uint32_t table_offset)
+LayerTextures::LayerTextures(ValueType type, int resolution, PageTables& tables, PagePool& pool,
+                             std::uint32_t table_offset)
     : type_(type),
       resolution_(resolution),
       tiles_per_side_(resolution / kTileSize),

@@ -14,7 +14,8 @@ namespace strata::render {
 // while empty. GPU thread only, except `bytes`.
 class LayerTextures {
  public:
-  static Result<std::unique_ptr<LayerTextures>> create(ValueType type, int resolution, PageTables& tables, PagePool& pool);
+  static Result<std::unique_ptr<LayerTextures>> create(ValueType type, int resolution, PageTables& tables,
+                                                       PagePool& pool);
   ~LayerTextures();  // frees all pages
   LayerTextures(const LayerTextures&) = delete;
   LayerTextures& operator=(const LayerTextures&) = delete;
@@ -38,7 +39,9 @@ class LayerTextures {
 
  private:
   LayerTextures(ValueType type, int resolution, PageTables& tables, PagePool& pool, std::uint32_t table_offset);
-  std::uint32_t index(TileAddress t) const { return table_offset_ + t.y * static_cast<std::uint32_t>(tiles_per_side_) + t.x; }
+  std::uint32_t index(TileAddress t) const {
+    return table_offset_ + t.y * static_cast<std::uint32_t>(tiles_per_side_) + t.x;
+  }
   std::uint32_t table_entries() const { return static_cast<std::uint32_t>(tiles_per_side_ * tiles_per_side_); }
 
   const ValueType type_;

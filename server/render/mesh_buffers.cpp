@@ -37,7 +37,8 @@ constexpr std::array<gl::VertexAttribute, 4> kAttributes{{
 
 }  // namespace
 
-Result<std::unique_ptr<MeshBuffers>> MeshBuffers::create(std::shared_ptr<const mesh::Geometry> geometry, GpuMemory& memory) {
+Result<std::unique_ptr<MeshBuffers>> MeshBuffers::create(std::shared_ptr<const mesh::Geometry> geometry,
+                                                         GpuMemory& memory) {
   auto mesh = std::make_unique<MeshBuffers>();
   mesh->geometry_ = std::move(geometry);
   mesh->cluster_centers_ = cluster_centers(mesh->geometry());
@@ -71,7 +72,8 @@ std::vector<std::uint32_t> MeshBuffers::clusters_from(const glm::vec4& eye) cons
 
 bool MeshBuffers::upload_slice() {
   const bool in_vertices = uploaded_ < vertex_bytes();
-  const auto source = in_vertices ? std::as_bytes(std::span(geometry_->vertices)) : std::as_bytes(std::span(geometry_->indices));
+  const auto source =
+      in_vertices ? std::as_bytes(std::span(geometry_->vertices)) : std::as_bytes(std::span(geometry_->indices));
   const std::size_t offset = in_vertices ? uploaded_ : uploaded_ - vertex_bytes();
   const std::size_t count = std::min(kSliceBytes, source.size() - offset);
   (in_vertices ? vertices_ : indices_).upload(offset, source.subspan(offset, count));

@@ -7,7 +7,8 @@
 namespace strata::render {
 
 Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader_dir, std::size_t triangles_per_slice) {
-  auto program = gl::Program::load(shader_dir, {"mesh.vert", kind == Kind::depth ? "depth_pass.frag" : "gbuffer_pass.frag"});
+  auto program =
+      gl::Program::load(shader_dir, {"mesh.vert", kind == Kind::depth ? "depth_pass.frag" : "gbuffer_pass.frag"});
   if (!program) return tl::unexpected(program.error());
   auto uniforms = gl::Buffer::create(sizeof(shader::MeshUniforms), gl::Buffer::Use::fixed, "mesh uniforms");
   if (!uniforms) return tl::unexpected(uniforms.error());
@@ -48,10 +49,12 @@ bool MeshPass::draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& u
   std::vector<const void*> offsets;
   for (; progress.next_cluster < end; ++progress.next_cluster) {
     const std::size_t first = progress.clusters[progress.next_cluster] * MeshBuffers::kTrianglesPerCluster;
-    counts.push_back(static_cast<GLsizei>(3 * std::min(MeshBuffers::kTrianglesPerCluster, mesh.triangle_count() - first)));
+    counts.push_back(
+        static_cast<GLsizei>(3 * std::min(MeshBuffers::kTrianglesPerCluster, mesh.triangle_count() - first)));
     offsets.push_back(reinterpret_cast<const void*>(3 * first * sizeof(std::uint32_t)));
   }
-  glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(), static_cast<GLsizei>(counts.size()));
+  glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
+                      static_cast<GLsizei>(counts.size()));
   glFlush();  // lets the driver draw this slice while the next is prepared
   return progress.next_cluster == progress.clusters.size();
 }
@@ -63,7 +66,8 @@ shader::MeshUniforms mesh_uniforms(const Camera& camera, const glm::dvec3& origi
   };
   shader::MeshUniforms uniforms;
   uniforms.clip_from_model = clip_from_model(camera, origin);
-  uniforms.eye = is_orthographic(camera) ? direction({0, 0, 1}) : glm::vec4(glm::vec3(eye_in_world(camera) - origin), 1);
+  uniforms.eye =
+      is_orthographic(camera) ? direction({0, 0, 1}) : glm::vec4(glm::vec3(eye_in_world(camera) - origin), 1);
   uniforms.key_light = direction({-0.45, 0.60, 0.75});
   uniforms.fill_light = direction({0.80, 0.05, 0.45});
   uniforms.up = direction({0, 1, 0.15});

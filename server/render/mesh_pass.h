@@ -29,8 +29,8 @@ class MeshPass {
   static Result<MeshPass> create(Kind kind, const std::filesystem::path& shader_dir, std::size_t triangles_per_slice);
 
   // Draws the next slice into `target` (cleared before the first); true when the mesh is complete.
-  bool draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& uniforms, const gl::Framebuffer& target, int width,
-                  int height, MeshProgress& progress) const;
+  bool draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& uniforms, const gl::Framebuffer& target,
+                  int width, int height, MeshProgress& progress) const;
 
  private:
   Kind kind_ = Kind::depth;

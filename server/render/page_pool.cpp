@@ -61,8 +61,8 @@ void PagePool::clear(PageId page) {
   const std::uint32_t zero = 0;
   glClearTexSubImage(values(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER,
                      texel_component(texel_bytes_), &zero);
-  glClearTexSubImage(valid(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER, GL_UNSIGNED_BYTE,
-                     &zero);
+  glClearTexSubImage(valid(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER,
+                     GL_UNSIGNED_BYTE, &zero);
 }
 
 void PagePool::upload(PageId page, const TileData& data) {
@@ -101,7 +101,8 @@ Result<void> PagePool::add_chunk() {
 }
 
 Result<PagePool::Chunk> PagePool::make_chunk(std::size_t number, int slices) {
-  const std::uint64_t bytes = std::uint64_t{kSliceSize} * kSliceSize * static_cast<unsigned>(slices * (texel_bytes_ + 1));
+  const std::uint64_t bytes =
+      std::uint64_t{kSliceSize} * kSliceSize * static_cast<unsigned>(slices * (texel_bytes_ + 1));
   auto share = memory_.reserve(bytes, "layer tiles");
   if (!share) return tl::unexpected(share.error());
   const std::string name = "pages of " + std::to_string(texel_bytes_) + " bytes, chunk " + std::to_string(number);

@@ -21,7 +21,9 @@ class PagePool {
   PagePool(int texel_bytes, GpuMemory& memory) : texel_bytes_(texel_bytes), memory_(memory) {}
 
   int texel_bytes() const { return texel_bytes_; }
-  std::uint64_t bytes_per_page() const { return std::uint64_t{kTexelsPerTile} * static_cast<unsigned>(texel_bytes_ + 1); }
+  std::uint64_t bytes_per_page() const {
+    return std::uint64_t{kTexelsPerTile} * static_cast<unsigned>(texel_bytes_ + 1);
+  }
   static constexpr std::size_t kMaxChunks = 16;  // 4 bits in a shade layer's units
   bool has_chunk(std::uint32_t chunk) const { return chunk < chunks_.size() && chunks_[chunk].values; }
   const gl::Texture& values(std::uint32_t chunk) const { return chunks_[chunk].values; }
@@ -48,7 +50,7 @@ class PagePool {
   const int texel_bytes_;
   GpuMemory& memory_;
   std::vector<Chunk> chunks_;  // by number
-  std::vector<PageId> free_;  // the last one is taken first
+  std::vector<PageId> free_;   // the last one is taken first
 };
 
 }  // namespace strata::render

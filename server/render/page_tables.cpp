@@ -58,7 +58,8 @@ Result<void> PageTables::flush() {
     std::size_t last = first;
     while (last + 1 < changed_.size() && changed_[last + 1] - changed_[last] <= kJoinGap) ++last;
     const auto begin = changed_[first];
-    buffer_.upload_values(begin * sizeof(PageId), std::span<const PageId>(entries_).subspan(begin, changed_[last] + 1 - begin));
+    buffer_.upload_values(begin * sizeof(PageId),
+                          std::span<const PageId>(entries_).subspan(begin, changed_[last] + 1 - begin));
     first = last + 1;
   }
   changed_.clear();

@@ -11,7 +11,9 @@
 namespace strata::render {
 namespace {
 
-std::uint32_t bits_of_width(std::uint32_t bits, int bytes) { return bytes == 4 ? bits : bits & ((1u << (bytes * 8)) - 1u); }
+std::uint32_t bits_of_width(std::uint32_t bits, int bytes) {
+  return bytes == 4 ? bits : bits & ((1u << (bytes * 8)) - 1u);
+}
 
 }  // namespace
 
@@ -78,8 +80,7 @@ Result<Step> PaintJob::advance(GpuScene& scene, const Target& target) {
       if (!grid_.cells.ready()) return Step::waiting;
       if (depth_) DepthBuffers::finish_grid(*depth_, grid_);
       return go_to(Stage::dispatch, {});
-    case Stage::dispatch:
-      return go_to(Stage::rows, dispatch(scene, target));
+    case Stage::dispatch: return go_to(Stage::rows, dispatch(scene, target));
     case Stage::rows:
       if (!edit_.rows.ready()) return Step::waiting;
       collect_rows(scene, target);
@@ -244,7 +245,10 @@ void PaintJob::collect_tiles(const Target& target) {
 void PaintJob::finish(GpuScene& scene) {
   // A reset between dispatch and read-back leaves rubbish in the mapped memory.
   if (scene.lost()) {
-    abort({503, "GPU lost", "The GPU context was lost and is being rebuilt. The stroke was not painted; send it again.", {}});
+    abort({503,
+           "GPU lost",
+           "The GPU context was lost and is being rebuilt. The stroke was not painted; send it again.",
+           {}});
     return;
   }
   done_(std::move(outcome_));

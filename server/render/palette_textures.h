@@ -25,7 +25,7 @@ class PaletteTextures {
   void make_room(std::size_t count);
   Entry find(const std::shared_ptr<const Palette>& palette, ValueType type);
 
-  static constexpr std::size_t kMaxPoints = 4096;  // a palette
+  static constexpr std::size_t kMaxPoints = 4096;                       // a palette
   static constexpr std::size_t kMaxPalettes = shader::kMaxShadeLayers;  // that there can be room for
 
   void bind(GLuint texture_unit, GLuint points_binding) const;

@@ -76,7 +76,8 @@ struct Renderer::Impl {
     Job posted{[this, job] { return job->step(*scene); }, [job](const Problem& problem) { job->abort(problem); }};
     if (thread.post(lane, std::move(posted))) return;
     thread.post_reply([job] {
-      job->abort({503, "GPU queue full", "More work waits for the GPU than its queue holds. Try again in a moment.", {}});
+      job->abort(
+          {503, "GPU queue full", "More work waits for the GPU than its queue holds. Try again in a moment.", {}});
     });
   }
 
@@ -201,11 +202,12 @@ void Renderer::remove_view(ViewHandle view) {
 void Renderer::draw(FrameRequest request, Done<Frame> done) {
   auto pushed = impl_->frames.push({std::move(request), std::move(done)});
   if (pushed.displaced) {
-    const Problem problem = pushed.accepted
-                                ? Problem{409, "Superseded", "A newer request of the same view took its place.", {}}
-                                : Problem{503, "GPU queue full", "Too many views wait for a frame. Try again in a moment.", {}};
-    impl_->thread.post_reply(
-        [task = std::make_shared<FrameTask>(std::move(*pushed.displaced)), problem] { task->done(tl::unexpected(problem)); });
+    const Problem problem =
+        pushed.accepted ? Problem{409, "Superseded", "A newer request of the same view took its place.", {}}
+                        : Problem{503, "GPU queue full", "Too many views wait for a frame. Try again in a moment.", {}};
+    impl_->thread.post_reply([task = std::make_shared<FrameTask>(std::move(*pushed.displaced)), problem] {
+      task->done(tl::unexpected(problem));
+    });
   }
   impl_->thread.wake();
 }

@@ -25,11 +25,11 @@ using LayerHandle = std::uint64_t;
 using ViewHandle = std::uint64_t;
 
 struct RendererOptions {
-  std::string shader_dir;                 // folder `shaders`
-  std::uint64_t gpu_memory_bytes = 0;     // budget; 0: 70 % of what the driver reports, or 4 GiB
-  bool debug = false;                     // KHR_debug context; errors are counted (see `debug_errors`)
+  std::string shader_dir;              // folder `shaders`
+  std::uint64_t gpu_memory_bytes = 0;  // budget; 0: 70 % of what the driver reports, or 4 GiB
+  bool debug = false;                  // KHR_debug context; errors are counted (see `debug_errors`)
   std::size_t queue_capacity = 4096;
-  bool paper_depth_bias = false;          // the paper's fixed depth bias instead of the slope-aware one
+  bool paper_depth_bias = false;  // the paper's fixed depth bias instead of the slope-aware one
 };
 
 struct GpuInfo {
@@ -47,9 +47,9 @@ struct WrittenTile {
 struct StrokeOutcome {
   std::vector<WrittenTile> tiles;
   glm::vec3 written_min{0}, written_max{0};  // model-space box of the written blocks; for changed screen rectangles
-  double gpu_ms = 0;       // of the dispatch, by timer query; or the call, where the driver executes in it (on CPUs)
-  double cull_ms = 0;      // choosing the blocks, on the CPU
-  double dispatch_ms = 0;  // from the start of culling until the commands were given, without the dispatch
+  double gpu_ms = 0;         // of the dispatch, by timer query; or the call, where the driver executes in it (on CPUs)
+  double cull_ms = 0;        // choosing the blocks, on the CPU
+  double dispatch_ms = 0;    // from the start of culling until the commands were given, without the dispatch
   std::size_t bytes_up = 0;  // blocks and parameters sent for the dispatch
 };
 
@@ -72,19 +72,21 @@ struct PixelRect {
 struct FrameRequest {
   ViewHandle view = 0;
   Camera camera;
-  int width = 0, height = 0;              // pixels of the picture (the camera's window scaled to this size)
+  int width = 0, height = 0;  // pixels of the picture (the camera's window scaled to this size)
   std::vector<LayerStyle> layers;
   // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's last frame: the
   // rectangle they cover is shaded and returned. A changed camera, size or style shades everything anyway.
-  struct Box { glm::vec3 min, max; };
+  struct Box {
+    glm::vec3 min, max;
+  };
   std::optional<std::vector<Box>> changed;
   Rgba background_top{242, 240, 236, 255}, background_bottom{214, 211, 205, 255};
-  bool align_to_16 = true;                // grow the rectangle to multiples of 16 for JPEG parts
+  bool align_to_16 = true;  // grow the rectangle to multiples of 16 for JPEG parts
 };
 struct Frame {
-  PixelRect rect;                         // what `pixels` covers; empty when nothing changed
-  int width = 0, height = 0;              // of the whole picture
-  std::vector<std::uint8_t> pixels;       // RGBA8, rect.width × rect.height, top row first
+  PixelRect rect;                    // what `pixels` covers; empty when nothing changed
+  int width = 0, height = 0;         // of the whole picture
+  std::vector<std::uint8_t> pixels;  // RGBA8, rect.width × rect.height, top row first
   double render_ms = 0;
 };
 
@@ -103,7 +105,7 @@ class Renderer {
   GpuInfo info() const;
   bool ready() const;  // false while a lost context cannot be replaced: what is asked for meanwhile is refused
   std::uint64_t gpu_bytes_used() const;
-  std::uint64_t layer_bytes_used(LayerHandle layer) const;   // page table and pages
+  std::uint64_t layer_bytes_used(LayerHandle layer) const;  // page table and pages
   int debug_errors() const;
 
   template <class T>

@@ -12,8 +12,8 @@ constexpr int kAlign = 16;
 
 }  // namespace
 
-PixelRect screen_rect(std::span<const FrameRequest::Box> boxes, const glm::dmat4& clip_from_model, int width, int height,
-                      bool align_to_16) {
+PixelRect screen_rect(std::span<const FrameRequest::Box> boxes, const glm::dmat4& clip_from_model, int width,
+                      int height, bool align_to_16) {
   double x0 = std::numeric_limits<double>::max(), y0 = x0, x1 = -x0, y1 = -x0;
   for (const auto& box : boxes) {
     int behind = 0;

@@ -51,8 +51,8 @@ Result<const gl::Program*> ShadePass::program(const Batch& batch) {
   std::string kinds;
   for (std::size_t i = 0; program_per_kinds_ && i < batch.layers.size(); ++i) {
     const auto& layer = batch.layers[i];
-    kinds += "SHADE_LAYER(" + std::to_string(i) + "u, " + std::to_string(layer.mode) + "u, " + std::to_string(layer.type) + "u, " +
-             std::to_string(batch.units[i]) + "u) ";
+    kinds += "SHADE_LAYER(" + std::to_string(i) + "u, " + std::to_string(layer.mode) + "u, " +
+             std::to_string(layer.type) + "u, " + std::to_string(batch.units[i]) + "u) ";
   }
   const std::pair key{batch.chunks.size(), kinds};
   const auto built = programs_.find(key);
@@ -75,7 +75,8 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
   const auto entry = palettes_.find(layer.palette, layer.textures->type());
   shader::ShadeLayer out{};
   out.table = layer.textures->table_offset();
-  out.resolution_bits = static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(layer.textures->resolution())));
+  out.resolution_bits =
+      static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(layer.textures->resolution())));
   out.type = static_cast<std::uint32_t>(layer.textures->type());
   out.mode = mode_of(layer.palette->mode);
   out.row = entry.row;
@@ -86,7 +87,8 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
   out.palette_max = static_cast<float>(layer.palette->max);
   // Without a range every value takes an end; the shader divides by it.
   const bool has_range = out.palette_max > out.palette_min;
-  if (!has_range && layer.palette->mode == PaletteMode::linear) out.palette_max = std::nextafter(out.palette_min, 1e38f);
+  if (!has_range && layer.palette->mode == PaletteMode::linear)
+    out.palette_max = std::nextafter(out.palette_min, 1e38f);
   static_assert(shader::kNoChunkUnit == 0xfu);
   out.units_low = out.units_high = 0xffffffffu;  // no chunk is bound yet
   return out;
@@ -175,7 +177,8 @@ Result<void> ShadePass::draw_background(const ShadeInput& input) {
   return draw(input, background_, input.rect, uniforms);
 }
 
-Result<void> ShadePass::draw_surface(const ShadeInput& input, const Batch& batch, bool first, const PageTables& tables) {
+Result<void> ShadePass::draw_surface(const ShadeInput& input, const Batch& batch, bool first,
+                                     const PageTables& tables) {
   if (input.surface_rect.width == 0) return {};
   auto built = program(batch);
   if (!built) return tl::unexpected(built.error());

@@ -27,9 +27,9 @@ struct ShadeInput {
   const gl::Texture& light;
   const gl::Framebuffer& target;  // RGBA8 picture and the g-buffer's depth; row 0 lowest
   PixelRect rect;                 // origin top left, as all rectangles of pictures
-  PixelRect surface_rect;      // holds all pixels of `rect` that may show surface
+  PixelRect surface_rect;         // holds all pixels of `rect` that may show surface
   Rgba background_top, background_bottom;
-  std::vector<Layer> layers;   // bottom to top
+  std::vector<Layer> layers;  // bottom to top
 };
 
 // Colours a rectangle of a view's picture from its g-buffer (shaders/shade_pass.frag): the background, then the surface, which

@@ -23,7 +23,8 @@ Result<std::unique_ptr<SurfaceMapTextures>> SurfaceMapTextures::create(std::shar
   textures->total_rows_ = (texels + kRow - 1) / kRow;
   const std::size_t height = std::clamp<std::size_t>(textures->total_rows_, 1, kRowsPerSlice);
   const std::size_t layers = std::max<std::size_t>(1, (textures->total_rows_ + kRowsPerSlice - 1) / kRowsPerSlice);
-  const std::size_t box_bytes = std::max<std::size_t>(1, textures->map_->packed_box.size()) * sizeof(mesh::SurfaceMap::PackedBox);
+  const std::size_t box_bytes =
+      std::max<std::size_t>(1, textures->map_->packed_box.size()) * sizeof(mesh::SurfaceMap::PackedBox);
   auto share = memory.reserve(kRow * height * layers * sizeof(std::uint64_t) + box_bytes, "a surface map");
   if (!share) return tl::unexpected(share.error());
   auto positions = gl::Texture::create_array(GL_RG32UI, static_cast<int>(kRow), static_cast<int>(height),
@@ -52,8 +53,9 @@ bool SurfaceMapTextures::upload_slice() {
   const std::size_t first = uploaded_rows_ * kRow;
   const std::size_t whole_rows = std::min(rows, (texels.size() - first) / kRow);
   const auto upload = [&](std::size_t width, std::size_t height, std::size_t y, const std::uint64_t* data) {
-    glTextureSubImage3D(positions_.id(), 0, 0, static_cast<GLint>(y), static_cast<GLint>(layer), static_cast<GLsizei>(width),
-                        static_cast<GLsizei>(height), 1, GL_RG_INTEGER, GL_UNSIGNED_INT, data);
+    glTextureSubImage3D(positions_.id(), 0, 0, static_cast<GLint>(y), static_cast<GLint>(layer),
+                        static_cast<GLsizei>(width), static_cast<GLsizei>(height), 1, GL_RG_INTEGER, GL_UNSIGNED_INT,
+                        data);
   };
   if (whole_rows > 0) upload(kRow, whole_rows, row, texels.data() + first);
   if (whole_rows < rows) {  // the last row is not full

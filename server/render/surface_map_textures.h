@@ -13,7 +13,8 @@ namespace strata::render {
 // drivers) and the boxes they are packed in, filled in slices. The block table and the bounds stay on the CPU, where edits are culled.
 class SurfaceMapTextures {
  public:
-  static Result<std::unique_ptr<SurfaceMapTextures>> create(std::shared_ptr<const mesh::SurfaceMap> map, GpuMemory& memory);
+  static Result<std::unique_ptr<SurfaceMapTextures>> create(std::shared_ptr<const mesh::SurfaceMap> map,
+                                                            GpuMemory& memory);
 
   // Uploads the next few megabytes; true when everything is there.
   bool upload_slice();

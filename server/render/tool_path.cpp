@@ -32,15 +32,17 @@ shader::EditSegment make_segment(glm::dvec2 a, glm::dvec2 b, double ra, double r
 
 PixelBox box_of(const shader::EditSegment& s) {
   const double radius = std::max(s.tool.x, s.tool.y);
-  return {std::min(s.ends.x, s.ends.z) - radius, std::min(s.ends.y, s.ends.w) - radius, std::max(s.ends.x, s.ends.z) + radius,
-          std::max(s.ends.y, s.ends.w) + radius};
+  return {std::min(s.ends.x, s.ends.z) - radius, std::min(s.ends.y, s.ends.w) - radius,
+          std::max(s.ends.x, s.ends.z) + radius, std::max(s.ends.y, s.ends.w) + radius};
 }
 
 }  // namespace
 
 ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii_px) {
   ToolPath path;
-  const auto point = [&](std::size_t i) { return glm::dvec2(stroke.path[i].x, stroke.camera.height - stroke.path[i].y); };
+  const auto point = [&](std::size_t i) {
+    return glm::dvec2(stroke.path[i].x, stroke.camera.height - stroke.path[i].y);
+  };
   const auto radius = [&](std::size_t i) { return std::min(radii_px[i], kLargestRadius_px); };
   std::size_t from = 0;
   for (std::size_t i = 1; i < stroke.path.size(); ++i) {
@@ -60,9 +62,7 @@ ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii
   return path;
 }
 
-double view_scale(const Camera& camera) {
-  return std::cbrt(std::abs(glm::determinant(glm::dmat3(camera.view))));
-}
+double view_scale(const Camera& camera) { return std::cbrt(std::abs(glm::determinant(glm::dmat3(camera.view)))); }
 
 double w_at_depth(const Camera& camera, double depth) {
   const auto& p = camera.projection;
@@ -91,7 +91,8 @@ std::vector<double> radii_from_depths(const StrokeBatch& stroke, std::span<const
   for (std::size_t i = 1; i < count; ++i) spread(i, i - 1);
   for (std::size_t i = count; i-- > 1;) spread(i - 1, i);
   std::vector<double> radii(count);
-  for (std::size_t i = 0; i < count; ++i) radii[i] = stroke.radius_world * scale / (distance[i] < count ? ws[i] : fallback_w);
+  for (std::size_t i = 0; i < count; ++i)
+    radii[i] = stroke.radius_world * scale / (distance[i] < count ? ws[i] : fallback_w);
   return radii;
 }
 

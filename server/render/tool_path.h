@@ -12,7 +12,9 @@ constexpr std::size_t kMaxPathPoints = 4096;  // of one stroke batch
 
 struct PixelBox {  // window pixels, origin lower left
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-  bool overlaps(const PixelBox& other) const { return x0 <= other.x1 && other.x0 <= x1 && y0 <= other.y1 && other.y0 <= y1; }
+  bool overlaps(const PixelBox& other) const {
+    return x0 <= other.x1 && other.x0 <= x1 && y0 <= other.y1 && other.y0 <= y1;
+  }
 };
 
 // A stroke's path as segments in window pixels, with the boxes that cull by them.

@@ -19,13 +19,15 @@ bool View::shows(const FrameRequest& request) const {
   const auto same = [](const LayerStyle& a, const LayerStyle& b) {
     return a.layer == b.layer && a.palette == b.palette && a.opacity == b.opacity;
   };
-  return picture_complete && background_top == request.background_top && background_bottom == request.background_bottom &&
+  return picture_complete && background_top == request.background_top &&
+         background_bottom == request.background_bottom &&
          std::equal(layers.begin(), layers.end(), request.layers.begin(), request.layers.end(), same);
 }
 
 Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths, GpuMemory& memory) {
   view.gbuffer_complete = view.picture_complete = false;
-  if (view.has_buffers() && (view.picture.width() != key.width || view.picture.height() != key.height)) view.drop_buffers();
+  if (view.has_buffers() && (view.picture.width() != key.width || view.picture.height() != key.height))
+    view.drop_buffers();
   if (!view.has_buffers()) {
     const auto pixels = static_cast<std::uint64_t>(key.width) * static_cast<unsigned>(key.height);
     auto share = memory.reserve(pixels * 12, "a view");

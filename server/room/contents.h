@@ -14,7 +14,7 @@ namespace strata::room {
 
 struct JournalContents {
   std::int64_t last_sequence = 0;
-  std::vector<LayerState> layers;  // with mirrors, without handles
+  std::vector<LayerState> layers;                              // with mirrors, without handles
   std::map<std::int64_t, std::vector<TileAddress>> differing;  // by layer: the tiles that `held` has otherwise
 };
 Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id, const std::vector<LayerState>& held);

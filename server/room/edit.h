@@ -15,27 +15,27 @@ namespace strata::room {
 struct StrokeEdit {
   StrokeBatch batch;
   Uuid stroke;
-  int n = 0;               // number of the batch in its stroke
+  int n = 0;  // number of the batch in its stroke
 };
-struct FillEdit {          // everywhere on the surface
+struct FillEdit {  // everywhere on the surface
   bool erase = false;
   std::uint32_t value_bits = 0;
 };
-struct ImportEdit {        // replaces the whole layer's content
+struct ImportEdit {  // replaces the whole layer's content
   TileMap tiles;
 };
-struct UndoEdit {};        // the author's newest stroke in force on the layer
+struct UndoEdit {};  // the author's newest stroke in force on the layer
 struct RedoEdit {};
-struct RestoreEdit {       // the whole layer as it was after a sequence
+struct RestoreEdit {  // the whole layer as it was after a sequence
   std::int64_t sequence = 0;
 };
 
 struct EditRequest {
-  Uuid id;                 // of the message: a repeat gets the first answer and paints nothing
+  Uuid id;  // of the message: a repeat gets the first answer and paints nothing
   std::string user;
   std::int64_t layer_id = 0;
   std::variant<StrokeEdit, FillEdit, ImportEdit, UndoEdit, RedoEdit, RestoreEdit> edit;
-  nlohmann::json record;   // the edit as asked, for the journal
+  nlohmann::json record;  // the edit as asked, for the journal
 };
 
 struct EditAnswer {

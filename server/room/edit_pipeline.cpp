@@ -40,7 +40,8 @@ bool reads_journal(const EditRequest& request) {
 
 // The part of the surface that changed tiles lie on.
 std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& changes, const mesh::SurfaceMap& map) {
-  render::FrameRequest::Box box{glm::vec3(std::numeric_limits<float>::max()), glm::vec3(std::numeric_limits<float>::lowest())};
+  render::FrameRequest::Box box{glm::vec3(std::numeric_limits<float>::max()),
+                                glm::vec3(std::numeric_limits<float>::lowest())};
   const int tiles_per_side = map.resolution / kTileSize;
   for (const TileChange& change : changes) {
     const auto& bounds = map.bounds_128[std::size_t(change.address.y) * tiles_per_side + change.address.x];
@@ -55,7 +56,11 @@ std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& c
 }  // namespace
 
 EditPipeline::EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_sequence)
-    : parts_(std::move(parts)), host_(&host), sequence_(last_sequence), durable_(last_sequence), repair_timer_(parts_.strand) {}
+    : parts_(std::move(parts)),
+      host_(&host),
+      sequence_(last_sequence),
+      durable_(last_sequence),
+      repair_timer_(parts_.strand) {}
 
 template <class Handler>
 auto EditPipeline::then(Handler handler) {
@@ -71,7 +76,8 @@ void EditPipeline::edit(EditRequest request, Room::Applied applied, Room::Saved 
   if (closed_) return saved(tl::unexpected(*closed_));
   if (auto found = running_.find(request.id); found != running_.end()) return found->second.push_back(std::move(saved));
   if (!parts_.writer.accepting())
-    return saved(fail(503, "Not saved", "The database does not take edits at the moment. Viewing goes on; try again shortly."));
+    return saved(
+        fail(503, "Not saved", "The database does not take edits at the moment. Viewing goes on; try again shortly."));
   running_[request.id];
   waiting_.push_back({std::move(request), std::move(applied), std::move(saved), {}});
   step();
@@ -102,12 +108,14 @@ void EditPipeline::ask_journal() {
   asking_ = true;
   using State = Result<store::Store::JournalState>;
   boost::asio::post(parts_.readers, [&store = parts_.store, model_id = host_->pipeline_model().id, ids = std::move(ids),
-                                     was_away = journal_away_,
-                                     done = then([this, verifying](const State& state) { on_journal(verifying, state); })]() mutable {
+                                     was_away = journal_away_, done = then([this, verifying](const State& state) {
+                                                                 on_journal(verifying, state);
+                                                               })]() mutable {
     // The pool waits for a database that restarts. Once is enough: those who come later hear at once that it is away.
     if (was_away && !store.ready())
-      return done(State(fail(503, "Database unavailable",
-                             "The database does not answer, so nothing can be saved. Viewing goes on; try again shortly.")));
+      return done(
+          State(fail(503, "Database unavailable",
+                     "The database does not answer, so nothing can be saved. Viewing goes on; try again shortly.")));
     done(store.journal_state(model_id, ids));
   });
 }
@@ -120,8 +128,10 @@ void EditPipeline::on_journal(bool verifying, const Result<store::Store::Journal
     // All that wait for the journal, not only those it was asked about: edits of one stroke must not change places.
     std::deque<Waiting> all = std::exchange(waiting_, {});
     for (Waiting& item : all) {
-      if (!verify_ && (item.work || item.lookup == Waiting::Lookup::is_new)) waiting_.push_back(std::move(item));
-      else refuse(item, state.error());
+      if (!verify_ && (item.work || item.lookup == Waiting::Lookup::is_new))
+        waiting_.push_back(std::move(item));
+      else
+        refuse(item, state.error());
     }
     return;
   }
@@ -140,9 +150,10 @@ void EditPipeline::on_journal(bool verifying, const Result<store::Store::Journal
 void EditPipeline::on_known(const std::vector<store::JournalRow>& known) {
   std::deque<Waiting> all = std::exchange(waiting_, {});
   for (Waiting& item : all) {
-    const auto row = item.lookup == Waiting::Lookup::asked
-                         ? std::find_if(known.begin(), known.end(), [&](const auto& r) { return r.id == item.request.id; })
-                         : known.end();
+    const auto row =
+        item.lookup == Waiting::Lookup::asked
+            ? std::find_if(known.begin(), known.end(), [&](const auto& r) { return r.id == item.request.id; })
+            : known.end();
     if (row != known.end()) {
       const EditAnswer first{row->sequence, row->answer.value("texels_changed", std::uint64_t{0}),
                              row->answer.value("area_m2", 0.0), true};
@@ -213,12 +224,12 @@ bool EditPipeline::map_ready(int resolution) {
   if (parts_.maps->get(resolution)) return true;
   waits_for_map_ = true;
   parts_.maps->request(resolution, then([this](const Result<SurfaceMaps::MapPtr>& map) {
-    waits_for_map_ = false;
-    if (map || waiting_.empty() || waiting_.front().work) return;
-    Waiting item = std::move(waiting_.front());
-    waiting_.pop_front();
-    refuse(item, gpu_problem(map.error()));
-  }));
+                         waits_for_map_ = false;
+                         if (map || waiting_.empty() || waiting_.front().work) return;
+                         Waiting item = std::move(waiting_.front());
+                         waiting_.pop_front();
+                         refuse(item, gpu_problem(map.error()));
+                       }));
   return false;
 }
 
@@ -257,7 +268,8 @@ void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
     try {
       done(compute(item->request, meta, tiles));
     } catch (const std::bad_alloc&) {
-      done(Result<Computed>(fail(503, "Out of memory", "The server lacks the memory for this edit at the moment; try again later.")));
+      done(Result<Computed>(
+          fail(503, "Out of memory", "The server lacks the memory for this edit at the moment; try again later.")));
     }
   });
 }
@@ -281,7 +293,9 @@ Result<EditPipeline::Computed> EditPipeline::compute(const EditRequest& request,
           },
           [&](const UndoEdit&) { return compute_undo(request, layer, tiles, false); },
           [&](const RedoEdit&) { return compute_undo(request, layer, tiles, true); },
-          [&](const StrokeEdit&) -> Result<Computed> { return fail(500, "Internal error", "A stroke is painted, not computed."); },
+          [&](const StrokeEdit&) -> Result<Computed> {
+            return fail(500, "Internal error", "A stroke is painted, not computed.");
+          },
       },
       request.edit);
 }
@@ -307,8 +321,9 @@ Result<EditPipeline::Computed> EditPipeline::compute_undo(const EditRequest& req
 }
 
 // Walks back through the tile's history only until every texel has found its author.
-Result<TileChange> EditPipeline::undo_in_tile(const store::Store::WrittenTiles& written, const std::vector<std::int64_t>& sequences,
-                                              bool redo, const Layer& layer, const TileMap& tiles) const {
+Result<TileChange> EditPipeline::undo_in_tile(const store::Store::WrittenTiles& written,
+                                              const std::vector<std::int64_t>& sequences, bool redo, const Layer& layer,
+                                              const TileMap& tiles) const {
   auto before = tile_or_empty(tiles, written.tile, layer.type);
   TileResolver resolver(*before, written.written);
   for (std::int64_t newest = std::numeric_limits<std::int64_t>::max(); resolver.is_open();) {
@@ -375,7 +390,9 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, Computed computed,
     }
     tiles[change.address] = change.after;
     store::JournalEntry::Revision revision{
-        change.address, encode_revision(make_revision(change.address, *change.before, *change.after, change.written)), {}};
+        change.address,
+        encode_revision(make_revision(change.address, *change.before, *change.after, change.written)),
+        {}};
     // The first revision in this room is stored whole: chains stay short however often rooms open and close.
     auto [since, first] = since_key_tile.try_emplace(change.address, 0);
     if (first || ++since->second >= kKeyTileEvery) {
@@ -402,7 +419,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, Computed computed,
   entry.disable = std::move(computed.disable);
   entry.enable = std::move(computed.enable);
 
-  const Listener::Edit event{layer.layer.id, layer.layer.slug, sequence,           entry.id,      entry.stroke,
+  const Listener::Edit event{layer.layer.id,         layer.layer.slug,  sequence,          entry.id, entry.stroke,
                              stroke ? stroke->n : 0, stroke != nullptr, item.request.user, entry.op, answer};
   if (!tiles.empty()) host_->content_changed(layer, box, sequence);
   host_->edit_applied(event);
@@ -413,8 +430,8 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, Computed computed,
     pending_.back().answered = true;
     return;
   }
-  const bool taken =
-      parts_.writer.submit(std::move(entry), then([this, sequence](const Result<void>& result) { on_saved(sequence, result); }));
+  const bool taken = parts_.writer.submit(
+      std::move(entry), then([this, sequence](const Result<void>& result) { on_saved(sequence, result); }));
   if (!taken) {
     failure_ = Problem{503, "Not saved", "The database does not keep up with the edits; they were taken back.", {}};
     pending_.back().answered = true;
@@ -469,7 +486,8 @@ void EditPipeline::roll_back_when_answered() {
   if (!closed_) repair();  // on its way before anybody hears of it
   std::vector<Listener::Edit> events;
   for (const auto& pending : taken_back) events.push_back(pending.event);
-  log::warning("took back " + std::to_string(events.size()) + " edits that could not be saved: " + why.title + ": " + why.detail);
+  log::warning("took back " + std::to_string(events.size()) + " edits that could not be saved: " + why.title + ": " +
+               why.detail);
   if (!closed_) host_->edits_unsaved(events, why);
   for (auto& pending : taken_back) answer(pending.event.id, pending.saved, tl::unexpected(why));
 }
@@ -488,8 +506,10 @@ bool EditPipeline::repair() {
       const LayerState* layer = host_->find_layer(layer_id);
       std::vector<render::TileUpload> uploads;
       for (const TileAddress address : tiles)
-        if (auto tile = layer->mirror->tile(address); !tile == empty_ones) uploads.push_back({address, std::move(tile)});
-      parts_.renderer.write_tiles(layer->handle, std::move(uploads), then([this, left, failure](const Result<void>& uploaded) {
+        if (auto tile = layer->mirror->tile(address); !tile == empty_ones)
+          uploads.push_back({address, std::move(tile)});
+      parts_.renderer.write_tiles(layer->handle, std::move(uploads),
+                                  then([this, left, failure](const Result<void>& uploaded) {
                                     if (!uploaded && !*failure) *failure = uploaded.error();
                                     if (--*left == 0) repaired(*failure);
                                   }));
@@ -502,7 +522,8 @@ void EditPipeline::repaired(const std::optional<Problem>& failure) {
   if (closed_) return;
   if (!failure) {
     for (const auto& [layer_id, tiles] : std::exchange(stale_, {}))
-      if (const LayerState* layer = host_->find_layer(layer_id)) host_->content_changed(*layer, std::nullopt, sequence_);
+      if (const LayerState* layer = host_->find_layer(layer_id))
+        host_->content_changed(*layer, std::nullopt, sequence_);
     return;
   }
   if (paused_) return;  // a lost context: everything is put on the GPU again
@@ -517,8 +538,10 @@ void EditPipeline::repaired(const std::optional<Problem>& failure) {
 }
 
 void EditPipeline::refuse(Waiting& item, const Problem& why) {
-  if (item.work) item.work(tl::unexpected(why));
-  else answer(item.request.id, item.saved, tl::unexpected(why));
+  if (item.work)
+    item.work(tl::unexpected(why));
+  else
+    answer(item.request.id, item.saved, tl::unexpected(why));
 }
 
 void EditPipeline::refuse_waiting(const Problem& why) {

@@ -86,7 +86,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     EditRequest request;
     Room::Applied applied;
     Room::Saved saved;
-    Work work;  // of `when_idle`, instead of an edit
+    Work work;                                                        // of `when_idle`, instead of an edit
     enum class Lookup { none, asked, is_new } lookup = Lookup::none;  // is_new: the journal does not know its id
   };
   // Applied and on its way to the journal; what is needed to take it back.
@@ -134,24 +134,25 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   auto then(Handler handler);
 
   Parts parts_;
-  PipelineHost* host_;               // null when closed
-  std::int64_t sequence_;            // of the last edit in the mirrors
-  std::int64_t durable_;             // of the last edit in the journal
+  PipelineHost* host_;     // null when closed
+  std::int64_t sequence_;  // of the last edit in the mirrors
+  std::int64_t durable_;   // of the last edit in the journal
   std::deque<Waiting> waiting_;
-  bool asking_ = false;              // a question to the journal is under way
-  bool journal_away_ = false;        // the last one had no answer: the next does not wait for the database to come back
-  int in_flight_ = 0;                // strokes on the GPU
-  bool busy_ = false;                // a computed edit, `when_idle` work or a repair is under way
+  bool asking_ = false;        // a question to the journal is under way
+  bool journal_away_ = false;  // the last one had no answer: the next does not wait for the database to come back
+  int in_flight_ = 0;          // strokes on the GPU
+  bool busy_ = false;          // a computed edit, `when_idle` work or a repair is under way
   bool waits_for_map_ = false;
   bool paused_ = false;
-  bool tell_paused_ = false;         // the host waits for `paused`
-  std::optional<Problem> closed_;    // the answer to later edits
-  bool verify_ = false;              // nothing starts before the room was compared with the journal, which may hold more
-  std::optional<Problem> failure_;   // commits failed: everything pending is taken back once it is answered
-  std::deque<Pending> pending_;      // sequence order
-  std::map<std::int64_t, std::set<TileAddress>> stale_;  // by layer: where the GPU may hold something else than the mirror
+  bool tell_paused_ = false;        // the host waits for `paused`
+  std::optional<Problem> closed_;   // the answer to later edits
+  bool verify_ = false;             // nothing starts before the room was compared with the journal, which may hold more
+  std::optional<Problem> failure_;  // commits failed: everything pending is taken back once it is answered
+  std::deque<Pending> pending_;     // sequence order
+  std::map<std::int64_t, std::set<TileAddress>>
+      stale_;  // by layer: where the GPU may hold something else than the mirror
   boost::asio::steady_timer repair_timer_;
-  bool repair_waits_ = false;        // for the timer
+  bool repair_waits_ = false;  // for the timer
   // By layer: revisions since the last whole tile was stored, in this room.
   std::map<std::int64_t, std::unordered_map<TileAddress, int>> since_key_tile_;
   std::unordered_map<Uuid, std::vector<Room::Saved>> running_;  // waiting and pending edits, with who repeated them

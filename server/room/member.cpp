@@ -6,7 +6,11 @@ namespace strata::room {
 
 RoomMember::RoomMember(std::shared_ptr<OpenRoom> room, std::string user, std::string color, Listener* listener,
                        stream::Viewer::Send send)
-    : room_(std::move(room)), user_(std::move(user)), color_(std::move(color)), listener_(listener), send_(std::move(send)) {}
+    : room_(std::move(room)),
+      user_(std::move(user)),
+      color_(std::move(color)),
+      listener_(listener),
+      send_(std::move(send)) {}
 
 RoomMember::~RoomMember() {
   room_->leave(this);
@@ -51,7 +55,9 @@ void RoomMember::camera(std::uint32_t view_id, std::uint64_t seq, const Camera& 
 Result<void> RoomMember::layers(std::uint32_t view_id, std::vector<LayerView> layers) {
   std::lock_guard lock(mutex_);
   View* v = view(view_id, true);
-  if (!v) return fail(422, "Too many views", "One connection has at most " + std::to_string(kMaxViews) + " views.", "view_id");
+  if (!v)
+    return fail(422, "Too many views", "One connection has at most " + std::to_string(kMaxViews) + " views.",
+                "view_id");
   v->overrides.clear();
   v->palettes.clear();
   for (auto& own : layers) {
@@ -86,8 +92,8 @@ void RoomMember::content_changed(std::int64_t layer_id, const std::optional<rend
   std::lock_guard lock(mutex_);
   for (auto& [id, view] : views_) {
     auto own = view.overrides.find(layer_id);
-    const bool shown = own != view.overrides.end() && own->second.visible ? *own->second.visible
-                                                                         : state && state->layer.visible;
+    const bool shown =
+        own != view.overrides.end() && own->second.visible ? *own->second.visible : state && state->layer.visible;
     if (!shown) continue;
     box ? view.viewer->changed(*box, sequence) : view.viewer->changed_everywhere(sequence);
   }

@@ -14,7 +14,8 @@ class OpenRoom;
 // A connection of one person: the views they look through and what they show in each.
 class RoomMember final : public Member {
  public:
-  RoomMember(std::shared_ptr<OpenRoom> room, std::string user, std::string color, Listener* listener, stream::Viewer::Send send);
+  RoomMember(std::shared_ptr<OpenRoom> room, std::string user, std::string color, Listener* listener,
+             stream::Viewer::Send send);
   ~RoomMember() override;
 
   Uuid session() const override { return session_; }
@@ -26,7 +27,8 @@ class RoomMember final : public Member {
   Listener* listener() const { return listener_; }
   Presence presence() const;
   // Called by the room.
-  void content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box, std::int64_t sequence);
+  void content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,
+                       std::int64_t sequence);
   void styles_changed();
   void model_changed(render::ModelHandle model);
 

@@ -78,9 +78,10 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const s
   room->model_handle_ = gpu->model;
   room->maps_->set_model(gpu->model);
   room->sequence_ = room->durable_ = journal->last_sequence;
-  room->pipeline_ = std::make_shared<EditPipeline>(
-      EditPipeline::Parts{parts.store, parts.writer, parts.renderer, parts.workers, parts.readers, room->strand_, room->maps_},
-      *room, journal->last_sequence);
+  room->pipeline_ =
+      std::make_shared<EditPipeline>(EditPipeline::Parts{parts.store, parts.writer, parts.renderer, parts.workers,
+                                                         parts.readers, room->strand_, room->maps_},
+                                     *room, journal->last_sequence);
   // Painting needs the maps of the layers there are; bake them while people look around.
   for (const auto& state : room->layer_states()) room->maps_->request(state.layer.resolution, [](auto) {});
   return room;
@@ -144,8 +145,10 @@ Result<T> OpenRoom::exclusively(std::function<Result<T>()> work) {
   ++unanswered_;
   boost::asio::post(strand_, [self = shared_from_this(), promise, work = std::move(work)] {
     self->pipeline_->when_idle([promise, work](const Result<void>& may) {
-      if (may) promise->set_value(work());
-      else promise->set_value(tl::unexpected(may.error()));
+      if (may)
+        promise->set_value(work());
+      else
+        promise->set_value(tl::unexpected(may.error()));
     });
   });
   auto result = future.get();
@@ -243,7 +246,8 @@ void OpenRoom::sort_layers_changed() {
 void OpenRoom::edit(EditRequest request, Applied applied, Saved saved) {
   touch();
   if (!takes_edits_)
-    return saved(fail(503, "Server is stopping", "The server saves what is under way and stops; send the edit again when it is back."));
+    return saved(fail(503, "Server is stopping",
+                      "The server saves what is under way and stops; send the edit again when it is back."));
   // Counted before it is posted: the strand's own queue has no bound.
   if (++unanswered_ > parts_.options.max_waiting_edits) {
     --unanswered_;
@@ -252,10 +256,11 @@ void OpenRoom::edit(EditRequest request, Applied applied, Saved saved) {
   boost::asio::post(strand_, [self = shared_from_this(), request = std::move(request), applied = std::move(applied),
                               saved = std::move(saved)]() mutable {
     // The answer keeps the room alive until it is given.
-    self->pipeline_->edit(std::move(request), std::move(applied), [self, saved = std::move(saved)](Result<EditAnswer> answer) {
-      --self->unanswered_;
-      saved(std::move(answer));
-    });
+    self->pipeline_->edit(std::move(request), std::move(applied),
+                          [self, saved = std::move(saved)](Result<EditAnswer> answer) {
+                            --self->unanswered_;
+                            saved(std::move(answer));
+                          });
   });
 }
 
@@ -293,8 +298,8 @@ std::unique_ptr<Member> OpenRoom::join(std::string user, Listener* listener, str
   std::unique_ptr<RoomMember> member;
   {
     std::lock_guard lock(members_mutex_);
-    member = std::make_unique<RoomMember>(shared_from_this(), std::move(user), kColors[joined_++ % kColors.size()], listener,
-                                          std::move(send));
+    member = std::make_unique<RoomMember>(shared_from_this(), std::move(user), kColors[joined_++ % kColors.size()],
+                                          listener, std::move(send));
     members_.push_back(member.get());
   }
   touch();
@@ -416,7 +421,8 @@ Result<TileMirror::Snapshot> OpenRoom::tiles(const std::string& layer, std::opti
   if (!found) return tl::unexpected(found.error());
   if (!at) return found->mirror->snapshot();
   if (*at > durable_)
-    return fail(422, "Sequence not reached", "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
+    return fail(422, "Sequence not reached",
+                "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
   return parts_.store.load_tiles(found->layer, at);
 }
 

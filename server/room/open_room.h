@@ -48,7 +48,8 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers) override;
   Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
                                                      const std::vector<std::string>& layers) override;
-  Result<query::SurfacePoint> pick(const Camera& camera, double x, double y, const std::vector<std::string>& layers) override;
+  Result<query::SurfacePoint> pick(const Camera& camera, double x, double y,
+                                   const std::vector<std::string>& layers) override;
   Result<query::Statistics> statistics(const std::string& layer) override;
   Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) override;
   Result<render::Frame> picture(const Camera& camera, std::optional<std::vector<std::string>> layers,
@@ -86,7 +87,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
 
  private:
   template <class Work>
-  auto on_strand(Work work) const;                       // runs there and waits for the result
+  auto on_strand(Work work) const;                        // runs there and waits for the result
   void tell(const std::function<void(Listener&)>& tell);  // every listener
   // Runs `work` on a worker when every edit before it is durable. No edit starts meanwhile, and no recovery. Blocks.
   template <class T>

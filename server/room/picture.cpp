@@ -34,7 +34,8 @@ Result<render::Frame> OpenRoom::picture(const Camera& camera, std::optional<std:
       if (candidate.layer.visible) shown.push_back(std::move(candidate));
   }
   if (at && *at > durable_)
-    return fail(422, "Sequence not reached", "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
+    return fail(422, "Sequence not reached",
+                "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
 
   Borrowed borrowed{parts_.renderer, 0, {}};
   const auto model = model_handle();

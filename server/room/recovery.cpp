@@ -30,9 +30,8 @@ void OpenRoom::recover() {
     parts_.renderer.remove_model(model_handle());  // there may not be room for both
     boost::asio::post(parts_.workers, [self = shared_from_this(), losses = recovery_.gpu_losses] {
       auto contents = fill_gpu(self->parts_.renderer, self->geometry_, self->layer_states());
-      boost::asio::post(self->strand_, [self, losses, contents = std::move(contents)] {
-        self->on_gpu_filled(losses, contents);
-      });
+      boost::asio::post(self->strand_,
+                        [self, losses, contents = std::move(contents)] { self->on_gpu_filled(losses, contents); });
     });
   } else if (recovery_.journal_differs) {
     recovery_.working = true;
@@ -121,8 +120,10 @@ void OpenRoom::on_gpu_filled(int losses_before, const Result<GpuContents>& conte
 }
 
 void OpenRoom::retry_recovery(const Problem& why) {
-  log::warning("model " + std::to_string(model_id_) + " could not be loaded again, trying again: " + why.title + ": " + why.detail);
-  pipeline_->refuse_waiting({503, "Model is reloading", "The model is being loaded again, which failed for now: " + why.detail, {}});
+  log::warning("model " + std::to_string(model_id_) + " could not be loaded again, trying again: " + why.title + ": " +
+               why.detail);
+  pipeline_->refuse_waiting(
+      {503, "Model is reloading", "The model is being loaded again, which failed for now: " + why.detail, {}});
   recovery_.timer.expires_after(recovery_.retry_in);
   recovery_.retry_in = std::min(2 * recovery_.retry_in, Recovery::kLastRetry);
   recovery_.timer.async_wait([self = shared_from_this()](const boost::system::error_code& cancelled) {

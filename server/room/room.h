@@ -20,7 +20,7 @@ class Listener {
   virtual ~Listener() = default;
   struct Edit {
     std::int64_t layer_id = 0;
-    std::string layer;        // slug
+    std::string layer;  // slug
     std::int64_t sequence = 0;
     Uuid id, stroke;
     int n = 0;
@@ -28,7 +28,7 @@ class Listener {
     std::string user, op;
     EditAnswer answer;
   };
-  virtual void edit_applied(const Edit& edit) = 0;                        // visible, not yet durable
+  virtual void edit_applied(const Edit& edit) = 0;                                     // visible, not yet durable
   virtual void edits_unsaved(const std::vector<Edit>& edits, const Problem& why) = 0;  // rolled back
   enum class LayerChange { created, changed, deleted };
   virtual void layer_changed(LayerChange change, const Layer& layer) = 0;
@@ -76,7 +76,7 @@ class Room {
 
   virtual Model model() const = 0;
   virtual std::vector<Layer> layers() const = 0;
-  virtual Result<Layer> layer(const std::string& ref) const = 0;      // id or slug
+  virtual Result<Layer> layer(const std::string& ref) const = 0;  // id or slug
   virtual std::int64_t sequence() const = 0;
   virtual std::int64_t durable_sequence() const = 0;
 
@@ -100,7 +100,8 @@ class Room {
   virtual Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers) = 0;
   virtual Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
                                                              const std::vector<std::string>& layers) = 0;
-  virtual Result<query::SurfacePoint> pick(const Camera& camera, double x, double y, const std::vector<std::string>& layers) = 0;
+  virtual Result<query::SurfacePoint> pick(const Camera& camera, double x, double y,
+                                           const std::vector<std::string>& layers) = 0;
   virtual Result<query::Statistics> statistics(const std::string& layer) = 0;
   virtual Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) = 0;
   // One picture, waits for it. RGBA8, top row first. Without `layers`: those visible by default.
@@ -110,10 +111,10 @@ class Room {
 };
 
 struct RoomOptions {
-  std::chrono::seconds close_after{60};        // after the last user left
-  std::size_t max_waiting_edits = 512;         // of a room, not yet answered; more are refused (429)
-  std::chrono::milliseconds retry_for{30'000}; // commits that fail
-  std::chrono::milliseconds drain_for{40'000}; // longer than commits are retried
+  std::chrono::seconds close_after{60};         // after the last user left
+  std::size_t max_waiting_edits = 512;          // of a room, not yet answered; more are refused (429)
+  std::chrono::milliseconds retry_for{30'000};  // commits that fail
+  std::chrono::milliseconds drain_for{40'000};  // longer than commits are retried
 };
 
 // Opens rooms on first use and closes them after the last user left.

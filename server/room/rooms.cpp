@@ -117,7 +117,8 @@ Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref) {
   {
     std::unique_lock lock(impl_->mutex);
     // One at a time loads a model; the others wait for it.
-    impl_->changed.wait(lock, [&] { return impl_->stopping || impl_->draining || !impl_->opening.contains(model->id); });
+    impl_->changed.wait(lock,
+                        [&] { return impl_->stopping || impl_->draining || !impl_->opening.contains(model->id); });
     if (impl_->stopping || impl_->draining) return tl::unexpected(kStopping);
     if (auto found = impl_->rooms.find(model->id); found != impl_->rooms.end()) {
       found->second->touch();
@@ -171,7 +172,8 @@ void Rooms::drain() {
   for (auto& room : rooms) room->take_no_edits();
   const auto deadline = std::chrono::steady_clock::now() + impl_->parts.options.drain_for;
   for (auto& room : rooms) {
-    while (!room->idle() && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    while (!room->idle() && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
     if (room->idle()) continue;
     log::error("model " + std::to_string(room->id()) + ": edits still wait and are refused, since the server stops");
     room->shut(kStopping);

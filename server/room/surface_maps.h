@@ -20,7 +20,8 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
   using MapPtr = std::shared_ptr<const mesh::SurfaceMap>;
   using Ready = std::function<void(Result<MapPtr>)>;
 
-  SurfaceMaps(std::shared_ptr<const mesh::Geometry> geometry, render::Renderer& renderer, boost::asio::thread_pool& workers)
+  SurfaceMaps(std::shared_ptr<const mesh::Geometry> geometry, render::Renderer& renderer,
+              boost::asio::thread_pool& workers)
       : geometry_(std::move(geometry)), renderer_(renderer), workers_(workers) {}
 
   // The map if it is baked and on the GPU, otherwise null (and nothing is started).
@@ -41,7 +42,7 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
     bool working = false;
     std::vector<Ready> waiting;
   };
-  void start(int resolution);                              // with the lock held
+  void start(int resolution);  // with the lock held
   void upload(int resolution, MapPtr map, render::ModelHandle model);
   void finish(int resolution, Result<MapPtr> result, render::ModelHandle model);
 

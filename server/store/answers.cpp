@@ -26,16 +26,19 @@ Result<std::optional<nlohmann::json>> Store::find_answer(const std::string& key)
 Result<void> insert_answer(PgConnection& connection, const std::string& key, const nlohmann::json& answer) {
   if (auto good = check_key(key); !good) return good;
   if (auto good = check_json(answer, "answer"); !good) return good;
-  auto old = connection.query("DELETE FROM answers WHERE key IN (SELECT key FROM answers "
-                              "WHERE time <= now() - interval '7 days' LIMIT 1000 FOR UPDATE SKIP LOCKED)");
+  auto old = connection.query(
+      "DELETE FROM answers WHERE key IN (SELECT key FROM answers "
+      "WHERE time <= now() - interval '7 days' LIMIT 1000 FOR UPDATE SKIP LOCKED)");
   if (!old) return tl::unexpected(old.error());
-  auto kept = connection.query("INSERT INTO answers (key, answer) VALUES ($1, $2) "
-                               "ON CONFLICT (key) DO UPDATE SET answer = excluded.answer, time = now() "
-                               "WHERE answers.time <= now() - interval '7 days'",
-                               Params().text(key).json(answer));
+  auto kept = connection.query(
+      "INSERT INTO answers (key, answer) VALUES ($1, $2) "
+      "ON CONFLICT (key) DO UPDATE SET answer = excluded.answer, time = now() "
+      "WHERE answers.time <= now() - interval '7 days'",
+      Params().text(key).json(answer));
   if (!kept) return tl::unexpected(kept.error());
   if (kept->affected() == 0)
-    return fail(409, "Done already", "Another call with this Idempotency-Key was quicker; ask again for its answer.", "Idempotency-Key");
+    return fail(409, "Done already", "Another call with this Idempotency-Key was quicker; ask again for its answer.",
+                "Idempotency-Key");
   return {};
 }
 

@@ -101,15 +101,16 @@ Result<void> keep_blob(PgConnection& connection, const Content& content, const s
     return chunk;
   });
   if (written && stream.finish() != content.hash)
-    return fail(409, "File changed", content.file.string() + " changed while it was read. Import it again.", "source_files");
+    return fail(409, "File changed", content.file.string() + " changed while it was read. Import it again.",
+                "source_files");
   return written;
 }
 
 Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha256, std::int64_t bytes) {
   std::vector<std::uint8_t> content;
   content.reserve(static_cast<std::size_t>(bytes));
-  auto read = connection.each_row("SELECT data FROM blob_chunks WHERE sha256 = $1 ORDER BY chunk", Params().bytes(sha256),
-                                  [&](const PgResult& row) -> Result<void> {
+  auto read = connection.each_row("SELECT data FROM blob_chunks WHERE sha256 = $1 ORDER BY chunk",
+                                  Params().bytes(sha256), [&](const PgResult& row) -> Result<void> {
                                     const Bytes chunk = row.bytes(0, 0);
                                     content.insert(content.end(), chunk.begin(), chunk.end());
                                     return {};
@@ -124,12 +125,14 @@ Result<void> drop_unused(PgConnection& connection, const std::vector<std::vector
   PgArray list(oid::kBytea);
   for (const auto& hash : hashes) list.add(Bytes(hash));
   // Locked first: of two deletions at once, the later one then sees that the earlier one's model is gone.
-  auto locked = connection.query("SELECT 1 FROM blobs WHERE sha256 = any($1) ORDER BY sha256 FOR UPDATE", Params().array(list));
+  auto locked =
+      connection.query("SELECT 1 FROM blobs WHERE sha256 = any($1) ORDER BY sha256 FOR UPDATE", Params().array(list));
   if (!locked) return tl::unexpected(locked.error());
-  auto done = connection.query("DELETE FROM blobs b WHERE sha256 = any($1) "
-                               "AND NOT EXISTS (SELECT 1 FROM models WHERE geometry = b.sha256) "
-                               "AND NOT EXISTS (SELECT 1 FROM model_sources s WHERE s.sha256 = b.sha256)",
-                               Params().array(list));
+  auto done = connection.query(
+      "DELETE FROM blobs b WHERE sha256 = any($1) "
+      "AND NOT EXISTS (SELECT 1 FROM models WHERE geometry = b.sha256) "
+      "AND NOT EXISTS (SELECT 1 FROM model_sources s WHERE s.sha256 = b.sha256)",
+      Params().array(list));
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
 

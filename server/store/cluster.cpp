@@ -150,7 +150,8 @@ struct Cluster::Impl {
       if (mkdir(sockets.c_str(), 0700) == 0 && user.switch_user && chown(sockets.c_str(), user.uid, user.gid) != 0)
         return fail(500, "Socket folder not usable", "Cannot give " + sockets.string() + " to " + user.name + ".");
       struct stat info {};
-      if (lstat(sockets.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != user.uid || (info.st_mode & 077) != 0)
+      if (lstat(sockets.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != user.uid ||
+          (info.st_mode & 077) != 0)
         return fail(500, "Socket folder not usable", sockets.string() + " belongs to someone else. Remove it.");
     }
     if (fs::exists(log_file, error) && fs::file_size(log_file, error) > kLargestLog)
@@ -168,14 +169,15 @@ struct Cluster::Impl {
     const fs::path fresh = folder / "pgdata.new";
     std::error_code error;
     fs::remove_all(fresh, error);
-    auto child = spawn({programs / "initdb", "-D", fresh, "-U", "strata", "-A", "trust", "-E", "UTF8", "--locale=C.UTF-8",
-                        "--no-instructions"},
+    auto child = spawn({programs / "initdb", "-D", fresh, "-U", "strata", "-A", "trust", "-E", "UTF8",
+                        "--locale=C.UTF-8", "--no-instructions"},
                        user, log_file, SIGKILL);
     if (!child) return tl::unexpected(child.error());
     int status = 0;
     while (waitpid(*child, &status, 0) < 0 && errno == EINTR) {
     }
-    if (status != 0) return fail(500, "Database not made", "initdb failed in " + folder.string() + ": " + tail(log_file));
+    if (status != 0)
+      return fail(500, "Database not made", "initdb failed in " + folder.string() + ": " + tail(log_file));
     fs::rename(fresh, data, error);
     if (error) return fail(500, "Database not made", "Cannot rename " + fresh.string() + ": " + error.message() + ".");
     return {};
@@ -206,9 +208,27 @@ struct Cluster::Impl {
     if (running()) return {};
     const auto deadline = Clock::now() + 30s;
     for (;;) {
-      auto child = spawn({programs / "postgres", "-D", data, "-k", sockets, "-p", "5432", "-c", "listen_addresses=", "-c",
-                          "unix_socket_permissions=0700", "-c", "jit=off", "-c", "max_wal_size=2GB", "-c",
-                          "log_timezone=UTC", "-c", "log_min_messages=warning", "-c", "logging_collector=off"},
+      auto child = spawn({programs / "postgres",
+                          "-D",
+                          data,
+                          "-k",
+                          sockets,
+                          "-p",
+                          "5432",
+                          "-c",
+                          "listen_addresses=",
+                          "-c",
+                          "unix_socket_permissions=0700",
+                          "-c",
+                          "jit=off",
+                          "-c",
+                          "max_wal_size=2GB",
+                          "-c",
+                          "log_timezone=UTC",
+                          "-c",
+                          "log_min_messages=warning",
+                          "-c",
+                          "logging_collector=off"},
                          user, log_file, SIGINT);
       if (!child) return tl::unexpected(child.error());
       postmaster = *child;
@@ -218,17 +238,20 @@ struct Cluster::Impl {
         std::this_thread::sleep_for(10ms);
       }
       if (Clock::now() >= deadline)
-        return fail(503, "Database not started", "PostgreSQL in " + folder.string() + " does not start: " + tail(log_file));
+        return fail(503, "Database not started",
+                    "PostgreSQL in " + folder.string() + " does not start: " + tail(log_file));
       std::this_thread::sleep_for(100ms);
     }
   }
 
   // Fast: ends sessions, writes a checkpoint. One that hangs is ended less gently; its log makes that whole at the next start.
   Result<void> stop() {
-    for (const auto& [signal_number, patience] : {std::pair{SIGINT, 30s}, std::pair{SIGQUIT, 5s}, std::pair{SIGKILL, 5s}}) {
+    for (const auto& [signal_number, patience] :
+         {std::pair{SIGINT, 30s}, std::pair{SIGQUIT, 5s}, std::pair{SIGKILL, 5s}}) {
       if (!running()) return {};
       kill(postmaster, signal_number);
-      for (const auto deadline = Clock::now() + patience; running() && Clock::now() < deadline;) std::this_thread::sleep_for(5ms);
+      for (const auto deadline = Clock::now() + patience; running() && Clock::now() < deadline;)
+        std::this_thread::sleep_for(5ms);
     }
     if (running()) log::error("database: PostgreSQL " + std::to_string(postmaster) + " does not end");
     return {};

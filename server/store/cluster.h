@@ -16,8 +16,8 @@ class Cluster {
  public:
   // What a folder holds, without making, starting or changing anything.
   struct State {
-    int version = 0;                 // major, of the PostgreSQL that made the data; 0: there is none yet
-    bool running = false;            // a server has it open; `dsn` leads there
+    int version = 0;       // major, of the PostgreSQL that made the data; 0: there is none yet
+    bool running = false;  // a server has it open; `dsn` leads there
     std::string dsn;
     std::optional<Problem> trouble;  // why it cannot be started
   };

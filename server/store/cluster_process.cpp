@@ -62,9 +62,11 @@ Result<fs::path> find_programs(int wanted_major) {
       if (fs::exists(folder / "postgres", error) && fs::exists(folder / "initdb", error)) return folder;
     }
   }
-  const std::string which = wanted_major ? "PostgreSQL " + std::to_string(wanted_major) + ", which wrote the data," : "PostgreSQL";
-  return fail(500, "PostgreSQL missing",
-              which + " is not installed (looked in /usr/lib/postgresql/*/bin). Install postgresql, or give --database.");
+  const std::string which =
+      wanted_major ? "PostgreSQL " + std::to_string(wanted_major) + ", which wrote the data," : "PostgreSQL";
+  return fail(
+      500, "PostgreSQL missing",
+      which + " is not installed (looked in /usr/lib/postgresql/*/bin). Install postgresql, or give --database.");
 }
 
 namespace {
@@ -102,10 +104,11 @@ Result<void> give_folder(const fs::path& folder, const DatabaseUser& user) {
   while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (child < 0 || status != 0)
-    return fail(500, "Data folder not reachable",
-                "The database runs as user `" + user.name + "`, who cannot enter " + folder.string() +
-                    ". Choose a data folder outside a private home, such as /var/lib/strata, or give the user the right "
-                    "to pass through the folders above it (chmod o+x).");
+    return fail(
+        500, "Data folder not reachable",
+        "The database runs as user `" + user.name + "`, who cannot enter " + folder.string() +
+            ". Choose a data folder outside a private home, such as /var/lib/strata, or give the user the right "
+            "to pass through the folders above it (chmod o+x).");
   return {};
 }
 
@@ -120,7 +123,8 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
   environment.push_back(nullptr);
 
   const int output = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0640);
-  if (output < 0) return fail(500, "Data folder not usable", "Cannot write " + log.string() + ": " + std::strerror(errno));
+  if (output < 0)
+    return fail(500, "Data folder not usable", "Cannot write " + log.string() + ": " + std::strerror(errno));
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child == 0) {

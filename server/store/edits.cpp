@@ -4,8 +4,8 @@ namespace strata::store {
 namespace {
 
 JournalRow read_row(const PgResult& rows, int i) {
-  return {rows.integer(i, 0), rows.uuid(i, 1), rows.uuid(i, 2), rows.text(i, 3), rows.text(i, 4),
-          rows.json(i, 5), rows.json(i, 6), rows.time(i, 7), rows.boolean(i, 8)};
+  return {rows.integer(i, 0), rows.uuid(i, 1), rows.uuid(i, 2), rows.text(i, 3),   rows.text(i, 4),
+          rows.json(i, 5),    rows.json(i, 6), rows.time(i, 7), rows.boolean(i, 8)};
 }
 
 Result<std::vector<std::int64_t>> sequences(PgConnection& connection, const char* sql, const Params& params) {
@@ -20,13 +20,15 @@ Result<std::vector<std::int64_t>> sequences(PgConnection& connection, const char
 
 Result<Store::HistoryPage> Store::history(std::int64_t layer_id, int limit, int offset) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<HistoryPage> {
-    auto total = connection.query("SELECT (SELECT count(*) FROM edits WHERE layer_id = l.id) FROM layers l WHERE id = $1",
-                                  Params().integer(layer_id));
+    auto total =
+        connection.query("SELECT (SELECT count(*) FROM edits WHERE layer_id = l.id) FROM layers l WHERE id = $1",
+                         Params().integer(layer_id));
     if (!total) return tl::unexpected(total.error());
     if (total->rows() == 0) return not_found("layer", std::to_string(layer_id));
-    auto rows = connection.query("SELECT sequence, id, stroke, user_name, op, record, answer, time, in_force FROM edits "
-                                 "WHERE layer_id = $1 ORDER BY sequence DESC LIMIT $2 OFFSET $3",
-                                 Params().integer(layer_id).integer(std::max(limit, 0)).integer(std::max(offset, 0)));
+    auto rows = connection.query(
+        "SELECT sequence, id, stroke, user_name, op, record, answer, time, in_force FROM edits "
+        "WHERE layer_id = $1 ORDER BY sequence DESC LIMIT $2 OFFSET $3",
+        Params().integer(layer_id).integer(std::max(limit, 0)).integer(std::max(offset, 0)));
     if (!rows) return tl::unexpected(rows.error());
     HistoryPage page;
     page.total = total->integer(0, 0);
@@ -44,8 +46,10 @@ Result<Store::JournalState> Store::journal_state(std::int64_t model_id, std::spa
     if (model->rows() == 0) return not_found("model", std::to_string(model_id));
     JournalState state{model->integer(0, 0), {}};
     if (ids.empty()) return state;
-    auto rows = connection.query("SELECT sequence, id, stroke, user_name, op, record, answer, time, in_force FROM edits "
-                                 "WHERE model_id = $1 AND id = any($2)", Params().integer(model_id).array(wanted));
+    auto rows = connection.query(
+        "SELECT sequence, id, stroke, user_name, op, record, answer, time, in_force FROM edits "
+        "WHERE model_id = $1 AND id = any($2)",
+        Params().integer(model_id).array(wanted));
     if (!rows) return tl::unexpected(rows.error());
     for (int i = 0; i < rows->rows(); ++i) state.known.push_back(read_row(*rows, i));
     return state;
@@ -55,11 +59,12 @@ Result<Store::JournalState> Store::journal_state(std::int64_t model_id, std::spa
 Result<std::vector<std::int64_t>> Store::undoable(std::int64_t layer_id, const std::string& user) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
   return impl_->pool.read([&](PgConnection& connection) {
-    return sequences(connection,
-                     "SELECT sequence FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force AND stroke = "
-                     "(SELECT stroke FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
-                     "ORDER BY sequence DESC LIMIT 1) ORDER BY sequence",
-                     Params().integer(layer_id).text(user));
+    return sequences(
+        connection,
+        "SELECT sequence FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force AND stroke = "
+        "(SELECT stroke FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
+        "ORDER BY sequence DESC LIMIT 1) ORDER BY sequence",
+        Params().integer(layer_id).text(user));
   });
 }
 
@@ -68,14 +73,15 @@ Result<std::vector<std::int64_t>> Store::undoable(std::int64_t layer_id, const s
 Result<std::vector<std::int64_t>> Store::redoable(std::int64_t layer_id, const std::string& user) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
   return impl_->pool.read([&](PgConnection& connection) {
-    return sequences(connection,
-                     "WITH undone AS (SELECT stroke, undone_by FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer "
-                     "AND NOT in_force ORDER BY undone_by DESC, sequence DESC LIMIT 1) "
-                     "SELECT e.sequence FROM edits e JOIN undone u ON e.stroke = u.stroke AND e.undone_by = u.undone_by "
-                     "WHERE e.layer_id = $1 AND e.user_name = $2 AND e.writer AND NOT e.in_force AND NOT EXISTS "
-                     "(SELECT 1 FROM edits n WHERE n.layer_id = $1 AND n.user_name = $2 AND n.writer AND n.in_force "
-                     "AND n.sequence > u.undone_by) ORDER BY e.sequence",
-                     Params().integer(layer_id).text(user));
+    return sequences(
+        connection,
+        "WITH undone AS (SELECT stroke, undone_by FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer "
+        "AND NOT in_force ORDER BY undone_by DESC, sequence DESC LIMIT 1) "
+        "SELECT e.sequence FROM edits e JOIN undone u ON e.stroke = u.stroke AND e.undone_by = u.undone_by "
+        "WHERE e.layer_id = $1 AND e.user_name = $2 AND e.writer AND NOT e.in_force AND NOT EXISTS "
+        "(SELECT 1 FROM edits n WHERE n.layer_id = $1 AND n.user_name = $2 AND n.writer AND n.in_force "
+        "AND n.sequence > u.undone_by) ORDER BY e.sequence",
+        Params().integer(layer_id).text(user));
   });
 }
 

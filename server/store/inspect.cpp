@@ -10,8 +10,9 @@ Result<DatabaseState> inspect_database(const std::string& dsn, const std::filesy
   auto connection = PgConnection::connect(dsn);
   if (!connection) return tl::unexpected(connection.error());
   if (auto set = connection->script("SET default_transaction_read_only = on"); !set) return tl::unexpected(set.error());
-  auto row = connection->query("SELECT current_setting('server_version'), current_setting('server_encoding'), "
-                               "pg_database_size(current_database()), to_regclass('schema_migrations') IS NOT NULL");
+  auto row = connection->query(
+      "SELECT current_setting('server_version'), current_setting('server_encoding'), "
+      "pg_database_size(current_database()), to_regclass('schema_migrations') IS NOT NULL");
   if (!row) return tl::unexpected(row.error());
   DatabaseState state{row->text(0, 0), row->text(0, 1), 0, std::stoll(known->back().version),
                       static_cast<std::uint64_t>(row->integer(0, 2))};

@@ -16,18 +16,18 @@ namespace strata::store {
 struct JournalEntry {
   std::int64_t model_id = 0;
   std::int64_t layer_id = 0;
-  std::int64_t sequence = 0;          // in the model, from 1, without gaps
-  Uuid id;                            // of the message; unique per model
-  std::string user;                   // display name of the author
-  Uuid stroke;                        // groups the batches of one stroke; equal to `id` for single edits
-  std::string op;                     // "stroke", "fill", "polygon", "import", "undo", "redo", "restore"
-  nlohmann::json record;              // the edit as it was asked for
-  nlohmann::json answer;              // what the caller was told; a repeat of `id` gets this again
+  std::int64_t sequence = 0;  // in the model, from 1, without gaps
+  Uuid id;                    // of the message; unique per model
+  std::string user;           // display name of the author
+  Uuid stroke;                // groups the batches of one stroke; equal to `id` for single edits
+  std::string op;             // "stroke", "fill", "polygon", "import", "undo", "redo", "restore"
+  nlohmann::json record;      // the edit as it was asked for
+  nlohmann::json answer;      // what the caller was told; a repeat of `id` gets this again
   std::chrono::system_clock::time_point time;
   struct Revision {
     TileAddress tile;
-    std::vector<std::uint8_t> difference;   // strata::encode_revision
-    std::vector<std::uint8_t> key_tile;     // strata::encode_tile after the edit; empty except every 64th of a tile
+    std::vector<std::uint8_t> difference;  // strata::encode_revision
+    std::vector<std::uint8_t> key_tile;    // strata::encode_tile after the edit; empty except every 64th of a tile
   };
   std::vector<Revision> revisions;
   // undo / redo: the sequences whose `in_force` becomes false / true with this entry

@@ -32,7 +32,8 @@ Result<std::map<std::int64_t, Span>> model_spans(std::span<const JournalEntry* c
   for (const JournalEntry* entry : entries) {
     const auto [span, fresh] = spans.try_emplace(entry->model_id, Span{entry->sequence, entry->sequence});
     if (!fresh && entry->sequence != ++span->second.last)
-      return fail(409, "Journal out of order", "Edit " + std::to_string(entry->sequence) + " does not follow the one before.");
+      return fail(409, "Journal out of order",
+                  "Edit " + std::to_string(entry->sequence) + " does not follow the one before.");
   }
   return spans;
 }
@@ -48,9 +49,10 @@ void advance_models(const std::map<std::int64_t, Span>& spans, Statements& out) 
   }
   Params params;
   params.array(ids).array(firsts).array(lasts);
-  out.push_back({"UPDATE models m SET sequence = v.last FROM unnest($1::bigint[], $2::bigint[], $3::bigint[]) "
-                 "AS v (id, first, last) WHERE m.id = v.id AND m.sequence = v.first - 1",
-                 std::move(params)});
+  out.push_back(
+      {"UPDATE models m SET sequence = v.last FROM unnest($1::bigint[], $2::bigint[], $3::bigint[]) "
+       "AS v (id, first, last) WHERE m.id = v.id AND m.sequence = v.first - 1",
+       std::move(params)});
 }
 
 std::size_t advance_layers(std::span<const JournalEntry* const> entries, Statements& out) {
@@ -64,9 +66,10 @@ std::size_t advance_layers(std::span<const JournalEntry* const> entries, Stateme
   }
   Params params;
   params.array(ids).array(models).array(sequences);
-  out.push_back({"UPDATE layers l SET sequence = v.last FROM unnest($1::bigint[], $2::bigint[], $3::bigint[]) "
-                 "AS v (id, model_id, last) WHERE l.id = v.id AND l.model_id = v.model_id",
-                 std::move(params)});
+  out.push_back(
+      {"UPDATE layers l SET sequence = v.last FROM unnest($1::bigint[], $2::bigint[], $3::bigint[]) "
+       "AS v (id, model_id, last) WHERE l.id = v.id AND l.model_id = v.model_id",
+       std::move(params)});
   return lasts.size();
 }
 
@@ -86,16 +89,26 @@ void insert_edits(std::span<const JournalEntry* const> entries, Statements& out)
     times.add(entry->time);
   }
   Params params;
-  params.array(models).array(sequences).array(ids).array(layers).array(strokes).array(users).array(ops).array(records)
-      .array(answers).array(times);
-  out.push_back({"INSERT INTO edits (model_id, sequence, id, layer_id, stroke, user_name, op, record, answer, time) "
-                 "SELECT * FROM unnest($1::bigint[], $2::bigint[], $3::uuid[], $4::bigint[], $5::uuid[], $6::text[], "
-                 "$7::text[], $8::jsonb[], $9::jsonb[], $10::timestamptz[])",
-                 std::move(params)});
+  params.array(models)
+      .array(sequences)
+      .array(ids)
+      .array(layers)
+      .array(strokes)
+      .array(users)
+      .array(ops)
+      .array(records)
+      .array(answers)
+      .array(times);
+  out.push_back(
+      {"INSERT INTO edits (model_id, sequence, id, layer_id, stroke, user_name, op, record, answer, time) "
+       "SELECT * FROM unnest($1::bigint[], $2::bigint[], $3::uuid[], $4::bigint[], $5::uuid[], $6::text[], "
+       "$7::text[], $8::jsonb[], $9::jsonb[], $10::timestamptz[])",
+       std::move(params)});
 }
 
 struct RevisionColumns {
-  PgArray layers{oid::kInt8}, ys{oid::kInt2}, xs{oid::kInt2}, sequences{oid::kInt8}, differences{oid::kBytea}, keys{oid::kBytea};
+  PgArray layers{oid::kInt8}, ys{oid::kInt2}, xs{oid::kInt2}, sequences{oid::kInt8}, differences{oid::kBytea},
+      keys{oid::kBytea};
   std::size_t bytes = 0;
 
   void add(const JournalEntry& entry, const JournalEntry::Revision& revision) {
@@ -114,9 +127,10 @@ struct RevisionColumns {
     if (layers.size() == 0) return;
     Params params;
     params.array(layers).array(ys).array(xs).array(sequences).array(differences).array(keys);
-    out.push_back({"INSERT INTO tile_revisions (layer_id, tile_y, tile_x, sequence, difference, key_tile) "
-                   "SELECT * FROM unnest($1::bigint[], $2::smallint[], $3::smallint[], $4::bigint[], $5::bytea[], $6::bytea[])",
-                   std::move(params)});
+    out.push_back(
+        {"INSERT INTO tile_revisions (layer_id, tile_y, tile_x, sequence, difference, key_tile) "
+         "SELECT * FROM unnest($1::bigint[], $2::smallint[], $3::smallint[], $4::bigint[], $5::bytea[], $6::bytea[])",
+         std::move(params)});
     *this = RevisionColumns();
   }
 };
@@ -142,15 +156,17 @@ void switch_edits(std::span<const JournalEntry* const> entries, Statements& out)
       Params params;
       params.integer(entry->layer_id).integer(entry->model_id).array(list);
       params.optional_integer(disable ? std::optional(entry->sequence) : std::nullopt);
-      out.push_back({"UPDATE edits SET in_force = $4::bigint IS NULL, undone_by = $4 "
-                     "WHERE layer_id = $1 AND model_id = $2 AND sequence = any($3)",
-                     std::move(params)});
+      out.push_back(
+          {"UPDATE edits SET in_force = $4::bigint IS NULL, undone_by = $4 "
+           "WHERE layer_id = $1 AND model_id = $2 AND sequence = any($3)",
+           std::move(params)});
     }
 }
 
 }  // namespace
 
-tl::expected<void, CommitFailure> commit_entries(PgConnection& connection, std::span<const JournalEntry* const> entries) {
+tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
+                                                 std::span<const JournalEntry* const> entries) {
   const auto never = [](Problem problem) { return tl::unexpected(CommitFailure{std::move(problem), false}); };
   const auto failed = [&](const Problem& problem) {
     return tl::unexpected(CommitFailure{problem, is_transient(connection.sqlstate())});
@@ -172,9 +188,10 @@ tl::expected<void, CommitFailure> commit_entries(PgConnection& connection, std::
   const auto results = connection.pipeline(statements);
   if (!results) return failed(results.error());
   if ((*results)[1].affected() != static_cast<std::int64_t>(spans->size()))
-    return never({409, "Journal out of order",
-                  "The model was deleted, or an edit before this one was not saved. Nothing was changed; read the layer again.",
-                  ""});
+    return never(
+        {409, "Journal out of order",
+         "The model was deleted, or an edit before this one was not saved. Nothing was changed; read the layer again.",
+         ""});
   if ((*results)[2].affected() != static_cast<std::int64_t>(layer_count))
     return never({409, "Layer gone", "The layer was deleted meanwhile; the edit was not saved.", ""});
   if (auto committed = transaction.commit(); !committed) return failed(committed.error());

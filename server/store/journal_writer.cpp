@@ -35,7 +35,8 @@ std::size_t bytes_of(const nlohmann::json& json) {
 
 std::size_t bytes_of(const JournalEntry& entry) {
   std::size_t bytes = sizeof(Waiting) + entry.user.size() + bytes_of(entry.record) + bytes_of(entry.answer);
-  for (const auto& revision : entry.revisions) bytes += sizeof(revision) + revision.difference.size() + revision.key_tile.size();
+  for (const auto& revision : entry.revisions)
+    bytes += sizeof(revision) + revision.difference.size() + revision.key_tile.size();
   return bytes;
 }
 
@@ -170,7 +171,8 @@ struct JournalWriter::Impl {
     std::map<std::int64_t, Broken> broken;
     while (!group.empty()) {
       const JournalEntry* entry = &group.front().entry;
-      if (const auto before = broken.find(entry->model_id); before != broken.end() && entry->sequence > before->second.sequence) {
+      if (const auto before = broken.find(entry->model_id);
+          before != broken.end() && entry->sequence > before->second.sequence) {
         Problem problem = before->second.problem;
         problem.detail = "An edit before this one was not saved, so this one was not, either: " + problem.detail;
         answer_front(group, tl::unexpected(problem));

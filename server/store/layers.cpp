@@ -3,7 +3,7 @@
 namespace strata::store {
 namespace {
 
-#define STRATA_LAYER_COLUMNS                                                                                       \
+#define STRATA_LAYER_COLUMNS                                                                                           \
   "id, model_id, name, slug::text, kind, type, resolution, unit, description, palette, opacity, visible, draw_order, " \
   "records_table, sequence, version"
 
@@ -21,7 +21,8 @@ Result<Layer> read_layer(const PgResult& rows, int i) {
   layer.unit = rows.text(i, 7);
   layer.description = rows.text(i, 8);
   // One damaged palette must not hide a layer's paint.
-  layer.palette = palette_from_json(rows.json(i, 9)).value_or(default_palette(layer.type, layer.kind == LayerKind::database));
+  layer.palette =
+      palette_from_json(rows.json(i, 9)).value_or(default_palette(layer.type, layer.kind == LayerKind::database));
   layer.opacity = rows.real(i, 10);
   layer.visible = rows.boolean(i, 11);
   layer.order = static_cast<int>(rows.integer(i, 12));
@@ -48,8 +49,9 @@ Result<std::vector<Layer>> Store::layers(std::int64_t model_id) {
     auto known = connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id));
     if (!known) return tl::unexpected(known.error());
     if (known->rows() == 0) return not_found("model", std::to_string(model_id));
-    auto rows = connection.query(
-        "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE model_id = $1 ORDER BY draw_order, id", Params().integer(model_id));
+    auto rows =
+        connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE model_id = $1 ORDER BY draw_order, id",
+                         Params().integer(model_id));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Layer> layers;
     for (int i = 0; i < rows->rows(); ++i) {
@@ -88,10 +90,20 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer)
               "INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
               "draw_order, records_table) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13) "
               "ON CONFLICT (model_id, slug) DO NOTHING RETURNING " STRATA_LAYER_COLUMNS,
-              Params().integer(layer.model_id).text(layer.name).text(slug)
-                  .text(layer.kind == LayerKind::database ? "database" : "numeric").text(name(layer.type))
-                  .integer(layer.resolution).text(layer.unit).text(layer.description).json(to_json(layer.palette))
-                  .real(layer.opacity).boolean(layer.visible).integer(layer.order).optional_text(layer.table));
+              Params()
+                  .integer(layer.model_id)
+                  .text(layer.name)
+                  .text(slug)
+                  .text(layer.kind == LayerKind::database ? "database" : "numeric")
+                  .text(name(layer.type))
+                  .integer(layer.resolution)
+                  .text(layer.unit)
+                  .text(layer.description)
+                  .json(to_json(layer.palette))
+                  .real(layer.opacity)
+                  .boolean(layer.visible)
+                  .integer(layer.order)
+                  .optional_text(layer.table));
         });
     if (!row) return tl::unexpected(row.error());
     return read_layer(*row, 0);
@@ -105,9 +117,18 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
         "UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
         "draw_order = $10, records_table = $11, version = version + 1 WHERE id = $1 AND version = $2 "
         "RETURNING " STRATA_LAYER_COLUMNS,
-        Params().integer(layer.id).integer(layer.version).text(layer.name).text(layer.slug).text(layer.unit)
-            .text(layer.description).json(to_json(layer.palette)).real(layer.opacity).boolean(layer.visible)
-            .integer(layer.order).optional_text(layer.table));
+        Params()
+            .integer(layer.id)
+            .integer(layer.version)
+            .text(layer.name)
+            .text(layer.slug)
+            .text(layer.unit)
+            .text(layer.description)
+            .json(to_json(layer.palette))
+            .real(layer.opacity)
+            .boolean(layer.visible)
+            .integer(layer.order)
+            .optional_text(layer.table));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) return read_layer(*row, 0);
     auto known = connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(layer.id));

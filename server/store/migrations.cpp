@@ -59,22 +59,25 @@ Result<void> apply_one(PgConnection& connection, const Migration& migration) {
 }
 
 Result<void> make_tables(PgConnection& connection) {
-  auto known = connection.query("SELECT to_regclass('schema_migrations') IS NOT NULL, "
-                                "to_regclass('schema_checksums') IS NOT NULL");
+  auto known = connection.query(
+      "SELECT to_regclass('schema_migrations') IS NOT NULL, "
+      "to_regclass('schema_checksums') IS NOT NULL");
   if (!known) return tl::unexpected(known.error());
   if (!known->boolean(0, 0)) {
     auto made = connection.script("CREATE TABLE schema_migrations (version character varying(128) PRIMARY KEY)");
     if (!made) return made;
   }
   if (known->boolean(0, 1)) return {};
-  return connection.script("CREATE TABLE schema_checksums (version character varying(128) PRIMARY KEY, "
-                           "sha256 text NOT NULL)");
+  return connection.script(
+      "CREATE TABLE schema_checksums (version character varying(128) PRIMARY KEY, "
+      "sha256 text NOT NULL)");
 }
 
 Result<std::int64_t> migrate_locked(PgConnection& connection, const std::vector<Migration>& known) {
   if (auto made = make_tables(connection); !made) return tl::unexpected(made.error());
-  auto rows = connection.query("SELECT m.version, c.sha256 FROM schema_migrations m "
-                               "LEFT JOIN schema_checksums c USING (version) ORDER BY length(m.version), m.version");
+  auto rows = connection.query(
+      "SELECT m.version, c.sha256 FROM schema_migrations m "
+      "LEFT JOIN schema_checksums c USING (version) ORDER BY length(m.version), m.version");
   if (!rows) return tl::unexpected(rows.error());
   std::map<std::string, std::string> applied;
   for (int i = 0; i < rows->rows(); ++i) applied[rows->text(i, 0)] = rows->null(i, 1) ? "" : rows->text(i, 1);
@@ -83,12 +86,14 @@ Result<std::int64_t> migrate_locked(PgConnection& connection, const std::vector<
     const auto ours = std::ranges::find(known, version, &Migration::version);
     if (ours == known.end())
       return fail(409, "Schema too new",
-                  "The database has migration " + version + ", which this version of Strata does not know. "
-                  "Start the version that wrote it, or a later one.");
+                  "The database has migration " + version +
+                      ", which this version of Strata does not know. "
+                      "Start the version that wrote it, or a later one.");
     if (!sum.empty() && sum != ours->sha256)
       return fail(409, "Migration changed",
-                  "Migration " + ours->name + " was applied with another content. Applied migrations must never be "
-                  "edited: restore the file and put the change into a new one.");
+                  "Migration " + ours->name +
+                      " was applied with another content. Applied migrations must never be "
+                      "edited: restore the file and put the change into a new one.");
     if (sum.empty()) {  // applied by dbmate
       auto kept = connection.query("INSERT INTO schema_checksums (version, sha256) VALUES ($1, $2)",
                                    Params().text(version).text(ours->sha256));
@@ -116,9 +121,8 @@ Result<std::vector<Migration>> read_migrations(const std::filesystem::path& fold
   }
   if (error || migrations.empty())
     return fail(500, "No migrations", "No migration files in " + folder.string() + ": is the installation complete?");
-  std::sort(migrations.begin(), migrations.end(), [](const Migration& a, const Migration& b) {
-    return std::stoll(a.version) < std::stoll(b.version);
-  });
+  std::sort(migrations.begin(), migrations.end(),
+            [](const Migration& a, const Migration& b) { return std::stoll(a.version) < std::stoll(b.version); });
   for (std::size_t i = 1; i < migrations.size(); ++i)
     if (std::stoll(migrations[i - 1].version) == std::stoll(migrations[i].version))
       return fail(500, "Bad migration", migrations[i - 1].name + " and " + migrations[i].name + " have one version.");

@@ -9,10 +9,10 @@
 namespace strata::store {
 
 struct Migration {
-  std::string version;   // the digits before the first underscore of the file's name: "000001"
-  std::string name;      // of the file
-  std::string sql;       // between `-- migrate:up` and `-- migrate:down` or the end
-  std::string sha256;    // of the whole file, lower-case hex
+  std::string version;  // the digits before the first underscore of the file's name: "000001"
+  std::string name;     // of the file
+  std::string sql;      // between `-- migrate:up` and `-- migrate:down` or the end
+  std::string sha256;   // of the whole file, lower-case hex
 };
 
 // The *.sql files of a folder in order of version. A file without `-- migrate:up`, or two of one version, are a Problem.

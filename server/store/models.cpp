@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "store/blobs.h"
 #include "core/progress.h"
+#include "store/blobs.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -44,8 +44,8 @@ Model read_model(const PgResult& rows, int i) {
   for (const auto& repair : rows.json(i, c++))
     m.repairs.push_back({repair.value("what", std::string()), repair.value("count", std::uint64_t{0})});
   m.default_resolution = static_cast<int>(rows.integer(i, c++));
-  for (std::string* text : {&m.inventory_number, &m.owner, &m.creator, &m.captured, &m.method, &m.accuracy, &m.processing,
-                            &m.rights_uri, &m.credit})
+  for (std::string* text : {&m.inventory_number, &m.owner, &m.creator, &m.captured, &m.method, &m.accuracy,
+                            &m.processing, &m.rights_uri, &m.credit})
     *text = rows.text(i, c++);
   m.sequence = rows.integer(i, c++);
   m.version = rows.integer(i, c++);
@@ -60,18 +60,43 @@ Result<void> check(const Model& m) {
     return fail(400, "Bad direction", "`up` must be \"x\", \"y\" or \"z\".", "up");
   for (const auto& repair : m.repairs)
     if (auto good = check_text(repair.what, "repairs"); !good) return good;
-  return check_texts({{&m.slug, "slug"}, {&m.north, "north"}, {&m.crs, "crs"}, {&m.inventory_number, "inventory_number"},
-                      {&m.owner, "owner"}, {&m.creator, "creator"}, {&m.captured, "captured"}, {&m.method, "method"},
-                      {&m.accuracy, "accuracy"}, {&m.processing, "processing"}, {&m.rights_uri, "rights_uri"},
-                      {&m.credit, "credit"}, {&m.atlas.source, "atlas"}});
+  return check_texts({{&m.slug, "slug"},
+                      {&m.north, "north"},
+                      {&m.crs, "crs"},
+                      {&m.inventory_number, "inventory_number"},
+                      {&m.owner, "owner"},
+                      {&m.creator, "creator"},
+                      {&m.captured, "captured"},
+                      {&m.method, "method"},
+                      {&m.accuracy, "accuracy"},
+                      {&m.processing, "processing"},
+                      {&m.rights_uri, "rights_uri"},
+                      {&m.credit, "credit"},
+                      {&m.atlas.source, "atlas"}});
 }
 
 // What can be changed later: $1 name, $2 slug, … $19 credit.
 Params metadata(const Model& m, const std::string& slug) {
   Params params;
-  params.text(m.name).text(slug).integer(m.project_id).text(name(m.unit)).boolean(m.unit_assumed).boolean(m.scale_verified)
-      .text(m.up).text(m.north).text(m.crs).integer(m.default_resolution).text(m.inventory_number).text(m.owner)
-      .text(m.creator).text(m.captured).text(m.method).text(m.accuracy).text(m.processing).text(m.rights_uri).text(m.credit);
+  params.text(m.name)
+      .text(slug)
+      .integer(m.project_id)
+      .text(name(m.unit))
+      .boolean(m.unit_assumed)
+      .boolean(m.scale_verified)
+      .text(m.up)
+      .text(m.north)
+      .text(m.crs)
+      .integer(m.default_resolution)
+      .text(m.inventory_number)
+      .text(m.owner)
+      .text(m.creator)
+      .text(m.captured)
+      .text(m.method)
+      .text(m.accuracy)
+      .text(m.processing)
+      .text(m.rights_uri)
+      .text(m.credit);
   return params;
 }
 
@@ -83,13 +108,20 @@ PgArray array_of(const glm::dvec3& v) {
   return array;
 }
 
-Result<PgResult> insert_model(PgConnection& connection, const Model& m, const std::string& slug, const Sha256& geometry) {
+Result<PgResult> insert_model(PgConnection& connection, const Model& m, const std::string& slug,
+                              const Sha256& geometry) {
   auto repairs = nlohmann::json::array();
   for (const auto& repair : m.repairs) repairs.push_back({{"what", repair.what}, {"count", repair.count}});
   Params params = metadata(m, slug);
-  params.array(array_of(m.origin)).array(array_of(m.bounds_min)).array(array_of(m.bounds_max))
-      .integer(static_cast<std::int64_t>(m.triangles)).integer(static_cast<std::int64_t>(m.vertices)).real(m.area)
-      .json(to_json(m.atlas, 1.0)).json(repairs).bytes(geometry);
+  params.array(array_of(m.origin))
+      .array(array_of(m.bounds_min))
+      .array(array_of(m.bounds_max))
+      .integer(static_cast<std::int64_t>(m.triangles))
+      .integer(static_cast<std::int64_t>(m.vertices))
+      .real(m.area)
+      .json(to_json(m.atlas, 1.0))
+      .json(repairs)
+      .bytes(geometry);
   return connection.query(
       "INSERT INTO models (name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, "
       "inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, "
@@ -109,7 +141,8 @@ Result<Model> model_by_id(PgConnection& connection, std::int64_t id) {
 
 }  // namespace
 
-Result<Model> Store::create_model(const NewModel& fresh, const std::function<bool()>& cancelled, const FirstAnswer<Model>& answer) {
+Result<Model> Store::create_model(const NewModel& fresh, const std::function<bool()>& cancelled,
+                                  const FirstAnswer<Model>& answer) {
   if (auto good = check(fresh.model); !good) return tl::unexpected(good.error());
   for (const auto& source : fresh.sources) {
     if (source.name.empty() || source.name.size() > kLongestName)
@@ -131,15 +164,18 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
       if (auto kept = keep_blob(connection, *content, cancelled); !kept) return tl::unexpected(kept.error());
     const Model& m = fresh.model;
     auto row = insert_with_slug(connection, "SELECT slug::text FROM models WHERE slug LIKE $1", {},
-                                m.slug.empty() ? m.name : m.slug, [&](const std::string& slug) {
-                                  return insert_model(connection, m, slug, geometry);
-                                });
+                                m.slug.empty() ? m.name : m.slug,
+                                [&](const std::string& slug) { return insert_model(connection, m, slug, geometry); });
     if (!row) return tl::unexpected(row.error());
     const std::int64_t id = row->integer(0, 0);
     for (std::size_t i = 0; i < fresh.sources.size(); ++i) {
-      auto kept = connection.query("INSERT INTO model_sources (model_id, name, position, sha256) VALUES ($1, $2, $3, $4)",
-                                   Params().integer(id).text(fresh.sources[i].name).integer(static_cast<std::int64_t>(i))
-                                       .bytes(contents[i + 1].hash));
+      auto kept =
+          connection.query("INSERT INTO model_sources (model_id, name, position, sha256) VALUES ($1, $2, $3, $4)",
+                           Params()
+                               .integer(id)
+                               .text(fresh.sources[i].name)
+                               .integer(static_cast<std::int64_t>(i))
+                               .bytes(contents[i + 1].hash));
       if (!kept) return tl::unexpected(kept.error());
     }
     if (cancelled && cancelled()) return cancelled_problem();
@@ -189,8 +225,10 @@ Result<Model> Store::update_model(Model m, const FirstAnswer<Model>& answer) {
 
 Result<void> Store::delete_model(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
-    auto used = connection.query("SELECT geometry FROM models WHERE id = $1 UNION "
-                                 "SELECT sha256 FROM model_sources WHERE model_id = $1", Params().integer(id));
+    auto used = connection.query(
+        "SELECT geometry FROM models WHERE id = $1 UNION "
+        "SELECT sha256 FROM model_sources WHERE model_id = $1",
+        Params().integer(id));
     if (!used) return tl::unexpected(used.error());
     std::vector<std::vector<std::uint8_t>> hashes;
     for (int i = 0; i < used->rows(); ++i) {
@@ -207,8 +245,9 @@ Result<void> Store::delete_model(std::int64_t id, const FirstAnswer<>& answer) {
 
 Result<std::vector<std::uint8_t>> Store::geometry(std::int64_t model_id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
-    auto row = connection.query("SELECT b.sha256, b.bytes FROM models m JOIN blobs b ON b.sha256 = m.geometry WHERE m.id = $1",
-                                Params().integer(model_id));
+    auto row =
+        connection.query("SELECT b.sha256, b.bytes FROM models m JOIN blobs b ON b.sha256 = m.geometry WHERE m.id = $1",
+                         Params().integer(model_id));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() == 0) return not_found("model", std::to_string(model_id));
     return read_blob(connection, row->bytes(0, 0), row->integer(0, 1));
@@ -220,8 +259,10 @@ Result<SourceFile> Store::read_source(std::int64_t model_id, const std::string& 
                                       const std::function<bool(std::span<const std::uint8_t>)>& sink) {
   if (!check_text(file, "name")) return not_found("source file", file);
   auto known = impl_->pool.read([&](PgConnection& connection) {
-    return connection.query("SELECT b.sha256, b.bytes FROM model_sources s JOIN blobs b USING (sha256) "
-                            "WHERE s.model_id = $1 AND s.name = $2", Params().integer(model_id).text(file));
+    return connection.query(
+        "SELECT b.sha256, b.bytes FROM model_sources s JOIN blobs b USING (sha256) "
+        "WHERE s.model_id = $1 AND s.name = $2",
+        Params().integer(model_id).text(file));
   });
   if (!known) return tl::unexpected(known.error());
   if (known->rows() == 0) return not_found("source file", file);

@@ -32,8 +32,10 @@ Result<std::string> insert_token(PgConnection& connection, Store::TokenKind kind
 }
 
 Result<std::optional<Store::Principal>> principal(PgConnection& connection, const std::string& token) {
-  auto row = connection.query("SELECT user_name, role, kind FROM tokens WHERE hash = $1 AND revoked IS NULL "
-                              "AND (expires IS NULL OR expires > now())", Params().bytes(sha256(token)));
+  auto row = connection.query(
+      "SELECT user_name, role, kind FROM tokens WHERE hash = $1 AND revoked IS NULL "
+      "AND (expires IS NULL OR expires > now())",
+      Params().bytes(sha256(token)));
   if (!row) return tl::unexpected(row.error());
   if (row->rows() == 0) return std::optional<Store::Principal>();
   return std::optional<Store::Principal>({row->text(0, 0), row->text(0, 1), parse_kind(row->text(0, 2))});

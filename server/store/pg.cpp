@@ -26,8 +26,9 @@ constexpr std::chrono::milliseconds kConnectFor{5000};
 
 Problem unknown_outcome(Problem lost) {
   lost.title = "Outcome unknown";
-  lost.detail = "The database's answer to the last step was lost, so this may have been done or not. Look before you repeat it; a "
-                "repeat with the same Idempotency-Key does nothing twice.";
+  lost.detail =
+      "The database's answer to the last step was lost, so this may have been done or not. Look before you repeat it; a "
+      "repeat with the same Idempotency-Key does nothing twice.";
   return lost;
 }
 
@@ -45,7 +46,8 @@ Problem problem_of(std::string_view sqlstate, std::string_view message) {
     return {507, "Disk full", "The database's disk is full (" + what + "). Free space on it; nothing was changed.", ""};
   if (sqlstate.starts_with("53"))
     return {503, "Database overloaded", "PostgreSQL is out of resources (" + what + "). Try again shortly.", ""};
-  if (sqlstate == "23505") return {409, "Already exists", "Something with this name or id exists already (" + what + ").", ""};
+  if (sqlstate == "23505")
+    return {409, "Already exists", "Something with this name or id exists already (" + what + ").", ""};
   if (sqlstate == "23503")
     return {409, "Conflict", "What this refers to does not exist, or is still in use (" + what + ").", ""};
   if (sqlstate.starts_with("23")) return {409, "Conflict", "The database refuses these values (" + what + ").", ""};
@@ -56,25 +58,27 @@ Problem problem_of(std::string_view sqlstate, std::string_view message) {
   if (starts_with_any(sqlstate, {"40", "55P03", "57014", "25006"}))
     return {503, "Database busy", "PostgreSQL could not do it now (" + what + "). Try again.", ""};
   if (sqlstate.starts_with("58"))
-    return {503, "Database unavailable", "PostgreSQL cannot read or write its files (" + what + "). Check its disk.", ""};
+    return {503, "Database unavailable", "PostgreSQL cannot read or write its files (" + what + "). Check its disk.",
+            ""};
   return {500, "Database error", "PostgreSQL reported " + std::string(sqlstate) + ": " + what + ".", ""};
 }
 
-bool is_transient(std::string_view sqlstate) {
-  return !starts_with_any(sqlstate, {"22", "23", "42", "0A", "54"});
-}
+bool is_transient(std::string_view sqlstate) { return !starts_with_any(sqlstate, {"22", "23", "42", "0A", "54"}); }
 
 Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimits& limits) {
   // libpq takes whole seconds, and 2 for 1. Settings given in the DSN come later in the list and win.
   const auto patience = std::chrono::ceil<std::chrono::seconds>(std::min(limits.answer, kConnectFor));
   const std::string connect_timeout = std::to_string(std::max<std::int64_t>(patience.count(), 2));
-  const char* keys[] = {"connect_timeout", "tcp_user_timeout", "keepalives_idle", "application_name", "dbname", nullptr};
+  const char* keys[] = {"connect_timeout",  "tcp_user_timeout", "keepalives_idle",
+                        "application_name", "dbname",           nullptr};
   const char* values[] = {connect_timeout.c_str(), "30000", "30", "strata", dsn.c_str(), nullptr};
   PgConnection connection(PQconnectdbParams(keys, values, 1));
   PGconn* raw = connection.connection_.get();
   if (!raw) return tl::unexpected(unavailable("out of memory"));
-  if (PQstatus(raw) != CONNECTION_OK || PQsetnonblocking(raw, 1) != 0) return tl::unexpected(unavailable(PQerrorMessage(raw)));
-  PQsetNoticeProcessor(raw, [](void*, const char*) {}, nullptr);
+  if (PQstatus(raw) != CONNECTION_OK || PQsetnonblocking(raw, 1) != 0)
+    return tl::unexpected(unavailable(PQerrorMessage(raw)));
+  PQsetNoticeProcessor(
+      raw, [](void*, const char*) {}, nullptr);
   connection.limits_ = {std::min(limits.answer, kConnectFor), {}, {}};
   auto set = connection.script("SET synchronous_commit = on; SET client_encoding = 'UTF8'; SET jit = off");
   if (!set) return tl::unexpected(set.error());
@@ -269,7 +273,8 @@ Result<void> PgConnection::copy_begin(const char* sql) {
 }
 
 Result<void> PgConnection::copy_send(std::string_view data) {
-  if (PQputCopyData(connection_.get(), data.data(), static_cast<int>(data.size())) != 1 || !flush()) return failed(nullptr);
+  if (PQputCopyData(connection_.get(), data.data(), static_cast<int>(data.size())) != 1 || !flush())
+    return failed(nullptr);
   return {};
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <libpq-fe.h>
 #include <chrono>
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <libpq-fe.h>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>

@@ -7,7 +7,7 @@ namespace strata::store {
 // How long a caller waits. A database that hangs (its machine paused, its disk stuck) answers nothing and closes nothing, and
 // a Unix socket has no time-out of its own.
 struct PgLimits {
-  std::chrono::milliseconds answer{30'000};      // of silence, then the connection is given up: neither sent nor received
+  std::chrono::milliseconds answer{30'000};  // of silence, then the connection is given up: neither sent nor received
   std::chrono::milliseconds statement{300'000};  // statement_timeout; 0: none
   std::chrono::milliseconds lock{10'000};        // lock_timeout; 0: none
 

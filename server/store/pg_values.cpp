@@ -111,7 +111,9 @@ Params& Params::null(Oid type) {
   return *this;
 }
 Params& Params::integer(std::int64_t value) { return own(oid::kInt8, big_endian(value)); }
-Params& Params::optional_integer(std::optional<std::int64_t> value) { return value ? integer(*value) : null(oid::kInt8); }
+Params& Params::optional_integer(std::optional<std::int64_t> value) {
+  return value ? integer(*value) : null(oid::kInt8);
+}
 Params& Params::real(double value) { return own(oid::kFloat8, big_endian(std::bit_cast<std::int64_t>(value))); }
 Params& Params::boolean(bool value) { return own(oid::kBool, std::string(1, value ? '\1' : '\0')); }
 Params& Params::text(std::string_view value) { return own(oid::kText, std::string(value)); }
@@ -166,7 +168,8 @@ nlohmann::json PgResult::json(int row, int column) const {
   return nlohmann::json::parse(view_of(bytes(row, column)).substr(1));  // after jsonb's version byte
 }
 Time PgResult::time(int row, int column) const {
-  return Time(std::chrono::duration_cast<Time::duration>(std::chrono::microseconds(integer(row, column) + kEpoch2000_us)));
+  return Time(
+      std::chrono::duration_cast<Time::duration>(std::chrono::microseconds(integer(row, column) + kEpoch2000_us)));
 }
 std::vector<double> PgResult::reals(int row, int column) const {
   std::vector<double> out;
@@ -199,8 +202,11 @@ Result<void> check_text(std::string_view text, const std::string& field) {
   while (i < text.size()) {
     const auto lead = static_cast<unsigned char>(text[i]);
     if (lead == 0) return refuse();
-    const int more = lead < 0x80 ? 0 : lead >= 0xc2 && lead < 0xe0 ? 1 : (lead & 0xf0) == 0xe0 ? 2
-                     : lead >= 0xf0 && lead < 0xf5 ? 3 : -1;
+    const int more = lead < 0x80                   ? 0
+                     : lead >= 0xc2 && lead < 0xe0 ? 1
+                     : (lead & 0xf0) == 0xe0       ? 2
+                     : lead >= 0xf0 && lead < 0xf5 ? 3
+                                                   : -1;
     if (more < 0 || i + more >= text.size()) return refuse();
     std::uint32_t code = more == 0 ? lead : lead & (0x3f >> more);
     for (int k = 1; k <= more; ++k) {

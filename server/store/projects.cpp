@@ -41,13 +41,14 @@ Result<Project> Store::project(const std::string& ref) {
 Result<Project> Store::create_project(Project project, const FirstAnswer<Project>& answer) {
   if (auto good = check(project); !good) return tl::unexpected(good.error());
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Project> {
-    auto row = insert_with_slug(
-        connection, "SELECT slug::text FROM projects WHERE slug LIKE $1", {},
-        project.slug.empty() ? project.name : project.slug, [&](const std::string& slug) {
-          return connection.query("INSERT INTO projects (name, slug, description) VALUES ($1, $2, $3) "
-                                  "ON CONFLICT (slug) DO NOTHING RETURNING id, name, slug::text, description, version",
-                                  Params().text(project.name).text(slug).text(project.description));
-        });
+    auto row =
+        insert_with_slug(connection, "SELECT slug::text FROM projects WHERE slug LIKE $1", {},
+                         project.slug.empty() ? project.name : project.slug, [&](const std::string& slug) {
+                           return connection.query(
+                               "INSERT INTO projects (name, slug, description) VALUES ($1, $2, $3) "
+                               "ON CONFLICT (slug) DO NOTHING RETURNING id, name, slug::text, description, version",
+                               Params().text(project.name).text(slug).text(project.description));
+                         });
     if (!row) return tl::unexpected(row.error());
     return read_project(*row, 0);
   });
@@ -59,7 +60,12 @@ Result<Project> Store::update_project(Project project, const FirstAnswer<Project
     auto row = connection.query(
         "UPDATE projects SET name = $3, slug = $4, description = $5, version = version + 1 "
         "WHERE id = $1 AND version = $2 RETURNING id, name, slug::text, description, version",
-        Params().integer(project.id).integer(project.version).text(project.name).text(project.slug).text(project.description));
+        Params()
+            .integer(project.id)
+            .integer(project.version)
+            .text(project.name)
+            .text(project.slug)
+            .text(project.description));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) return read_project(*row, 0);
     auto known = connection.query("SELECT 1 FROM projects WHERE id = $1", Params().integer(project.id));
@@ -71,15 +77,18 @@ Result<Project> Store::update_project(Project project, const FirstAnswer<Project
 
 Result<void> Store::delete_project(std::int64_t id, const FirstAnswer<>& answer) {
   return impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
-    auto row = connection.query("SELECT slug::text, (SELECT count(*) FROM models WHERE project_id = p.id) "
-                                "FROM projects p WHERE id = $1 FOR UPDATE", Params().integer(id));
+    auto row = connection.query(
+        "SELECT slug::text, (SELECT count(*) FROM models WHERE project_id = p.id) "
+        "FROM projects p WHERE id = $1 FOR UPDATE",
+        Params().integer(id));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() == 0) return not_found("project", std::to_string(id));
     if (row->text(0, 0) == "default")
       return fail(409, "Conflict", "The project `default` stays: models without a project belong to it.");
     if (row->integer(0, 1) > 0)
-      return fail(409, "Conflict", "The project still has " + std::to_string(row->integer(0, 1)) +
-                                       " models. Delete them or move them to another project first.");
+      return fail(409, "Conflict",
+                  "The project still has " + std::to_string(row->integer(0, 1)) +
+                      " models. Delete them or move them to another project first.");
     auto done = connection.query("DELETE FROM projects WHERE id = $1", Params().integer(id));
     return done ? Result<void>{} : tl::unexpected(done.error());
   });

@@ -19,8 +19,8 @@
 namespace strata::store {
 
 struct StoreOptions {
-  std::string dsn;           // libpq connection string
-  int connections = 8;       // pooled, for everything but the journal writer
+  std::string dsn;      // libpq connection string
+  int connections = 8;  // pooled, for everything but the journal writer
   PgLimits limits = kRequestLimits;
   std::chrono::milliseconds slot_for{10'000};  // longest wait for one of the pool
 };
@@ -50,14 +50,18 @@ class Store {
   Result<Project> create_project(Project project, const FirstAnswer<Project>& answer = {});
   // Where version equals; returns it with version + 1.
   Result<Project> update_project(Project project, const FirstAnswer<Project>& answer = {});
-  Result<void> delete_project(std::int64_t id, const FirstAnswer<>& answer = {});  // refused (409) while it has models, and for `default`
+  Result<void> delete_project(
+      std::int64_t id, const FirstAnswer<>& answer = {});  // refused (409) while it has models, and for `default`
 
   // --- models
   struct NewModel {
-    Model model;                                          // id 0; slug wished, made unique
-    std::vector<std::uint8_t> geometry;                   // mesh::encode_geometry
-    struct Source { std::string name; std::filesystem::path file; };
-    std::vector<Source> sources;                          // streamed in bit for bit, hashed on the way
+    Model model;                         // id 0; slug wished, made unique
+    std::vector<std::uint8_t> geometry;  // mesh::encode_geometry
+    struct Source {
+      std::string name;
+      std::filesystem::path file;
+    };
+    std::vector<Source> sources;  // streamed in bit for bit, hashed on the way
   };
   Result<Model> create_model(const NewModel& model, const std::function<bool()>& cancelled,
                              const FirstAnswer<Model>& answer = {});  // one transaction
@@ -83,12 +87,21 @@ class Store {
   // Revisions of a tile that are older than `before`, newest first, `limit` at most, with what their edits are now.
   Result<std::vector<PastRevision>> tile_history(const Layer& layer, TileAddress tile, std::int64_t before, int limit);
   // Tiles that the given edits wrote, with the union of their written masks.
-  struct WrittenTiles { TileAddress tile; TileMask written; };
+  struct WrittenTiles {
+    TileAddress tile;
+    TileMask written;
+  };
   Result<std::vector<WrittenTiles>> written_by(const Layer& layer, std::span<const std::int64_t> sequences);
-  struct HistoryPage { std::vector<JournalRow> rows; std::int64_t total = 0; };
+  struct HistoryPage {
+    std::vector<JournalRow> rows;
+    std::int64_t total = 0;
+  };
   Result<HistoryPage> history(std::int64_t layer_id, int limit, int offset);
   // The model's last sequence, and those of the messages that were in the journal after it was read.
-  struct JournalState { std::int64_t last_sequence = 0; std::vector<JournalRow> known; };
+  struct JournalState {
+    std::int64_t last_sequence = 0;
+    std::vector<JournalRow> known;
+  };
   Result<JournalState> journal_state(std::int64_t model_id, std::span<const Uuid> ids);
   // The sequences (ascending) of the newest stroke of `user` on the layer that is in force / that is undone and not
   // followed by a newer in-force stroke of the same user; empty when there is none.
@@ -102,7 +115,11 @@ class Store {
 
   // --- people: users, sessions and tokens; secrets are stored hashed (SHA-256 of random 256-bit tokens)
   enum class TokenKind { session, script, owner_link };
-  struct Principal { std::string user; std::string role; TokenKind kind; };  // role: "owner"
+  struct Principal {
+    std::string user;
+    std::string role;
+    TokenKind kind;
+  };  // role: "owner"
   Result<std::string> create_token(TokenKind kind, const std::string& user, const std::string& role,
                                    std::optional<std::chrono::seconds> lifetime);
   Result<std::optional<Principal>> find_token(const std::string& token);

@@ -21,7 +21,8 @@ inline Result<void> keep(PgConnection& connection, const FirstAnswer<>& answer, 
 }
 
 struct Store::Impl {
-  Impl(StoreOptions given) : options(std::move(given)), pool(options.dsn, options.connections, options.limits, options.slot_for) {}
+  Impl(StoreOptions given)
+      : options(std::move(given)), pool(options.dsn, options.connections, options.limits, options.slot_for) {}
   const StoreOptions options;
   Pool pool;
   std::int64_t schema_version = 0;
@@ -51,7 +52,8 @@ inline tl::unexpected<Problem> not_found(std::string_view kind, const std::strin
 }
 inline tl::unexpected<Problem> stale(std::string_view kind) {
   return fail(412, "Changed meanwhile",
-              "The " + std::string(kind) + " was changed since you read it. Read it again and repeat your change.", "version");
+              "The " + std::string(kind) + " was changed since you read it. Read it again and repeat your change.",
+              "version");
 }
 
 // 1…255 bytes of storable text.
@@ -70,6 +72,7 @@ std::string free_slug(const std::string& wished, const PgResult& taken);
 // if any); `insert` runs an INSERT … ON CONFLICT DO NOTHING RETURNING …: no row means that another one took the slug
 // meanwhile, and the next is tried.
 Result<PgResult> insert_with_slug(PgConnection& connection, const char* taken_sql, std::optional<std::int64_t> parent,
-                                  const std::string& wished, const std::function<Result<PgResult>(const std::string&)>& insert);
+                                  const std::string& wished,
+                                  const std::function<Result<PgResult>(const std::string&)>& insert);
 
 }  // namespace strata::store

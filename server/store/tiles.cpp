@@ -46,7 +46,9 @@ class TileLoader {
   // Tiles by y and x, of each the revisions by sequence: another order would lose paint, so it is an error.
   Result<void> add(TileAddress address, std::int64_t sequence, bool key, Bytes bytes) {
     const auto place = std::tuple(address.y, address.x, sequence);
-    if (place <= last_) return fail(500, "Revisions out of order", "The database gave a layer's revisions in another order than asked for.");
+    if (place <= last_)
+      return fail(500, "Revisions out of order",
+                  "The database gave a layer's revisions in another order than asked for.");
     last_ = place;
     if (batch_.empty() || batch_.back().address != address) {
       if (batch_bytes_ >= kBatchBytes)
@@ -138,13 +140,20 @@ Result<TileMirror::Snapshot> Store::load_tiles(const Layer& layer, std::optional
   });
 }
 
-Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAddress tile, std::int64_t before, int limit) {
+Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAddress tile, std::int64_t before,
+                                                      int limit) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<PastRevision>> {
     auto rows = connection.query(
         "SELECT r.sequence, e.writer, e.in_force, r.difference FROM tile_revisions r "
         "JOIN edits e ON e.model_id = $2 AND e.sequence = r.sequence "
         "WHERE r.layer_id = $1 AND r.tile_y = $3 AND r.tile_x = $4 AND r.sequence < $5 ORDER BY r.sequence DESC LIMIT $6",
-        Params().integer(layer.id).integer(layer.model_id).integer(tile.y).integer(tile.x).integer(before).integer(limit));
+        Params()
+            .integer(layer.id)
+            .integer(layer.model_id)
+            .integer(tile.y)
+            .integer(tile.x)
+            .integer(before)
+            .integer(limit));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<PastRevision> revisions;
     for (int i = 0; i < rows->rows(); ++i) {
@@ -156,7 +165,8 @@ Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAd
   });
 }
 
-Result<std::vector<Store::WrittenTiles>> Store::written_by(const Layer& layer, std::span<const std::int64_t> sequences) {
+Result<std::vector<Store::WrittenTiles>> Store::written_by(const Layer& layer,
+                                                           std::span<const std::int64_t> sequences) {
   PgArray list(oid::kInt8);
   for (const std::int64_t sequence : sequences) list.add(sequence);
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<WrittenTiles>> {
@@ -181,7 +191,8 @@ Result<std::uint64_t> Store::revision_bytes(std::int64_t model_id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::uint64_t> {
     auto row = connection.query(
         "SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0)::bigint "
-        "FROM layers l JOIN tile_revisions r ON r.layer_id = l.id WHERE l.model_id = $1", Params().integer(model_id));
+        "FROM layers l JOIN tile_revisions r ON r.layer_id = l.id WHERE l.model_id = $1",
+        Params().integer(model_id));
     if (!row) return tl::unexpected(row.error());
     return static_cast<std::uint64_t>(row->integer(0, 0));
   });

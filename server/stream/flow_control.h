@@ -31,9 +31,9 @@ class FlowControl {
   enum class Quality { moving, still };
 
   struct Draw {
-    std::uint64_t ticket = 0;                 // names this draw in `on_drawn` and `on_failed`
+    std::uint64_t ticket = 0;  // names this draw in `on_drawn` and `on_failed`
     std::uint64_t camera_seq = 0;
-    std::int64_t sequence = 0;                // of the scene: the newest edit that the picture shows
+    std::int64_t sequence = 0;  // of the scene: the newest edit that the picture shows
     Camera camera;
     std::optional<std::vector<Box>> changed;  // empty: everything
     Quality quality = Quality::still;
@@ -74,15 +74,15 @@ class FlowControl {
   bool ready_ = false;
   std::optional<Camera> camera_;
   std::uint64_t camera_seq_ = 0;
-  bool moving_ = false;          // the newest camera message was of a moving camera and is not yet quiet
-  bool camera_waits_ = false;    // the newest camera has not been given to a draw
+  bool moving_ = false;        // the newest camera message was of a moving camera and is not yet quiet
+  bool camera_waits_ = false;  // the newest camera has not been given to a draw
   bool everything_waits_ = false;
-  bool refine_waits_ = false;    // the screen shows a picture of lower quality
-  std::vector<Box> boxes_;       // changes that no draw has taken
+  bool refine_waits_ = false;  // the screen shows a picture of lower quality
+  std::vector<Box> boxes_;     // changes that no draw has taken
   std::int64_t sequence_;
-  std::optional<Draw> out_;      // the draw under way
-  bool news_ = false;            // something changed since `out_` was given out
-  bool refused_ = false;         // and nothing changed since
+  std::optional<Draw> out_;  // the draw under way
+  bool news_ = false;        // something changed since `out_` was given out
+  bool refused_ = false;     // and nothing changed since
   std::uint64_t tickets_ = 0;
   std::uint64_t last_frame_ = 0;
   std::uint64_t acked_ = 0;

@@ -9,8 +9,8 @@
 namespace strata::stream {
 
 struct JpegSettings {
-  int quality = 80;        // 1…100
-  bool full_color = false; // 4:4:4 instead of 4:2:0
+  int quality = 80;         // 1…100
+  bool full_color = false;  // 4:4:4 instead of 4:2:0
 };
 
 // RGBA8 rows, top first → JPEG, which leaves alpha out. Thread-safe. Throws where `rgba` is not width × height × 4 bytes.

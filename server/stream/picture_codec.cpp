@@ -28,7 +28,8 @@ void check_size(std::span<const std::uint8_t> rgba, int width, int height) {
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int width, int height, JpegSettings settings) {
+std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int width, int height,
+                                      JpegSettings settings) {
   check_size(rgba, width, height);
   const tjhandle handle = compressor();
   const int sampling = settings.full_color ? TJSAMP_444 : TJSAMP_420;

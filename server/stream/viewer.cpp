@@ -48,7 +48,8 @@ struct Viewer::Impl {
   const StreamContext context;
   const Options options;
 
-  std::recursive_mutex send_mutex;  // held while `send` or `refused` runs, so that `close` waits for it; taken before `mutex`
+  std::recursive_mutex
+      send_mutex;  // held while `send` or `refused` runs, so that `close` waits for it; taken before `mutex`
   Send send;
   Refused refused;
   std::string told;  // the detail of what `refused` was told since the last picture; under `send_mutex`
@@ -58,8 +59,8 @@ struct Viewer::Impl {
   std::vector<render::LayerStyle> layers;
   render::ModelHandle model = 0;
   render::ViewHandle view = 0;
-  std::uint64_t generation = 0;     // of `view`: answers about older ones are void
-  std::deque<Picture> drawn;        // in frame order, at most `window`; the first is being encoded when `encoding`
+  std::uint64_t generation = 0;  // of `view`: answers about older ones are void
+  std::deque<Picture> drawn;     // in frame order, at most `window`; the first is being encoded when `encoding`
   bool encoding = false;
   bool closed = false;
   Clock::time_point last_camera{};  // when the newest moving camera came
@@ -72,7 +73,8 @@ namespace {
 
 // The largest size of the window's shape within the limits.
 std::pair<int, int> picture_size(const Camera& camera, const Viewer::Options& options) {
-  const double scale = std::min({1.0, double(options.max_width) / camera.width, double(options.max_height) / camera.height});
+  const double scale =
+      std::min({1.0, double(options.max_width) / camera.width, double(options.max_height) / camera.height});
   return {std::max(1, int(std::lround(camera.width * scale))), std::max(1, int(std::lround(camera.height * scale)))};
 }
 

@@ -30,9 +30,9 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   struct Options {
     std::uint32_t view_id = 0;
-    int window = 2;                 // frames on their way
+    int window = 2;  // frames on their way
     int max_width = 3840, max_height = 2160;
-    std::int64_t sequence = 0;      // of the scene at the start
+    std::int64_t sequence = 0;  // of the scene at the start
   };
   using Send = std::function<void(FrameBytes)>;
   // Why nothing can be drawn as asked for (422). Told once; the next camera, layers or edit are tried again.
@@ -61,7 +61,8 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
  private:
   Viewer();
   void add_view();
-  bool on_view(std::uint64_t generation, const Result<render::ViewHandle>& view);  // false: the view is not wanted any more
+  bool on_view(std::uint64_t generation,
+               const Result<render::ViewHandle>& view);  // false: the view is not wanted any more
   void step();
   void on_drawn(const FlowControl::Draw& draw, render::Frame frame);
   void on_failed(std::uint64_t ticket, const Problem& problem);

@@ -44,9 +44,9 @@ struct Scene {
 };
 
 struct Measured {
-  Samples edit, outcome;          // outcome: until the changed tiles are in main memory
-  Samples cull, gpu;              // parts of the edit
-  std::uint64_t texels = 0;       // of the last dab
+  Samples edit, outcome;     // outcome: until the changed tiles are in main memory
+  Samples cull, gpu;         // parts of the edit
+  std::uint64_t texels = 0;  // of the last dab
   std::uint64_t bytes_up = 0, bytes_down = 0;
 };
 
@@ -126,10 +126,11 @@ StrokeBatch dab(const Scene& scene, glm::dvec2 center, double radius) {
   return stroke;
 }
 
-void measure_tiles(render::Renderer& renderer, render::LayerHandle layer, const Scene& scene, glm::dvec2 center, double radius,
-                   Measured& measured) {
+void measure_tiles(render::Renderer& renderer, render::LayerHandle layer, const Scene& scene, glm::dvec2 center,
+                   double radius, Measured& measured) {
   const double start = now_ms();
-  const auto outcome = await<render::StrokeOutcome>([&](auto done) { renderer.paint(layer, dab(scene, center, radius), std::move(done)); });
+  const auto outcome = await<render::StrokeOutcome>(
+      [&](auto done) { renderer.paint(layer, dab(scene, center, radius), std::move(done)); });
   measured.outcome.add(now_ms() - start);
   measured.edit.add(outcome.dispatch_ms + outcome.gpu_ms);
   measured.cull.add(outcome.cull_ms);
@@ -141,19 +142,21 @@ void measure_tiles(render::Renderer& renderer, render::LayerHandle layer, const 
 }
 
 // Surface texels that one method painted and the other did not, and how many were painted.
-std::pair<std::uint64_t, std::uint64_t> compare(render::Renderer& renderer, const Scene& scene, const mesh::SurfaceMap& map, PaperPeer& paper,
+std::pair<std::uint64_t, std::uint64_t> compare(render::Renderer& renderer, const Scene& scene,
+                                                const mesh::SurfaceMap& map, PaperPeer& paper,
                                                 const std::vector<std::uint8_t>& coverage, double radius) {
   const auto layer = await<render::LayerHandle>(
       [&](auto done) { renderer.add_layer(scene.model, ValueType::u8, map.resolution, std::move(done)); });
-  const auto ours =
-      await<render::StrokeOutcome>([&](auto done) { renderer.paint(layer, dab(scene, kCenters[0], radius), std::move(done)); });
+  const auto ours = await<render::StrokeOutcome>(
+      [&](auto done) { renderer.paint(layer, dab(scene, kCenters[0], radius), std::move(done)); });
   renderer.remove_layer(layer);
   const auto theirs = paper.mask_after(kCenters[0], radius);
   std::vector<std::uint8_t> written(theirs.size());
   for (const auto& tile : ours.tiles)
     for (int i = 0; i < kTexelsPerTile; ++i)
       if (tile.written.test(i))
-        written[std::size_t(tile.address.y * kTileSize + i / kTileSize) * map.resolution + tile.address.x * kTileSize + i % kTileSize] = 1;
+        written[std::size_t(tile.address.y * kTileSize + i / kTileSize) * map.resolution + tile.address.x * kTileSize +
+                i % kTileSize] = 1;
   std::uint64_t differs = 0, edited = 0;
   for (std::size_t slot = 0; slot < map.block_of_slot.size(); ++slot)
     for (int i = 0; i < 64; ++i) {
@@ -186,16 +189,18 @@ nlohmann::json row(const std::string& method, const Scene& scene, int texture, i
   return json;
 }
 
-void bench_texture(const Options& options, render::Renderer& renderer, const Scene& scene, int texture, nlohmann::json& results) {
+void bench_texture(const Options& options, render::Renderer& renderer, const Scene& scene, int texture,
+                   nlohmann::json& results) {
   const bool with_tiles = std::find(options.methods.begin(), options.methods.end(), "tiles") != options.methods.end();
   const bool with_paper = std::find(options.methods.begin(), options.methods.end(), "paper") != options.methods.end();
   Progress progress;
   double start = now_ms();
-  auto map = std::make_shared<const mesh::SurfaceMap>(must(mesh::bake_surface_map(*scene.mesh.geometry, texture, progress)));
+  auto map =
+      std::make_shared<const mesh::SurfaceMap>(must(mesh::bake_surface_map(*scene.mesh.geometry, texture, progress)));
   const double bake_ms = now_ms() - start;
   await<void>([&](auto done) { renderer.add_surface_map(scene.model, map, std::move(done)); });
-  const auto layer =
-      await<render::LayerHandle>([&](auto done) { renderer.add_layer(scene.model, ValueType::u8, texture, std::move(done)); });
+  const auto layer = await<render::LayerHandle>(
+      [&](auto done) { renderer.add_layer(scene.model, ValueType::u8, texture, std::move(done)); });
   const auto empty_bytes = renderer.layer_bytes_used(layer);
   std::unique_ptr<PaperPeer> paper;
   std::vector<std::uint8_t> coverage;
@@ -203,9 +208,11 @@ void bench_texture(const Options& options, render::Renderer& renderer, const Sce
     paper = std::make_unique<PaperPeer>(renderer, scene, texture);
     coverage = paper->coverage();
   }
-  std::printf("\n%s, %zu triangles, %d²: map baked in %.2f s, %.0f MB; an empty layer %.0f KB\n", scene.mesh.name.c_str(),
-              scene.mesh.geometry->triangle_count(), texture, bake_ms / 1000, double(map->bytes()) / 1e6, double(empty_bytes) / 1e3);
-  std::printf("%6s %10s %12s %12s %12s %9s  %s\n", "r px", "texels", "tiles ms", "to memory", "paper ms", "ratio", "surface texels that differ");
+  std::printf("\n%s, %zu triangles, %d²: map baked in %.2f s, %.0f MB; an empty layer %.0f KB\n",
+              scene.mesh.name.c_str(), scene.mesh.geometry->triangle_count(), texture, bake_ms / 1000,
+              double(map->bytes()) / 1e6, double(empty_bytes) / 1e3);
+  std::printf("%6s %10s %12s %12s %12s %9s  %s\n", "r px", "texels", "tiles ms", "to memory", "paper ms", "ratio",
+              "surface texels that differ");
   for (const int radius : options.radii) {
     Measured tiles, literal;
     Measured warm;
@@ -225,8 +232,9 @@ void bench_texture(const Options& options, render::Renderer& renderer, const Sce
     literal.texels = tiles.texels;
     literal.bytes_up = 64;  // the tool matrix
     const double ratio = with_tiles && with_paper ? literal.edit.median() / tiles.edit.median() : 0;
-    std::printf("%6d %10llu %12.3f %12.3f %12.2f %9.1f  %llu of %llu\n", radius, static_cast<unsigned long long>(tiles.texels),
-                with_tiles ? tiles.edit.median() : 0, with_tiles ? tiles.outcome.median() : 0, with_paper ? literal.edit.median() : 0, ratio,
+    std::printf("%6d %10llu %12.3f %12.3f %12.2f %9.1f  %llu of %llu\n", radius,
+                static_cast<unsigned long long>(tiles.texels), with_tiles ? tiles.edit.median() : 0,
+                with_tiles ? tiles.outcome.median() : 0, with_paper ? literal.edit.median() : 0, ratio,
                 static_cast<unsigned long long>(difference.first), static_cast<unsigned long long>(difference.second));
     std::fflush(stdout);
     if (with_tiles) {
@@ -256,7 +264,8 @@ int run(const Options& options) {
   for (const auto& name : options.models) {
     Scene scene{load_bench_mesh(name, options.cache), {}, 0};
     scene.camera = look_at(*scene.mesh.geometry, {0.45, -0.8, 0.5}, kWidth, kHeight);
-    scene.model = await<render::ModelHandle>([&](auto done) { renderer->add_model(scene.mesh.geometry, std::move(done)); });
+    scene.model =
+        await<render::ModelHandle>([&](auto done) { renderer->add_model(scene.mesh.geometry, std::move(done)); });
     for (const int texture : options.textures) bench_texture(options, *renderer, scene, texture, results);
     renderer->remove_model(scene.model);
   }
@@ -267,13 +276,27 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_edit(CLI::App& app) {
-  auto* command = app.add_subcommand("edit", "One dab of the brush: culling and dispatch, beside the paper's TEA + TPA");
+  auto* command =
+      app.add_subcommand("edit", "One dab of the brush: culling and dispatch, beside the paper's TEA + TPA");
   auto options = std::make_shared<Options>();
-  command->add_option("--model", options->models, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or files")->delimiter(',')->capture_default_str();
-  command->add_option("--texture", options->textures, "Resolutions")->delimiter(',')->check(CLI::IsMember({2048, 4096, 8192, 16384}))->capture_default_str();
-  command->add_option("--radius", options->radii, "Brush radii in pixels")->delimiter(',')->check(CLI::Range(1, 2000))->capture_default_str();
-  command->add_option("--method", options->methods, "tiles, paper")->delimiter(',')->check(CLI::IsMember({"tiles", "paper"}))->capture_default_str();
-  command->add_option("--repeats", options->repeats, "A B B A rounds")->check(CLI::Range(1, 1000))->capture_default_str();
+  command->add_option("--model", options->models, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or files")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--texture", options->textures, "Resolutions")
+      ->delimiter(',')
+      ->check(CLI::IsMember({2048, 4096, 8192, 16384}))
+      ->capture_default_str();
+  command->add_option("--radius", options->radii, "Brush radii in pixels")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 2000))
+      ->capture_default_str();
+  command->add_option("--method", options->methods, "tiles, paper")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"tiles", "paper"}))
+      ->capture_default_str();
+  command->add_option("--repeats", options->repeats, "A B B A rounds")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();
   command->add_option("--json", options->json, "Write the results here");
   return [options] { return run(*options); };

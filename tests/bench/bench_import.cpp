@@ -46,7 +46,8 @@ int run(const Options& options) {
     layer.palette = default_palette(layer.type, false);
     layer.opacity = 0.6;
     layer = must(room->create_layer(layer));
-    edit_and_wait(*room, {random_uuid(), "bench", layer.id, room::FillEdit{false, std::uint32_t(20 + 30 * i)}, {{"op", "fill"}}});
+    edit_and_wait(
+        *room, {random_uuid(), "bench", layer.id, room::FillEdit{false, std::uint32_t(20 + 30 * i)}, {{"op", "fill"}}});
   }
   room.reset();
 
@@ -57,21 +58,16 @@ int run(const Options& options) {
   const double restart_ms = now_ms() - start;
 
   const auto gpu = site.renderer->info();
-  const nlohmann::json result{{"method", "import"},
-                              {"model", options.model},
-                              {"triangles", model.triangles},
-                              {"atlas", to_json(model.atlas, model.metres())},
-                              {"import_ms", import_ms},
-                              {"import_to_first_frame_ms", import_to_frame_ms},
-                              {"layers", options.layers},
-                              {"texture", options.resolution},
-                              {"restart_ready_ms", ready_ms},
-                              {"restart_to_first_frame_ms", restart_ms}};
+  const nlohmann::json result{{"method", "import"},           {"model", options.model},
+                              {"triangles", model.triangles}, {"atlas", to_json(model.atlas, model.metres())},
+                              {"import_ms", import_ms},       {"import_to_first_frame_ms", import_to_frame_ms},
+                              {"layers", options.layers},     {"texture", options.resolution},
+                              {"restart_ready_ms", ready_ms}, {"restart_to_first_frame_ms", restart_ms}};
   std::printf("%s: %llu triangles, %d charts, %.1f %% of texels used\n", options.model.c_str(),
               static_cast<unsigned long long>(model.triangles), model.atlas.charts, model.atlas.coverage * 100);
   std::printf("import %.2f s, to the first frame %.2f s\n", import_ms / 1000, import_to_frame_ms / 1000);
-  std::printf("restart with %d painted %d² layers: ready %.2f s, first frame %.2f s\n", options.layers, options.resolution,
-              ready_ms / 1000, restart_ms / 1000);
+  std::printf("restart with %d painted %d² layers: ready %.2f s, first frame %.2f s\n", options.layers,
+              options.resolution, ready_ms / 1000, restart_ms / 1000);
   write_result(options.json, machine(&gpu), nlohmann::json::array({result}));
   return 0;
 }

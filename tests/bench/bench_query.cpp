@@ -28,7 +28,9 @@ int run(const Options& options) {
   layer.resolution = 4096;
   layer.palette = default_palette(layer.type, false);
   layer = must(room->create_layer(layer));
-  edit_and_wait(*room, {random_uuid(), "bench", layer.id, room::FillEdit{false, must(encode_value(layer.type, 0.5))}, {{"op", "fill"}}});
+  edit_and_wait(
+      *room,
+      {random_uuid(), "bench", layer.id, room::FillEdit{false, must(encode_value(layer.type, 0.5))}, {{"op", "fill"}}});
 
   std::mt19937 random(1);
   auto anywhere = [&] {
@@ -55,8 +57,9 @@ int run(const Options& options) {
   must(room->statistics(layer.slug));
   const double statistics_ms = now_ms() - start;
 
-  std::printf("%s: search tree %.0f ms, one point p50 %.3f p99 %.3f ms, %d points %.0f ms, statistics at 4096² %.0f ms\n",
-              options.model.c_str(), tree_ms, single.median(), single.quantile(0.99), options.points, many_ms, statistics_ms);
+  std::printf(
+      "%s: search tree %.0f ms, one point p50 %.3f p99 %.3f ms, %d points %.0f ms, statistics at 4096² %.0f ms\n",
+      options.model.c_str(), tree_ms, single.median(), single.quantile(0.99), options.points, many_ms, statistics_ms);
   const auto gpu = site.renderer->info();
   write_result(options.json, machine(&gpu),
                nlohmann::json::array({{{"method", "query"},

@@ -86,13 +86,19 @@ int run(const Options& options) {
     layer.opacity = 0.6;
     layer.order = i;
     layers.push_back(must(room->create_layer(layer)));
-    edit_and_wait(*room, {random_uuid(), "bench", layers.back().id, room::FillEdit{false, std::uint32_t(10 + 20 * i)}, {{"op", "fill"}}});
+    edit_and_wait(*room, {random_uuid(),
+                          "bench",
+                          layers.back().id,
+                          room::FillEdit{false, std::uint32_t(10 + 20 * i)},
+                          {{"op", "fill"}}});
   }
 
   Client client;
   auto member = room->join("bench", nullptr, [&](stream::FrameBytes frame) { client.receive(std::move(frame)); });
   std::atomic<std::uint64_t> seq{0};
-  auto camera_at = [&](double angle) { return look_at(*bench.geometry, {std::cos(angle), std::sin(angle), 0.4}, 1280, 720); };
+  auto camera_at = [&](double angle) {
+    return look_at(*bench.geometry, {std::cos(angle), std::sin(angle), 0.4}, 1280, 720);
+  };
   const Camera still = camera_at(0.7);
   member->camera(0, ++seq, still, false);
   client.wait_for(*member, [&](const auto& a) { return a.header.still && a.header.camera_seq == seq.load(); });
@@ -116,12 +122,13 @@ int run(const Options& options) {
     std::promise<std::int64_t> sequence;
     auto sequence_known = sequence.get_future();
     std::promise<void> saved;
-    room->edit(std::move(request), [&](const room::EditAnswer& answer) { sequence.set_value(answer.sequence); },
-               [&](Result<room::EditAnswer> answer) {
-                 must(std::move(answer));
-                 durable = now_ms() - start;
-                 saved.set_value();
-               });
+    room->edit(
+        std::move(request), [&](const room::EditAnswer& answer) { sequence.set_value(answer.sequence); },
+        [&](Result<room::EditAnswer> answer) {
+          must(std::move(answer));
+          durable = now_ms() - start;
+          saved.set_value();
+        });
     const std::int64_t wanted = sequence_known.get();
     const auto arrival =
         client.wait_for(*member, [&](const auto& a) { return std::int64_t(a.header.scene_sequence) >= wanted; });
@@ -169,13 +176,15 @@ int run(const Options& options) {
     edit_and_wait(*room, stroke_request(layers[0], still, {at, next}, options.radius, 1 + (i / 50) % 100));
     at = next;
   }
-  const double mb_per_hour = double(must(site.store->revision_bytes(model.id)) - bytes_before) / kBatches * (3600 / 0.03) / 1e6;
+  const double mb_per_hour =
+      double(must(site.store->revision_bytes(model.id)) - bytes_before) / kBatches * (3600 / 0.03) / 1e6;
 
   const auto gpu = site.renderer->info();
   std::printf("%s, %zu triangles, %d layers of 4096², 1280 × 720, r = %.0f px\n", options.model.c_str(),
               bench.geometry->triangle_count(), options.layers, options.radius);
-  std::printf("stroke → changed pixels leave: p50 %.1f ms, p95 %.1f ms; durable p50 %.1f ms; %.1f KB a stroke\n", to_pixels.median(),
-              to_pixels.quantile(0.95), to_durable.median(), double(changed_bytes) / options.strokes / 1e3);
+  std::printf("stroke → changed pixels leave: p50 %.1f ms, p95 %.1f ms; durable p50 %.1f ms; %.1f KB a stroke\n",
+              to_pixels.median(), to_pixels.quantile(0.95), to_durable.median(),
+              double(changed_bytes) / options.strokes / 1e3);
   std::printf("moving camera: %.1f frames/s, frame p50 %.1f ms, p95 %.1f ms, %.0f KB a frame\n", fps, frame_ms.median(),
               frame_ms.quantile(0.95), double(moving_bytes) / options.frames / 1e3);
   std::printf("steady painting keeps %.0f MB per hour\n", mb_per_hour);
@@ -198,8 +207,11 @@ int run(const Options& options) {
 Command add_stream(CLI::App& app) {
   auto* command = app.add_subcommand("stream", "One client: stroke to pixels, moving camera, bytes kept per hour");
   auto options = std::make_shared<Options>();
-  command->add_option("--model", options->model, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or a file")->capture_default_str();
-  command->add_option("--layers", options->layers, "Filled layers shown; the strokes go to the topmost")->check(CLI::Range(1, 64))->capture_default_str();
+  command->add_option("--model", options->model, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or a file")
+      ->capture_default_str();
+  command->add_option("--layers", options->layers, "Filled layers shown; the strokes go to the topmost")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
   command->add_option("--radius", options->radius, "Brush radius in pixels")->capture_default_str();
   command->add_option("--strokes", options->strokes)->capture_default_str();
   command->add_option("--frames", options->frames)->capture_default_str();

@@ -91,13 +91,15 @@ void write_result(const std::string& json_file, const nlohmann::json& machine, c
 
 std::filesystem::path mesh_file(const std::string& name, const std::filesystem::path& cache) {
   if (!is_preset(name)) {
-    if (!std::filesystem::exists(name)) stop("no such file or model: " + name + " (pot, pot:N, vessel, excavation, amazon, thai, or a file)");
+    if (!std::filesystem::exists(name))
+      stop("no such file or model: " + name + " (pot, pot:N, vessel, excavation, amazon, thai, or a file)");
     return name;
   }
   const auto file = cache / (name + ".ply");
   if (std::filesystem::exists(file)) return file;
   const std::filesystem::path maker = std::filesystem::path(STRATA_TEST_DATA) / "make_big_mesh.py";
-  if (!std::filesystem::exists(maker)) stop("the preset " + name + " needs " + maker.string() + "; use pot:N or a file instead");
+  if (!std::filesystem::exists(maker))
+    stop("the preset " + name + " needs " + maker.string() + "; use pot:N or a file instead");
   std::filesystem::create_directories(cache);
   const std::string command = "python3 '" + maker.string() + "' --preset " + name + " -o '" + file.string() + "' >&2";
   if (std::system(command.c_str()) != 0) stop("could not make the preset " + name + " (it needs python3 with numpy)");
@@ -136,8 +138,10 @@ Camera look_at(const mesh::Geometry& geometry, glm::dvec3 from, int width, int h
   const glm::dvec3 direction = glm::normalize(from);
   const glm::dvec3 up = std::abs(direction.z) > 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
   const double distance = radius * 2.4;
-  return {glm::lookAt(center + direction * distance, center, up),
-          glm::perspective(glm::radians(45.0), double(width) / height, distance - radius * 1.2, distance + radius * 1.2), width, height};
+  return {
+      glm::lookAt(center + direction * distance, center, up),
+      glm::perspective(glm::radians(45.0), double(width) / height, distance - radius * 1.2, distance + radius * 1.2),
+      width, height};
 }
 
 Site::Site() {
@@ -168,18 +172,20 @@ void Site::restart() {
   store = must(store::Store::open({cluster->dsn(), 8}, STRATA_MIGRATIONS_DIR));
   renderer = start_renderer();
   encoder = std::make_unique<stream::JpegPool>(std::max(1, int(std::thread::hardware_concurrency()) - 1));
-  rooms = std::make_unique<room::Rooms>(*store, *renderer, stream::StreamContext{renderer.get(), encoder.get()}, room::RoomOptions{});
+  rooms = std::make_unique<room::Rooms>(*store, *renderer, stream::StreamContext{renderer.get(), encoder.get()},
+                                        room::RoomOptions{});
 }
 
 room::EditAnswer edit_and_wait(room::Room& room, room::EditRequest request) {
   auto promise = std::make_shared<std::promise<Result<room::EditAnswer>>>();
   auto future = promise->get_future();
-  room.edit(std::move(request), {}, [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
+  room.edit(std::move(request), {},
+            [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
   return must(future.get());
 }
 
-room::EditRequest stroke_request(const Layer& layer, const Camera& camera, std::vector<glm::dvec2> path, double radius_px,
-                                 double value) {
+room::EditRequest stroke_request(const Layer& layer, const Camera& camera, std::vector<glm::dvec2> path,
+                                 double radius_px, double value) {
   room::StrokeEdit stroke;
   stroke.batch.camera = camera;
   stroke.batch.path = std::move(path);

@@ -38,8 +38,8 @@ void write_result(const std::string& json_file, const nlohmann::json& machine, c
 // (vessel, excavation, amazon, thai), made once into `cache`. Exits with a message where it cannot be had.
 struct BenchMesh {
   std::string name;
-  std::filesystem::path file;                       // empty for `pot`
-  std::shared_ptr<const mesh::Geometry> geometry;   // with an atlas
+  std::filesystem::path file;                      // empty for `pot`
+  std::shared_ptr<const mesh::Geometry> geometry;  // with an atlas
   double area = 0;
 };
 std::filesystem::path mesh_file(const std::string& name, const std::filesystem::path& cache);
@@ -74,7 +74,7 @@ class Site {
 
 // Waits for an edit to be durable.
 room::EditAnswer edit_and_wait(room::Room& room, room::EditRequest request);
-room::EditRequest stroke_request(const Layer& layer, const Camera& camera, std::vector<glm::dvec2> path, double radius_px,
-                                 double value);
+room::EditRequest stroke_request(const Layer& layer, const Camera& camera, std::vector<glm::dvec2> path,
+                                 double radius_px, double value);
 
 }  // namespace strata::bench

@@ -125,8 +125,9 @@ TEST_F(Import, texture_coordinates_that_overlap_are_replaced_and_the_report_says
 }
 
 TEST_F(Import, a_bad_file_is_refused_and_leaves_nothing_behind) {
-  const std::string cut = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                          "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n";
+  const std::string cut =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n";
   for (const auto& [filename, content] : std::vector<std::pair<std::string, std::string>>{
            {"cut.ply", cut}, {"empty.ply", ""}, {"text.obj", "v 0 0 0\nf 1 2 3\n"}, {"picture.jpg", "JFIF"}}) {
     const auto model = import_model(*store_, request(filename, content), progress_);

@@ -31,11 +31,13 @@ inline Layer make_layer(store::Store& store, std::int64_t model_id, ValueType ty
 // Paints a layer in memory, and makes the journal entries that a room would make of it.
 class Painter {
  public:
-  Painter(Layer layer, std::uint32_t seed, int key_every = 64) : layer_(std::move(layer)), random_(seed), key_every_(key_every) {}
+  Painter(Layer layer, std::uint32_t seed, int key_every = 64)
+      : layer_(std::move(layer)), random_(seed), key_every_(key_every) {}
 
   using Content = std::map<TileAddress, TileData>;  // only tiles with a valid texel
 
-  store::JournalEntry entry(std::int64_t sequence, const std::string& op = "stroke", const std::string& user = "Ada") const {
+  store::JournalEntry entry(std::int64_t sequence, const std::string& op = "stroke",
+                            const std::string& user = "Ada") const {
     store::JournalEntry entry;
     entry.model_id = layer_.model_id;
     entry.layer_id = layer_.id;
@@ -82,7 +84,8 @@ class Painter {
     return entry;
   }
 
-  store::JournalEntry::Revision revision(TileAddress address, const TileData& before, const TileData& after, const TileMask& written) {
+  store::JournalEntry::Revision revision(TileAddress address, const TileData& before, const TileData& after,
+                                         const TileMask& written) {
     store::JournalEntry::Revision revision;
     revision.tile = address;
     revision.difference = encode_revision(make_revision(address, before, after, written));

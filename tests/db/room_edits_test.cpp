@@ -193,7 +193,8 @@ TEST_F(RoomTest, edits_whose_commit_fails_are_taken_back_everywhere) {
     auto promise = std::make_shared<std::promise<Result<room::EditAnswer>>>();
     answers.push_back(promise->get_future());
     lost.push_back(stroke(layer, 10 + i, {{320.0 + 10 * i, 240}}, 20));
-    room()->edit(lost.back(), {}, [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
+    room()->edit(lost.back(), {},
+                 [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
   }
   for (auto& answer : answers) EXPECT_FALSE(answer.get());
   EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles, saved->tiles));
@@ -232,9 +233,10 @@ TEST_F(RoomTest, with_the_database_gone_edits_are_refused_and_viewing_goes_on) {
 }
 
 TEST_F(RoomTest, every_type_is_painted_and_read_back) {
-  const std::pair<ValueType, double> cases[] = {{ValueType::u8, 200},     {ValueType::u16, 60000}, {ValueType::u32, 4000000000.0},
-                                                {ValueType::i8, -100},    {ValueType::i16, -30000}, {ValueType::i32, -2000000000.0},
-                                                {ValueType::f16, -0.375}, {ValueType::f32, 1e-3f}};
+  const std::pair<ValueType, double> cases[] = {{ValueType::u8, 200},           {ValueType::u16, 60000},
+                                                {ValueType::u32, 4000000000.0}, {ValueType::i8, -100},
+                                                {ValueType::i16, -30000},       {ValueType::i32, -2000000000.0},
+                                                {ValueType::f16, -0.375},       {ValueType::f32, 1e-3f}};
   for (const auto& [type, value] : cases) {
     const Layer layer = make_layer(type, 2048, std::string(name(type)));
     ASSERT_TRUE(send(stroke(layer, value, {{320, 240}}, 20)));

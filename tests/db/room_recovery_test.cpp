@@ -183,8 +183,10 @@ TEST_F(RoomRecovery, contexts_lost_in_the_middle_of_edits_lose_none_that_was_sav
     renderer_->lose_context_for_test();
     for (auto& future : answers) {
       const Answer answer = future.get();
-      if (answer) sequences.push_back(answer->sequence);
-      else EXPECT_EQ(answer.error().status, 503) << answer.error().title;
+      if (answer)
+        sequences.push_back(answer->sequence);
+      else
+        EXPECT_EQ(answer.error().status, 503) << answer.error().title;
     }
     const auto next = send_until_taken(stroke(layer, 40 + round, {{320, 230}}, 10));
     ASSERT_TRUE(next) << next.error().detail;
@@ -285,7 +287,8 @@ TEST_F(RoomRecovery, a_room_that_cannot_be_read_again_refuses_edits_until_it_can
   EXPECT_EQ(refused.error().status, 503);
   EXPECT_EQ(room()->picture(camera(), {})->pixels, picture->pixels);  // viewing goes on
 
-  execute("update tile_revisions set difference = (select difference from tile_revisions where sequence = 1 limit 1) where sequence = 2");
+  execute(
+      "update tile_revisions set difference = (select difference from tile_revisions where sequence = 1 limit 1) where sequence = 2");
   const auto resent = send_until_taken(edit);
   ASSERT_TRUE(resent) << resent.error().detail;
   EXPECT_TRUE(resent->repeated);
@@ -319,12 +322,14 @@ TEST_F(RoomRecovery, a_database_that_hangs_holds_up_neither_the_room_nor_the_end
     const test::Hang hang(test::shared_cluster());
     for (int i = 0; i < 12; ++i) answers.push_back(start(stroke(layer, 6 + i, {{300.0 + i, 240}}, 10)));
     for (int i = 8; i < 12; ++i) {
-      ASSERT_EQ(answers[i].wait_for(std::chrono::seconds(0)), std::future_status::ready) << "refused before anything waits";
+      ASSERT_EQ(answers[i].wait_for(std::chrono::seconds(0)), std::future_status::ready)
+          << "refused before anything waits";
       EXPECT_EQ(answers[i].get().error().status, 429);
     }
     member->pointer(glm::dvec3(1, 2, 3));
     ears.wait_for_presence(2);
-    EXPECT_EQ(answers[0].wait_for(std::chrono::seconds(0)), std::future_status::timeout) << "the strand did not wait for the database";
+    EXPECT_EQ(answers[0].wait_for(std::chrono::seconds(0)), std::future_status::timeout)
+        << "the strand did not wait for the database";
     rooms_->drain();
     for (int i = 0; i < 8; ++i) EXPECT_EQ(answers[i].get().error().status, 503);
     EXPECT_EQ(send(stroke(layer, 50, {{300, 240}}, 10)).error().status, 503);

@@ -6,10 +6,10 @@
 namespace strata::store {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 using test::Painter;
 using test::save;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 class History : public ::testing::Test {
  protected:
@@ -59,17 +59,17 @@ TEST_F(History, undo_takes_the_whole_newest_stroke_of_its_author) {
 }
 
 TEST_F(History, several_undos_are_redone_in_opposite_order) {
-  stroke("Ada", 2);        // 1 2
+  stroke("Ada", 2);          // 1 2
   stroke("Ada", 1, "fill");  // 3
-  undo("Ada");             // 4
+  undo("Ada");               // 4
   EXPECT_THAT(undoable("Ada"), ElementsAre(1, 2));
-  undo("Ada");             // 5
+  undo("Ada");  // 5
   EXPECT_THAT(undoable("Ada"), IsEmpty());
   EXPECT_THAT(redoable("Ada"), ElementsAre(1, 2));
-  redo("Ada");             // 6
+  redo("Ada");  // 6
   EXPECT_THAT(undoable("Ada"), ElementsAre(1, 2));
   EXPECT_THAT(redoable("Ada"), ElementsAre(3));
-  redo("Ada");             // 7
+  redo("Ada");  // 7
   EXPECT_THAT(redoable("Ada"), IsEmpty());
   EXPECT_THAT(undoable("Ada"), ElementsAre(3));
 }
@@ -82,7 +82,7 @@ TEST_F(History, new_paint_ends_redo_for_its_author_only) {
   stroke("Ada");  // 5
   EXPECT_THAT(redoable("Ada"), IsEmpty());
   EXPECT_THAT(redoable("Ben"), ElementsAre(2));
-  undo("Ada");    // 6 takes 5
+  undo("Ada");  // 6 takes 5
   EXPECT_THAT(redoable("Ada"), ElementsAre(5));
   redo("Ada");
   EXPECT_THAT(redoable("Ada"), IsEmpty());
@@ -107,7 +107,8 @@ TEST_F(History, an_undo_and_what_it_undoes_may_come_in_one_transaction) {
   third.enable = {1};
   auto fourth = painter_.entry(4, "undo");
   fourth.disable = {1};
-  for (auto& entry : {first, second, third, fourth}) ASSERT_TRUE(writer_.submit(entry, [](auto result) { EXPECT_TRUE(result); }));
+  for (auto& entry : {first, second, third, fourth})
+    ASSERT_TRUE(writer_.submit(entry, [](auto result) { EXPECT_TRUE(result); }));
   writer_.drain();
   EXPECT_THAT(undoable("Ada"), IsEmpty());
   EXPECT_THAT(redoable("Ada"), ElementsAre(1));

@@ -41,7 +41,10 @@ TEST_P(JournalOfType, a_layer_reads_as_it_was_after_every_edit) {
     EXPECT_EQ(saved, 220);
   }
   // 440 revisions of 4 tiles: every tile passes a key tile at least once
-  EXPECT_GE(PgConnection::connect(dsn_)->query("SELECT count(*) FROM tile_revisions WHERE key_tile IS NOT NULL")->integer(0, 0), 4);
+  EXPECT_GE(PgConnection::connect(dsn_)
+                ->query("SELECT count(*) FROM tile_revisions WHERE key_tile IS NOT NULL")
+                ->integer(0, 0),
+            4);
   for (std::size_t at = 0; at < states.size(); at += 1) {
     const auto snapshot = store_->load_tiles(layer, static_cast<std::int64_t>(at));
     ASSERT_TRUE(snapshot) << snapshot.error().detail;
@@ -153,7 +156,8 @@ TEST_F(Journal, three_painted_layers_of_4096_load_in_well_under_a_second_and_a_h
   }
   const auto start = std::chrono::steady_clock::now();
   for (const Layer& layer : layers) EXPECT_EQ(store_->load_tiles(layer)->tiles.size(), 1024u);
-  const auto elapsed_ms = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start).count();
+  const auto elapsed_ms =
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start).count();
   std::printf("[ figure   ] 3 layers of 4096² (2 u8, 1 f32), 9 revisions of every tile: loaded in %lld ms\n",
               static_cast<long long>(elapsed_ms));
   RecordProperty("load_ms", static_cast<int>(elapsed_ms));

@@ -83,15 +83,17 @@ TEST(Projects, one_with_models_is_not_deleted) {
 
 TEST(Projects, unknown_and_unstorable_references_are_not_found) {
   auto store = test::fresh_store();
-  for (const std::string ref : {"nothing", "99", "99999999999999999999999999", "", "a\xff", "'; DROP TABLE projects --"})
+  for (const std::string ref :
+       {"nothing", "99", "99999999999999999999999999", "", "a\xff", "'; DROP TABLE projects --"})
     EXPECT_EQ(store->project(ref).error().status, 404) << ref;
   EXPECT_EQ(store->project(std::string("a\0b", 3)).error().status, 404);
 }
 
 TEST(Projects, text_that_cannot_be_stored_is_the_callers_mistake) {
   auto store = test::fresh_store();
-  for (const std::string& bad : {std::string("a\0b", 3), std::string("\xff\xfe"), std::string("\xc0\xaf"),
-                                std::string("\xed\xa0\x80"), std::string("\xf4\x90\x80\x80"), std::string("cut \xe2\x82")}) {
+  for (const std::string& bad :
+       {std::string("a\0b", 3), std::string("\xff\xfe"), std::string("\xc0\xaf"), std::string("\xed\xa0\x80"),
+        std::string("\xf4\x90\x80\x80"), std::string("cut \xe2\x82")}) {
     Project project;
     project.name = bad;
     EXPECT_EQ(store->create_project(project).error().status, 400);
@@ -128,8 +130,14 @@ TEST(Models, every_field_comes_back) {
   m.repairs = {{"dropped degenerate faces", 12}, {"welded", 7}};
   m.default_resolution = 8192;
   m.inventory_number = "ÄM 21300";
-  m.owner = "o"; m.creator = "c"; m.captured = "2020"; m.method = "m"; m.accuracy = "0.1 mm";
-  m.processing = "p"; m.rights_uri = "https://example.org/r"; m.credit = "cr";
+  m.owner = "o";
+  m.creator = "c";
+  m.captured = "2020";
+  m.method = "m";
+  m.accuracy = "0.1 mm";
+  m.processing = "p";
+  m.rights_uri = "https://example.org/r";
+  m.credit = "cr";
   const auto made = store->create_model(fresh, {}).value();
   const auto read = store->model("vase-figures").value();
   EXPECT_EQ(made.id, read.id);

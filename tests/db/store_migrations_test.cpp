@@ -86,14 +86,16 @@ TEST(Migrations, a_failing_file_leaves_nothing_behind_and_works_once_mended) {
   test::TemporaryFolder folder;
   copy_migrations(folder.path());
   const auto dsn = test::fresh_database();
-  write(folder.path() / "900000_more.sql", "-- migrate:up\nCREATE TABLE more (n int);\nSELECT 1/0;\n-- migrate:down\nDROP TABLE more;\n");
+  write(folder.path() / "900000_more.sql",
+        "-- migrate:up\nCREATE TABLE more (n int);\nSELECT 1/0;\n-- migrate:down\nDROP TABLE more;\n");
   auto store = Store::open({dsn, 1}, folder.path());
   ASSERT_FALSE(store);
   EXPECT_NE(store.error().detail.find("900000_more.sql"), std::string::npos);
   auto connection = connect(dsn);
   EXPECT_TRUE(connection.query("SELECT to_regclass('more') IS NULL")->boolean(0, 0));
   EXPECT_EQ(connection.query("SELECT count(*) FROM schema_migrations WHERE version = '900000'")->integer(0, 0), 0);
-  write(folder.path() / "900000_more.sql", "-- migrate:up\nCREATE TABLE more (n int);\n-- migrate:down\nDROP TABLE more;\n");
+  write(folder.path() / "900000_more.sql",
+        "-- migrate:up\nCREATE TABLE more (n int);\n-- migrate:down\nDROP TABLE more;\n");
   ASSERT_TRUE(Store::open({dsn, 1}, folder.path()));
   EXPECT_FALSE(connection.query("SELECT to_regclass('more')::text IS NULL")->boolean(0, 0));
 }
@@ -104,9 +106,11 @@ TEST(Migrations, a_database_that_dbmate_migrated_is_taken_over) {
   ASSERT_TRUE(connection.script("CREATE TABLE schema_migrations (version character varying(128) PRIMARY KEY)"));
   const auto known = read_migrations(STRATA_MIGRATIONS_DIR).value();
   for (const auto& migration : known)
-    ASSERT_TRUE(connection.script("BEGIN;" + migration.sql + "INSERT INTO schema_migrations VALUES ('" + migration.version + "'); COMMIT"));
+    ASSERT_TRUE(connection.script("BEGIN;" + migration.sql + "INSERT INTO schema_migrations VALUES ('" +
+                                  migration.version + "'); COMMIT"));
   ASSERT_TRUE(Store::open({dsn, 1}, STRATA_MIGRATIONS_DIR));
-  EXPECT_EQ(connection.query("SELECT count(*) FROM schema_checksums")->integer(0, 0), static_cast<std::int64_t>(known.size()));
+  EXPECT_EQ(connection.query("SELECT count(*) FROM schema_checksums")->integer(0, 0),
+            static_cast<std::int64_t>(known.size()));
 }
 
 TEST(Migrations, a_folder_without_or_with_bad_files_is_refused) {
@@ -140,7 +144,11 @@ TEST(Migrations, the_schema_file_is_what_a_fresh_database_has) {
 
 TEST(Migrations, looking_at_a_database_does_not_change_it) {
   const auto dsn = test::fresh_database();
-  const auto tables = [&] { return connect(dsn).query("SELECT count(*) FROM pg_class WHERE relnamespace = 'public'::regnamespace")->integer(0, 0); };
+  const auto tables = [&] {
+    return connect(dsn)
+        .query("SELECT count(*) FROM pg_class WHERE relnamespace = 'public'::regnamespace")
+        ->integer(0, 0);
+  };
   const auto empty = inspect_database(dsn, STRATA_MIGRATIONS_DIR).value();
   EXPECT_EQ(empty.schema_version, 0);
   EXPECT_EQ(empty.encoding, "UTF8");

@@ -12,7 +12,8 @@ TEST(Tokens, a_token_is_found_until_it_is_revoked_or_expires) {
   auto store = test::fresh_store();
   const auto token = store->create_token(Store::TokenKind::script, "Ada", "owner", {}).value();
   EXPECT_EQ(token.size(), 43u);
-  EXPECT_EQ(token.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"), std::string::npos);
+  EXPECT_EQ(token.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"),
+            std::string::npos);
   const auto found = store->find_token(token).value();
   ASSERT_TRUE(found);
   EXPECT_EQ(found->user, "Ada");
@@ -29,7 +30,8 @@ TEST(Tokens, a_token_is_found_until_it_is_revoked_or_expires) {
 
 TEST(Tokens, guesses_and_oddities_are_nobody) {
   auto store = test::fresh_store();
-  for (const std::string guess : {"", "x", "' OR 1=1 --", "\xff\xff"}) EXPECT_FALSE(store->find_token(guess).value()) << guess;
+  for (const std::string guess : {"", "x", "' OR 1=1 --", "\xff\xff"})
+    EXPECT_FALSE(store->find_token(guess).value()) << guess;
   EXPECT_EQ(store->create_token(Store::TokenKind::script, "", "owner", {}).error().status, 400);
   EXPECT_EQ(store->create_token(Store::TokenKind::script, "\xff", "owner", {}).error().status, 400);
 }
@@ -38,8 +40,10 @@ TEST(Tokens, secrets_are_not_in_the_database) {
   const auto dsn = test::fresh_database();
   auto store = test::open_store(dsn);
   const auto token = store->create_token(Store::TokenKind::script, "Ada", "owner", {}).value();
-  auto rows = PgConnection::connect(dsn)->query("SELECT octet_length(hash)::bigint, position(convert_to($1, 'UTF8') in hash) "
-                                                "FROM tokens", Params().text(token));
+  auto rows = PgConnection::connect(dsn)->query(
+      "SELECT octet_length(hash)::bigint, position(convert_to($1, 'UTF8') in hash) "
+      "FROM tokens",
+      Params().text(token));
   ASSERT_TRUE(rows);
   EXPECT_EQ(rows->integer(0, 0), 32);
   EXPECT_EQ(rows->integer(0, 1), 0);

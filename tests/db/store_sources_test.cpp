@@ -21,7 +21,8 @@ std::vector<std::uint8_t> noise(std::size_t bytes, std::uint32_t seed) {
 }
 
 void write(const std::filesystem::path& file, const std::vector<std::uint8_t>& data) {
-  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(data.data()), static_cast<std::streamsize>(data.size()));
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(data.data()), static_cast<std::streamsize>(data.size()));
 }
 
 Store::NewModel model_of(const std::filesystem::path& file, std::vector<std::uint8_t> geometry) {
@@ -101,7 +102,10 @@ TEST_F(Sources, imports_and_deletions_of_one_file_at_once_lose_nothing) {
         const auto model = store_->create_model(model_of(folder_.path() / "scan", {1}), {});
         ASSERT_TRUE(model) << model.error().detail;
         std::size_t bytes = 0;
-        EXPECT_TRUE(store_->read_source(model->id, "größe 1.ply", [&](auto chunk) { bytes += chunk.size(); return true; }));
+        EXPECT_TRUE(store_->read_source(model->id, "größe 1.ply", [&](auto chunk) {
+          bytes += chunk.size();
+          return true;
+        }));
         EXPECT_EQ(bytes, 1'500'000u);
         const auto deleted = store_->delete_model(model->id);
         EXPECT_TRUE(deleted) << deleted.error().detail;
@@ -124,7 +128,10 @@ TEST_F(Sources, a_cancelled_or_unreadable_import_leaves_nothing_behind) {
   auto nameless = model_of(folder_.path() / "scan", {1});
   nameless.sources[0].name = "";
   EXPECT_EQ(store_->create_model(nameless, {}).error().status, 400);
-  EXPECT_EQ(count(dsn_, "SELECT (SELECT count(*) FROM models) + (SELECT count(*) FROM blobs) + (SELECT count(*) FROM blob_chunks)"), 0);
+  EXPECT_EQ(
+      count(dsn_,
+            "SELECT (SELECT count(*) FROM models) + (SELECT count(*) FROM blobs) + (SELECT count(*) FROM blob_chunks)"),
+      0);
 }
 
 TEST_F(Sources, an_empty_file_and_an_empty_geometry_are_kept) {
@@ -144,8 +151,8 @@ TEST_F(Sources, deleting_a_model_deletes_all_it_has) {
   }
   EXPECT_GT(store_->revision_bytes(model.id).value(), 0u);
   ASSERT_TRUE(store_->delete_model(model.id));
-  for (const char* sql : {"SELECT count(*) FROM layers", "SELECT count(*) FROM edits", "SELECT count(*) FROM tile_revisions",
-                          "SELECT count(*) FROM blobs"})
+  for (const char* sql : {"SELECT count(*) FROM layers", "SELECT count(*) FROM edits",
+                          "SELECT count(*) FROM tile_revisions", "SELECT count(*) FROM blobs"})
     EXPECT_EQ(count(dsn_, sql), 0) << sql;
 }
 

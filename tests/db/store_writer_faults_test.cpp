@@ -30,8 +30,9 @@ class WriterFaults : public ::testing::Test {
   void kill_backend() {
     auto connection = PgConnection::connect(cluster_->dsn());
     if (!connection) return;
-    auto pids = connection->query("SELECT pid FROM pg_stat_activity WHERE backend_type = 'client backend' "
-                                  "AND pid <> pg_backend_pid() AND state <> 'idle' OR query = 'COMMIT' ORDER BY query_start DESC");
+    auto pids = connection->query(
+        "SELECT pid FROM pg_stat_activity WHERE backend_type = 'client backend' "
+        "AND pid <> pg_backend_pid() AND state <> 'idle' OR query = 'COMMIT' ORDER BY query_start DESC");
     if (pids && pids->rows() > 0) kill(static_cast<pid_t>(pids->integer(0, 0)), SIGKILL);
   }
 
@@ -96,10 +97,13 @@ TEST_F(WriterFaults, killing_the_database_in_mid_load_loses_and_doubles_nothing)
   EXPECT_TRUE(test::content_of(store_->load_tiles(layer_).value()) == replay(layer_, kSeed, submitted));
   // Whole or not at all: every edit has its tiles.
   auto connection = PgConnection::connect(cluster_->dsn());
-  EXPECT_EQ(connection->query("SELECT count(*) FROM edits e WHERE NOT EXISTS (SELECT 1 FROM tile_revisions r WHERE "
-                              "r.layer_id = e.layer_id AND r.sequence = e.sequence)")->integer(0, 0), 0);
-  std::printf("[ figure   ] %lld edits over 6 kills, %d submissions refused meanwhile\n", static_cast<long long>(submitted),
-              refused.load());
+  EXPECT_EQ(connection
+                ->query("SELECT count(*) FROM edits e WHERE NOT EXISTS (SELECT 1 FROM tile_revisions r WHERE "
+                        "r.layer_id = e.layer_id AND r.sequence = e.sequence)")
+                ->integer(0, 0),
+            0);
+  std::printf("[ figure   ] %lld edits over 6 kills, %d submissions refused meanwhile\n",
+              static_cast<long long>(submitted), refused.load());
 }
 
 TEST_F(WriterFaults, commits_that_keep_failing_answer_everyone_and_then_it_starts_anew) {
@@ -170,7 +174,8 @@ TEST_F(WriterFaults, a_database_that_hangs_fails_commits_and_reads_in_time_and_t
 
 TEST_F(WriterFaults, a_caller_waits_for_a_busy_pool_only_so_long) {
   const auto narrow = Store::open({.dsn = cluster_->dsn(), .connections = 1, .slot_for = std::chrono::milliseconds(50)},
-                                  STRATA_MIGRATIONS_DIR).value();
+                                  STRATA_MIGRATIONS_DIR)
+                          .value();
   auto holder = PgConnection::connect(cluster_->dsn());
   ASSERT_TRUE(holder->script("BEGIN; SELECT 1 FROM layers FOR UPDATE"));
   auto waiting = std::async(std::launch::async, [&] { return narrow->update_layer(layer_); });

@@ -12,9 +12,9 @@
 namespace strata::store {
 namespace {
 
-using ::testing::ElementsAre;
 using test::Painter;
 using test::save;
+using ::testing::ElementsAre;
 
 class Writer : public ::testing::Test {
  protected:
@@ -222,7 +222,9 @@ TEST_F(Writer, a_very_large_edit_is_one_transaction) {
 
 TEST_F(Writer, durable_edits_per_second) {
   JournalWriter writer(*store_, {});
-  const auto seconds_of = [](auto start) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const auto seconds_of = [](auto start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
   std::vector<JournalEntry> entries;
   for (int i = 1; i <= 3300; ++i) entries.push_back(painter_.paint(i, 1, 8));
   auto start = std::chrono::steady_clock::now();
@@ -233,8 +235,9 @@ TEST_F(Writer, durable_edits_per_second) {
   writer.drain();
   const double grouped = 3000 / seconds_of(start);
   EXPECT_EQ(answers_, std::vector<int>(3000, 0));
-  std::printf("[ figure   ] single-tile edits: %.2f ms each, one after the other (%.0f/s); %.0f/s grouped; %.0f bytes each\n",
-              one_ms, 1000 / one_ms, grouped, static_cast<double>(store_->revision_bytes(model_.id).value()) / 3300);
+  std::printf(
+      "[ figure   ] single-tile edits: %.2f ms each, one after the other (%.0f/s); %.0f/s grouped; %.0f bytes each\n",
+      one_ms, 1000 / one_ms, grouped, static_cast<double>(store_->revision_bytes(model_.id).value()) / 3300);
 }
 
 }  // namespace

@@ -28,10 +28,16 @@ const std::map<std::vector<std::string>, Variants> kPrograms{
     {{"tile_read_pass.comp"}, {{"TEXEL_BYTES 1"}, {"TEXEL_BYTES 2"}, {"TEXEL_BYTES 4"}}},
     {{"picture.vert", "background_pass.frag"}, {{}}},
     {{"picture.vert", "shade_pass.frag"},
-     {{"CHUNK_COUNT 0"}, {"CHUNK_COUNT 1"}, {"CHUNK_COUNT 2"}, {"CHUNK_COUNT 3"}, {"CHUNK_COUNT 4"}, {"CHUNK_COUNT 5"},
+     {{"CHUNK_COUNT 0"},
+      {"CHUNK_COUNT 1"},
+      {"CHUNK_COUNT 2"},
+      {"CHUNK_COUNT 3"},
+      {"CHUNK_COUNT 4"},
+      {"CHUNK_COUNT 5"},
       {"CHUNK_COUNT 6"},
       {"CHUNK_COUNT 1", "LAYERS SHADE_LAYER(0u, 0u, 0u, 1u)"},
-      {"CHUNK_COUNT 6", "LAYERS SHADE_LAYER(0u, 0u, 7u, 1u) SHADE_LAYER(1u, 1u, 4u, 6u) SHADE_LAYER(2u, 2u, 6u, 63u)"}}},
+      {"CHUNK_COUNT 6",
+       "LAYERS SHADE_LAYER(0u, 0u, 7u, 1u) SHADE_LAYER(1u, 1u, 4u, 6u) SHADE_LAYER(2u, 2u, 6u, 63u)"}}},
 };
 
 TEST(Shaders, every_file_belongs_to_a_program_and_every_program_builds) {
@@ -59,8 +65,7 @@ class ShaderSource : public testing::Test {
   void SetUp() override { fs::create_directories(directory_ / "shared"); }
   void TearDown() override { fs::remove_all(directory_); }
   void write(const std::string& name, const std::string& text) { std::ofstream(directory_ / name) << text; }
-  const fs::path directory_ =
-      fs::temp_directory_path() / ("strata-shaders-" + std::to_string(::getpid()));
+  const fs::path directory_ = fs::temp_directory_path() / ("strata-shaders-" + std::to_string(::getpid()));
 };
 
 TEST_F(ShaderSource, an_include_is_put_in_once_and_defines_follow_the_version) {

@@ -68,11 +68,13 @@ TEST(Edit, a_path_of_4096_points_writes_the_texels_that_the_oracle_says) {
   TestRenderer renderer;
   auto stroke = dab(orthographic_camera({0, 0, 3}, {0, 0, 0}, 640, 480, 0.7), 0, 0, 6);
   stroke.path.clear();
-  for (int i = 0; i < 4096; ++i) stroke.path.emplace_back(320 + 150 * std::sin(i * 0.013), 240 + 110 * std::sin(i * 0.0097));
+  for (int i = 0; i < 4096; ++i)
+    stroke.path.emplace_back(320 + 150 * std::sin(i * 0.013), 240 + 110 * std::sin(i * 0.0097));
   const auto scene = make_scene(flat_square(), 256);
   const auto model = renderer.add(scene);
   const auto outcome = renderer.paint(renderer.add_layer(model, ValueType::u8, 256), stroke);
-  const auto expected = oracle_edit(scene, stroke, std::vector<double>(4096, 6.0), renderer.depth(scene, stroke.camera));
+  const auto expected =
+      oracle_edit(scene, stroke, std::vector<double>(4096, 6.0), renderer.depth(scene, stroke.camera));
   EXPECT_EQ(compare(expected, outcome).surface, 0);
   EXPECT_GT(expected.count, 5000);
 }
@@ -98,7 +100,8 @@ TEST(Edit, an_occluded_texel_is_not_painted) {
   }
   EXPECT_GT(front, 5000);
   // From behind, the other sheet is the one that is seen.
-  for (const auto& tile : renderer.paint(layer, dab(perspective_camera({0, 0, -2}, {0, 0, 0}, 800, 600), 400, 300, 100)).tiles) {
+  for (const auto& tile :
+       renderer.paint(layer, dab(perspective_camera({0, 0, -2}, {0, 0, 0}, 800, 600), 400, 300, 100)).tiles) {
     EXPECT_GE(tile.address.x, 2);
   }
 }
@@ -129,8 +132,9 @@ TEST(Edit, a_radius_in_model_units_covers_that_area_at_any_distance) {
   const auto model = renderer.add(scene);
   constexpr double kRadius = 0.2;
   const double expected = 3.14159265358979 * kRadius * kRadius;
-  for (const auto& camera : {perspective_camera({0, 0, 2}, {0, 0, 0}, 800, 600), perspective_camera({0, 0, 5}, {0, 0, 0}, 800, 600),
-                             orthographic_camera({0, 0, 2}, {0, 0, 0}, 800, 600, 0.6)}) {
+  for (const auto& camera :
+       {perspective_camera({0, 0, 2}, {0, 0, 0}, 800, 600), perspective_camera({0, 0, 5}, {0, 0, 0}, 800, 600),
+        orthographic_camera({0, 0, 2}, {0, 0, 0}, 800, 600, 0.6)}) {
     auto stroke = dab(camera, 400, 300, 0);
     stroke.radius_world = kRadius;
     const auto outcome = renderer.paint(renderer.add_layer(model, ValueType::u8, 1024), stroke);
@@ -269,13 +273,15 @@ TEST(Edit, gutter_texels_follow_their_owner) {
   TestRenderer renderer;
   const auto scene = make_scene(bumpy_sphere(40), kResolution);
   const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, kResolution);
-  const auto outcome = renderer.paint(layer, dab(perspective_camera({2.0, 2.0, 2.0}, {0, 0, 0}, 1280, 720), 640, 360, 120));
+  const auto outcome =
+      renderer.paint(layer, dab(perspective_camera({2.0, 2.0, 2.0}, {0, 0, 0}, 1280, 720), 640, 360, 120));
   const auto& map = *scene.map;
   std::vector<std::uint8_t> written(static_cast<std::size_t>(kResolution) * kResolution);
   const auto at = [](int x, int y) { return static_cast<std::size_t>(y) * kResolution + static_cast<std::size_t>(x); };
   for (const auto& tile : outcome.tiles) {
     for (int i = 0; i < kTexelsPerTile; ++i) {
-      written[at(tile.address.x * kTileSize + i % kTileSize, tile.address.y * kTileSize + i / kTileSize)] = tile.written.test(i);
+      written[at(tile.address.x * kTileSize + i % kTileSize, tile.address.y * kTileSize + i / kTileSize)] =
+          tile.written.test(i);
     }
   }
   struct Texel {
@@ -286,7 +292,8 @@ TEST(Edit, gutter_texels_follow_their_owner) {
     if (x < 0 || y < 0 || x >= kResolution || y >= kResolution) return {false, false, {}};
     const auto slot = map.slot_of_block[static_cast<std::size_t>(y / 8 * map.blocks_per_side + x / 8)];
     const int i = y % 8 * 8 + x % 8;
-    if (slot == mesh::kNoSlot || map.packed_position[slot * 64 + static_cast<std::uint32_t>(i)] == mesh::kNoPosition) return {false, false, {}};
+    if (slot == mesh::kNoSlot || map.packed_position[slot * 64 + static_cast<std::uint32_t>(i)] == mesh::kNoPosition)
+      return {false, false, {}};
     return {true, (map.surface_mask[slot] >> i & 1) != 0, map.position(slot, i)};
   };
   int followed = 0;
@@ -318,7 +325,8 @@ TEST(Edit, the_written_box_holds_the_painted_surface_and_little_more) {
   TestRenderer renderer;
   const auto scene = make_scene(flat_square(16), 1024);
   const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 1024);
-  const auto outcome = renderer.paint(layer, dab(orthographic_camera({0, 0, 2}, {0, 0, 0}, 1000, 1000, 0.5), 500, 500, 100));
+  const auto outcome =
+      renderer.paint(layer, dab(orthographic_camera({0, 0, 2}, {0, 0, 0}, 1000, 1000, 0.5), 500, 500, 100));
   EXPECT_NEAR(outcome.written_min.x, -0.1, 0.015);
   EXPECT_NEAR(outcome.written_max.y, 0.1, 0.015);
 }
@@ -330,7 +338,8 @@ TEST(Edit, strokes_that_cannot_be_painted_are_refused_with_a_reason) {
   const auto layer = renderer.add_layer(model, ValueType::u8, 256);
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 100, 100, 0.5);
   const auto refused = [&](render::LayerHandle target, const StrokeBatch& stroke, int status) {
-    const auto result = await<render::StrokeOutcome>([&](auto done) { renderer->paint(target, stroke, std::move(done)); });
+    const auto result =
+        await<render::StrokeOutcome>([&](auto done) { renderer->paint(target, stroke, std::move(done)); });
     ASSERT_FALSE(result.has_value());
     EXPECT_EQ(result.error().status, status);
     EXPECT_FALSE(result.error().detail.empty());

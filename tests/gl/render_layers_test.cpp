@@ -105,7 +105,8 @@ TEST(Layers, removing_a_layer_or_a_model_gives_its_memory_back) {
   renderer->run_on_gpu_thread_for_test([] {});
   EXPECT_LT(renderer->gpu_bytes_used(), with_pool);
   EXPECT_GE(renderer->gpu_bytes_used(), start);
-  const auto gone = await<render::LayerHandle>([&](auto done) { renderer->add_layer(model, ValueType::u8, 512, std::move(done)); });
+  const auto gone =
+      await<render::LayerHandle>([&](auto done) { renderer->add_layer(model, ValueType::u8, 512, std::move(done)); });
   ASSERT_FALSE(gone);
   EXPECT_EQ(gone.error().status, 404);
 }
@@ -200,8 +201,8 @@ TEST(Layers, painting_beyond_the_memory_budget_is_refused_and_changes_nothing) {
   const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u32, 256);
   const auto empty = renderer->layer_bytes_used(layer);
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 200, 200, 0.5);
-  const auto refused =
-      await<render::StrokeOutcome>([&](auto done) { renderer->paint(layer, dab(camera, 100, 100, 40), std::move(done)); });
+  const auto refused = await<render::StrokeOutcome>(
+      [&](auto done) { renderer->paint(layer, dab(camera, 100, 100, 40), std::move(done)); });
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, 503);
   EXPECT_NE(refused.error().detail.find("budget of 12 MiB is used up"), std::string::npos) << refused.error().detail;

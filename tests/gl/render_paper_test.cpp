@@ -66,12 +66,14 @@ struct Dab {
 // the rounding of floats and of packed positions decides.
 bool within_rounding(const Scene& scene, const Dab& dab, const std::vector<float>& depth, const glm::vec3& position) {
   const Camera& camera = dab.camera;
-  const glm::dvec4 clip = camera.projection * camera.view * glm::dvec4(glm::dvec3(position) + scene.geometry->origin, 1);
+  const glm::dvec4 clip =
+      camera.projection * camera.view * glm::dvec4(glm::dvec3(position) + scene.geometry->origin, 1);
   const glm::dvec3 ndc = glm::dvec3(clip) / clip.w;
   const glm::dvec2 window = (glm::dvec2(ndc) * 0.5 + 0.5) * glm::dvec2(camera.width, camera.height);
   const double edge = dab.radius - glm::length(window - glm::dvec2(dab.x, camera.height - dab.y));
   const glm::dvec2 to_border = glm::abs(window - glm::round(window));
-  const double here = depth[static_cast<std::size_t>(window.y) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(window.x)];
+  const double here = depth[static_cast<std::size_t>(window.y) * static_cast<std::size_t>(camera.width) +
+                            static_cast<std::size_t>(window.x)];
   const double behind = ndc.z * 0.5 + 0.5 - render::kPaperDepthBias - here;
   return std::abs(edge) < 2e-3 || std::min(to_border.x, to_border.y) < 1e-3 || std::abs(behind) < 1e-6;
 }
@@ -115,13 +117,15 @@ TEST(Paper, surface_texels_are_those_of_the_papers_algorithms_on_random_cameras_
   TestRenderer renderer(options);
   const auto model = renderer.add(*scene);
   std::unique_ptr<bench::PaperEditor> paper;
-  renderer->run_on_gpu_thread_for_test([&] { paper = std::move(*bench::PaperEditor::create(*scene->geometry, kResolution)); });
+  renderer->run_on_gpu_thread_for_test(
+      [&] { paper = std::move(*bench::PaperEditor::create(*scene->geometry, kResolution)); });
 
   std::mt19937 random(20260101);
   Count counts;
   for (int edit = 0; edit < kEdits; ++edit) {
     const auto camera = random_camera(*scene->geometry, random);
-    const double x = std::uniform_real_distribution(480.0, 800.0)(random), y = std::uniform_real_distribution(200.0, 520.0)(random);
+    const double x = std::uniform_real_distribution(480.0, 800.0)(random),
+                 y = std::uniform_real_distribution(200.0, 520.0)(random);
     const double radius = std::uniform_real_distribution(5.0, 150.0)(random);
     const auto layer = renderer.add_layer(model, ValueType::u8, kResolution);
     const auto ours = renderer.paint(layer, dab(camera, x, y, radius, 200));
@@ -143,8 +147,9 @@ TEST(Paper, surface_texels_are_those_of_the_papers_algorithms_on_random_cameras_
     count(*scene, {camera, x, y, radius}, renderer.depth(*scene, camera), mask, coverage, ours, counts);
   }
   renderer->run_on_gpu_thread_for_test([&] { paper.reset(); });
-  std::printf("paper: %ld surface texels edited, %ld differ; %ld gutter texels, %ld differ (ours is 2 wide and knows islands)\n",
-              counts.edited, counts.surface_differs, counts.gutter, counts.gutter_differs);
+  std::printf(
+      "paper: %ld surface texels edited, %ld differ; %ld gutter texels, %ld differ (ours is 2 wide and knows islands)\n",
+      counts.edited, counts.surface_differs, counts.gutter, counts.gutter_differs);
   EXPECT_GT(counts.edited, 300'000);
   // What is left comes of the paper interpolating clip coordinates where we multiply each position by the matrix.
   EXPECT_LE(counts.surface_differs * 100'000, counts.edited);

@@ -17,9 +17,11 @@ glm::dmat4 clip_of(const Camera& camera) { return camera.projection * camera.vie
 TEST(ScreenRect, every_point_of_a_box_lies_in_its_rectangle) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(-1, 1);
-  for (const auto& camera : {perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 640, 480), orthographic_camera({0, 1, 3}, {0, 0, 0}, 640, 480, 1.5)}) {
+  for (const auto& camera : {perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 640, 480),
+                             orthographic_camera({0, 1, 3}, {0, 0, 0}, 640, 480, 1.5)}) {
     for (int i = 0; i < 200; ++i) {
-      const glm::vec3 a(uniform(random), uniform(random), uniform(random)), b(uniform(random), uniform(random), uniform(random));
+      const glm::vec3 a(uniform(random), uniform(random), uniform(random)),
+          b(uniform(random), uniform(random), uniform(random));
       const render::FrameRequest::Box box{glm::min(a, b), glm::max(a, b)};
       const auto rect = screen_rect({&box, 1}, clip_of(camera), 640, 480, i % 2 == 0);
       for (int k = 0; k < 50; ++k) {
@@ -35,7 +37,8 @@ TEST(ScreenRect, every_point_of_a_box_lies_in_its_rectangle) {
 
 TEST(ScreenRect, a_box_around_the_eye_takes_the_whole_picture_and_one_behind_it_nothing) {
   const auto camera = perspective_camera({0, 0, 2}, {0, 0, 0}, 640, 480);
-  const render::FrameRequest::Box around{{-1, -1, 1}, {1, 1, 3}}, behind{{-1, -1, 3}, {1, 1, 4}}, beside{{50, -1, 0}, {51, 1, 0}};
+  const render::FrameRequest::Box around{{-1, -1, 1}, {1, 1, 3}}, behind{{-1, -1, 3}, {1, 1, 4}},
+      beside{{50, -1, 0}, {51, 1, 0}};
   EXPECT_EQ(screen_rect({&around, 1}, clip_of(camera), 640, 480, true), (PixelRect{0, 0, 640, 480}));
   EXPECT_EQ(screen_rect({&behind, 1}, clip_of(camera), 640, 480, true), PixelRect{});
   EXPECT_EQ(screen_rect({&beside, 1}, clip_of(camera), 640, 480, true), PixelRect{});

@@ -32,7 +32,8 @@ class Shade : public testing::Test {
     return layer;
   }
   static std::array<double, 3> pixel(const render::Frame& frame, int x, int y) {
-    const auto* p = &frame.pixels[4 * static_cast<std::size_t>((y - frame.rect.y) * frame.rect.width + x - frame.rect.x)];
+    const auto* p =
+        &frame.pixels[4 * static_cast<std::size_t>((y - frame.rect.y) * frame.rect.width + x - frame.rect.x)];
     return {double(p[0]), double(p[1]), double(p[2])};
   }
   // Light on the square, from a layer that is plain white.
@@ -55,7 +56,8 @@ class Shade : public testing::Test {
   Sphere add_sphere(int width, int height) {
     const auto model = renderer_.add(make_scene(bumpy_sphere(30), 512));
     Sphere sphere{renderer_.add_layer(model, ValueType::u8, 512),
-                  std::make_shared<const Palette>(default_palette(ValueType::u8, false)), {}};
+                  std::make_shared<const Palette>(default_palette(ValueType::u8, false)),
+                  {}};
     sphere.request.view = renderer_.add_view(model);
     sphere.request.camera = perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, width, height);
     sphere.request.width = width, sphere.request.height = height;
@@ -74,7 +76,11 @@ std::array<double, 3> rgb(const Rgba& c) { return {double(c[0]), double(c[1]), d
 TEST_F(Shade, every_type_is_coloured_as_the_palette_says) {
   const double lit = light();
   EXPECT_GT(lit, 0.5);
-  const Palette linear{PaletteMode::linear, -100, 100, {{-100, {255, 0, 0, 255}, {}}, {0, {0, 255, 0, 255}, {}}, {100, {0, 0, 255, 255}, {}}}, {}};
+  const Palette linear{PaletteMode::linear,
+                       -100,
+                       100,
+                       {{-100, {255, 0, 0, 255}, {}}, {0, {0, 255, 0, 255}, {}}, {100, {0, 0, 255, 255}, {}}},
+                       {}};
   Palette step = linear;
   step.mode = PaletteMode::step;
   Palette keys = linear;
@@ -86,7 +92,8 @@ TEST_F(Shade, every_type_is_coloured_as_the_palette_says) {
       if (!bits) continue;
       const auto layer = filled_layer(type, *bits);
       for (const Palette& palette : {linear, step, keys}) {
-        SCOPED_TRACE(std::string(name(type)) + " " + std::to_string(value) + " mode " + std::to_string(int(palette.mode)));
+        SCOPED_TRACE(std::string(name(type)) + " " + std::to_string(value) + " mode " +
+                     std::to_string(int(palette.mode)));
         expect_color({{layer, std::make_shared<Palette>(palette), 1}}, rgb(color_of(palette, value)), lit);
       }
       renderer_->remove_layer(layer);
@@ -96,10 +103,15 @@ TEST_F(Shade, every_type_is_coloured_as_the_palette_says) {
 
 TEST_F(Shade, a_step_changes_colour_exactly_at_its_point) {
   const double lit = light();
-  const Palette step{PaletteMode::step, 0, 255, {{0, {250, 0, 0, 255}, {}}, {3, {0, 250, 0, 255}, {}}, {255, {0, 0, 250, 255}, {}}}, {}};
+  const Palette step{PaletteMode::step,
+                     0,
+                     255,
+                     {{0, {250, 0, 0, 255}, {}}, {3, {0, 250, 0, 255}, {}}, {255, {0, 0, 250, 255}, {}}},
+                     {}};
   for (const std::uint32_t value : {0u, 2u, 3u, 4u, 254u, 255u}) {
     SCOPED_TRACE(value);
-    expect_color({{filled_layer(ValueType::u8, value), std::make_shared<Palette>(step), 1}}, rgb(color_of(step, value)), lit);
+    expect_color({{filled_layer(ValueType::u8, value), std::make_shared<Palette>(step), 1}}, rgb(color_of(step, value)),
+                 lit);
   }
 }
 
@@ -108,13 +120,16 @@ TEST_F(Shade, keys_that_are_not_listed_get_the_generated_colour) {
   const Palette keys{PaletteMode::categorical, 0, 1, {{70000, {10, 200, 30, 255}, {}}}, {}};
   for (const std::uint32_t key : {1u, 2u, 69999u, 70000u, 4000000000u}) {
     SCOPED_TRACE(key);
-    expect_color({{filled_layer(ValueType::u32, key), std::make_shared<Palette>(keys), 1}}, rgb(color_of(keys, key)), lit);
+    expect_color({{filled_layer(ValueType::u32, key), std::make_shared<Palette>(keys), 1}}, rgb(color_of(keys, key)),
+                 lit);
   }
 }
 
 TEST_F(Shade, layers_cover_each_other_bottom_to_top_by_opacity_and_palette_alpha) {
   const double lit = light();
-  const auto plain = [](Rgba color) { return std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, color, {}}}, {}}); };
+  const auto plain = [](Rgba color) {
+    return std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, color, {}}}, {}});
+  };
   const auto lower = filled_layer(ValueType::u8, 1), upper = filled_layer(ValueType::u16, 1);
   const auto red = plain({255, 0, 0, 255}), green = plain({0, 255, 0, 128});
   expect_color({{lower, red, 1}, {upper, green, 1}}, {255 * (1 - 128 / 255.0), 128, 0}, lit);
@@ -128,7 +143,8 @@ TEST_F(Shade, many_layers_of_every_width_are_drawn_in_their_order) {
   std::array<double, 3> expected{0, 0, 0};
   for (int i = 0; i < 24; ++i) {
     const auto type = static_cast<ValueType>(i % 8);
-    const Rgba color{static_cast<std::uint8_t>(40 * (i % 6)), static_cast<std::uint8_t>(60 * (i % 4)), static_cast<std::uint8_t>(255 - 10 * i), 255};
+    const Rgba color{static_cast<std::uint8_t>(40 * (i % 6)), static_cast<std::uint8_t>(60 * (i % 4)),
+                     static_cast<std::uint8_t>(255 - 10 * i), 255};
     auto palette = std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, color, {}}}, {}});
     layers.push_back({filled_layer(type, 1), palette, i == 0 ? 1.0f : 0.3f});
     for (std::size_t c = 0; c < 3; ++c) expected[c] = i == 0 ? color[c] : expected[c] * 0.7 + color[c] * 0.3;
@@ -181,7 +197,8 @@ TEST_F(Shade, the_background_is_a_gradient_from_top_to_bottom) {
 }
 
 TEST_F(Shade, the_top_row_of_the_picture_is_the_top_of_the_view) {
-  request_.camera = orthographic_camera({0, 0.5, 2}, {0, 0.5, 0}, kSize, kSize, 0.5);  // the square fills the lower half
+  request_.camera =
+      orthographic_camera({0, 0.5, 2}, {0, 0.5, 0}, kSize, kSize, 0.5);  // the square fills the lower half
   const auto frame = renderer_.draw(request_);
   EXPECT_EQ(pixel(frame, 128, 20), pixel(frame, 10, 20));
   EXPECT_NE(pixel(frame, 128, 240)[0], pixel(frame, 128, 20)[0]);
@@ -193,7 +210,8 @@ TEST_F(Shade, a_reshaded_rectangle_equals_a_full_redraw) {
   auto picture = renderer_.draw(request);
   ASSERT_EQ(picture.rect, (render::PixelRect{0, 0, 640, 480}));
   for (int i = 0; i < 5; ++i) {
-    const auto outcome = renderer_.paint(layer, dab(request.camera, 250 + 40 * i, 200 + 30 * i, 20, 20u * static_cast<unsigned>(i)));
+    const auto outcome =
+        renderer_.paint(layer, dab(request.camera, 250 + 40 * i, 200 + 30 * i, 20, 20u * static_cast<unsigned>(i)));
     auto partial_request = request;
     partial_request.changed = {{outcome.written_min, outcome.written_max}};
     const auto part = renderer_.draw(partial_request);

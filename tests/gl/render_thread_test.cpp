@@ -68,7 +68,9 @@ class Lanes : public testing::Test {
               note(name);
               return --*left > 0 ? Step::more : Step::done;
             },
-            [this, name](const Problem& problem) { note(name + " " + std::to_string(problem.status) + " " + problem.title); }};
+            [this, name](const Problem& problem) {
+              note(name + " " + std::to_string(problem.status) + " " + problem.title);
+            }};
   }
   std::vector<std::string> finish() {
     std::promise<void> done;
@@ -101,7 +103,8 @@ TEST_F(Lanes, edits_go_before_frames_and_frames_before_background) {
   thread_->post(Lane::ordered, noted("first edit"));
   thread_->post(Lane::ordered, noted("second edit", 2));
   gate.open.set_value();
-  EXPECT_EQ(finish(), (std::vector<std::string>{"first edit", "second edit", "second edit", "frame", "background", "background"}));
+  EXPECT_EQ(finish(), (std::vector<std::string>{"first edit", "second edit", "second edit", "frame", "background",
+                                                "background"}));
 }
 
 TEST_F(Lanes, an_edit_runs_between_the_slices_of_a_long_background_job) {
@@ -228,7 +231,8 @@ TEST_F(Lanes, stopping_answers_what_waits) {
   EXPECT_TRUE(log_[0] == "edit" || log_[0] == "edit 503 Renderer stopped");
 }
 
-FrameTask task(render::ViewHandle view, int width, std::optional<std::vector<render::FrameRequest::Box>> changed = std::nullopt) {
+FrameTask task(render::ViewHandle view, int width,
+               std::optional<std::vector<render::FrameRequest::Box>> changed = std::nullopt) {
   FrameTask task;
   task.request.view = view;
   task.request.width = width;
@@ -278,9 +282,12 @@ TEST(Frames, many_superseded_requests_of_one_view_are_all_answered) {
     request.camera = perspective_camera({1.2 + 0.01 * i, 1, 2.4}, {0, 0, 0}, 320, 240);
     request.width = 320, request.height = 240;
     renderer->draw(request, [&](Result<render::Frame> frame) {
-      if (frame) ++drawn;
-      else if (frame.error().status == 409 && frame.error().title == "Superseded") ++superseded;
-      else ++other;
+      if (frame)
+        ++drawn;
+      else if (frame.error().status == 409 && frame.error().title == "Superseded")
+        ++superseded;
+      else
+        ++other;
     });
   }
   while (drawn + superseded + other < kRequests) std::this_thread::yield();

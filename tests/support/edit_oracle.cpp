@@ -15,7 +15,9 @@ constexpr double kRoundingDepth = 1e-6;
 // How far inside the tool a point is, in pixels; negative outside. Steps along each segment finely enough for kRounding_px:
 // independent of the closed form in the shader.
 double inside(const StrokeBatch& stroke, const std::vector<double>& radii, const glm::dvec2& p) {
-  const auto point = [&](std::size_t i) { return glm::dvec2(stroke.path[i].x, stroke.camera.height - stroke.path[i].y); };
+  const auto point = [&](std::size_t i) {
+    return glm::dvec2(stroke.path[i].x, stroke.camera.height - stroke.path[i].y);
+  };
   const auto margin = [&](const glm::dvec2& center, double radius) {
     const glm::dvec2 d = glm::abs(p - center);
     return radius - (stroke.shape == ToolShape::disc ? glm::length(d) : std::max(d.x, d.y));
@@ -24,14 +26,17 @@ double inside(const StrokeBatch& stroke, const std::vector<double>& radii, const
   for (std::size_t i = 1; i < stroke.path.size(); ++i) {
     const glm::dvec2 a = point(i - 1), b = point(i);
     const double reach = std::max(radii[i - 1], radii[i]) + 1;
-    if (glm::any(glm::lessThan(p, glm::min(a, b) - reach)) || glm::any(glm::greaterThan(p, glm::max(a, b) + reach))) continue;
+    if (glm::any(glm::lessThan(p, glm::min(a, b) - reach)) || glm::any(glm::greaterThan(p, glm::max(a, b) + reach)))
+      continue;
     const auto at = [&](double t) { return margin(a + (b - a) * t, radii[i - 1] + (radii[i] - radii[i - 1]) * t); };
     // The margin is concave along the segment: ternary search finds its top.
     double low = 0, high = 1;
     for (int step = 0; step < 60; ++step) {
       const double third = (high - low) / 3;
-      if (at(low + third) < at(high - third)) low += third;
-      else high -= third;
+      if (at(low + third) < at(high - third))
+        low += third;
+      else
+        high -= third;
     }
     best = std::max(best, at((low + high) / 2));
   }
@@ -39,8 +44,9 @@ double inside(const StrokeBatch& stroke, const std::vector<double>& radii, const
 }
 
 // Margins of one texel: written when all are positive, undecided when the smallest is near 0.
-bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<double>& radii, const std::vector<float>& depth,
-            const glm::dmat4& clip_from_model, const render::DepthBias& bias, const glm::vec3& position, bool& undecided) {
+bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<double>& radii,
+            const std::vector<float>& depth, const glm::dmat4& clip_from_model, const render::DepthBias& bias,
+            const glm::vec3& position, bool& undecided) {
   const Camera& camera = stroke.camera;
   const glm::dvec4 clip = clip_from_model * glm::dvec4(position, 1);
   if (clip.w <= 0 || std::abs(clip.z) > clip.w) return false;
@@ -54,8 +60,9 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
 
   const int x = static_cast<int>(window.x), y = static_cast<int>(window.y);
   const auto at = [&](int px, int py) {
-    return double{depth[static_cast<std::size_t>(std::clamp(py, 0, camera.height - 1)) * static_cast<std::size_t>(camera.width) +
-                        static_cast<std::size_t>(std::clamp(px, 0, camera.width - 1))]};
+    return double{
+        depth[static_cast<std::size_t>(std::clamp(py, 0, camera.height - 1)) * static_cast<std::size_t>(camera.width) +
+              static_cast<std::size_t>(std::clamp(px, 0, camera.width - 1))]};
   };
   const double here = at(x, y);
   const double slope = std::min(std::abs(here - at(x - 1, y)), std::abs(at(x + 1, y) - here)) +
@@ -75,13 +82,15 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
 OracleResult oracle_edit(const Scene& scene, const StrokeBatch& stroke, const std::vector<double>& radii_px,
                          const std::vector<float>& depth) {
   const auto& map = *scene.map;
-  const glm::dmat4 clip = stroke.camera.projection * stroke.camera.view * glm::translate(glm::dmat4(1.0), scene.geometry->origin);
+  const glm::dmat4 clip =
+      stroke.camera.projection * stroke.camera.view * glm::translate(glm::dmat4(1.0), scene.geometry->origin);
   const double diagonal = glm::length(glm::dvec3(scene.geometry->box_max) - glm::dvec3(scene.geometry->box_min));
   const auto bias = render::slope_aware_bias(stroke.camera, diagonal);
   OracleResult result;
   for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
     const std::uint32_t block = map.block_of_slot[slot];
-    const int block_x = static_cast<int>(block) % map.blocks_per_side, block_y = static_cast<int>(block) / map.blocks_per_side;
+    const int block_x = static_cast<int>(block) % map.blocks_per_side,
+              block_y = static_cast<int>(block) / map.blocks_per_side;
     const TileAddress tile{static_cast<std::uint16_t>(block_x / 16), static_cast<std::uint16_t>(block_y / 16)};
     for (int i = 0; i < 64; ++i) {
       if (map.packed_position[slot * 64 + static_cast<std::uint32_t>(i)] == mesh::kNoPosition) continue;
@@ -107,7 +116,8 @@ Difference compare(const OracleResult& expected, const render::StrokeOutcome& ou
   };
   Difference difference;
   for (const auto& [tile, unused] : all) {
-    const TileMask a = mask_of(expected.written, tile), b = mask_of(got, tile), loose = mask_of(expected.undecided, tile);
+    const TileMask a = mask_of(expected.written, tile), b = mask_of(got, tile),
+                   loose = mask_of(expected.undecided, tile);
     for (int i = 0; i < kTexelsPerTile; ++i) {
       difference.compared += a.test(i) || b.test(i) ? 1 : 0;
       if (a.test(i) == b.test(i)) continue;

@@ -10,8 +10,10 @@ namespace {
 class KeepDriverLoaded : public testing::Environment {
  public:
   void SetUp() override {
-    for (const char* name : {"libEGL_mesa.so.0", "libglapi.so.0", "libLLVM-15.so.1"}) dlopen(name, RTLD_NOW | RTLD_NODELETE);
-    for (const char* driver : {"/usr/lib/x86_64-linux-gnu/dri/swrast_dri.so", "/usr/lib/aarch64-linux-gnu/dri/swrast_dri.so"}) {
+    for (const char* name : {"libEGL_mesa.so.0", "libglapi.so.0", "libLLVM-15.so.1"})
+      dlopen(name, RTLD_NOW | RTLD_NODELETE);
+    for (const char* driver :
+         {"/usr/lib/x86_64-linux-gnu/dri/swrast_dri.so", "/usr/lib/aarch64-linux-gnu/dri/swrast_dri.so"}) {
       if (std::filesystem::exists(driver)) dlopen(driver, RTLD_NOW | RTLD_NODELETE);
     }
   }

@@ -57,7 +57,8 @@ mesh::TriangleMesh bumpy_sphere(int quads_per_edge) {
     const float turn = 0.1f + 0.2f * static_cast<float>(face), size = 0.21f;
     const auto uv = [&](double u, double v) {
       const glm::vec2 p(static_cast<float>(u) - 0.5f, static_cast<float>(v) - 0.5f);
-      return center + size * glm::vec2(std::cos(turn) * p.x - std::sin(turn) * p.y, std::sin(turn) * p.x + std::cos(turn) * p.y);
+      return center +
+             size * glm::vec2(std::cos(turn) * p.x - std::sin(turn) * p.y, std::sin(turn) * p.x + std::cos(turn) * p.y);
     };
     add_chart(mesh, quads_per_edge, place, uv);
   }
@@ -84,8 +85,8 @@ mesh::TriangleMesh flat_square(int quads_per_edge) {
 
 Camera perspective_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height, double fov_degrees) {
   const glm::dvec3 up = std::abs(glm::normalize(target - eye).y) > 0.95 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
-  return {glm::lookAt(eye, target, up), glm::perspective(glm::radians(fov_degrees), double(width) / height, 0.1, 20.0), width,
-          height};
+  return {glm::lookAt(eye, target, up), glm::perspective(glm::radians(fov_degrees), double(width) / height, 0.1, 20.0),
+          width, height};
 }
 
 Camera orthographic_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height, double half_height) {
@@ -100,7 +101,8 @@ Scene make_scene(const mesh::TriangleMesh& mesh, int resolution) {
   Scene scene;
   scene.geometry = std::make_shared<const mesh::Geometry>(mesh::build_geometry(mesh, atlas));
   Progress progress;
-  scene.map = std::make_shared<const mesh::SurfaceMap>(expect(mesh::bake_surface_map(*scene.geometry, resolution, progress)));
+  scene.map =
+      std::make_shared<const mesh::SurfaceMap>(expect(mesh::bake_surface_map(*scene.geometry, resolution, progress)));
   return scene;
 }
 
@@ -124,7 +126,8 @@ render::ModelHandle TestRenderer::add(const Scene& scene) {
 }
 
 render::LayerHandle TestRenderer::add_layer(render::ModelHandle model, ValueType type, int resolution) {
-  return expect(await<render::LayerHandle>([&](auto done) { renderer_->add_layer(model, type, resolution, std::move(done)); }));
+  return expect(
+      await<render::LayerHandle>([&](auto done) { renderer_->add_layer(model, type, resolution, std::move(done)); }));
 }
 
 render::ViewHandle TestRenderer::add_view(render::ModelHandle model) {
@@ -162,8 +165,8 @@ std::vector<float> TestRenderer::depth(const Scene& scene, const Camera& camera)
     while (!mesh->upload_slice()) {
     }
     const auto buffer = draw_depth(depths, *mesh, camera);
-    glGetTextureImage(buffer->texture.id(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(pixels.size() * sizeof(float)),
-                      pixels.data());
+    glGetTextureImage(buffer->texture.id(), 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                      static_cast<GLsizei>(pixels.size() * sizeof(float)), pixels.data());
   });
   return pixels;
 }

@@ -12,11 +12,12 @@
 namespace strata::test {
 
 // Meshes with charts of their own for GL tests.
-mesh::TriangleMesh bumpy_sphere(int quads_per_edge);           // radius ≈ 1; 6 charts; 12 · n² triangles
-mesh::TriangleMesh folded_sheets(double gap);                  // two unit squares at z = 0 and z = -gap; 2 charts
-mesh::TriangleMesh flat_square(int quads_per_edge = 1);        // unit square at z = 0, uv 0.05 … 0.95
+mesh::TriangleMesh bumpy_sphere(int quads_per_edge);     // radius ≈ 1; 6 charts; 12 · n² triangles
+mesh::TriangleMesh folded_sheets(double gap);            // two unit squares at z = 0 and z = -gap; 2 charts
+mesh::TriangleMesh flat_square(int quads_per_edge = 1);  // unit square at z = 0, uv 0.05 … 0.95
 
-Camera perspective_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height, double fov_degrees = 45);
+Camera perspective_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height,
+                          double fov_degrees = 45);
 Camera orthographic_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height, double half_height);
 
 struct Scene {

@@ -1,7 +1,7 @@
 #include "support/room_fixture.h"
 
-#include <thread>
 #include <glm/gtc/matrix_transform.hpp>
+#include <thread>
 
 #include "mesh/demo_pot.h"
 #include "mesh/geometry.h"
@@ -85,7 +85,8 @@ void RoomTest::restart(std::uint64_t gpu_memory) {
   ASSERT_TRUE(renderer) << renderer.error().detail;
   renderer_ = std::move(*renderer);
   encoder_ = std::make_unique<stream::JpegPool>(1);
-  rooms_ = std::make_unique<room::Rooms>(*store_, *renderer_, stream::StreamContext{renderer_.get(), encoder_.get()}, options_);
+  rooms_ = std::make_unique<room::Rooms>(*store_, *renderer_, stream::StreamContext{renderer_.get(), encoder_.get()},
+                                         options_);
 }
 
 std::shared_ptr<room::Room> RoomTest::room() {
@@ -116,7 +117,8 @@ Camera RoomTest::camera(glm::dvec3 from, bool orthographic) const {
           640, 480};
 }
 
-room::EditRequest RoomTest::request(const Layer& layer, decltype(room::EditRequest::edit) edit, const std::string& user) const {
+room::EditRequest RoomTest::request(const Layer& layer, decltype(room::EditRequest::edit) edit,
+                                    const std::string& user) const {
   return {random_uuid(), user, layer.id, std::move(edit), {{"op", "test"}}};
 }
 
@@ -134,7 +136,8 @@ room::EditRequest RoomTest::stroke(const Layer& layer, double value, std::vector
 std::future<Result<room::EditAnswer>> RoomTest::start(room::EditRequest edit) {
   auto promise = std::make_shared<std::promise<Result<room::EditAnswer>>>();
   auto future = promise->get_future();
-  room()->edit(std::move(edit), {}, [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
+  room()->edit(std::move(edit), {},
+               [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
   return future;
 }
 

@@ -30,7 +30,8 @@ class RoomTest : public ::testing::Test {
   Camera camera(glm::dvec3 from = {0, 0, 1}, bool orthographic = false) const;
   room::EditRequest stroke(const Layer& layer, double value, std::vector<glm::dvec2> path, double radius_px,
                            const std::string& user = "anna") const;
-  room::EditRequest request(const Layer& layer, decltype(room::EditRequest::edit) edit, const std::string& user = "anna") const;
+  room::EditRequest request(const Layer& layer, decltype(room::EditRequest::edit) edit,
+                            const std::string& user = "anna") const;
   // Sends and waits until it is durable or refused.
   Result<room::EditAnswer> send(room::EditRequest request);
   // Sends again what was refused for the moment (503), as a client does.

@@ -109,8 +109,8 @@ std::string fresh_database() {
   const std::string name = "test_" + std::to_string(++count);
   const std::unique_ptr<PGconn, decltype(&PQfinish)> connection(PQconnectdb(shared_cluster().dsn("postgres").c_str()),
                                                                 &PQfinish);
-  const std::unique_ptr<PGresult, decltype(&PQclear)> made(PQexec(connection.get(), ("CREATE DATABASE " + name).c_str()),
-                                                           &PQclear);
+  const std::unique_ptr<PGresult, decltype(&PQclear)> made(
+      PQexec(connection.get(), ("CREATE DATABASE " + name).c_str()), &PQclear);
   if (PQresultStatus(made.get()) != PGRES_COMMAND_OK) throw std::runtime_error(PQerrorMessage(connection.get()));
   return shared_cluster().dsn(name);
 }

@@ -119,7 +119,8 @@ TEST(History, random_edits_undos_and_redos_equal_the_oracle) {
     for (int step = 0; step < 60; ++step) {
       if (edits.empty() || random() % 3) {
         edits.push_back(layer.next());
-        layer.paint(square(static_cast<int>(random() % 120), static_cast<int>(random() % 120), 4 + static_cast<int>(random() % 60)),
+        layer.paint(square(static_cast<int>(random() % 120), static_cast<int>(random() % 120),
+                           4 + static_cast<int>(random() % 60)),
                     random() % 4 == 0, 1 + random() % 255);
       } else {
         const auto sequence = edits[random() % edits.size()];

@@ -48,7 +48,7 @@ TEST(Revision, survives_its_storage_form) {
 TEST(Revision, damaged_bytes_are_a_problem_and_never_a_crash) {
   std::mt19937 random(3);
   const auto good = encode_tile(random_tile(ValueType::u16, random, 0.2));
-  EXPECT_FALSE(decode_tile(ValueType::u8, good));        // another width
+  EXPECT_FALSE(decode_tile(ValueType::u8, good));           // another width
   EXPECT_FALSE(decode_revision({}, ValueType::u16, good));  // another kind
   for (std::size_t size = 0; size < good.size(); size += 1 + size / 7)
     EXPECT_FALSE(decode_tile(ValueType::u16, std::span(good).first(size))) << size;

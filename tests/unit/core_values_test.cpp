@@ -14,7 +14,7 @@
 namespace strata {
 namespace {
 
-constexpr ValueType kAll[] = {ValueType::u8, ValueType::u16, ValueType::u32, ValueType::i8,
+constexpr ValueType kAll[] = {ValueType::u8,  ValueType::u16, ValueType::u32, ValueType::i8,
                               ValueType::i16, ValueType::i32, ValueType::f16, ValueType::f32};
 
 TEST(ValueType, every_type_keeps_its_extremes) {
@@ -92,10 +92,10 @@ TEST(Camera, refuses_singular_and_endless_matrices) {
 TEST(Camera, the_ray_through_a_pixel_hits_what_projects_there) {
   const glm::dvec3 eye{500012.5, 4000003.0, 130.0}, target{500010.0, 4000000.0, 128.0};  // site coordinates
   for (bool orthographic : {false, true}) {
-    const Camera camera{glm::lookAt(eye, target, glm::dvec3(0, 0, 1)),
-                        orthographic ? glm::ortho(-4.0, 4.0, -3.0, 3.0, 0.1, 50.0)
-                                     : glm::perspective(0.8, 4.0 / 3.0, 0.1, 50.0),
-                        800, 600};
+    const Camera camera{
+        glm::lookAt(eye, target, glm::dvec3(0, 0, 1)),
+        orthographic ? glm::ortho(-4.0, 4.0, -3.0, 3.0, 0.1, 50.0) : glm::perspective(0.8, 4.0 / 3.0, 0.1, 50.0), 800,
+        600};
     EXPECT_EQ(is_orthographic(camera), orthographic);
     const Ray ray = ray_through_pixel(camera, 300.5, 200.5);
     const glm::dvec3 point = ray.origin + ray.direction * 3.0;

@@ -14,7 +14,8 @@ namespace {
 JobStatus wait_until_over(const JobQueue& queue, std::int64_t id) {
   for (int i = 0; i < 6000; ++i) {
     const auto status = queue.status(id);
-    if (!status || (status->state != JobState::queued && status->state != JobState::running)) return status.value_or(JobStatus{});
+    if (!status || (status->state != JobState::queued && status->state != JobState::running))
+      return status.value_or(JobStatus{});
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   ADD_FAILURE() << "the job did not end";
@@ -48,7 +49,8 @@ TEST(JobsQueue, a_job_that_ends_names_its_model) {
 
 TEST(JobsQueue, a_job_that_fails_keeps_its_problem) {
   JobQueue queue;
-  const auto id = queue.add([](Progress&) -> Result<std::int64_t> { return fail(422, "Mesh file refused", "No triangle.", "file"); });
+  const auto id = queue.add(
+      [](Progress&) -> Result<std::int64_t> { return fail(422, "Mesh file refused", "No triangle.", "file"); });
   const auto status = wait_until_over(queue, *id);
   EXPECT_EQ(status.state, JobState::failed);
   ASSERT_TRUE(status.problem);
@@ -116,7 +118,10 @@ TEST(JobsQueue, a_waiting_job_that_is_cancelled_never_runs) {
   queue.add(gate.work());
   gate.entered.get_future().wait();
   std::atomic<bool> ran{false};
-  const auto id = queue.add([&](Progress&) -> Result<std::int64_t> { ran = true; return 1; });
+  const auto id = queue.add([&](Progress&) -> Result<std::int64_t> {
+    ran = true;
+    return 1;
+  });
   EXPECT_TRUE(queue.cancel(*id));
   EXPECT_EQ(queue.status(*id)->state, JobState::cancelled);
   EXPECT_FALSE(queue.cancel(*id)) << "it is over";

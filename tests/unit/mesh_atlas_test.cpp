@@ -158,9 +158,7 @@ TEST_P(EveryMeshClass, keeps_two_empty_texels_between_charts) {
     }
 }
 
-TEST_P(EveryMeshClass, is_unwrapped_the_same_every_time) {
-  EXPECT_EQ(unwrap().corner_uvs, unwrapped().corner_uvs);
-}
+TEST_P(EveryMeshClass, is_unwrapped_the_same_every_time) { EXPECT_EQ(unwrap().corner_uvs, unwrapped().corner_uvs); }
 
 TEST(mesh_atlas, does_not_depend_on_scale_or_place) {
   const auto plain = test::sphere(40);

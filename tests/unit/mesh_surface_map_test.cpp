@@ -167,15 +167,14 @@ std::uint64_t packed_at(const SurfaceMap& map, int x, int y) {
   const auto [slot, index] = texel_at(map, x, y);
   return slot == kNoSlot ? kNoPosition : map.packed_position[std::size_t{slot} * 64 + index];
 }
-double area_sum(const SurfaceMap& map) {
-  return std::accumulate(map.area.begin(), map.area.end(), 0.0);
-}
+double area_sum(const SurfaceMap& map) { return std::accumulate(map.area.begin(), map.area.end(), 0.0); }
 
 struct Case {
   std::string name;
   Geometry geometry;
 };
-void PrintTo(const Case& instance, std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest looks for it
+void PrintTo(const Case& instance,
+             std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest looks for it
   *out << instance.name;
 }
 

@@ -32,7 +32,9 @@ Request parsed(const std::string& target) {
 
 class Folder {
  public:
-  Folder() : path_(fs::temp_directory_path() / ("strata-net-" + std::to_string(::getpid()) + "-" + to_string(random_uuid()))) {
+  Folder()
+      : path_(fs::temp_directory_path() /
+              ("strata-net-" + std::to_string(::getpid()) + "-" + to_string(random_uuid()))) {
     fs::create_directories(path_);
   }
   ~Folder() { fs::remove_all(path_); }
@@ -88,7 +90,8 @@ TEST(Page, limits_out_of_range_are_refused_and_links_lead_on) {
   ASSERT_TRUE(page);
   Response response;
   add_page_links(response, request, *page, 35);
-  EXPECT_EQ(response.header("Link"), "</a?project=x&limit=10&offset=30>; rel=\"next\", </a?project=x&limit=10&offset=10>; rel=\"prev\"");
+  EXPECT_EQ(response.header("Link"),
+            "</a?project=x&limit=10&offset=30>; rel=\"next\", </a?project=x&limit=10&offset=10>; rel=\"prev\"");
   Response last;
   add_page_links(last, request, *page, 30);
   EXPECT_EQ(last.header("Link"), "</a?project=x&limit=10&offset=10>; rel=\"prev\"");
@@ -108,7 +111,9 @@ TEST(Respond, only_the_first_answer_counts) {
 
 TEST(Respond, a_dropped_request_still_gets_an_answer) {
   int status = 0;
-  { const Respond respond([&](Response response) { status = response.status; }); }
+  {
+    const Respond respond([&](Response response) { status = response.status; });
+  }
   EXPECT_EQ(status, 503);
 }
 
@@ -177,7 +182,8 @@ TEST(Origin, an_upgrade_by_cookie_needs_an_origin_and_by_token_does_not) {
 // --- points
 
 TEST(Point, is_read_in_every_spelling) {
-  for (const char* text : {"POINT Z(1 -2.5 3e2)", "POINT Z (1 -2.5 3e2)", "point(1 -2.5 3e2)", "PointZ(1  -2.5\t3e2)", " POINT Z( +1 -2.5 3e2 ) "}) {
+  for (const char* text : {"POINT Z(1 -2.5 3e2)", "POINT Z (1 -2.5 3e2)", "point(1 -2.5 3e2)", "PointZ(1  -2.5\t3e2)",
+                           " POINT Z( +1 -2.5 3e2 ) "}) {
     const auto point = parse_point(text);
     ASSERT_TRUE(point) << text;
     EXPECT_EQ(*point, glm::dvec3(1, -2.5, 300)) << text;
@@ -185,8 +191,9 @@ TEST(Point, is_read_in_every_spelling) {
 }
 
 TEST(Point, what_is_no_point_is_refused_by_field) {
-  for (const char* text : {"", "POINT", "POINT Z()", "POINT Z(1 2)", "POINT Z(1 2 3 4)", "POINT Z(1,2,3)", "POINT Z(nan 1 2)", "POINT Z(1 2 inf)",
-                           "POINT Z(1 2 1e999)", "POINT Z(1 2 3", "POINT Z(1 2 3) x", "LINE(1 2 3)", "POINT Z(1 2.3.4)", "POINT M(1 2 3)"}) {
+  for (const char* text : {"", "POINT", "POINT Z()", "POINT Z(1 2)", "POINT Z(1 2 3 4)", "POINT Z(1,2,3)",
+                           "POINT Z(nan 1 2)", "POINT Z(1 2 inf)", "POINT Z(1 2 1e999)", "POINT Z(1 2 3",
+                           "POINT Z(1 2 3) x", "LINE(1 2 3)", "POINT Z(1 2.3.4)", "POINT M(1 2 3)"}) {
     const auto point = parse_point(text);
     ASSERT_FALSE(point) << text;
     EXPECT_EQ(point.error().field, "coords");
@@ -284,8 +291,9 @@ TEST(StaticFiles, nothing_outside_the_folder_is_served) {
   folder.write(".env", "secret");
   fs::create_symlink(secret, folder.path() / "link.txt");
   const StaticFiles files(folder.path());
-  for (const std::string& target : {std::string("/../") + outside.path().filename().string() + "/secret.txt", std::string("/%2e%2e/secret.txt"),
-                                   std::string("/..%2f..%2fetc%2fpasswd"), std::string("/link.txt"), std::string("/.env"), std::string("/a\\..\\b")})
+  for (const std::string& target : {std::string("/../") + outside.path().filename().string() + "/secret.txt",
+                                    std::string("/%2e%2e/secret.txt"), std::string("/..%2f..%2fetc%2fpasswd"),
+                                    std::string("/link.txt"), std::string("/.env"), std::string("/a\\..\\b")})
     EXPECT_EQ(files.serve(parsed(target)).status, 404) << target;
 }
 
@@ -314,10 +322,11 @@ TEST(Upload, a_raw_body_is_the_file_itself) {
 TEST(Upload, the_one_file_of_a_form_is_cut_out_bit_for_bit) {
   const Folder folder;
   const std::string content = std::string("ply\r\n--not-the-boundary\r\n\0binary", 32);
-  const auto body = folder.write("1.body",
-                                 "--X\r\nContent-Disposition: form-data; name=\"note\"\r\n\r\nhello\r\n"
-                                 "--X\r\nContent-Disposition: form-data; name=\"file\"; filename=\"C:\\scans\\pot.ply\"\r\n\r\n" +
-                                     content + "\r\n--X--\r\n");
+  const auto body =
+      folder.write("1.body",
+                   "--X\r\nContent-Disposition: form-data; name=\"note\"\r\n\r\nhello\r\n"
+                   "--X\r\nContent-Disposition: form-data; name=\"file\"; filename=\"C:\\scans\\pot.ply\"\r\n\r\n" +
+                       content + "\r\n--X--\r\n");
   const auto upload = take_upload(upload_of(body, "multipart/form-data; boundary=X"), folder.path());
   ASSERT_TRUE(upload) << upload.error().detail;
   EXPECT_EQ(upload->filename, "pot.ply");
@@ -331,15 +340,18 @@ TEST(Upload, archives_and_several_files_are_refused_with_what_is_taken) {
   EXPECT_EQ(zip.error().status, 415);
   EXPECT_NE(zip.error().detail.find("PLY"), std::string::npos);
   const std::string part = "--X\r\nContent-Disposition: form-data; name=\"f\"; filename=\"a.obj\"\r\n\r\nv\r\n";
-  const auto two = take_upload(upload_of(folder.write("2.body", part + part + "--X--\r\n"), "multipart/form-data; boundary=X"), folder.path());
+  const auto two = take_upload(
+      upload_of(folder.write("2.body", part + part + "--X--\r\n"), "multipart/form-data; boundary=X"), folder.path());
   ASSERT_FALSE(two);
   EXPECT_EQ(two.error().status, 415);
 }
 
 TEST(Upload, broken_forms_are_refused) {
   const Folder folder;
-  for (const char* body : {"--X", "--X\r\n", "--X\r\nno end of headers", "--X\r\nA: b\r\n\r\nno boundary", "X--", "--Y\r\n\r\n\r\n--Y--"}) {
-    const auto upload = take_upload(upload_of(folder.write("1.body", body), "multipart/form-data; boundary=X"), folder.path());
+  for (const char* body : {"--X", "--X\r\n", "--X\r\nno end of headers", "--X\r\nA: b\r\n\r\nno boundary", "X--",
+                           "--Y\r\n\r\n\r\n--Y--"}) {
+    const auto upload =
+        take_upload(upload_of(folder.write("1.body", body), "multipart/form-data; boundary=X"), folder.path());
     ASSERT_FALSE(upload) << body;
     EXPECT_EQ(upload.error().status, 400) << body;
   }
@@ -366,8 +378,9 @@ TEST(ByteBudget, what_is_held_bounds_what_may_be_taken) {
 // --- pages and figures
 
 TEST(Docs, text_of_the_contract_cannot_become_markup) {
-  const nlohmann::json contract = {{"info", {{"title", "<script>alert(1)</script>"}, {"version", "1"}}},
-                                   {"paths", {{"/a", {{"get", {{"summary", "a & b"}, {"responses", {{"200", {{"description", "ok"}}}}}}}}}}}};
+  const nlohmann::json contract = {
+      {"info", {{"title", "<script>alert(1)</script>"}, {"version", "1"}}},
+      {"paths", {{"/a", {{"get", {{"summary", "a & b"}, {"responses", {{"200", {{"description", "ok"}}}}}}}}}}}};
   const std::string page = docs_html(contract);
   EXPECT_EQ(page.find("<script"), std::string::npos);
   EXPECT_NE(page.find("a &amp; b"), std::string::npos);

@@ -33,7 +33,9 @@ class FakeMember final : public room::Member {
  public:
   explicit FakeMember(Uuid session) : session_(session) {}
   Uuid session() const override { return session_; }
-  void camera(std::uint32_t view_id, std::uint64_t seq, const Camera&, bool) override { cameras.emplace_back(view_id, seq); }
+  void camera(std::uint32_t view_id, std::uint64_t seq, const Camera&, bool) override {
+    cameras.emplace_back(view_id, seq);
+  }
   Result<void> layers(std::uint32_t, std::vector<room::LayerView>) override { return {}; }
   void ack(std::uint32_t, std::uint64_t) override {}
   void pointer(std::optional<glm::dvec3>) override {}
@@ -74,19 +76,29 @@ class FakeRoom final : public room::Room {
     sends.push_back(std::move(send));
     return std::make_unique<FakeMember>(random_uuid());
   }
-  std::vector<room::Presence> presence() const override { return {{random_uuid(), "anna", "#112233", glm::dvec3(1, 2, 3)}}; }
+  std::vector<room::Presence> presence() const override {
+    return {{random_uuid(), "anna", "#112233", glm::dvec3(1, 2, 3)}};
+  }
   Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
   Result<void> delete_layer(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
   Result<Model> update_model(Model model, const store::FirstAnswer<Model>&) override { return model; }
-  Result<query::SurfacePoint> position(const glm::dvec3&, const std::vector<std::string>&) override { return query::SurfacePoint{}; }
-  Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>&, const std::vector<std::string>&) override {
+  Result<query::SurfacePoint> position(const glm::dvec3&, const std::vector<std::string>&) override {
+    return query::SurfacePoint{};
+  }
+  Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>&,
+                                                     const std::vector<std::string>&) override {
     return std::vector<query::SurfacePoint>{};
   }
-  Result<query::SurfacePoint> pick(const Camera&, double, double, const std::vector<std::string>&) override { return query::SurfacePoint{}; }
+  Result<query::SurfacePoint> pick(const Camera&, double, double, const std::vector<std::string>&) override {
+    return query::SurfacePoint{};
+  }
   Result<query::Statistics> statistics(const std::string&) override { return query::Statistics{}; }
-  Result<TileMirror::Snapshot> tiles(const std::string&, std::optional<std::int64_t>) override { return TileMirror::Snapshot{}; }
-  Result<render::Frame> picture(const Camera&, std::optional<std::vector<std::string>>, std::optional<std::int64_t>) override {
+  Result<TileMirror::Snapshot> tiles(const std::string&, std::optional<std::int64_t>) override {
+    return TileMirror::Snapshot{};
+  }
+  Result<render::Frame> picture(const Camera&, std::optional<std::vector<std::string>>,
+                                std::optional<std::int64_t>) override {
     return render::Frame{};
   }
 
@@ -125,7 +137,7 @@ struct Live : testing::Test {
   void say(const json& message) { EXPECT_FALSE(session->on_text(message.dump())); }
   void hello() { say({{"op", "hello"}}); }
   json begin(const std::string& id) {
-    return {{"op", "stroke.begin"}, {"id", to_string(random_uuid())}, {"stroke", id},              {"layer", "cracks"},
+    return {{"op", "stroke.begin"}, {"id", to_string(random_uuid())}, {"stroke", id},  {"layer", "cracks"},
             {"value", 3},           {"camera", camera_json()},        {"radius_px", 8}};
   }
   json extend(const std::string& id, int n, const json& path) {
@@ -232,8 +244,10 @@ TEST_F(Live, after_a_reconnect_the_resent_batch_is_joined_as_before) {
   EXPECT_TRUE(socket->of("problem").empty());
   ASSERT_EQ(room->edits.size(), 4u);
   EXPECT_EQ(room->edits[2].request.id, room->edits[1].request.id);
-  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits[2].request.edit).batch.path, (std::vector<glm::dvec2>{{1, 1}, {2, 2}}));
-  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits[3].request.edit).batch.path, (std::vector<glm::dvec2>{{2, 2}, {3, 3}}));
+  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits[2].request.edit).batch.path,
+            (std::vector<glm::dvec2>{{1, 1}, {2, 2}}));
+  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits[3].request.edit).batch.path,
+            (std::vector<glm::dvec2>{{2, 2}, {3, 3}}));
 }
 
 TEST_F(Live, a_save_that_ends_after_the_connection_counts_for_the_next) {
@@ -263,7 +277,10 @@ TEST_F(Live, an_edit_that_is_taken_back_is_told_as_unsaved) {
 TEST_F(Live, an_edit_that_is_refused_is_a_problem_with_its_id) {
   hello();
   const std::string id = to_string(random_uuid());
-  say({{"op", "edit"}, {"id", id}, {"layer", 7}, {"edit", {{"op", "fill"}, {"mode", "where"}, {"where", "true"}, {"value", 1}}}});
+  say({{"op", "edit"},
+       {"id", id},
+       {"layer", 7},
+       {"edit", {{"op", "fill"}, {"mode", "where"}, {"where", "true"}, {"value", 1}}}});
   ASSERT_EQ(room->edits.size(), 1u);
   room->edits[0].saved(fail(429, "Too many edits", "Wait."));
   ASSERT_EQ(socket->of("problem").size(), 1u);
@@ -378,7 +395,8 @@ TEST_F(Live, frames_are_counted_and_stop_with_the_socket) {
 TEST_F(Live, after_a_restart_the_batch_before_is_looked_up_off_the_socket_thread) {
   hello();
   say(begin(stroke));
-  EXPECT_TRUE(session->on_text(extend(stroke, 4, {{1, 1}}).dump())) << "work for a worker, before the next message is read";
+  EXPECT_TRUE(session->on_text(extend(stroke, 4, {{1, 1}}).dump()))
+      << "work for a worker, before the next message is read";
   EXPECT_TRUE(room->edits.empty());
 }
 

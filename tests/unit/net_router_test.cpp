@@ -10,7 +10,8 @@ Router make_router() {
   auto nothing = [](const Request&, const Respond&) {};
   router.add({.method = Method::get, .pattern = "/api/v1/models", .handler = nothing, .query = {"limit", "offset"}});
   router.add({.method = Method::post, .pattern = "/api/v1/models", .handler = nothing});
-  router.add({.method = Method::get, .pattern = "/api/v1/models/{model}/layers/{layer}/texels.{format}", .handler = nothing});
+  router.add(
+      {.method = Method::get, .pattern = "/api/v1/models/{model}/layers/{layer}/texels.{format}", .handler = nothing});
   router.add({.method = Method::remove, .pattern = "/api/v1/jobs/{job}", .handler = nothing});
   return router;
 }

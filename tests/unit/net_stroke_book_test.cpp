@@ -136,7 +136,8 @@ TEST_F(Book, the_joining_point_counts_in_the_longest_path) {
   const auto refused = book.extend(kAnna, stroke, ids[1], 1, longest);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().field, "path");
-  EXPECT_TRUE(book.extend(kAnna, stroke, ids[1], 1, Path(StrokeBook::kMaxPath - 1, glm::dvec2(1, 1)))) << "a refused batch takes no number";
+  EXPECT_TRUE(book.extend(kAnna, stroke, ids[1], 1, Path(StrokeBook::kMaxPath - 1, glm::dvec2(1, 1))))
+      << "a refused batch takes no number";
 }
 
 TEST_F(Book, old_strokes_are_forgotten) {

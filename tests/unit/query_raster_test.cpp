@@ -14,7 +14,7 @@
 namespace strata::query {
 namespace {
 
-constexpr ValueType kTypes[] = {ValueType::u8, ValueType::u16, ValueType::u32, ValueType::i8,
+constexpr ValueType kTypes[] = {ValueType::u8,  ValueType::u16, ValueType::u32, ValueType::i8,
                                 ValueType::i16, ValueType::i32, ValueType::f16, ValueType::f32};
 
 Layer layer_of(ValueType type, int resolution = 384) {
@@ -56,7 +56,8 @@ struct Format {
   Result<Bytes> (*encode)(const Layer&, const TileMap&);
   Result<TileMap> (*decode)(const Layer&, std::span<const std::uint8_t>);
 };
-constexpr Format kFormats[] = {{"tif", encode_tiff, decode_tiff}, {"png", encode_png, decode_png}, {"npy", encode_npy, decode_npy}};
+constexpr Format kFormats[] = {
+    {"tif", encode_tiff, decode_tiff}, {"png", encode_png, decode_png}, {"npy", encode_npy, decode_npy}};
 
 bool holds(const Format& format, ValueType type) {
   return format.encode != encode_png || type == ValueType::u8 || type == ValueType::u16;
@@ -98,7 +99,8 @@ TEST(QueryRaster, the_first_row_of_a_file_is_the_top_of_the_texture) {
   const auto npy = encode_npy(layer, tiles);
   ASSERT_TRUE(npy);
   const std::string text(npy->begin(), npy->begin() + 128);
-  EXPECT_NE(text.find("{'descr': [('value', '<u2'), ('valid', '|b1')], 'fortran_order': False, 'shape': (256, 256), }"), std::string::npos);
+  EXPECT_NE(text.find("{'descr': [('value', '<u2'), ('valid', '|b1')], 'fortran_order': False, 'shape': (256, 256), }"),
+            std::string::npos);
   const std::size_t data = npy->size() - 256 * 256 * 3;
   EXPECT_EQ(data % 64, 0u);
   EXPECT_EQ((*npy)[data + 5 * 3], 2);
@@ -125,7 +127,8 @@ TEST(QueryRaster, a_tiff_is_tiled_and_says_what_its_samples_are) {
     const auto bytes = encode_tiff(layer, paint(layer));
     ASSERT_TRUE(bytes);
     const auto path = std::filesystem::path(testing::TempDir()) / ("strata_raster_" + std::string(name(type)) + ".tif");
-    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes->data()), std::streamsize(bytes->size()));
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes->data()), std::streamsize(bytes->size()));
     TIFF* tiff = TIFFOpen(path.c_str(), "r");
     ASSERT_NE(tiff, nullptr);
     std::uint16_t samples = 0, bits = 0, format = 0, compression = 0;
@@ -140,7 +143,9 @@ TEST(QueryRaster, a_tiff_is_tiled_and_says_what_its_samples_are) {
     std::filesystem::remove(path);
     EXPECT_EQ(samples, 2);
     EXPECT_EQ(bits, 8 * bytes_per_texel(type));
-    EXPECT_EQ(format, is_float(type) ? SAMPLEFORMAT_IEEEFP : lowest_value(type) < 0 ? SAMPLEFORMAT_INT : SAMPLEFORMAT_UINT);
+    EXPECT_EQ(format, is_float(type)           ? SAMPLEFORMAT_IEEEFP
+                      : lowest_value(type) < 0 ? SAMPLEFORMAT_INT
+                                               : SAMPLEFORMAT_UINT);
     EXPECT_EQ(compression, COMPRESSION_ADOBE_DEFLATE);
     EXPECT_EQ(width, 384u);
     EXPECT_EQ(tile, 256u);
@@ -205,7 +210,8 @@ TEST(QueryRaster, a_png_of_other_than_small_whole_numbers_is_not_possible) {
 TEST(QueryRaster, another_size_or_type_is_refused_and_named) {
   for (const auto& format : kFormats) {
     SCOPED_TRACE(format.name);
-    const Layer small = layer_of(ValueType::u8, 256), large = layer_of(ValueType::u8, 512), wide = layer_of(ValueType::u16, 256);
+    const Layer small = layer_of(ValueType::u8, 256), large = layer_of(ValueType::u8, 512),
+                wide = layer_of(ValueType::u16, 256);
     const auto bytes = format.encode(small, paint(small));
     ASSERT_TRUE(bytes);
     const auto other_size = format.decode(large, *bytes);
@@ -278,7 +284,8 @@ TEST(QueryRaster, flipped_bits_never_crash) {
       // Headers and directories are where lies hurt: at the start, or (TIFF) at the end.
       const std::size_t area = round % 3 == 0 ? broken.size() : std::min<std::size_t>(broken.size(), 400);
       const std::size_t from = round % 3 == 1 ? broken.size() - area : 0;
-      for (int i = 0; i <= round % 4; ++i) broken[from + random() % area] ^= static_cast<std::uint8_t>(1u << random() % 8);
+      for (int i = 0; i <= round % 4; ++i)
+        broken[from + random() % area] ^= static_cast<std::uint8_t>(1u << random() % 8);
       if (!format.decode(layer, broken)) ++refused;
     }
     EXPECT_GT(refused, 50) << format.name;
@@ -290,7 +297,8 @@ TEST(QueryRaster, a_numpy_header_in_another_spelling_is_read) {
   const TileMap tiles = paint(layer);
   const auto ours = encode_npy(layer, tiles);
   ASSERT_TRUE(ours);
-  std::string header = "{\"shape\": (256,256), \"descr\": [(\"value\", \"|u1\"), (\"valid\", \"|b1\")], \"fortran_order\": False}\n";
+  std::string header =
+      "{\"shape\": (256,256), \"descr\": [(\"value\", \"|u1\"), (\"valid\", \"|b1\")], \"fortran_order\": False}\n";
   Bytes bytes{0x93, 'N', 'U', 'M', 'P', 'Y', 2, 0, static_cast<std::uint8_t>(header.size()), 0, 0, 0};
   bytes.insert(bytes.end(), header.begin(), header.end());
   bytes.insert(bytes.end(), ours->end() - 256 * 256 * 2, ours->end());

@@ -38,7 +38,8 @@ mesh::SurfaceMap make_map(int resolution, double share, unsigned seed) {
   return map;
 }
 
-LayerView make_layer(ValueType type, const mesh::SurfaceMap& map, int distinct, unsigned seed, bool everywhere = false) {
+LayerView make_layer(ValueType type, const mesh::SurfaceMap& map, int distinct, unsigned seed,
+                     bool everywhere = false) {
   std::mt19937 random(seed);
   LayerView view;
   view.layer.slug = "salt";
@@ -71,7 +72,8 @@ std::vector<Sample> samples(const LayerView& view, const mesh::SurfaceMap& map) 
     const TileMask surface = map.surface_in_tile(address);
     for (int i = 0; i < kTexelsPerTile; ++i) {
       if (!surface.test(i) || !tile->valid.test(i)) continue;
-      const int bx = (address.x * kTileSize + i % kTileSize) / kBlockSize, by = (address.y * kTileSize + i / kTileSize) / kBlockSize;
+      const int bx = (address.x * kTileSize + i % kTileSize) / kBlockSize,
+                by = (address.y * kTileSize + i / kTileSize) / kBlockSize;
       const auto slot = map.slot_of_block[std::size_t(by) * map.blocks_per_side + bx];
       const int in_block = i / kTileSize % kBlockSize * kBlockSize + i % kTileSize % kBlockSize;
       all.push_back({decode_value(view.layer.type, tile->bits(i)), map.area_of(address, i),

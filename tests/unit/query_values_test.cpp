@@ -5,7 +5,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
-
 namespace strata::query {
 namespace {
 
@@ -76,7 +75,8 @@ TEST(QueryValues, the_nearest_point_is_found_in_world_coordinates) {
 
 TEST(QueryValues, a_point_that_is_not_a_number_hits_nothing) {
   const mesh::SearchTree tree(square());
-  const auto point = nearest_point(tree, kOrigin, glm::dvec3(std::numeric_limits<double>::quiet_NaN()), {layer_with(ValueType::u8, 256, 0, 0, 1)});
+  const auto point = nearest_point(tree, kOrigin, glm::dvec3(std::numeric_limits<double>::quiet_NaN()),
+                                   {layer_with(ValueType::u8, 256, 0, 0, 1)});
   EXPECT_FALSE(point.hit);
 }
 

@@ -318,8 +318,8 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
     const int window = 1 + roll(3);
     FlowControl flow = ready(window);
     std::optional<FlowControl::Draw> out;
-    std::set<int> unseen;             // edits that no sent picture shows
-    std::set<int> in_out;             // of these, the ones made before the draw began
+    std::set<int> unseen;  // edits that no sent picture shows
+    std::set<int> in_out;  // of these, the ones made before the draw began
     std::uint64_t sent = 0, acked = 0, camera_seq = 0;
     Camera newest = camera_at(0), shown;
     bool shown_still = false;
@@ -333,9 +333,10 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
         ASSERT_TRUE(number);
         ASSERT_EQ(number->frame, ++sent);
         for (int one : in_out) {
-          const bool covered = !out->changed || std::any_of(out->changed->begin(), out->changed->end(), [&](const Box& box) {
-            return box.min.x <= float(one) && box.max.x >= float(one + 1);
-          });
+          const bool covered =
+              !out->changed || std::any_of(out->changed->begin(), out->changed->end(), [&](const Box& box) {
+                return box.min.x <= float(one) && box.max.x >= float(one + 1);
+              });
           if (covered) unseen.erase(one);
         }
         if (!out->changed) {
@@ -359,11 +360,25 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
 
     for (int step = 0; step < 200; ++step) {
       switch (roll(7)) {
-        case 0: newest = camera_at(roll(4)); flow.on_camera(++camera_seq, newest, true); break;
-        case 1: newest = camera_at(roll(4)); flow.on_camera(++camera_seq, newest, false); break;
-        case 2: unseen.insert(edit); flow.on_change(box_at(float(edit)), edit); ++edit; break;
-        case 3: if (out) draw_done(roll(4)); break;
-        case 4: if (acked < sent) flow.on_ack(++acked); break;
+        case 0:
+          newest = camera_at(roll(4));
+          flow.on_camera(++camera_seq, newest, true);
+          break;
+        case 1:
+          newest = camera_at(roll(4));
+          flow.on_camera(++camera_seq, newest, false);
+          break;
+        case 2:
+          unseen.insert(edit);
+          flow.on_change(box_at(float(edit)), edit);
+          ++edit;
+          break;
+        case 3:
+          if (out) draw_done(roll(4));
+          break;
+        case 4:
+          if (acked < sent) flow.on_ack(++acked);
+          break;
         case 5: flow.on_quiet(); break;
         default: break;
       }

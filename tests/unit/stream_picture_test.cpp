@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 #include <turbojpeg.h>
 
+#include <png.h>
 #include <atomic>
 #include <condition_variable>
 #include <cstdlib>
 #include <mutex>
-#include <png.h>
 #include <set>
 
 #include "stream/jpeg_pool.h"
@@ -36,9 +36,11 @@ Decoded decode(const std::vector<std::uint8_t>& jpeg) {
   Decoded out;
   tjhandle handle = tjInitDecompress();
   int colorspace = 0;
-  EXPECT_EQ(tjDecompressHeader3(handle, jpeg.data(), jpeg.size(), &out.width, &out.height, &out.sampling, &colorspace), 0);
+  EXPECT_EQ(tjDecompressHeader3(handle, jpeg.data(), jpeg.size(), &out.width, &out.height, &out.sampling, &colorspace),
+            0);
   out.rgba.resize(std::size_t(out.width) * out.height * 4);
-  EXPECT_EQ(tjDecompress2(handle, jpeg.data(), jpeg.size(), out.rgba.data(), out.width, 0, out.height, TJPF_RGBA, 0), 0);
+  EXPECT_EQ(tjDecompress2(handle, jpeg.data(), jpeg.size(), out.rgba.data(), out.width, 0, out.height, TJPF_RGBA, 0),
+            0);
   tjDestroy(handle);
   return out;
 }
@@ -145,7 +147,10 @@ TEST(StreamTimer, calls_come_in_the_order_of_their_times_and_not_before_them) {
 
 TEST(StreamTimer, what_waits_when_it_ends_is_not_called) {
   std::atomic<bool> called{false};
-  { TimerThread timer; timer.after(std::chrono::hours(1), [&] { called = true; }); }
+  {
+    TimerThread timer;
+    timer.after(std::chrono::hours(1), [&] { called = true; });
+  }
   EXPECT_FALSE(called);
 }
 

@@ -22,15 +22,9 @@ nlohmann::json write_numbers(const double* numbers) {
 void read_core(const nlohmann::json& json, Uuid& value) {
   if (auto uuid = parse_uuid(json.get_ref<const std::string&>())) value = *uuid;
 }
-void read_core(const nlohmann::json& json, glm::dvec2& value) {
-  read_numbers<2>(json, glm::value_ptr(value));
-}
-void read_core(const nlohmann::json& json, glm::dvec3& value) {
-  read_numbers<3>(json, glm::value_ptr(value));
-}
-void read_core(const nlohmann::json& json, glm::dmat4& value) {
-  read_numbers<16>(json, glm::value_ptr(value));
-}
+void read_core(const nlohmann::json& json, glm::dvec2& value) { read_numbers<2>(json, glm::value_ptr(value)); }
+void read_core(const nlohmann::json& json, glm::dvec3& value) { read_numbers<3>(json, glm::value_ptr(value)); }
+void read_core(const nlohmann::json& json, glm::dmat4& value) { read_numbers<16>(json, glm::value_ptr(value)); }
 void read_core(const nlohmann::json& json, strata::Camera& value) {
   read_core(json.at("view"), value.view);
   read_core(json.at("projection"), value.projection);
@@ -56,36 +50,22 @@ void read_core(const nlohmann::json& json, IdOrSlug& value) {
     value = json.get<std::int64_t>();
 }
 
-nlohmann::json write_core(const Uuid& value) {
-  return to_string(value);
-}
-nlohmann::json write_core(const glm::dvec2& value) {
-  return write_numbers<2>(glm::value_ptr(value));
-}
-nlohmann::json write_core(const glm::dvec3& value) {
-  return write_numbers<3>(glm::value_ptr(value));
-}
-nlohmann::json write_core(const glm::dmat4& value) {
-  return write_numbers<16>(glm::value_ptr(value));
-}
+nlohmann::json write_core(const Uuid& value) { return to_string(value); }
+nlohmann::json write_core(const glm::dvec2& value) { return write_numbers<2>(glm::value_ptr(value)); }
+nlohmann::json write_core(const glm::dvec3& value) { return write_numbers<3>(glm::value_ptr(value)); }
+nlohmann::json write_core(const glm::dmat4& value) { return write_numbers<16>(glm::value_ptr(value)); }
 nlohmann::json write_core(const strata::Camera& value) {
   return {{"view", write_core(value.view)},
           {"projection", write_core(value.projection)},
           {"width", value.width},
           {"height", value.height}};
 }
-nlohmann::json write_core(const strata::ToolShape& value) {
-  return value == ToolShape::square ? "square" : "disc";
-}
-nlohmann::json write_core(const strata::ValueType& value) {
-  return name(value);
-}
+nlohmann::json write_core(const strata::ToolShape& value) { return value == ToolShape::square ? "square" : "disc"; }
+nlohmann::json write_core(const strata::ValueType& value) { return name(value); }
 nlohmann::json write_core(const strata::LayerKind& value) {
   return value == LayerKind::database ? "database" : "numeric";
 }
-nlohmann::json write_core(const strata::Unit& value) {
-  return name(value);
-}
+nlohmann::json write_core(const strata::Unit& value) { return name(value); }
 nlohmann::json write_core(const IdOrSlug& value) {
   return std::visit([](const auto& v) { return nlohmann::json(v); }, value);
 }

@@ -45,12 +45,8 @@ Result<ServerMessage> parse_server_message(std::string_view text, const JsonLimi
   return parse_message<ServerMessage>(text, nullptr, limits, server_message_schema);
 }
 
-std::string to_text(const ClientMessage& message) {
-  return dump(to_json(message));
-}
-std::string to_text(const ServerMessage& message) {
-  return dump(to_json(message));
-}
+std::string to_text(const ClientMessage& message) { return dump(to_json(message)); }
+std::string to_text(const ServerMessage& message) { return dump(to_json(message)); }
 
 ProblemMessage problem_message(const Problem& problem, const std::optional<std::string>& ref) {
   ProblemMessage message;

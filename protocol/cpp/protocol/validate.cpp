@@ -63,9 +63,7 @@ std::string listed(const json& values) {
   return text;
 }
 
-std::string number(const json& value) {
-  return value.dump();
-}
+std::string number(const json& value) { return value.dump(); }
 
 // In words, what a schema lets through.
 std::string expectation(const json& schema) {

@@ -24,8 +24,10 @@ Result<std::unique_ptr<PaperEditor>> PaperEditor::create(const mesh::Geometry& g
   editor->resolution_ = resolution;
   editor->origin_ = geometry.origin;
   editor->index_count_ = static_cast<GLsizei>(geometry.indices.size());
-  auto vertices = gl::Buffer::create(geometry.vertices.size() * sizeof(mesh::Vertex), gl::Buffer::Use::fixed, "paper vertices");
-  auto indices = gl::Buffer::create(geometry.indices.size() * sizeof(std::uint32_t), gl::Buffer::Use::fixed, "paper indices");
+  auto vertices =
+      gl::Buffer::create(geometry.vertices.size() * sizeof(mesh::Vertex), gl::Buffer::Use::fixed, "paper vertices");
+  auto indices =
+      gl::Buffer::create(geometry.indices.size() * sizeof(std::uint32_t), gl::Buffer::Use::fixed, "paper indices");
   if (!vertices) return tl::unexpected(vertices.error());
   if (!indices) return tl::unexpected(indices.error());
   vertices->upload_values(0, std::span(geometry.vertices));
@@ -34,7 +36,8 @@ Result<std::unique_ptr<PaperEditor>> PaperEditor::create(const mesh::Geometry& g
   editor->indices_ = std::move(*indices);
   const std::array<gl::VertexAttribute, 2> attributes{
       {{0, 3, GL_FLOAT, false, offsetof(mesh::Vertex, position)}, {1, 2, GL_FLOAT, false, offsetof(mesh::Vertex, uv)}}};
-  editor->mesh_array_ = gl::VertexArray(editor->vertices_, sizeof(mesh::Vertex), attributes, editor->indices_, "paper mesh");
+  editor->mesh_array_ =
+      gl::VertexArray(editor->vertices_, sizeof(mesh::Vertex), attributes, editor->indices_, "paper mesh");
   editor->empty_array_ = gl::VertexArray("paper texture pass");
   const struct {
     gl::Program& program;
@@ -103,7 +106,8 @@ void PaperEditor::draw_texture(const gl::Framebuffer& target) const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void PaperEditor::edit(const Camera& camera, const gl::Texture& depth, glm::dvec2 center, double radius_px, std::uint8_t value) {
+void PaperEditor::edit(const Camera& camera, const gl::Texture& depth, glm::dvec2 center, double radius_px,
+                       std::uint8_t value) {
   const glm::mat4 clip = clip_from_model(camera, origin_);
   const glm::vec2 lower_left(center.x, camera.height - center.y);
   ++edit_number_;
@@ -133,7 +137,8 @@ void PaperEditor::clear() {
 
 std::vector<std::uint8_t> PaperEditor::read(const gl::Texture& texture) {
   std::vector<std::uint8_t> texels(texture.bytes());
-  glGetTextureImage(texture.id(), 0, GL_RED_INTEGER, GL_UNSIGNED_BYTE, static_cast<GLsizei>(texels.size()), texels.data());
+  glGetTextureImage(texture.id(), 0, GL_RED_INTEGER, GL_UNSIGNED_BYTE, static_cast<GLsizei>(texels.size()),
+                    texels.data());
   return texels;
 }
 

@@ -27,7 +27,7 @@ class PaperEditor {
   std::vector<std::uint8_t> data() const { return read(data_); }
   std::vector<std::uint8_t> mask() const { return read(mask_); }
   std::vector<std::uint8_t> coverage() const { return read(coverage_); }  // 1 where the parametrisation lies
-  std::uint64_t bytes() const;                                            // of textures that a layer and its editing need
+  std::uint64_t bytes() const;  // of textures that a layer and its editing need
 
  private:
   static std::vector<std::uint8_t> read(const gl::Texture& texture);
