@@ -29,7 +29,7 @@ const settle = (): Promise<unknown> => vi.advanceTimersByTimeAsync(0);
 
 async function open(role: Role = "owner"): Promise<void> {
   await session.open();
-  session.set_viewport(800, 600, 1);
+  session.view.set_viewport(800, 600, 1);
   join(role);
 }
 function join(role: Role = "owner", layers = [layer(7, 0), layer(8, 1)]): void {
@@ -156,36 +156,36 @@ describe("the camera in mid-stroke", () => {
     await open();
     session.choose_tool("brush");
     session.gestures.tool_down({ x: 5, y: 5 });
-    const before = session.camera.message();
-    session.standard_view("top");
-    session.fit();
-    session.set_perspective(false);
+    const before = session.view.camera.message();
+    session.view.standard_view("top");
+    session.view.fit();
+    session.view.set_perspective(false);
     session.gestures.zoom(0.5, 9, 9);
-    session.set_viewport(400, 300, 1);
-    expect(session.camera.message()).toEqual(before);
+    session.view.set_viewport(400, 300, 1);
+    expect(session.view.camera.message()).toEqual(before);
     session.gestures.tool_up();
-    expect([session.camera.width, session.camera.height, session.camera.perspective]).toEqual([400, 300, true]);
-    session.standard_view("top");
-    expect(session.camera.elevation).toBeCloseTo(Math.PI / 2);
+    expect([session.view.camera.width, session.view.camera.height, session.view.camera.perspective]).toEqual([400, 300, true]);
+    session.view.standard_view("top");
+    expect(session.view.camera.elevation).toBeCloseTo(Math.PI / 2);
   });
 });
 
 describe("what this person shows and hides", () => {
   it("of a deleted layer is forgotten at once", async () => {
     await open();
-    session.set_visible(session.layers[0]!, false);
-    session.set_opacity(session.layers[1]!, 0.5);
+    session.layers.set_visible(session.layers.all[0]!, false);
+    session.layers.set_opacity(session.layers.all[1]!, 0.5);
     socket().receive({ op: "layer", event: "deleted", layer_id: 7 } as never);
     expect(socket().of("layers").at(-1)!.layers).toEqual([{ layer: 8, opacity: 0.5 }]);
   });
   it("of a layer that was deleted while the connection was lost is forgotten, too", async () => {
     await open();
-    session.set_visible(session.layers[0]!, false);
+    session.layers.set_visible(session.layers.all[0]!, false);
     socket().lose();
     await vi.advanceTimersByTimeAsync(300);
     join("owner", [layer(8, 1)]);
     expect(socket().of("layers")).toEqual([]);
-    session.set_opacity(session.layers[0]!, 0.5);
+    session.layers.set_opacity(session.layers.all[0]!, 0.5);
     expect(socket().of("layers").at(-1)!.layers).toEqual([{ layer: 8, opacity: 0.5 }]);
   });
 });
@@ -210,12 +210,12 @@ describe("moving a layer", () => {
     answers.set("PATCH /api/v1/models/1/layers/8", [200, layer(8, 0)]);
     answers.set("GET /api/v1/models/1/layers/7", [403, { status: 403, title: "Not allowed" }]);
     answers.set("GET /api/v1/models/1/layers?limit=1000", [200, { layers: [layer(7, 0), layer(8, 0)], total: 2 }]);
-    await expect(session.move_layer(session.layers[0]!, 1)).rejects.toMatchObject({ status: 403 });
-    expect(session.layers.map(({ id, order }) => [id, order])).toEqual([[7, 0], [8, 0]]); // prettier-ignore
+    await expect(session.layers.move(session.layers.all[0]!, 1)).rejects.toMatchObject({ status: 403 });
+    expect(session.layers.all.map(({ id, order }) => [id, order])).toEqual([[7, 0], [8, 0]]); // prettier-ignore
   });
   it("that fails with the network is undone", async () => {
     await open();
-    await expect(session.move_layer(session.layers[0]!, 1)).rejects.toMatchObject({ status: 500 });
-    expect(session.layers.map(({ id, order }) => [id, order])).toEqual([[7, 0], [8, 1]]); // prettier-ignore
+    await expect(session.layers.move(session.layers.all[0]!, 1)).rejects.toMatchObject({ status: 500 });
+    expect(session.layers.all.map(({ id, order }) => [id, order])).toEqual([[7, 0], [8, 1]]); // prettier-ignore
   });
 });

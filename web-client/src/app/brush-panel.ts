@@ -106,7 +106,7 @@ export class StrataBrushPanel extends LitElement {
 
   override render(): TemplateResult {
     const { session } = this;
-    const layer = session.selected_layer;
+    const layer = session.layers.selected;
     const erases = session.tools.active === "eraser";
     if (!layer) return html`<p class="hint">${texts.brush.no_layer}</p>`;
     return html`<h2>${erases ? texts.brush.eraser_title : texts.brush.title}</h2>
@@ -117,7 +117,7 @@ export class StrataBrushPanel extends LitElement {
   }
 
   private value(layer: Layer): TemplateResult {
-    const value = this.session.brush.value_of(layer);
+    const value = this.session.painting.brush.value_of(layer);
     const purpose = purpose_of(layer);
     const { points } = layer.palette;
     if (purpose === "presence") {
@@ -172,7 +172,7 @@ export class StrataBrushPanel extends LitElement {
 
   private width(): TemplateResult {
     const { session } = this;
-    const { unit, width, shape } = session.brush;
+    const { unit, width, shape } = session.painting.brush;
     const range = kWidths[unit];
     const now = width[unit];
     const slider = (kSliderSteps * Math.log(now / range.min)) / Math.log(range.max / range.min);
@@ -224,7 +224,7 @@ export class StrataBrushPanel extends LitElement {
             { value: "square", content: texts.brush.square },
           ],
           chosen: shape,
-          choose: (chosen) => session.set_brush((brush) => (brush.shape = chosen)),
+          choose: (chosen) => session.painting.set_brush((brush) => (brush.shape = chosen)),
         })}
       </div>`;
   }
@@ -233,31 +233,31 @@ export class StrataBrushPanel extends LitElement {
   private equivalent(unit: WidthUnit): string {
     const { session } = this;
     if (!session.model) return "";
-    const radius_px = session.radius_window_px();
-    if (unit === "mm") return `≈ ${format_number((2 * radius_px) / session.scale, 2)} ${texts.brush.width_px} ${texts.brush.on_screen}`;
-    const metres = 2 * radius_px * session.camera.unit_per_pixel(session.surface_depth()) * metres_per(session.model.unit);
+    const radius_px = session.painting.radius_window_px();
+    if (unit === "mm") return `≈ ${format_number((2 * radius_px) / session.view.scale, 2)} ${texts.brush.width_px} ${texts.brush.on_screen}`;
+    const metres = session.painting.width_metres();
     return `≈ ${format_length(metres)} ${texts.brush.on_object}`;
   }
 
   /** Keeps the brush as wide as it looks now. */
   private set_unit(unit: WidthUnit): void {
     const { session } = this;
-    if (session.brush.unit === unit || !session.model) return;
-    const radius_px = session.radius_window_px();
-    const mm = 2 * radius_px * session.camera.unit_per_pixel(session.surface_depth()) * metres_per(session.model.unit) * 1000;
-    session.set_brush((brush) => {
+    if (session.painting.brush.unit === unit || !session.model) return;
+    const radius_px = session.painting.radius_window_px();
+    const mm = session.painting.width_metres() * 1000;
+    session.painting.set_brush((brush) => {
       brush.unit = unit;
       if (unit === "mm") brush.set_width("mm", Number(mm.toPrecision(2)));
-      else brush.set_width("px", Math.round((2 * radius_px) / session.scale));
+      else brush.set_width("px", Math.round((2 * radius_px) / session.view.scale));
     });
   }
 
   private set_width(unit: WidthUnit, width: number): void {
-    this.session.set_brush((brush) => brush.set_width(unit, width));
+    this.session.painting.set_brush((brush) => brush.set_width(unit, width));
   }
 
   private set_value(layer: Layer, value: number): void {
-    this.session.set_brush((brush) => brush.set_value(layer, value));
+    this.session.painting.set_brush((brush) => brush.set_value(layer, value));
   }
 
   private on_value(layer: Layer, event: Event): void {
@@ -269,10 +269,10 @@ export class StrataBrushPanel extends LitElement {
   }
 
   private async fill(layer: Layer): Promise<void> {
-    const what = describe_value(layer, this.session.brush.value_of(layer));
+    const what = describe_value(layer, this.session.painting.brush.value_of(layer));
     const words = texts.brush;
     if (await ask({ heading: words.fill_title(layer.name), lead: words.fill_lead(`“${what}”`), yes: words.fill })) {
-      this.session.fill(layer);
+      this.session.painting.fill(layer);
     }
   }
 }

@@ -30,8 +30,8 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
   const { key } = event;
   if (event.ctrlKey || event.metaKey) {
     if (event.altKey || key.toLowerCase() !== "z") return false;
-    if (event.shiftKey) session.redo();
-    else session.undo();
+    if (event.shiftKey) session.painting.redo();
+    else session.painting.undo();
     return true;
   }
   if (event.altKey) return false;
@@ -42,12 +42,12 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
   }
   const arrow = kArrows[key];
   if (arrow) {
-    const pixels = Math.min(session.camera.width, session.camera.height) * kArrowStep;
+    const pixels = Math.min(session.view.camera.width, session.view.camera.height) * kArrowStep;
     const move = event.shiftKey ? session.gestures.pan : session.gestures.orbit;
     move(arrow[0] * pixels, arrow[1] * pixels);
     return true;
   }
-  const { width, height } = session.camera;
+  const { width, height } = session.view.camera;
   switch (key) {
     case "+":
     case "=":
@@ -58,19 +58,19 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
       session.gestures.zoom(1.15, width / 2, height / 2);
       return true;
     case "Home":
-      session.fit();
+      session.view.fit();
       return true;
     case "p":
     case "P":
-      session.set_perspective(true);
+      session.view.set_perspective(true);
       return true;
     case "o":
     case "O":
-      session.set_perspective(false);
+      session.view.set_perspective(false);
       return true;
     case "[":
     case "]":
-      session.set_brush((brush) => brush.step_width(key === "]" ? 1 : -1));
+      session.painting.set_brush((brush) => brush.step_width(key === "]" ? 1 : -1));
       return true;
     case "?":
       show_help();
@@ -78,7 +78,7 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
   }
   const view = /^[1-6]$/.test(key) ? kViews[Number(key) - 1] : undefined;
   if (!view) return false;
-  session.standard_view(view);
+  session.view.standard_view(view);
   return true;
 }
 

@@ -418,7 +418,7 @@ export class StrataLayerDialog extends LitElement {
     const { session, base_: base } = this;
     if (base) {
       const change = layer_changes(base.layer, wanted);
-      if (Object.keys(change).length > 0) await session.change_layer(base.layer, change, base.etag);
+      if (Object.keys(change).length > 0) await session.layers.change(base.layer, change, base.etag);
       return;
     }
     const created: LayerCreate = {

@@ -162,7 +162,7 @@ export class StrataLayerPanel extends LitElement {
 
   /** Top to bottom. */
   private get shown(): Layer[] {
-    return [...this.session.layers].reverse();
+    return [...this.session.layers.all].reverse();
   }
 
   override render(): TemplateResult {
@@ -187,13 +187,13 @@ export class StrataLayerPanel extends LitElement {
               (layer, index) => this.row(layer, index),
             )}
           </ul>`}
-      ${session.has_overrides
+      ${session.layers.has_overrides
         ? html`<div class="personal">
             <span>${words.personal}</span>
             ${session.can_curate
               ? html`<button class="link" @click=${() => void this.save_default()}>${words.save_default}</button>`
               : nothing}
-            <button class="link" @click=${() => session.reset_overrides()}>${words.reset_default}</button>
+            <button class="link" @click=${() => session.layers.reset_overrides()}>${words.reset_default}</button>
           </div>`
         : nothing}`;
   }
@@ -201,9 +201,9 @@ export class StrataLayerPanel extends LitElement {
   private row(layer: Layer, index: number): TemplateResult {
     const { session } = this;
     const words = texts.layers;
-    const selected = session.selected === layer.id;
-    const visible = session.visible(layer);
-    const count = session.layers.length;
+    const selected = session.layers.selected_id === layer.id;
+    const visible = session.layers.visible(layer);
+    const count = session.layers.all.length;
     return html`<li
       class="layer ${selected ? "selected" : ""} ${this.dragged_ === layer.id ? "dragged" : ""} ${this.drop_before_ === index
         ? "drop-before"
@@ -226,7 +226,7 @@ export class StrataLayerPanel extends LitElement {
           aria-pressed=${visible}
           aria-label=${visible ? words.hide(layer.name) : words.show(layer.name)}
           title=${visible ? words.hide(layer.name) : words.show(layer.name)}
-          @click=${() => session.set_visible(layer, !visible)}
+          @click=${() => session.layers.set_visible(layer, !visible)}
         >
           ${icon(visible ? "eye" : "eye_off")}
         </button>
@@ -235,7 +235,7 @@ export class StrataLayerPanel extends LitElement {
           aria-pressed=${selected}
           aria-label=${words.select(layer.name)}
           title=${layer.name}
-          @click=${() => session.select(layer)}
+          @click=${() => session.layers.select(layer)}
         >
           ${layer_chip(layer)}<span class="ellipsis">${layer.name}</span>
         </button>
@@ -278,7 +278,7 @@ export class StrataLayerPanel extends LitElement {
 
   private details(layer: Layer): TemplateResult {
     const { session } = this;
-    const opacity = session.opacity(layer);
+    const opacity = session.layers.opacity(layer);
     return html`<div class="more">
       ${layer.description ? html`<p class="description">${layer.description}</p>` : nothing} ${legend(layer)}
       <div class="opacity">
@@ -289,7 +289,7 @@ export class StrataLayerPanel extends LitElement {
           max="100"
           .value=${String(Math.round(opacity * 100))}
           aria-label=${texts.layers.opacity_of(layer.name)}
-          @input=${(event: Event) => session.set_opacity(layer, Number((event.target as HTMLInputElement).value) / 100)}
+          @input=${(event: Event) => session.layers.set_opacity(layer, Number((event.target as HTMLInputElement).value) / 100)}
         />
         <output class="numeric">${Math.round(opacity * 100)} %</output>
       </div>
@@ -302,13 +302,13 @@ export class StrataLayerPanel extends LitElement {
 
   /** `index` counts from the top of the shown list, without the layer itself. */
   private move(layer: Layer, index: number): void {
-    const last = this.session.layers.length - 1;
-    this.session.move_layer(layer, last - index).catch((error: unknown) => notices.error(error));
+    const last = this.session.layers.all.length - 1;
+    this.session.layers.move(layer, last - index).catch((error: unknown) => notices.error(error));
   }
 
   private async save_default(): Promise<void> {
     try {
-      await this.session.save_overrides_as_default();
+      await this.session.layers.save_overrides_as_default();
       notices.show("success", texts.layers.saved_default);
     } catch (error) {
       notices.error(error);
@@ -318,7 +318,7 @@ export class StrataLayerPanel extends LitElement {
   private async delete_layer(layer: Layer): Promise<void> {
     const words = texts.layers;
     if (!(await ask({ heading: words.delete_title(layer.name), lead: words.delete_lead, yes: texts.delete, danger: true }))) return;
-    await this.session.delete_layer(layer).catch((error: unknown) => notices.error(error));
+    await this.session.layers.remove(layer).catch((error: unknown) => notices.error(error));
   }
 
   private on_drag_start(event: DragEvent, layer: Layer): void {
@@ -340,7 +340,7 @@ export class StrataLayerPanel extends LitElement {
   }
 
   private on_drop(event: DragEvent): void {
-    const layer = this.session.layers.find((each) => each.id === this.dragged_);
+    const layer = this.session.layers.all.find((each) => each.id === this.dragged_);
     const before = this.drop_before_;
     this.on_drag_end();
     if (!layer || before === null) return;

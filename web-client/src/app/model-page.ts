@@ -89,7 +89,8 @@ export class StrataModelPage extends LitElement {
     if (session.deleted) this.missing_ = kNotFound;
     if (session.signed_out) this.dispatchEvent(new CustomEvent("signed-out"));
     if (session.model) document.title = `${session.model.name} – ${texts.product}`;
-    if (session.model && !session.model.scale_verified && session.can_curate && session.frames_drawn > 0 && !this.asked_scale_) {
+    const asks_scale = session.model && !session.model.scale_verified && session.can_curate;
+    if (asks_scale && session.view.frames_drawn > 0 && !this.asked_scale_) {
       this.asked_scale_ = true;
       this.dialog_ ??= { dialog: "scale" };
     }
@@ -189,7 +190,8 @@ export class StrataModelPage extends LitElement {
   }
 
   private banner(session: ModelSession): TemplateResult {
-    if (session.connection_state !== "lost" && !(session.connection_state === "connecting" && session.frames_drawn > 0)) {
+    const reconnects = session.connection_state === "connecting" && session.view.frames_drawn > 0;
+    if (session.connection_state !== "lost" && !reconnects) {
       return html``;
     }
     const { waiting } = session.saving;
@@ -320,4 +322,4 @@ function give_back_keyboard(event: MouseEvent): void {
 
 /** The layer as it is now: the request may be older. */
 const newest = (session: ModelSession, layer: Layer): Layer =>
-  session.layers.find((each) => each.id === layer.id) ?? layer;
+  session.layers.all.find((each) => each.id === layer.id) ?? layer;

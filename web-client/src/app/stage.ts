@@ -141,7 +141,7 @@ export class StrataStage extends LitElement {
     });
     this.session.on_frame = (part) => this.frames_?.push(part);
     this.session.on_reset_frames = () => this.frames_?.reset();
-    this.input_ = new StageInput(this.surface_, this.session.gestures, () => this.session.scale);
+    this.input_ = new StageInput(this.surface_, this.session.gestures, () => this.session.view.scale);
     this.observer_ = new ResizeObserver(() => this.measure());
     this.observer_.observe(this);
     this.measure();
@@ -168,7 +168,7 @@ export class StrataStage extends LitElement {
   private on_drawn(part: FrameMessage): void {
     this.session.frame_drawn(part);
     const { dataset } = this.canvas_;
-    dataset["frames"] = String(this.session.frames_drawn);
+    dataset["frames"] = String(this.session.view.frames_drawn);
     dataset["cameraSeq"] = String(part.header.camera_seq);
     dataset["sceneSequence"] = String(part.header.scene_sequence);
     dataset["still"] = String(part.header.still);
@@ -178,7 +178,7 @@ export class StrataStage extends LitElement {
     const { clientWidth: width, clientHeight: height } = this;
     if (width < 2 || height < 2) return;
     const most = Math.sqrt(kMostWindowPixels / (width * height));
-    this.session.set_viewport(width, height, Math.min(window.devicePixelRatio || 1, kMostScale, most));
+    this.session.view.set_viewport(width, height, Math.min(window.devicePixelRatio || 1, kMostScale, most));
   }
 
   override render(): TemplateResult {
@@ -195,7 +195,7 @@ export class StrataStage extends LitElement {
         ${paints ? this.brush_cursor() : nothing}
       </div>
       ${this.people()} ${this.scale_bar()}
-      ${session.frames_drawn === 0
+      ${session.view.frames_drawn === 0
         ? html`<div class="waiting" role="status">${texts.model.waiting_for_picture}</div>`
         : nothing}`;
   }
@@ -203,15 +203,16 @@ export class StrataStage extends LitElement {
   /** The footprint in the picture: what the stroke covers, to the pixel. */
   private brush_cursor(): TemplateResult {
     const { session } = this;
-    const { pointer, scale } = session;
-    if (!pointer) return html``;
-    const [x, y] = [pointer.x / scale, pointer.y / scale];
-    const radius = session.radius_window_px() / scale;
-    const layer = session.selected_layer;
+    const { at } = session.pointer;
+    const { scale } = session.view;
+    if (!at) return html``;
+    const [x, y] = [at.x / scale, at.y / scale];
+    const radius = session.painting.radius_window_px() / scale;
+    const layer = session.layers.selected;
     const erases = session.tools.active === "eraser";
-    const color = layer && !erases ? color_of(layer.palette, session.brush.value_of(layer)) : null;
+    const color = layer && !erases ? color_of(layer.palette, session.painting.brush.value_of(layer)) : null;
     const fill = color ? css_color(color) : "none";
-    const square = session.brush.shape === "square";
+    const square = session.painting.brush.shape === "square";
     const outline = (width: number, stroke: string, dashes: string, filled: boolean): TemplateResult =>
       square
         ? svg`<rect x=${x - radius} y=${y - radius} width=${2 * radius} height=${2 * radius} fill=${filled ? fill : "none"}
@@ -231,9 +232,9 @@ export class StrataStage extends LitElement {
     const { session } = this;
     return session.users.flatMap((user) => {
       if (user.session === session.session || !user.pointer) return [];
-      const at = session.camera.project(user.pointer.position);
+      const at = session.view.camera.project(user.pointer.position);
       if (!at) return [];
-      const [x, y] = [at.x / session.scale, at.y / session.scale];
+      const [x, y] = [at.x / session.view.scale, at.y / session.view.scale];
       if (x < 0 || y < 0 || x > this.clientWidth || y > this.clientHeight) return [];
       return [
         html`<div class="person" ${styled({ transform: `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)` })}>
@@ -248,9 +249,9 @@ export class StrataStage extends LitElement {
 
   private scale_bar(): TemplateResult {
     const { session } = this;
-    if (!session.model || session.frames_drawn === 0) return html``;
-    const depth = session.picked?.hit ? session.surface_depth() : session.camera.distance;
-    const metres_per_px = session.camera.unit_per_pixel(depth) * session.scale * metres_per(session.model.unit);
+    if (!session.model || session.view.frames_drawn === 0) return html``;
+    const depth = session.pointer.picked?.hit ? session.pointer.surface_depth() : session.view.camera.distance;
+    const metres_per_px = session.view.camera.unit_per_pixel(depth) * session.view.scale * metres_per(session.model.unit);
     const bar = scale_bar(metres_per_px, kScaleBar_px);
     return html`<div class="scale numeric"><i ${styled({ width: `${bar.px.toFixed(1)}px` })}></i>${bar.label}</div>`;
   }

@@ -123,8 +123,8 @@ export class StrataToolRail extends LitElement {
               class="icon quiet"
               aria-label=${words.undo}
               title="${words.undo} (Ctrl Z)"
-              ?disabled=${!session.selected_layer}
-              @click=${() => session.undo()}
+              ?disabled=${!session.layers.selected}
+              @click=${() => session.painting.undo()}
             >
               ${icon("undo")}
             </button>
@@ -132,8 +132,8 @@ export class StrataToolRail extends LitElement {
               class="icon quiet"
               aria-label=${words.redo}
               title="${words.redo} (Ctrl Shift Z)"
-              ?disabled=${!session.selected_layer}
-              @click=${() => session.redo()}
+              ?disabled=${!session.layers.selected}
+              @click=${() => session.painting.redo()}
             >
               ${icon("redo")}
             </button>
@@ -143,14 +143,14 @@ export class StrataToolRail extends LitElement {
         class="icon quiet"
         aria-label=${texts.views.fit}
         title="${texts.views.fit} (Home)"
-        @click=${() => session.fit()}
+        @click=${() => session.view.fit()}
       >
         ${icon("fit")}
       </button>
       <strata-menu label=${words.view} glyph="cube" side="right">
         ${kViews.map(
           (view, index) =>
-            html`<button class="quiet" role="menuitem" @click=${() => session.standard_view(view)}>
+            html`<button class="quiet" role="menuitem" @click=${() => session.view.standard_view(view)}>
               ${texts.views[view]}<kbd>${index + 1}</kbd>
             </button>`,
         )}
@@ -161,12 +161,12 @@ export class StrataToolRail extends LitElement {
 
   private projection(perspective: boolean, label: string, key: string): TemplateResult {
     const { session } = this;
-    const chosen = session.camera.perspective === perspective;
+    const chosen = session.view.camera.perspective === perspective;
     return html`<button
       class="quiet"
       role="menuitemradio"
       aria-checked=${chosen}
-      @click=${() => session.set_perspective(perspective)}
+      @click=${() => session.view.set_perspective(perspective)}
     >
       ${label}${chosen ? icon("check") : nothing}<kbd>${key}</kbd>
     </button>`;

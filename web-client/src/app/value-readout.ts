@@ -70,19 +70,21 @@ export class StrataValueReadout extends LitElement {
 
   override render(): TemplateResult {
     const { session } = this;
-    const { picked, model } = session;
+    const { model } = session;
+    const { picked } = session.pointer;
     if (!picked?.hit || !picked.position || !model) return html``;
-    const layers = [...session.layers].reverse().filter((layer) => session.visible(layer) || layer.id === session.selected);
+    const { layers } = session;
+    const shown = [...layers.all].reverse().filter((layer) => layers.visible(layer) || layer === layers.selected);
     const decimals = model.unit === "mm" ? 2 : model.unit === "cm" ? 3 : 4;
     const coordinates = picked.position.map((each) => each.toFixed(decimals)).join(", ");
     return html`<div class="card">
-      ${layers.map((layer) => this.line(layer))}
+      ${shown.map((layer) => this.line(layer))}
       <span class="position numeric">${texts.value.position} ${coordinates} ${model.unit}</span>
     </div>`;
   }
 
   private line(layer: Layer): TemplateResult {
-    const found = this.session.picked?.values?.[layer.slug];
+    const found = this.session.pointer.picked?.values?.[layer.slug];
     const valid = found?.valid === true && found.value !== undefined;
     const color = valid ? color_of(layer.palette, found.value!) : null;
     return html`<span class="line">

@@ -1,0 +1,164 @@
+// The layers of the open model: which there are, which is chosen, and what this person shows and hides.
+
+import type { Api } from "../core/api";
+import type { LayerEvent, LayerOverride } from "../core/protocol.gen";
+import { complete_layer, type Layer, type LayerPatch } from "../core/types";
+import { notices } from "./notices";
+import { texts } from "./texts";
+
+interface Override {
+  visible?: boolean;
+  opacity?: number;
+}
+
+export interface LayerListHost {
+  send_overrides(overrides: LayerOverride[]): void;
+  changed(): void;
+}
+
+export class LayerList {
+  all: Layer[] = []; // by order: the last is on top
+  selected_id: number | null = null;
+
+  private readonly overrides_ = new Map<number, Override>();
+
+  constructor(
+    private readonly api_: Api,
+    private readonly model_id_: string,
+    private readonly host_: LayerListHost,
+  ) {}
+
+  get selected(): Layer | null {
+    return this.find(this.selected_id);
+  }
+
+  find(id: number | null): Layer | null {
+    return this.all.find((layer) => layer.id === id) ?? null;
+  }
+
+  select(layer: Layer): void {
+    this.selected_id = layer.id;
+    this.host_.changed();
+  }
+
+  // ── what this person shows ────────────────────────────────────────────────────────────────────────────────────────
+
+  visible(layer: Layer): boolean {
+    return this.overrides_.get(layer.id)?.visible ?? layer.visible;
+  }
+  opacity(layer: Layer): number {
+    return this.overrides_.get(layer.id)?.opacity ?? layer.opacity;
+  }
+
+  /** What is shown differs from what everyone sees at first. */
+  get has_overrides(): boolean {
+    return this.all.some(
+      (layer) => this.visible(layer) !== layer.visible || Math.abs(this.opacity(layer) - layer.opacity) > 1e-6,
+    );
+  }
+
+  set_visible(layer: Layer, visible: boolean): void {
+    this.override(layer, { visible });
+  }
+  set_opacity(layer: Layer, opacity: number): void {
+    this.override(layer, { opacity });
+  }
+  reset_overrides(): void {
+    this.overrides_.clear();
+    this.send_overrides();
+  }
+
+  async save_overrides_as_default(): Promise<void> {
+    for (const layer of this.all) {
+      const [visible, opacity] = [this.visible(layer), this.opacity(layer)];
+      if (visible === layer.visible && opacity === layer.opacity) continue;
+      await this.change(layer, { visible, opacity });
+    }
+    this.reset_overrides();
+  }
+
+  // ── what everyone has ─────────────────────────────────────────────────────────────────────────────────────────────
+
+  /** `etag`: the version that the change was thought out for. */
+  async change(layer: Layer, change: LayerPatch, etag?: string): Promise<void> {
+    this.put(await this.api_.change_layer(this.model_id_, layer.id, change, etag));
+  }
+
+  /** Moves the layer to the place `index` of the list, which is bottom to top. */
+  async move(layer: Layer, index: number): Promise<void> {
+    const wanted = this.all.filter((other) => other.id !== layer.id);
+    wanted.splice(Math.max(0, Math.min(index, wanted.length)), 0, layer);
+    const before = this.all;
+    this.all = wanted.map((each, order) => ({ ...each, order }));
+    this.host_.changed();
+    try {
+      for (const each of this.all) {
+        if (before.find((old) => old.id === each.id)?.order === each.order) continue;
+        await this.change(each, { order: each.order });
+      }
+    } catch (error) {
+      this.put_all(await this.api_.layers(this.model_id_).catch(() => before)); // some may have moved already
+      throw error;
+    }
+  }
+
+  async remove(layer: Layer): Promise<void> {
+    await this.api_.delete_layer(this.model_id_, layer.id);
+    this.drop(layer.id);
+  }
+
+  put(layer: Layer): void {
+    this.put_all([...this.all.filter((other) => other.id !== layer.id), layer]);
+  }
+
+  /** What the server says on joining: what is known of other layers is forgotten. */
+  take_all(layers: Layer[]): void {
+    this.put_all(layers);
+    const known = new Set(this.all.map((layer) => layer.id));
+    for (const id of this.overrides_.keys()) if (!known.has(id)) this.overrides_.delete(id);
+    if (!this.selected) this.select_top();
+  }
+
+  on_event(event: LayerEvent): void {
+    if ((event.event === "created" || event.event === "changed") && event.layer) {
+      this.put(complete_layer(event.layer));
+      if (this.selected_id === null) this.selected_id = event.layer_id;
+    } else if (event.event === "deleted") {
+      const gone = this.find(event.layer_id);
+      if (gone) notices.show("info", texts.layers.deleted_by_other(gone.name));
+      this.drop(event.layer_id);
+    } else if (event.event === "edited") {
+      this.all = this.all.map((layer) =>
+        layer.id === event.layer_id ? { ...layer, sequence: event.sequence ?? layer.sequence } : layer,
+      );
+    }
+    this.host_.changed();
+  }
+
+  private override(layer: Layer, change: Override): void {
+    this.overrides_.set(layer.id, { ...this.overrides_.get(layer.id), ...change });
+    this.send_overrides();
+  }
+
+  private send_overrides(): void {
+    this.host_.send_overrides([...this.overrides_].map(([layer, override]) => ({ layer, ...override })));
+    this.host_.changed();
+  }
+
+  private put_all(layers: Layer[]): void {
+    this.all = [...layers].sort((a, b) => a.order - b.order || a.id - b.id);
+    this.host_.changed();
+  }
+
+  private select_top(): void {
+    this.selected_id = this.all[this.all.length - 1]?.id ?? null;
+    this.host_.changed();
+  }
+
+  private drop(id: number): void {
+    this.all = this.all.filter((layer) => layer.id !== id);
+    if (this.overrides_.delete(id)) this.send_overrides();
+    if (this.selected_id === id) this.select_top();
+    this.host_.changed();
+  }
+}

@@ -1,0 +1,111 @@
+// The camera of this page's view: it moves while nothing is painted, and the server hears of every move.
+
+import { OrbitCamera, type StandardView } from "../core/camera";
+import type { Model } from "../core/types";
+
+const kStillAfter_ms = 120; // without input the camera counts as still
+
+export interface ViewHost {
+  send(moving: boolean): void;
+  /** Runs the action now, or as soon as no stroke is under way: a stroke's pixels are of the camera that it began with. */
+  when_free(action: () => void): void;
+  is_painting(): boolean;
+  came_to_rest(): void;
+  changed(): void;
+}
+
+export class ViewControl {
+  readonly camera = new OrbitCamera();
+  /** Window pixels per CSS pixel. */
+  scale = 1;
+  frames_drawn = 0;
+
+  private has_model_ = false;
+  private fitted_ = false;
+  private still_timer_: ReturnType<typeof setTimeout> | null = null;
+
+  constructor(private readonly host_: ViewHost) {}
+
+  /** The stage's size in CSS pixels, and window pixels for each of them. */
+  set_viewport(width: number, height: number, scale: number): void {
+    this.host_.when_free(() => {
+      this.scale = scale;
+      this.camera.resize(width * scale, height * scale);
+      this.fit_at_first();
+      this.moved(false);
+    });
+  }
+
+  /** The model as it is now known; `turned`: its up direction is another than before. */
+  set_model(model: Model, turned: boolean): void {
+    this.has_model_ = true;
+    this.camera.set_model(model.bounds, model.up);
+    this.fit_at_first();
+    if (turned) this.moved(false);
+  }
+
+  /** Shows the model with another up direction without keeping it. */
+  preview_up(model: Model, up: Model["up"]): void {
+    this.camera.set_model(model.bounds, up);
+    this.moved(false);
+  }
+
+  orbit_pixels(dx: number, dy: number): void {
+    this.move(() => this.camera.orbit_pixels(dx, dy));
+  }
+  pan_pixels(dx: number, dy: number): void {
+    this.move(() => this.camera.pan_pixels(dx, dy));
+  }
+  zoom_at(factor: number, x: number, y: number): void {
+    this.move(() => this.camera.zoom_at(factor, x, y));
+  }
+  twist(angle: number): void {
+    this.move(() => this.camera.orbit(-angle, 0));
+  }
+  standard_view(view: StandardView): void {
+    this.move(() => this.camera.standard_view(view), false);
+  }
+  fit(): void {
+    this.move(() => this.camera.fit(), false);
+  }
+  set_perspective(perspective: boolean): void {
+    this.move(() => (this.camera.perspective = perspective), false);
+  }
+
+  count_frame(): void {
+    this.frames_drawn += 1;
+    if (this.frames_drawn === 1) this.host_.changed();
+  }
+
+  stop(): void {
+    if (this.still_timer_) clearTimeout(this.still_timer_);
+    this.still_timer_ = null;
+  }
+
+  /** Once the model and the stage's size are both known. */
+  private fit_at_first(): void {
+    if (this.fitted_ || !this.has_model_ || this.camera.width <= 1) return;
+    this.fitted_ = true;
+    this.camera.first_view();
+    this.moved(false);
+  }
+
+  private move(change: () => void, moving = true): void {
+    if (this.host_.is_painting()) return;
+    change();
+    this.moved(moving);
+  }
+
+  private moved(moving: boolean): void {
+    if (this.fitted_) this.host_.send(moving);
+    this.stop();
+    if (moving) {
+      this.still_timer_ = setTimeout(() => {
+        this.still_timer_ = null;
+        this.host_.send(false);
+        this.host_.came_to_rest();
+      }, kStillAfter_ms);
+    }
+    this.host_.changed();
+  }
+}
