@@ -2,7 +2,7 @@
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { format_length, format_number, metres_per } from "../core/measure";
+import { format_length, format_number } from "../core/measure";
 import { css_color, purpose_of } from "../core/palette";
 import type { Layer } from "../core/types";
 import { describe_value, kWidths, value_problem, type WidthUnit } from "./brush-settings";
