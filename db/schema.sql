@@ -71,6 +71,36 @@ ALTER TABLE public.layers ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     CACHE 1
 );
 
+CREATE TABLE public.looks (
+    id bigint NOT NULL,
+    model_id bigint NOT NULL,
+    name text NOT NULL,
+    slug public.slug NOT NULL,
+    description text NOT NULL,
+    media_type text NOT NULL,
+    width integer NOT NULL,
+    height integer NOT NULL,
+    opacity double precision NOT NULL,
+    visible boolean NOT NULL,
+    draw_order integer NOT NULL,
+    picture bytea NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT looks_height_check CHECK ((height > 0)),
+    CONSTRAINT looks_media_type_check CHECK ((media_type = ANY (ARRAY['image/jpeg'::text, 'image/png'::text]))),
+    CONSTRAINT looks_name_check CHECK ((name <> ''::text)),
+    CONSTRAINT looks_opacity_check CHECK (((opacity >= (0)::double precision) AND (opacity <= (1)::double precision))),
+    CONSTRAINT looks_width_check CHECK ((width > 0))
+);
+
+ALTER TABLE public.looks ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.looks_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.model_sources (
     model_id bigint NOT NULL,
     name text NOT NULL,
@@ -215,6 +245,12 @@ ALTER TABLE ONLY public.layers
 ALTER TABLE ONLY public.layers
     ADD CONSTRAINT layers_pkey PRIMARY KEY (id);
 
+ALTER TABLE ONLY public.looks
+    ADD CONSTRAINT looks_model_id_slug_key UNIQUE (model_id, slug);
+
+ALTER TABLE ONLY public.looks
+    ADD CONSTRAINT looks_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.model_sources
     ADD CONSTRAINT model_sources_pkey PRIMARY KEY (model_id, name);
 
@@ -256,6 +292,8 @@ CREATE INDEX edits_layer ON public.edits USING btree (layer_id, sequence);
 
 CREATE INDEX edits_undone ON public.edits USING btree (layer_id, user_name, undone_by) WHERE (NOT in_force);
 
+CREATE INDEX looks_picture ON public.looks USING btree (picture);
+
 CREATE INDEX model_sources_blob ON public.model_sources USING btree (sha256);
 
 CREATE INDEX models_geometry ON public.models USING btree (geometry);
@@ -279,6 +317,12 @@ ALTER TABLE ONLY public.edits
 
 ALTER TABLE ONLY public.layers
     ADD CONSTRAINT layers_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.looks
+    ADD CONSTRAINT looks_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.looks
+    ADD CONSTRAINT looks_picture_fkey FOREIGN KEY (picture) REFERENCES public.blobs(sha256);
 
 ALTER TABLE ONLY public.model_sources
     ADD CONSTRAINT model_sources_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;

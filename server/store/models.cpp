@@ -2,6 +2,7 @@
 
 #include "core/progress.h"
 #include "store/blobs.h"
+#include "store/looks.h"
 #include "store/store_impl.h"
 
 namespace strata::store {
@@ -131,6 +132,17 @@ Result<PgResult> insert_model(PgConnection& connection, const Model& m, const st
       params);
 }
 
+Look look_of(const Store::NewModel::NewLook& fresh, std::size_t position) {
+  Look look;
+  look.name = fresh.name;
+  look.media_type = fresh.media_type;
+  look.width = fresh.width;
+  look.height = fresh.height;
+  look.visible = position == 0;
+  look.order = static_cast<int>(position);
+  return look;
+}
+
 Result<Model> model_by_id(PgConnection& connection, std::int64_t id) {
   static const std::string sql = std::string(kSelectModels) + "WHERE m.id = $1";
   auto rows = connection.query(sql.c_str(), Params().integer(id));
@@ -149,7 +161,14 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
       return fail(400, "Bad file name", "A file's name must have 1 to 255 bytes.", "source_files");
     if (auto good = check_text(source.name, "source_files"); !good) return tl::unexpected(good.error());
   }
+  if (fresh.looks.size() > kMostLooks)
+    return fail(422, "Too many looks", "A model holds at most " + std::to_string(kMostLooks) + " looks.", "looks");
+  for (std::size_t i = 0; i < fresh.looks.size(); ++i)
+    if (auto good = check_look(look_of(fresh.looks[i], i)); !good) return tl::unexpected(good.error());
+  // The geometry, the looks, the source files.
   std::vector<Content> contents{content_of(Bytes(fresh.geometry))};
+  for (const auto& look : fresh.looks) contents.push_back(content_of(Bytes(look.bytes)));
+  const std::size_t first_source = contents.size();
   for (const auto& source : fresh.sources) {
     auto content = content_of(source.file, cancelled);
     if (!content) return tl::unexpected(content.error());
@@ -168,6 +187,11 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
                                 [&](const std::string& slug) { return insert_model(connection, m, slug, geometry); });
     if (!row) return tl::unexpected(row.error());
     const std::int64_t id = row->integer(0, 0);
+    for (std::size_t i = 0; i < fresh.looks.size(); ++i) {
+      Look look = look_of(fresh.looks[i], i);
+      look.model_id = id;
+      if (auto kept = insert_look(connection, look, contents[1 + i].hash); !kept) return tl::unexpected(kept.error());
+    }
     for (std::size_t i = 0; i < fresh.sources.size(); ++i) {
       auto kept =
           connection.query("INSERT INTO model_sources (model_id, name, position, sha256) VALUES ($1, $2, $3, $4)",
@@ -175,7 +199,7 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
                                .integer(id)
                                .text(fresh.sources[i].name)
                                .integer(static_cast<std::int64_t>(i))
-                               .bytes(contents[i + 1].hash));
+                               .bytes(contents[first_source + i].hash));
       if (!kept) return tl::unexpected(kept.error());
     }
     if (cancelled && cancelled()) return cancelled_problem();
@@ -227,7 +251,7 @@ Result<void> Store::delete_model(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
     auto used = connection.query(
         "SELECT geometry FROM models WHERE id = $1 UNION "
-        "SELECT sha256 FROM model_sources WHERE model_id = $1",
+        "SELECT sha256 FROM model_sources WHERE model_id = $1 UNION SELECT picture FROM looks WHERE model_id = $1",
         Params().integer(id));
     if (!used) return tl::unexpected(used.error());
     std::vector<std::vector<std::uint8_t>> hashes;

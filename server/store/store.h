@@ -10,6 +10,7 @@
 
 #include "core/history.h"
 #include "core/layer.h"
+#include "core/look.h"
 #include "core/model.h"
 #include "core/tile_mirror.h"
 #include "store/first_answer.h"
@@ -62,6 +63,12 @@ class Store {
       std::filesystem::path file;
     };
     std::vector<Source> sources;  // streamed in bit for bit, hashed on the way
+    struct NewLook {
+      std::string name, media_type;     // "image/jpeg" or "image/png"
+      std::vector<std::uint8_t> bytes;  // of the encoded picture
+      int width = 0, height = 0;
+    };
+    std::vector<NewLook> looks;  // bottom to top; the first is shown, the others wait to be chosen
   };
   Result<Model> create_model(const NewModel& model, const std::function<bool()>& cancelled,
                              const FirstAnswer<Model>& answer = {});  // one transaction
@@ -73,6 +80,16 @@ class Store {
   // Streams a source file in chunks ≤ 1 MiB; `sink` returns false to stop.
   Result<SourceFile> read_source(std::int64_t model_id, const std::string& name,
                                  const std::function<bool(std::span<const std::uint8_t>)>& sink);
+
+  // --- looks: pictures of a model's surface, kept as they came
+  static constexpr int kMostLooks = 32;                    // of a model
+  Result<std::vector<Look>> looks(std::int64_t model_id);  // by order
+  Result<Look> look(std::int64_t model_id, const std::string& ref);
+  Result<Look> create_look(const Look& look, std::span<const std::uint8_t> picture,
+                           const FirstAnswer<Look>& answer = {});
+  Result<Look> update_look(const Look& look, const FirstAnswer<Look>& answer = {});  // all but its picture
+  Result<void> delete_look(std::int64_t id, const FirstAnswer<>& answer = {});
+  Result<std::vector<std::uint8_t>> look_picture(std::int64_t id);
 
   // --- layers
   Result<std::vector<Layer>> layers(std::int64_t model_id);  // by order
