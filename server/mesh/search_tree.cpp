@@ -162,6 +162,29 @@ struct SearchTree::Impl {
     }
   }
 
+  template <class Accept>
+  std::optional<Hit> nearest(const glm::vec3& point, float max_distance, Accept accept) const {
+    if (!is_finite(point) || !(max_distance >= 0)) return std::nullopt;
+    const glm::dvec3 p(point);
+    double limit = double{max_distance} * max_distance;
+    std::size_t found = std::numeric_limits<std::size_t>::max();
+    glm::dvec3 found_weights(0);
+    search(
+        limit, [&](const Box& box) { return squared_distance(box, p); },
+        [&](std::size_t triangle) {
+          const auto [a, b, c] = corners(triangle);
+          const glm::dvec3 weights = nearest_weights(p, a, b, c);
+          const glm::dvec3 offset = weights.x * a + weights.y * b + weights.z * c - p;
+          const double squared = glm::dot(offset, offset);
+          if (squared > limit || (squared == limit && triangle > found) || !accept(a, b, c)) return;
+          limit = squared;
+          found = triangle;
+          found_weights = weights;
+        });
+    if (found == std::numeric_limits<std::size_t>::max()) return std::nullopt;
+    return make_hit(found, found_weights, std::sqrt(limit));
+  }
+
   Hit make_hit(std::size_t triangle, const glm::dvec3& weights, double distance) const {
     const std::uint32_t* i = &geometry->indices[3 * triangle];
     const Vertex &a = geometry->vertices[i[0]], &b = geometry->vertices[i[1]], &c = geometry->vertices[i[2]];
@@ -190,25 +213,17 @@ SearchTree::SearchTree(std::shared_ptr<const Geometry> geometry) : impl_(std::ma
 SearchTree::~SearchTree() = default;
 
 std::optional<SearchTree::Hit> SearchTree::nearest(const glm::vec3& point, float max_distance) const {
-  if (!is_finite(point) || !(max_distance >= 0)) return std::nullopt;
-  const glm::dvec3 p(point);
-  double limit = double{max_distance} * max_distance;
-  std::size_t found = std::numeric_limits<std::size_t>::max();
-  glm::dvec3 found_weights(0);
-  impl_->search(
-      limit, [&](const Box& box) { return squared_distance(box, p); },
-      [&](std::size_t triangle) {
-        const auto [a, b, c] = impl_->corners(triangle);
-        const glm::dvec3 weights = nearest_weights(p, a, b, c);
-        const glm::dvec3 offset = weights.x * a + weights.y * b + weights.z * c - p;
-        const double squared = glm::dot(offset, offset);
-        if (squared > limit || (squared == limit && triangle > found)) return;
-        limit = squared;
-        found = triangle;
-        found_weights = weights;
-      });
-  if (found == std::numeric_limits<std::size_t>::max()) return std::nullopt;
-  return impl_->make_hit(found, found_weights, std::sqrt(limit));
+  return impl_->nearest(point, max_distance,
+                        [](const glm::dvec3&, const glm::dvec3&, const glm::dvec3&) { return true; });
+}
+
+std::optional<SearchTree::Hit> SearchTree::nearest_facing(const glm::vec3& point, float max_distance,
+                                                          const glm::vec3& normal, float least_cos) const {
+  const glm::dvec3 n(normal);
+  return impl_->nearest(point, max_distance, [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 cross = glm::cross(b - a, c - a);
+    return glm::dot(cross, n) >= double{least_cos} * glm::length(cross);
+  });
 }
 
 std::optional<SearchTree::Hit> SearchTree::first_hit(const glm::vec3& origin, const glm::vec3& direction) const {

@@ -237,9 +237,9 @@ class PositionPlane {
     weight_2_ = glm::dvec2(-e1.y, e1.x) / twice;
   }
 
-  // At the point of the triangle that has the barycentrics of (x, y) with negative ones set to 0.
-  glm::dvec3 at(double x, double y) const {
-    if (is_line_) return base_ + (along_1_ + along_2_) / 3.0;
+  // The weights of the second and third corner at (x, y), with negative ones set to 0.
+  glm::dvec2 weights(double x, double y) const {
+    if (is_line_) return glm::dvec2(1.0 / 3.0);
     const glm::dvec2 d(x - origin_.x, y - origin_.y);
     double b1 = glm::dot(weight_1_, d), b2 = glm::dot(weight_2_, d);
     if (b1 < 0 || b2 < 0 || b1 + b2 > 1) {
@@ -248,7 +248,13 @@ class PositionPlane {
       const double sum = b0 + b1 + b2;
       b1 /= sum, b2 /= sum;
     }
-    return base_ + b1 * along_1_ + b2 * along_2_;
+    return {b1, b2};
+  }
+
+  // At the point of the triangle that has these weights.
+  glm::dvec3 at(double x, double y) const {
+    const glm::dvec2 b = weights(x, y);
+    return base_ + b.x * along_1_ + b.y * along_2_;
   }
 
  private:
@@ -258,6 +264,15 @@ class PositionPlane {
 };
 
 }  // namespace
+
+SurfaceBake::Placement SurfaceBake::placement_of(std::uint32_t slot, int texel) const {
+  const std::uint32_t block = map_.block_of_slot[slot];
+  const int x = static_cast<int>(block % map_.blocks_per_side) * kBlockSize + texel % kBlockSize;
+  const int y = static_cast<int>(block / map_.blocks_per_side) * kBlockSize + texel / kBlockSize;
+  const std::uint32_t t = owner_[std::size_t{slot} * 64 + texel];
+  const PositionPlane plane({texels_at(t, 0), texels_at(t, 1), texels_at(t, 2)}, {});
+  return {t, plane.weights(x + 0.5, y + 0.5)};
+}
 
 void SurfaceBake::place_surface(int band) {
   const int y_low = first_row(band), y_high = first_row(band + 1);

@@ -33,14 +33,22 @@ class SurfaceBake {
   void pack_slots(int band);       // packed positions and bounds; after share_grids
   void bound_tiles();              // after pack_slots of all bands
 
+  // What place_surface and place_gutter found, for those who paint by triangle.
+  struct Placement {
+    std::uint32_t triangle;
+    glm::dvec2 weights;  // of its second and third corner, none negative
+  };
+  Placement placement_of(std::uint32_t slot, int texel) const;  // of a surface texel
+  struct Borrowed {  // a gutter texel that has the position of a surface texel; indices into the per-slot arrays
+    std::size_t gutter, owner;
+  };
+  const std::vector<Borrowed>& borrowed_in(int band) const { return borrowed_[band]; }
+
  private:
   static constexpr std::uint32_t kNobody = 0xffffffffu;
 
   struct Claim {  // of a triangle that covers no texel centre on the texel that holds its centroid
     std::uint32_t texel, triangle;
-  };
-  struct Borrowed {  // a gutter texel that has the position of a surface texel; indices into the per-slot arrays
-    std::size_t gutter, owner;
   };
   struct Leftover {  // area that lies on a texel which its own island does not own
     std::uint32_t texel, triangle;

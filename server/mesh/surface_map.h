@@ -58,6 +58,9 @@ struct SurfaceMap {
   std::size_t bytes() const;
 };
 
+// 400 for a resolution that is no multiple of 128 in 128…16384.
+Result<void> check_map_resolution(int resolution);
+
 // Refused when cancelled, and for a resolution that is no multiple of 128 in 128…16384. The result does not depend on
 // the number of threads; memory ≤ 40 bytes per covered texel while it runs.
 Result<SurfaceMap> bake_surface_map(const Geometry& geometry, int resolution, Progress& progress, int threads = 2);

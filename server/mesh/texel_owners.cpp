@@ -1,0 +1,147 @@
+#include "mesh/texel_owners.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <mutex>
+#include <unordered_map>
+
+#include "mesh/parallel.h"
+#include "mesh/surface_bake.h"
+
+namespace strata::mesh {
+namespace {
+
+constexpr int kBlocksPerTileSide = kTileSize / kBlockSize;
+constexpr const char* kLocating = "Locating texels on the surface";
+constexpr const char* kPainting = "Painting";
+
+std::uint32_t pack_weights(const glm::dvec2& w) {
+  const auto part = [](double value) {
+    return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, 1.0) * 65535.0));
+  };
+  return part(w.x) | part(w.y) << 16;
+}
+
+// What was worked out for the texels of all slots, as tiles.
+class TileSorter {
+ public:
+  TileSorter(const TexelOwners& owners, ValueType type) : owners_(owners), type_(type) {
+    const auto slots = static_cast<std::uint32_t>(owners.block_of_slot.size());
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      const auto block = owners.block_of_slot[slot];
+      const auto x = block % owners.blocks_per_side, y = block / owners.blocks_per_side;
+      slots_[{static_cast<std::uint16_t>(x / kBlocksPerTileSide), static_cast<std::uint16_t>(y / kBlocksPerTileSide)}]
+          .push_back(slot);
+    }
+  }
+
+  TileMap sort(const std::vector<std::uint32_t>& bits, const std::vector<std::uint64_t>& valid) const {
+    TileMap tiles;
+    for (const auto& [address, slots] : slots_) {
+      TileData tile(type_);
+      for (const std::uint32_t slot : slots) {
+        const auto block = owners_.block_of_slot[slot];
+        const auto bx = static_cast<int>(block % owners_.blocks_per_side) % kBlocksPerTileSide,
+                   by = static_cast<int>(block / owners_.blocks_per_side) % kBlocksPerTileSide;
+        for (std::uint64_t left = valid[slot]; left; left &= left - 1) {
+          const int i = std::countr_zero(left);
+          tile.write((by * kBlockSize + i / kBlockSize) * kTileSize + bx * kBlockSize + i % kBlockSize,
+                     bits[std::size_t{slot} * 64 + i]);
+        }
+      }
+      if (tile.valid.any()) tiles[address] = std::make_shared<const TileData>(std::move(tile));
+    }
+    return tiles;
+  }
+
+ private:
+  const TexelOwners& owners_;
+  const ValueType type_;
+  std::unordered_map<TileAddress, std::vector<std::uint32_t>> slots_;
+};
+
+}  // namespace
+
+Result<TexelOwners> bake_texel_owners(const Geometry& geometry, int resolution, Progress& progress, int threads) {
+  if (auto possible = check_map_resolution(resolution); !possible) return tl::unexpected(possible.error());
+  SurfaceMap map;
+  progress.report(0, kLocating);
+  SurfaceBake bake(geometry, resolution, map);
+  const auto on_bands = [&](double fraction_after, auto work) {
+    if (progress.cancelled()) return;
+    parallel_for(threads, bake.band_count(), [&](int band) {
+      if (!progress.cancelled()) work(band);
+    });
+    progress.report(fraction_after, kLocating);
+  };
+  on_bands(0.2, [&](int band) { bake.mark_surface(band); });
+  on_bands(0.3, [&](int band) { bake.mark_gutter(band); });
+  if (progress.cancelled()) return cancelled_problem();
+  bake.assign_slots(threads);
+  on_bands(0.7, [&](int band) { bake.place_surface(band); });
+  on_bands(0.8, [&](int band) { bake.place_gutter(band); });
+  if (progress.cancelled()) return cancelled_problem();
+
+  TexelOwners owners;
+  owners.resolution = resolution;
+  owners.blocks_per_side = map.blocks_per_side;
+  owners.block_of_slot = map.block_of_slot;
+  owners.surface_mask = map.surface_mask;
+  const auto slots = static_cast<std::uint32_t>(owners.block_of_slot.size());
+  owners.triangle.resize(std::size_t{slots} * 64);
+  owners.weights.resize(std::size_t{slots} * 64);
+  for (int band = 0; band < bake.band_count(); ++band)
+    for (const auto& [gutter, owner] : bake.borrowed_in(band))
+      owners.gutter.push_back({static_cast<std::uint32_t>(gutter), static_cast<std::uint32_t>(owner)});
+  constexpr std::uint32_t kSlotsAtOnce = 4096;
+  parallel_for(threads, static_cast<int>((slots + kSlotsAtOnce - 1) / kSlotsAtOnce), [&](int part) {
+    const std::uint32_t first = part * kSlotsAtOnce, last = std::min(slots, first + kSlotsAtOnce);
+    for (std::uint32_t slot = first; slot < last && !progress.cancelled(); ++slot)
+      for (std::uint64_t left = owners.surface_mask[slot]; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const auto [triangle, weights] = bake.placement_of(slot, i);
+        owners.triangle[std::size_t{slot} * 64 + i] = triangle;
+        owners.weights[std::size_t{slot} * 64 + i] = pack_weights(weights);
+      }
+  });
+  if (progress.cancelled()) return cancelled_problem();
+  progress.report(1, kLocating);
+  return owners;
+}
+
+Result<TileMap> paint_texels(const TexelOwners& owners, ValueType type, const TexelBits& bits_at, Progress& progress,
+                             int threads) {
+  const auto slots = static_cast<std::uint32_t>(owners.block_of_slot.size());
+  std::vector<std::uint32_t> bits(std::size_t{slots} * 64);
+  std::vector<std::uint64_t> valid(slots, 0);
+  constexpr std::uint32_t kSlotsAtOnce = 256;
+  std::mutex mutex;
+  std::uint32_t done = 0;
+  parallel_for(threads, static_cast<int>((slots + kSlotsAtOnce - 1) / kSlotsAtOnce), [&](int part) {
+    const std::uint32_t first = part * kSlotsAtOnce, last = std::min(slots, first + kSlotsAtOnce);
+    for (std::uint32_t slot = first; slot < last && !progress.cancelled(); ++slot)
+      for (std::uint64_t left = owners.surface_mask[slot]; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const std::size_t texel = std::size_t{slot} * 64 + i;
+        const auto value = bits_at(owners.triangle[texel], owners.weights_of(texel));
+        if (!value) continue;
+        bits[texel] = *value;
+        valid[slot] |= std::uint64_t{1} << i;
+      }
+    std::lock_guard lock(mutex);
+    done += last - first;
+    progress.report(0.9 * done / slots, kPainting);
+  });
+  if (progress.cancelled()) return cancelled_problem();
+  for (const auto& [texel, owner] : owners.gutter) {
+    if (!(valid[owner / 64] >> (owner % 64) & 1)) continue;
+    bits[texel] = bits[owner];
+    valid[texel / 64] |= std::uint64_t{1} << (texel % 64);
+  }
+  TileMap tiles = TileSorter(owners, type).sort(bits, valid);
+  progress.report(1, kPainting);
+  return tiles;
+}
+
+}  // namespace strata::mesh
