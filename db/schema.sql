@@ -20,6 +20,13 @@ CREATE TABLE public.blobs (
     CONSTRAINT blobs_sha256_check CHECK ((octet_length(sha256) = 32))
 );
 
+CREATE TABLE public.detail_levels (
+    model_id bigint NOT NULL,
+    level integer NOT NULL,
+    geometry bytea NOT NULL,
+    CONSTRAINT detail_levels_level_check CHECK ((level > 0))
+);
+
 CREATE TABLE public.edits (
     model_id bigint NOT NULL,
     sequence bigint NOT NULL,
@@ -233,6 +240,9 @@ ALTER TABLE ONLY public.blob_chunks
 ALTER TABLE ONLY public.blobs
     ADD CONSTRAINT blobs_pkey PRIMARY KEY (sha256);
 
+ALTER TABLE ONLY public.detail_levels
+    ADD CONSTRAINT detail_levels_pkey PRIMARY KEY (model_id, level);
+
 ALTER TABLE ONLY public.edits
     ADD CONSTRAINT edits_model_id_id_key UNIQUE (model_id, id);
 
@@ -286,6 +296,8 @@ ALTER TABLE ONLY public.users
 
 CREATE INDEX answers_time ON public.answers USING btree ("time");
 
+CREATE INDEX detail_levels_geometry ON public.detail_levels USING btree (geometry);
+
 CREATE INDEX edits_author ON public.edits USING btree (layer_id, user_name, in_force, sequence) WHERE writer;
 
 CREATE INDEX edits_layer ON public.edits USING btree (layer_id, sequence);
@@ -308,6 +320,12 @@ CREATE INDEX tokens_user ON public.tokens USING btree (user_name);
 
 ALTER TABLE ONLY public.blob_chunks
     ADD CONSTRAINT blob_chunks_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.detail_levels
+    ADD CONSTRAINT detail_levels_geometry_fkey FOREIGN KEY (geometry) REFERENCES public.blobs(sha256);
+
+ALTER TABLE ONLY public.detail_levels
+    ADD CONSTRAINT detail_levels_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.edits
     ADD CONSTRAINT edits_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE CASCADE;

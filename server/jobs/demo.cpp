@@ -6,6 +6,7 @@
 #include "core/slug.h"
 #include "jobs/demo_rules.h"
 #include "jobs/import_job.h"
+#include "jobs/model_geometry.h"
 #include "mesh/atlas.h"
 #include "mesh/demo_pot.h"
 #include "mesh/geometry.h"
@@ -77,22 +78,13 @@ Result<Model> create_pot(store::Store& store, const Project& project, double det
   model.unit = Unit::mm;
   model.unit_assumed = false;
   model.scale_verified = true;
-  model.origin = geometry.origin;
-  model.triangles = geometry.triangle_count();
-  model.vertices = geometry.positions.size();
-  model.area = mesh::surface_area(pot);
-  model.bounds_min = model.bounds_max = geometry.positions.front();
-  for (const auto& position : geometry.positions) {
-    model.bounds_min = glm::min(model.bounds_min, position);
-    model.bounds_max = glm::max(model.bounds_max, position);
-  }
   model.atlas = atlas->report;
   model.default_resolution = kResolution;
   model.creator = kAuthor;
   model.method = "Made by formula, not scanned";
   progress.begin_stage(0.5, 0.6);
   progress.report(0, "Saving the pot");
-  fresh.geometry = mesh::encode_geometry(geometry);
+  if (auto put = put_geometry(geometry, progress, fresh); !put) return tl::unexpected(put.error());
   return store.create_model(fresh, [&progress] { return progress.cancelled(); });
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/slug.h"
+#include "jobs/model_geometry.h"
 #include "mesh/geometry.h"
 #include "mesh/load.h"
 
@@ -19,7 +20,7 @@ constexpr std::size_t kLongestName = 200;
 constexpr std::size_t kLongestFilename = 255;
 
 // Shares of the whole import, as measured on scans of 100 000 to 1 000 000 triangles.
-constexpr double kRead = 0.15, kUnfolded = 0.8, kBuilt = 0.85;
+constexpr double kRead = 0.15, kUnfolded = 0.75, kBuilt = 0.85;
 
 std::string stem(const std::string& filename) {
   const std::string base = base_filename(filename);
@@ -52,18 +53,6 @@ Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair
   }
   progress.report(0, "Unfolding the surface");
   return mesh::make_atlas(mesh, kLowestResolution, progress);
-}
-
-void describe_form(Model& model, const mesh::TriangleMesh& mesh, const mesh::Geometry& geometry) {
-  model.origin = geometry.origin;
-  model.triangles = geometry.triangle_count();
-  model.vertices = geometry.positions.size();
-  model.area = mesh::surface_area(mesh);
-  model.bounds_min = model.bounds_max = geometry.positions.front();
-  for (const auto& position : geometry.positions) {
-    model.bounds_min = glm::min(model.bounds_min, position);
-    model.bounds_max = glm::max(model.bounds_max, position);
-  }
 }
 
 }  // namespace
@@ -122,6 +111,8 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   progress.report(0, "Building the model");
   if (progress.cancelled()) return cancelled_problem();
   const mesh::Geometry geometry = mesh::build_geometry(loaded->mesh, *atlas);
+  loaded->mesh = {};  // it is in the geometry now; large scans need the memory
+  atlas->corner_uvs = {};
 
   store::Store::NewModel fresh;
   Model& model = fresh.model;
@@ -135,13 +126,10 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   model.default_resolution = request.resolution == 0 ? kLowestResolution : request.resolution;
   model.atlas = atlas->report;
   model.repairs = loaded->repairs;
-  describe_form(model, loaded->mesh, geometry);
+  if (auto put = put_geometry(geometry, progress, fresh); !put) return tl::unexpected(put.error());
 
   progress.begin_stage(kBuilt, 1);
   progress.report(0, "Saving");
-  *loaded = {};  // the mesh is in the geometry now; large scans need the memory
-  *atlas = {};
-  fresh.geometry = mesh::encode_geometry(geometry);
   fresh.sources.push_back({base_filename(request.filename), request.file});
   progress.report(0.5, "Saving");
   auto created = store.create_model(

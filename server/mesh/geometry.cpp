@@ -116,6 +116,39 @@ class VertexSplitter {
 
 }  // namespace
 
+void find_boxes(Geometry& geometry) {
+  geometry.clusters.clear();
+  constexpr std::size_t kIndices = 3 * Geometry::kTrianglesPerCluster;
+  for (std::size_t first = 0; first < geometry.indices.size(); first += kIndices) {
+    const std::size_t end = std::min(first + kIndices, geometry.indices.size());
+    ClusterBox box;
+    box.min = box.max = geometry.vertices[geometry.indices[first]].position;
+    for (std::size_t i = first; i < end; ++i) {
+      const glm::vec3& position = geometry.vertices[geometry.indices[i]].position;
+      box.min = glm::min(box.min, position);
+      box.max = glm::max(box.max, position);
+    }
+    geometry.clusters.push_back(box);
+  }
+  if (geometry.clusters.empty()) return;
+  geometry.box_min = geometry.clusters.front().min;
+  geometry.box_max = geometry.clusters.front().max;
+  for (const ClusterBox& box : geometry.clusters) {
+    geometry.box_min = glm::min(geometry.box_min, box.min);
+    geometry.box_max = glm::max(geometry.box_max, box.max);
+  }
+}
+
+double surface_area(const Geometry& geometry) {
+  const auto corner = [&](std::size_t i) -> const glm::dvec3& {
+    return geometry.positions[geometry.vertices[geometry.indices[i]].position_index];
+  };
+  double sum = 0;
+  for (std::size_t i = 0; i + 2 < geometry.indices.size(); i += 3)
+    sum += glm::length(glm::cross(corner(i + 1) - corner(i), corner(i + 2) - corner(i))) / 2;
+  return sum;
+}
+
 Geometry build_geometry(const TriangleMesh& mesh, const Atlas& atlas) {
   Geometry geometry;
   if (mesh.triangles.empty()) return geometry;
@@ -134,11 +167,7 @@ Geometry build_geometry(const TriangleMesh& mesh, const Atlas& atlas) {
   for (std::uint32_t triangle : order) {
     for (std::size_t k = 0; k < 3; ++k) geometry.indices.push_back(splitter.vertex_for(3 * std::size_t{triangle} + k));
   }
-  geometry.box_min = geometry.box_max = geometry.vertices[0].position;
-  for (const Vertex& vertex : geometry.vertices) {
-    geometry.box_min = glm::min(geometry.box_min, vertex.position);
-    geometry.box_max = glm::max(geometry.box_max, vertex.position);
-  }
+  find_boxes(geometry);
   return geometry;
 }
 

@@ -21,6 +21,11 @@ struct Vertex {
 };
 static_assert(sizeof(Vertex) == 32);
 
+// Box of a run of triangles, model space.
+struct ClusterBox {
+  glm::vec3 min{0}, max{0};
+};
+
 // What a model is once imported: the immutable input of rendering, of the surface map and of the search tree.
 struct Geometry {
   glm::dvec3 origin{0};                // centre of the box, rounded to whole units where the box is larger than 16
@@ -28,11 +33,19 @@ struct Geometry {
   std::vector<Vertex> vertices;        // corners with equal position and uv share a vertex
   std::vector<std::uint32_t> indices;  // 3 a triangle, in an order that keeps neighbours together
   glm::vec3 box_min{0}, box_max{0};    // model space
+  std::vector<ClusterBox> clusters;    // of each kTrianglesPerCluster triangles in their order; the last has fewer
+
+  static constexpr std::size_t kTrianglesPerCluster = 1024;
 
   std::size_t triangle_count() const { return indices.size() / 3; }
 };
 
+// Fills in the boxes, which follow from vertices and indices.
+void find_boxes(Geometry& geometry);
+
 Geometry build_geometry(const TriangleMesh& mesh, const Atlas& atlas);
+
+double surface_area(const Geometry& geometry);  // unit²
 
 // Stored form (zstd, versioned); decoding checks every bound and index.
 std::vector<std::uint8_t> encode_geometry(const Geometry& geometry);

@@ -141,12 +141,7 @@ Result<Geometry> deserialize(const std::vector<std::uint8_t>& bytes) {
              std::isfinite(vertex.position.z) && std::isfinite(vertex.uv.x) && std::isfinite(vertex.uv.y);
   }
   if (!finite) return damaged("a number in it is not finite");
-  if (v.empty()) return geometry;
-  geometry.box_min = geometry.box_max = v[0].position;
-  for (const Vertex& vertex : v) {
-    geometry.box_min = glm::min(geometry.box_min, vertex.position);
-    geometry.box_max = glm::max(geometry.box_max, vertex.position);
-  }
+  find_boxes(geometry);
   return geometry;
 }
 

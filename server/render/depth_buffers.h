@@ -19,10 +19,11 @@ struct DepthKey {
   std::uint64_t model = 0;
   glm::dmat4 view{1.0}, projection{1.0};
   int width = 0, height = 0;
+  int level = 0;  // of the model's detail; edits need the full mesh, 0
   bool operator==(const DepthKey&) const = default;
 };
 
-// Depth of the full mesh from one camera, with a coarse grid of largest depths that is filled where it is asked for.
+// Depth of a mesh from one camera, with a coarse grid of largest depths that is filled where it is asked for.
 struct DepthBuffer {
   DepthKey key;
   bool complete = false;  // every triangle was drawn

@@ -12,6 +12,10 @@ namespace {
 
 constexpr std::size_t kBytesCollectedPerStep = std::size_t{16} << 20;  // a few milliseconds
 
+double ms_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
 }  // namespace
 
 Step FrameJob::step(GpuScene& scene) {
@@ -56,13 +60,16 @@ Step FrameJob::step(GpuScene& scene) {
   };
   const auto step = advance();
   if (!step) return refuse(step.error());
-  busy_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  busy_ms_ += ms_since(begin);
   if (*step == Step::done) {
     (*view)->drawing = false;
     if (scene.lost())
       return refuse({503, "GPU lost", "The GPU context was lost and is being rebuilt. Ask for the frame again.", {}});
     pixels_ = {};
     frame_.render_ms = busy_ms_;
+    frame_.level = (*view)->key.level;
+    if (progress_.cleared && !scene.info().software)
+      scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
     task_.done(std::move(frame_));
   }
   return *step;
@@ -88,28 +95,51 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
                   "layers");
     }
   }
-  const DepthKey key{view.model, request.camera.view, request.camera.projection, request.width, request.height};
+  DepthKey key{view.model, request.camera.view, request.camera.projection, request.width, request.height};
   view.drawing = true;
+  if (request.moving) {
+    key.level = view.key.level;  // what there is of this camera serves
+    if (view.gbuffer_complete && view.key == key) return {};
+    auto level = choose_level(scene, view);
+    if (!level) return tl::unexpected(level.error());
+    key.level = *level;
+  }
   if (view.gbuffer_complete && view.key == key) return {};
   return prepare_gbuffer(view, key, scene.depths(), scene.memory());
+}
+
+Result<int> FrameJob::choose_level(GpuScene& scene, const View& view) const {
+  auto model = scene.model(view.model);
+  if (!model) return tl::unexpected(model.error());
+  std::vector<std::size_t> triangles;
+  for (const auto& mesh : (*model)->levels) {
+    const auto uniforms = mesh_uniforms(task_.request.camera, mesh->geometry().origin);
+    triangles.push_back(mesh->visible_clusters(uniforms.clip_from_model, uniforms.eye).size() *
+                        mesh::Geometry::kTrianglesPerCluster);
+  }
+  return scene.detail_budget().choose(triangles);
 }
 
 Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
   auto model = scene.model(view.model);
   if (!model) return tl::unexpected(model.error());
-  const MeshBuffers& mesh = *(*model)->mesh;
+  const MeshBuffers& mesh = *(*model)->levels[static_cast<std::size_t>(view.key.level)];
+  if (!progress_.cleared) mesh_begin_ = std::chrono::steady_clock::now();
   const auto uniforms = mesh_uniforms(task_.request.camera, mesh.geometry().origin);
   const bool complete =
       scene.gbuffer_pass().draw_slice(mesh, uniforms, view.gbuffer, view.key.width, view.key.height, progress_);
-  if (complete) view.gbuffer_complete = view.depth->complete = true;
-  return complete;
+  if (!complete) return false;
+  view.gbuffer_complete = view.depth->complete = true;
+  // A software renderer works while it is called, a GPU until the picture can be read.
+  if (scene.info().software) scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
+  return true;
 }
 
 Result<void> FrameJob::choose_area(GpuScene& scene, const View& view) {
   const FrameRequest& request = task_.request;
   auto model = scene.model(view.model);
   if (!model) return tl::unexpected(model.error());
-  const mesh::Geometry& geometry = (*model)->mesh->geometry();
+  const mesh::Geometry& geometry = (*model)->mesh().geometry();
   const glm::dmat4 clip =
       request.camera.projection * request.camera.view * glm::translate(glm::dmat4(1.0), geometry.origin);
   frame_.width = request.width;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+
 #include "render/frame_queue.h"
 #include "render/gpu_scene.h"
 #include "render/gpu_thread.h"
@@ -19,6 +21,7 @@ class FrameJob {
  private:
   enum class Stage { prepare, gbuffer, area, shade, readback };
   Result<void> prepare(GpuScene& scene, View& view);
+  Result<int> choose_level(GpuScene& scene, const View& view) const;
   Result<bool> draw_slice(GpuScene& scene, View& view);  // true when complete
   Result<void> choose_area(GpuScene& scene, const View& view);
   Result<bool> shade_band(GpuScene& scene, View& view);  // true when complete
@@ -28,6 +31,7 @@ class FrameJob {
   FrameTask task_;
   Stage stage_ = Stage::prepare;
   MeshProgress progress_;
+  std::chrono::steady_clock::time_point mesh_begin_;  // when its first slice was drawn
   Frame frame_;
   PixelRect surface_;    // of `frame_.rect`: may show surface
   int shaded_rows_ = 0;  // of `frame_.rect`, from its top

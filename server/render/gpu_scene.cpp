@@ -84,6 +84,7 @@ Result<void> GpuScene::load() {
   glDisable(GL_DITHER);
   const auto slice = info_.software ? kTrianglesPerSliceSoftware : kTrianglesPerSliceHardware;
   const std::string& dir = options_.shader_dir;
+  detail_budget_ = DetailBudget(info_.software);
   if (auto made = keep(depths_, DepthBuffers::create(dir, slice, memory_, readback_)); !made) return made;
   if (auto made = keep(edit_pass_, EditPass::create(dir, readback_)); !made) return made;
   if (auto made = keep(tile_reader_, TileReader::create(dir, readback_)); !made) return made;

@@ -6,6 +6,7 @@
 
 #include "gl/debug_messages.h"
 #include "gl/egl_context.h"
+#include "render/detail_budget.h"
 #include "render/edit_pass.h"
 #include "render/shade_pass.h"
 #include "render/tile_reader.h"
@@ -18,7 +19,8 @@ namespace strata::render {
 class GpuScene {
  public:
   struct Model {
-    std::unique_ptr<MeshBuffers> mesh;
+    std::vector<std::unique_ptr<MeshBuffers>> levels;  // the full mesh, then coarser copies
+    const MeshBuffers& mesh() const { return *levels.front(); }
     std::map<int, std::unique_ptr<SurfaceMapTextures>> maps;  // by resolution, complete ones only
   };
   struct Layer {
@@ -44,6 +46,7 @@ class GpuScene {
   TileReader& tile_reader() { return *tile_reader_; }
   MeshPass& gbuffer_pass() { return *gbuffer_pass_; }
   ShadePass& shade_pass() { return *shade_pass_; }
+  DetailBudget& detail_budget() { return detail_budget_; }
   // How much of a picture is shaded in a step, in pixels of one layer.
   int pixels_per_band() const { return info_.software ? kPixelsPerBandSoftware : kPixelsPerBandHardware; }
   std::uint64_t next_use() { return ++uses_; }
@@ -83,6 +86,7 @@ class GpuScene {
   std::optional<TileReader> tile_reader_;
   std::optional<MeshPass> gbuffer_pass_;
   std::optional<ShadePass> shade_pass_;
+  DetailBudget detail_budget_;
   std::unordered_map<ModelHandle, Model> models_;
   std::unordered_map<LayerHandle, Layer> layers_;
   std::unordered_map<ViewHandle, View> views_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -11,21 +12,21 @@ namespace {
 
 constexpr std::size_t kSliceBytes = std::size_t{4} << 20;  // ≈ 1 ms of copying
 
-// A centre need not be exact: it orders drawing, no more.
-constexpr std::size_t kTrianglesPerSample = 256;
-
-std::vector<glm::vec3> cluster_centers(const mesh::Geometry& geometry) {
-  std::vector<glm::vec3> centers;
-  for (std::size_t first = 0; first < geometry.triangle_count(); first += MeshBuffers::kTrianglesPerCluster) {
-    const std::size_t end = std::min(first + MeshBuffers::kTrianglesPerCluster, geometry.triangle_count());
-    glm::vec3 sum{0};
-    float samples = 0;
-    for (std::size_t triangle = first; triangle < end; triangle += kTrianglesPerSample, ++samples) {
-      sum += geometry.vertices[geometry.indices[3 * triangle]].position;
+// Whether all corners lie beyond one side of the clip volume. The slack covers the rounding of the vertex stage.
+bool outside(const mesh::ClusterBox& box, const glm::mat4& clip_from_model) {
+  constexpr float kSlack = 1e-5f;
+  unsigned beyond = 0x3f;  // a bit a side
+  for (unsigned corner = 0; corner < 8 && beyond != 0; ++corner) {
+    const glm::vec3 position{corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                             corner & 4 ? box.max.z : box.min.z};
+    const glm::vec4 clip = clip_from_model * glm::vec4(position, 1);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float slack = kSlack * (std::abs(clip[axis]) + std::abs(clip.w));
+      if (clip[axis] <= clip.w + slack) beyond &= ~(1u << (2 * axis));
+      if (clip[axis] >= -clip.w - slack) beyond &= ~(2u << (2 * axis));
     }
-    centers.push_back(sum / samples);
   }
-  return centers;
+  return beyond != 0;
 }
 
 constexpr std::array<gl::VertexAttribute, 4> kAttributes{{
@@ -41,7 +42,6 @@ Result<std::unique_ptr<MeshBuffers>> MeshBuffers::create(std::shared_ptr<const m
                                                          GpuMemory& memory) {
   auto mesh = std::make_unique<MeshBuffers>();
   mesh->geometry_ = std::move(geometry);
-  mesh->cluster_centers_ = cluster_centers(mesh->geometry());
   auto share = memory.reserve(mesh->vertex_bytes() + mesh->index_bytes(), "a model's triangles");
   if (!share) return tl::unexpected(share.error());
   mesh->share_ = std::move(*share);
@@ -55,13 +55,15 @@ Result<std::unique_ptr<MeshBuffers>> MeshBuffers::create(std::shared_ptr<const m
   return mesh;
 }
 
-std::vector<std::uint32_t> MeshBuffers::clusters_from(const glm::vec4& eye) const {
+std::vector<std::uint32_t> MeshBuffers::visible_clusters(const glm::mat4& clip_from_model, const glm::vec4& eye) const {
   std::vector<std::pair<float, std::uint32_t>> by_distance;
-  by_distance.reserve(cluster_centers_.size());
-  for (const glm::vec3& center : cluster_centers_) {
+  for (std::size_t i = 0; i < geometry_->clusters.size(); ++i) {
+    const mesh::ClusterBox& box = geometry_->clusters[i];
+    if (outside(box, clip_from_model)) continue;
+    const glm::vec3 center = (box.min + box.max) * 0.5f;
     const glm::vec3 to_eye = glm::vec3(eye) - center * eye.w;
     const float distance = eye.w > 0 ? glm::dot(to_eye, to_eye) : -glm::dot(center, to_eye);
-    by_distance.emplace_back(distance, static_cast<std::uint32_t>(by_distance.size()));
+    by_distance.emplace_back(distance, static_cast<std::uint32_t>(i));
   }
   std::sort(by_distance.begin(), by_distance.end());
   std::vector<std::uint32_t> clusters;

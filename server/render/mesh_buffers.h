@@ -14,8 +14,6 @@ namespace strata::render {
 // A model's vertices and indices on the GPU, filled in slices.
 class MeshBuffers {
  public:
-  static constexpr std::size_t kTrianglesPerCluster = 4096;
-
   static Result<std::unique_ptr<MeshBuffers>> create(std::shared_ptr<const mesh::Geometry> geometry, GpuMemory& memory);
 
   // Uploads the next few megabytes; true when everything is there.
@@ -26,16 +24,15 @@ class MeshBuffers {
   const gl::VertexArray& vertex_array() const { return vertex_array_; }
   std::size_t triangle_count() const { return geometry_->triangle_count(); }
 
-  // Clusters are runs of triangles, which are neighbours; the last may be shorter. These are their numbers, nearest first, as
-  // seen from `eye` (a point where w is 1, a direction towards the eye where it is 0; model space).
-  std::vector<std::uint32_t> clusters_from(const glm::vec4& eye) const;
+  // Numbers of the geometry's clusters that reach into the window, nearest first as seen from `eye` (a point where w is 1, a
+  // direction towards the eye where it is 0; model space).
+  std::vector<std::uint32_t> visible_clusters(const glm::mat4& clip_from_model, const glm::vec4& eye) const;
 
  private:
   std::size_t vertex_bytes() const { return geometry_->vertices.size() * sizeof(mesh::Vertex); }
   std::size_t index_bytes() const { return geometry_->indices.size() * sizeof(std::uint32_t); }
 
   std::shared_ptr<const mesh::Geometry> geometry_;
-  std::vector<glm::vec3> cluster_centers_;
   gl::Buffer vertices_, indices_;
   gl::VertexArray vertex_array_;
   GpuMemory::Share share_;

@@ -16,7 +16,7 @@ Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader
   pass.kind_ = kind;
   pass.program_ = std::move(*program);
   pass.uniforms_ = std::move(*uniforms);
-  pass.clusters_per_slice_ = std::max<std::size_t>(1, triangles_per_slice / MeshBuffers::kTrianglesPerCluster);
+  pass.clusters_per_slice_ = std::max<std::size_t>(1, triangles_per_slice / mesh::Geometry::kTrianglesPerCluster);
   return pass;
 }
 
@@ -31,7 +31,7 @@ bool MeshPass::draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& u
       glClearNamedFramebufferuiv(target.id(), GL_COLOR, 0, background.data());
       glClearNamedFramebufferfv(target.id(), GL_COLOR, 1, dark.data());
     }
-    progress.clusters = mesh.clusters_from(uniforms.eye);
+    progress.clusters = mesh.visible_clusters(uniforms.clip_from_model, uniforms.eye);
     progress.cleared = true;
   }
   uniforms_.upload_values(0, std::span(&uniforms, 1));
@@ -48,13 +48,14 @@ bool MeshPass::draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& u
   std::vector<GLsizei> counts;
   std::vector<const void*> offsets;
   for (; progress.next_cluster < end; ++progress.next_cluster) {
-    const std::size_t first = progress.clusters[progress.next_cluster] * MeshBuffers::kTrianglesPerCluster;
-    counts.push_back(
-        static_cast<GLsizei>(3 * std::min(MeshBuffers::kTrianglesPerCluster, mesh.triangle_count() - first)));
+    constexpr std::size_t kTriangles = mesh::Geometry::kTrianglesPerCluster;
+    const std::size_t first = progress.clusters[progress.next_cluster] * kTriangles;
+    counts.push_back(static_cast<GLsizei>(3 * std::min(kTriangles, mesh.triangle_count() - first)));
     offsets.push_back(reinterpret_cast<const void*>(3 * first * sizeof(std::uint32_t)));
   }
-  glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
-                      static_cast<GLsizei>(counts.size()));
+  if (!counts.empty())
+    glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
+                        static_cast<GLsizei>(counts.size()));
   glFlush();  // lets the driver draw this slice while the next is prepared
   return progress.next_cluster == progress.clusters.size();
 }

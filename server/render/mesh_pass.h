@@ -18,9 +18,11 @@ struct MeshProgress {
   std::vector<std::uint32_t> clusters;  // in drawing order
   std::size_t next_cluster = 0;
   bool cleared = false;
+
+  std::size_t triangles() const { return clusters.size() * mesh::Geometry::kTrianglesPerCluster; }
 };
 
-// Draws the full mesh, near parts first, which spares hidden ones their shading: depth alone, or the g-buffer. Both use
+// Draws a mesh, near parts first, which spares hidden ones their shading: depth alone, or the g-buffer. Both use
 // one vertex stage, so their depths are equal. Each call sets all state it needs: other passes may run between slices.
 // Nothing is culled by facing, because scans are open.
 class MeshPass {

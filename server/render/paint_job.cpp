@@ -55,7 +55,7 @@ Result<PaintJob::Target> PaintJob::target(GpuScene& scene) {
                 "The surface map of " + std::to_string(textures.resolution()) +
                     " texels is not on the GPU yet. Try again soon.");
   }
-  return Target{*(*model)->mesh, *map->second, textures};
+  return Target{(*model)->mesh(), *map->second, textures};
 }
 
 Result<Step> PaintJob::advance(GpuScene& scene, const Target& target) {

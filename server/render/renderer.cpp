@@ -147,7 +147,7 @@ std::uint64_t Renderer::layer_bytes_used(LayerHandle layer) const {
 
 int Renderer::debug_errors() const { return impl_->messages.errors(); }
 
-void Renderer::add_model(std::shared_ptr<const mesh::Geometry> geometry, Done<ModelHandle> done) {
+void Renderer::add_model(ModelGeometry geometry, Done<ModelHandle> done) {
   impl_->post(Lane::background, std::make_shared<ModelUpload>(std::move(geometry), std::move(done)));
 }
 

@@ -72,6 +72,7 @@ struct PixelRect {
 struct FrameRequest {
   ViewHandle view = 0;
   Camera camera;
+  bool moving = false;        // a coarser copy of the model may be shown, so that the picture comes in time
   int width = 0, height = 0;  // pixels of the picture (the camera's window scaled to this size)
   std::vector<LayerStyle> layers;
   // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's last frame: the
@@ -88,6 +89,13 @@ struct Frame {
   int width = 0, height = 0;         // of the whole picture
   std::vector<std::uint8_t> pixels;  // RGBA8, rect.width × rect.height, top row first
   double render_ms = 0;
+  int level = 0;  // of the model that is shown: 0 is the full mesh, 1 the finest coarser copy
+};
+
+// A mesh and its coarser copies, finest first (mesh::make_detail_levels).
+struct ModelGeometry {
+  std::shared_ptr<const mesh::Geometry> full;
+  std::vector<std::shared_ptr<const mesh::Geometry>> coarser;
 };
 
 // Owns the GPU: one thread with the EGL context and a bounded queue (invariant 1 of ARCHITECTURE.md). All functions are
@@ -111,7 +119,7 @@ class Renderer {
   template <class T>
   using Done = std::function<void(Result<T>)>;
 
-  void add_model(std::shared_ptr<const mesh::Geometry> geometry, Done<ModelHandle> done);
+  void add_model(ModelGeometry geometry, Done<ModelHandle> done);
   void remove_model(ModelHandle model);  // and its layers, surface maps and views
   // Needed before strokes at this resolution; baked by the caller, uploaded in slices.
   void add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map, Done<void> done);

@@ -14,23 +14,27 @@ bool is_empty(const TileUpload& tile) { return !tile.data || tile.data->values.e
 }  // namespace
 
 Step ModelUpload::step(GpuScene& scene) {
-  if (!mesh_) {
-    if (!geometry_ || geometry_->indices.empty() || geometry_->vertices.empty()) {
-      abort({422, "Model is empty", "A model needs at least one triangle.", "geometry"});
-      return Step::done;
-    }
-    auto mesh = MeshBuffers::create(geometry_, scene.memory());
-    if (!mesh) {
-      abort(mesh.error());
-      return Step::done;
-    }
-    mesh_ = std::move(*mesh);
+  const auto complete = advance(scene);
+  if (!complete) {
+    abort(complete.error());
+    return Step::done;
   }
-  if (!mesh_->upload_slice()) return Step::more;
-  GpuScene::Model model;
-  model.mesh = std::move(mesh_);
-  done_(scene.add(std::move(model)));
+  if (!*complete) return Step::more;
+  done_(scene.add(std::move(model_)));
   return Step::done;
+}
+
+Result<bool> ModelUpload::advance(GpuScene& scene) {
+  const std::size_t level = model_.levels.size();
+  if (level > 0 && !model_.levels.back()->upload_slice()) return false;
+  if (level > geometry_.coarser.size()) return true;
+  const auto& geometry = level == 0 ? geometry_.full : geometry_.coarser[level - 1];
+  if (!geometry || geometry->indices.empty() || geometry->vertices.empty())
+    return fail(422, "Model is empty", "A model needs at least one triangle.", "geometry");
+  auto mesh = MeshBuffers::create(geometry, scene.memory());
+  if (!mesh) return tl::unexpected(mesh.error());
+  model_.levels.push_back(std::move(*mesh));
+  return false;
 }
 
 Step SurfaceMapUpload::step(GpuScene& scene) {

@@ -9,15 +9,17 @@ namespace strata::render {
 
 class ModelUpload {
  public:
-  ModelUpload(std::shared_ptr<const mesh::Geometry> geometry, Renderer::Done<ModelHandle> done)
+  ModelUpload(ModelGeometry geometry, Renderer::Done<ModelHandle> done)
       : geometry_(std::move(geometry)), done_(std::move(done)) {}
   Step step(GpuScene& scene);
   void abort(const Problem& problem) { done_(tl::unexpected(problem)); }
 
  private:
-  std::shared_ptr<const mesh::Geometry> geometry_;
+  Result<bool> advance(GpuScene& scene);  // true when complete
+
+  const ModelGeometry geometry_;
   Renderer::Done<ModelHandle> done_;
-  std::unique_ptr<MeshBuffers> mesh_;
+  GpuScene::Model model_;
 };
 
 class SurfaceMapUpload {

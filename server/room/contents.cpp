@@ -29,6 +29,27 @@ Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id,
   return contents;
 }
 
+Result<render::ModelGeometry> read_geometry(store::Store& store, std::int64_t model_id) {
+  const auto decode = [](std::span<const std::uint8_t> bytes) -> Result<std::shared_ptr<const mesh::Geometry>> {
+    auto geometry = mesh::decode_geometry(bytes);
+    if (!geometry) return tl::unexpected(geometry.error());
+    return std::make_shared<const mesh::Geometry>(std::move(*geometry));
+  };
+  auto bytes = store.geometry(model_id);
+  if (!bytes) return tl::unexpected(bytes.error());
+  auto full = decode(*bytes);
+  if (!full) return tl::unexpected(full.error());
+  render::ModelGeometry geometry{std::move(*full), {}};
+  auto levels = store.detail_levels(model_id);
+  if (!levels) return tl::unexpected(levels.error());
+  for (const auto& level : *levels) {
+    auto coarser = decode(level);
+    if (!coarser) return tl::unexpected(coarser.error());
+    geometry.coarser.push_back(std::move(*coarser));
+  }
+  return geometry;
+}
+
 Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model, const Layer& layer,
                                       const TileMap& tiles) {
   auto handle = await<render::LayerHandle>(
@@ -42,7 +63,7 @@ Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelH
   return tl::unexpected(written.error());
 }
 
-Result<GpuContents> fill_gpu(render::Renderer& renderer, const std::shared_ptr<const mesh::Geometry>& geometry,
+Result<GpuContents> fill_gpu(render::Renderer& renderer, const render::ModelGeometry& geometry,
                              const std::vector<LayerState>& layers) {
   auto model = await<render::ModelHandle>([&](auto done) { renderer.add_model(geometry, std::move(done)); });
   if (!model) return tl::unexpected(model.error());

@@ -19,12 +19,15 @@ struct JournalContents {
 };
 Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id, const std::vector<LayerState>& held);
 
+// The model's mesh and its coarser copies.
+Result<render::ModelGeometry> read_geometry(store::Store& store, std::int64_t model_id);
+
 struct GpuContents {
   render::ModelHandle model = 0;
   std::map<std::int64_t, render::LayerHandle> layers;  // by id
 };
 // A model and its layers, from their mirrors: all of it or nothing.
-Result<GpuContents> fill_gpu(render::Renderer& renderer, const std::shared_ptr<const mesh::Geometry>& geometry,
+Result<GpuContents> fill_gpu(render::Renderer& renderer, const render::ModelGeometry& geometry,
                              const std::vector<LayerState>& layers);
 Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model, const Layer& layer,
                                       const TileMap& tiles);

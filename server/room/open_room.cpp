@@ -46,10 +46,11 @@ auto OpenRoom::on_strand(Work work) const {
   return future.get();
 }
 
-OpenRoom::OpenRoom(const RoomParts& parts, Model model, std::shared_ptr<const mesh::Geometry> geometry)
+OpenRoom::OpenRoom(const RoomParts& parts, Model model, render::ModelGeometry geometry)
     : parts_(parts),
       model_id_(model.id),
-      geometry_(std::move(geometry)),
+      geometry_(std::move(geometry.full)),
+      coarser_(std::move(geometry.coarser)),
       strand_(parts.strands.get_executor()),
       maps_(std::make_shared<SurfaceMaps>(geometry_, parts.renderer, parts.workers)),
       model_(std::move(model)),
@@ -61,15 +62,12 @@ OpenRoom::~OpenRoom() = default;
 Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const std::string& model_ref) {
   auto model = parts.store.model(model_ref);
   if (!model) return tl::unexpected(model.error());
-  auto bytes = parts.store.geometry(model->id);
-  if (!bytes) return tl::unexpected(bytes.error());
-  auto geometry = mesh::decode_geometry(*bytes);
+  auto geometry = read_geometry(parts.store, model->id);
   if (!geometry) return tl::unexpected(geometry.error());
-  auto room = std::make_shared<OpenRoom>(parts, std::move(*model),
-                                         std::make_shared<const mesh::Geometry>(std::move(*geometry)));
+  auto room = std::make_shared<OpenRoom>(parts, std::move(*model), std::move(*geometry));
   auto journal = read_journal(parts.store, room->model_id_, {});
   if (!journal) return tl::unexpected(journal.error());
-  auto gpu = fill_gpu(parts.renderer, room->geometry_, journal->layers);
+  auto gpu = fill_gpu(parts.renderer, {room->geometry_, room->coarser_}, journal->layers);
   if (!gpu) return tl::unexpected(gpu.error());
   for (LayerState& state : journal->layers) {
     state.handle = gpu->layers.at(state.layer.id);

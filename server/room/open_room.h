@@ -29,7 +29,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
  public:
   // Loads everything; blocks.
   static Result<std::shared_ptr<OpenRoom>> open(const RoomParts& parts, const std::string& model_ref);
-  OpenRoom(const RoomParts& parts, Model model, std::shared_ptr<const mesh::Geometry> geometry);
+  OpenRoom(const RoomParts& parts, Model model, render::ModelGeometry geometry);
   ~OpenRoom() override;
 
   // --- Room
@@ -105,6 +105,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   const RoomParts parts_;
   const std::int64_t model_id_;
   const std::shared_ptr<const mesh::Geometry> geometry_;
+  const std::vector<std::shared_ptr<const mesh::Geometry>> coarser_;  // copies of it, for moving cameras
   const Strand strand_;
   const std::shared_ptr<SurfaceMaps> maps_;
   std::shared_ptr<EditPipeline> pipeline_;

@@ -29,7 +29,7 @@ void OpenRoom::recover() {
     recovery_.working = true;
     parts_.renderer.remove_model(model_handle());  // there may not be room for both
     boost::asio::post(parts_.workers, [self = shared_from_this(), losses = recovery_.gpu_losses] {
-      auto contents = fill_gpu(self->parts_.renderer, self->geometry_, self->layer_states());
+      auto contents = fill_gpu(self->parts_.renderer, {self->geometry_, self->coarser_}, self->layer_states());
       boost::asio::post(self->strand_,
                         [self, losses, contents = std::move(contents)] { self->on_gpu_filled(losses, contents); });
     });

@@ -131,6 +131,7 @@ Result<void> drop_unused(PgConnection& connection, const std::vector<std::vector
   auto done = connection.query(
       "DELETE FROM blobs b WHERE sha256 = any($1) "
       "AND NOT EXISTS (SELECT 1 FROM models WHERE geometry = b.sha256) "
+      "AND NOT EXISTS (SELECT 1 FROM detail_levels d WHERE d.geometry = b.sha256) "
       "AND NOT EXISTS (SELECT 1 FROM model_sources s WHERE s.sha256 = b.sha256) "
       "AND NOT EXISTS (SELECT 1 FROM looks WHERE picture = b.sha256)",
       Params().array(list));

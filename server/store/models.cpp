@@ -165,8 +165,10 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
     return fail(422, "Too many looks", "A model holds at most " + std::to_string(kMostLooks) + " looks.", "looks");
   for (std::size_t i = 0; i < fresh.looks.size(); ++i)
     if (auto good = check_look(look_of(fresh.looks[i], i)); !good) return tl::unexpected(good.error());
-  // The geometry, the looks, the source files.
+  // The geometry, its coarser copies, the looks, the source files.
   std::vector<Content> contents{content_of(Bytes(fresh.geometry))};
+  for (const auto& level : fresh.detail_levels) contents.push_back(content_of(Bytes(level)));
+  const std::size_t first_look = contents.size();
   for (const auto& look : fresh.looks) contents.push_back(content_of(Bytes(look.bytes)));
   const std::size_t first_source = contents.size();
   for (const auto& source : fresh.sources) {
@@ -187,10 +189,16 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
                                 [&](const std::string& slug) { return insert_model(connection, m, slug, geometry); });
     if (!row) return tl::unexpected(row.error());
     const std::int64_t id = row->integer(0, 0);
+    for (std::size_t i = 1; i < first_look; ++i) {
+      auto kept = connection.query("INSERT INTO detail_levels (model_id, level, geometry) VALUES ($1, $2, $3)",
+                                   Params().integer(id).integer(static_cast<std::int64_t>(i)).bytes(contents[i].hash));
+      if (!kept) return tl::unexpected(kept.error());
+    }
     for (std::size_t i = 0; i < fresh.looks.size(); ++i) {
       Look look = look_of(fresh.looks[i], i);
       look.model_id = id;
-      if (auto kept = insert_look(connection, look, contents[1 + i].hash); !kept) return tl::unexpected(kept.error());
+      if (auto kept = insert_look(connection, look, contents[first_look + i].hash); !kept)
+        return tl::unexpected(kept.error());
     }
     for (std::size_t i = 0; i < fresh.sources.size(); ++i) {
       auto kept =
@@ -251,7 +259,8 @@ Result<void> Store::delete_model(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
     auto used = connection.query(
         "SELECT geometry FROM models WHERE id = $1 UNION "
-        "SELECT sha256 FROM model_sources WHERE model_id = $1 UNION SELECT picture FROM looks WHERE model_id = $1",
+        "SELECT sha256 FROM model_sources WHERE model_id = $1 UNION SELECT picture FROM looks WHERE model_id = $1 UNION "
+        "SELECT geometry FROM detail_levels WHERE model_id = $1",
         Params().integer(id));
     if (!used) return tl::unexpected(used.error());
     std::vector<std::vector<std::uint8_t>> hashes;
@@ -275,6 +284,24 @@ Result<std::vector<std::uint8_t>> Store::geometry(std::int64_t model_id) {
     if (!row) return tl::unexpected(row.error());
     if (row->rows() == 0) return not_found("model", std::to_string(model_id));
     return read_blob(connection, row->bytes(0, 0), row->integer(0, 1));
+  });
+}
+
+Result<std::vector<std::vector<std::uint8_t>>> Store::detail_levels(std::int64_t model_id) {
+  using Levels = std::vector<std::vector<std::uint8_t>>;
+  return impl_->pool.read([&](PgConnection& connection) -> Result<Levels> {
+    auto rows = connection.query(
+        "SELECT b.sha256, b.bytes FROM detail_levels d JOIN blobs b ON b.sha256 = d.geometry WHERE d.model_id = $1 "
+        "ORDER BY d.level",
+        Params().integer(model_id));
+    if (!rows) return tl::unexpected(rows.error());
+    Levels levels;
+    for (int i = 0; i < rows->rows(); ++i) {
+      auto level = read_blob(connection, rows->bytes(i, 0), rows->integer(i, 1));
+      if (!level) return tl::unexpected(level.error());
+      levels.push_back(std::move(*level));
+    }
+    return levels;
   });
 }
 

@@ -58,6 +58,8 @@ class Store {
   struct NewModel {
     Model model;                         // id 0; slug wished, made unique
     std::vector<std::uint8_t> geometry;  // mesh::encode_geometry
+    std::vector<std::vector<std::uint8_t>>
+        detail_levels;  // of mesh::make_detail_levels, encoded likewise, finest first
     struct Source {
       std::string name;
       std::filesystem::path file;
@@ -77,6 +79,7 @@ class Store {
   Result<Model> update_model(Model model, const FirstAnswer<Model>& answer = {});
   Result<void> delete_model(std::int64_t id, const FirstAnswer<>& answer = {});
   Result<std::vector<std::uint8_t>> geometry(std::int64_t model_id);
+  Result<std::vector<std::vector<std::uint8_t>>> detail_levels(std::int64_t model_id);  // finest first
   // Streams a source file in chunks ≤ 1 MiB; `sink` returns false to stop.
   Result<SourceFile> read_source(std::int64_t model_id, const std::string& name,
                                  const std::function<bool(std::span<const std::uint8_t>)>& sink);

@@ -285,6 +285,7 @@ void Viewer::step() {
   }
   request.camera = draw.camera;
   request.changed = draw.changed;
+  request.moving = draw.quality == FlowControl::Quality::moving;
   std::tie(request.width, request.height) = picture_size(draw.camera, impl_->options);
   impl_->context.renderer->draw(std::move(request), [self = weak_from_this(), draw](Result<render::Frame> frame) {
     auto viewer = self.lock();

@@ -264,8 +264,9 @@ int run(const Options& options) {
   for (const auto& name : options.models) {
     Scene scene{load_bench_mesh(name, options.cache), {}, 0};
     scene.camera = look_at(*scene.mesh.geometry, {0.45, -0.8, 0.5}, kWidth, kHeight);
-    scene.model =
-        await<render::ModelHandle>([&](auto done) { renderer->add_model(scene.mesh.geometry, std::move(done)); });
+    scene.model = await<render::ModelHandle>([&](auto done) {
+      renderer->add_model({scene.mesh.geometry, {}}, std::move(done));
+    });
     for (const int texture : options.textures) bench_texture(options, *renderer, scene, texture, results);
     renderer->remove_model(scene.model);
   }

@@ -236,7 +236,7 @@ TEST_F(RoomRecovery, a_context_lost_after_the_rooms_are_gone_harms_nobody) {
   rooms_.reset();
   renderer_->lose_context_for_test();
   std::promise<Result<render::ModelHandle>> answered;
-  renderer_->add_model(nullptr, [&](Result<render::ModelHandle> model) { answered.set_value(std::move(model)); });
+  renderer_->add_model({}, [&](Result<render::ModelHandle> model) { answered.set_value(std::move(model)); });
   EXPECT_FALSE(answered.get_future().get());  // refused by a thread that is still there
 }
 

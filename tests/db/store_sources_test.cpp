@@ -93,6 +93,20 @@ TEST_F(Sources, the_same_file_is_kept_once_and_goes_with_its_last_model) {
   EXPECT_EQ(store_->delete_model(second.id).error().status, 404);
 }
 
+TEST_F(Sources, coarser_copies_are_kept_in_their_order_and_go_with_the_model) {
+  write(folder_.path() / "scan", noise(1000, 1));
+  auto fresh = model_of(folder_.path() / "scan", {1});
+  fresh.detail_levels = {noise(2'000'000, 2), noise(700, 3), {1}};
+  const auto model = store_->create_model(fresh, {}).value();
+  EXPECT_TRUE(store_->detail_levels(model.id).value() == fresh.detail_levels);
+  const auto plain = store_->create_model(model_of(folder_.path() / "scan", {1}), {}).value();
+  EXPECT_TRUE(store_->detail_levels(plain.id).value().empty());
+  ASSERT_TRUE(store_->delete_model(plain.id));
+  EXPECT_TRUE(store_->detail_levels(model.id).value() == fresh.detail_levels);
+  ASSERT_TRUE(store_->delete_model(model.id));
+  EXPECT_EQ(count(dsn_, "SELECT count(*) FROM blobs"), 0);
+}
+
 TEST_F(Sources, imports_and_deletions_of_one_file_at_once_lose_nothing) {
   write(folder_.path() / "scan", noise(1'500'000, 1));
   std::vector<std::thread> people;

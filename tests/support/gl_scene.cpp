@@ -119,8 +119,9 @@ TestRenderer::~TestRenderer() {
 }
 
 render::ModelHandle TestRenderer::add(const Scene& scene) {
-  const auto model =
-      expect(await<render::ModelHandle>([&](auto done) { renderer_->add_model(scene.geometry, std::move(done)); }));
+  const auto model = expect(await<render::ModelHandle>([&](auto done) {
+    renderer_->add_model({scene.geometry, scene.coarser}, std::move(done));
+  }));
   if (scene.map) expect(await<void>([&](auto done) { renderer_->add_surface_map(model, scene.map, std::move(done)); }));
   return model;
 }

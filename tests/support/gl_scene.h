@@ -23,6 +23,7 @@ Camera orthographic_camera(const glm::dvec3& eye, const glm::dvec3& target, int 
 struct Scene {
   std::shared_ptr<const mesh::Geometry> geometry;
   std::shared_ptr<const mesh::SurfaceMap> map;
+  std::vector<std::shared_ptr<const mesh::Geometry>> coarser;
 };
 Scene make_scene(const mesh::TriangleMesh& mesh, int resolution);  // uses the mesh's corner_uvs
 

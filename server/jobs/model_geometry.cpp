@@ -1,0 +1,25 @@
+#include "jobs/model_geometry.h"
+
+#include "mesh/detail_levels.h"
+
+namespace strata::jobs {
+
+Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress, store::Store::NewModel& fresh) {
+  Model& model = fresh.model;
+  model.origin = geometry.origin;
+  model.triangles = geometry.triangle_count();
+  model.vertices = geometry.positions.size();
+  model.area = mesh::surface_area(geometry);
+  model.bounds_min = model.bounds_max = geometry.positions.front();
+  for (const auto& position : geometry.positions) {
+    model.bounds_min = glm::min(model.bounds_min, position);
+    model.bounds_max = glm::max(model.bounds_max, position);
+  }
+  const auto levels = mesh::make_detail_levels(geometry, progress);
+  if (!levels) return tl::unexpected(levels.error());
+  for (const mesh::Geometry& level : *levels) fresh.detail_levels.push_back(mesh::encode_geometry(level));
+  fresh.geometry = mesh::encode_geometry(geometry);
+  return {};
+}
+
+}  // namespace strata::jobs

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "core/progress.h"
+#include "mesh/geometry.h"
+#include "store/store.h"
+
+namespace strata::jobs {
+
+// Puts a geometry into a new model, with what follows from it: its stored form and that of its coarser copies, counts, box and
+// area. Refused only when cancelled.
+Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress, store::Store::NewModel& fresh);
+
+}  // namespace strata::jobs
