@@ -34,10 +34,9 @@ int run(const ImportOptions& options) {
   }
   for (const auto& file : options.files) {
     jobs::ImportRequest request = options.request;
-    request.file = file;
-    request.filename = std::filesystem::path(file).filename().string();
+    request.files = {{std::filesystem::path(file).filename().string(), file}};
     if (!options.unit.empty()) request.unit = parse_unit(options.unit);
-    if (!std::filesystem::is_regular_file(request.file)) return report({400, "No such file", file, {}});
+    if (!std::filesystem::is_regular_file(file)) return report({400, "No such file", file, {}});
     if (auto good = jobs::check(request); !good) return report(good.error());
     Progress progress;
     auto model = [&] {

@@ -114,7 +114,7 @@ class Client {
 };
 
 std::string import_path(Client& client, const jobs::ImportRequest& request) {
-  std::string path = "/api/v1/models?filename=" + client.escape(request.filename);
+  std::string path = "/api/v1/models?filename=" + client.escape(request.files[0].filename);
   auto add = [&](const char* name, const std::string& value) {
     if (!value.empty()) path += std::string("&") + name + "=" + client.escape(value);
   };
@@ -133,7 +133,7 @@ std::string import_path(Client& client, const jobs::ImportRequest& request) {
 Result<std::string> import_remotely(const std::string& server_url, const std::string& token,
                                     const jobs::ImportRequest& request, Progress& progress) {
   Client client(server_url, token);
-  auto posted = client.post_file(import_path(client, request), request.file, progress);
+  auto posted = client.post_file(import_path(client, request), request.files[0].path, progress);
   if (!posted) return tl::unexpected(posted.error());
   const auto accepted = object_in(*posted, {"id"});
   if (!accepted) return tl::unexpected(accepted.error());

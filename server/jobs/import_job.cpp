@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
+#include <set>
+#include <span>
 #include <utility>
 
 #include "core/slug.h"
@@ -32,6 +33,25 @@ bool is_crs(const std::string& crs) {
   constexpr std::string_view kPrefix = "EPSG:";
   const std::size_t digits = crs.size() - std::min(crs.size(), kPrefix.size());
   return crs.starts_with(kPrefix) && digits >= 1 && digits <= 7 && is_all_digits(crs.substr(kPrefix.size()));
+}
+
+std::vector<std::string> names_of(std::span<const ImportFile> files) {
+  std::vector<std::string> names;
+  for (const ImportFile& file : files) names.push_back(file.filename);
+  return names;
+}
+
+// Under their last names; where folders held files of the same name, the later ones are numbered.
+std::vector<store::Store::NewModel::Source> sources_of(std::span<const ImportFile> files) {
+  std::vector<store::Store::NewModel::Source> sources;
+  std::set<std::string> taken;
+  for (const ImportFile& file : files) {
+    const std::string base = base_filename(file.filename);
+    std::string name = base;
+    for (int n = 2; !taken.insert(name).second; ++n) name = std::to_string(n) + "-" + base;
+    sources.push_back({name, file.path});
+  }
+  return sources;
 }
 
 Result<void> refuse_repairs(const std::vector<Repair>& repairs) {
@@ -79,26 +99,20 @@ Result<void> check(const ImportRequest& request) {
   if (resolution != 0 &&
       (resolution < kLowestResolution || resolution > kHighestResolution || !std::has_single_bit(unsigned(resolution))))
     return fail(422, "Resolution not usable", "The resolution of layers is 2048, 4096, 8192 or 16384.", "resolution");
-  std::string extension = std::filesystem::path(base_filename(request.filename)).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  if (extension.empty())
-    return fail(422, "File name missing",
-                "Give the file's name, such as NAME.ply or NAME.obj: its ending names the format.", "filename");
-  if (extension != ".ply" && extension != ".obj")
-    return fail(415, "Format not taken", "'" + extension + "' files are not taken; send PLY or OBJ.", "filename");
+  if (auto scan = mesh::pick_scan(names_of(request.files)); !scan) return tl::unexpected(scan.error());
   return {};
 }
 
 Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,
                            const store::FirstAnswer<Model>& answer) {
   if (auto good = check(request); !good) return tl::unexpected(good.error());
+  const ImportFile& scan = request.files[*mesh::pick_scan(names_of(request.files))];
   const auto project = store.project(request.project);
   if (!project) return tl::unexpected(project.error());
 
   progress.begin_stage(0, kRead);
   progress.report(0, "Reading the file");
-  auto loaded = mesh::load_mesh(request.file, request.filename, progress);
+  auto loaded = mesh::load_mesh(request.files, progress);
   if (!loaded) return tl::unexpected(loaded.error());
   if (request.strict && !loaded->repairs.empty())
     if (auto refused = refuse_repairs(loaded->repairs); !refused) return tl::unexpected(refused.error());
@@ -117,11 +131,13 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   store::Store::NewModel fresh;
   Model& model = fresh.model;
   model.project_id = project->id;
-  model.name = request.name.empty() ? stem(request.filename) : request.name;
+  model.name = request.name.empty() ? stem(scan.filename) : request.name;
   model.slug = make_slug(model.name);
-  model.unit = request.unit.value_or(Unit::m);
-  model.unit_assumed = !request.unit.has_value();
-  if (!request.up.empty()) model.up = request.up;
+  const auto unit = request.unit ? request.unit : loaded->unit;
+  model.unit = unit.value_or(Unit::m);
+  model.unit_assumed = !unit;
+  const std::string& up = request.up.empty() ? loaded->up : request.up;
+  if (!up.empty()) model.up = up;
   model.crs = request.crs;
   model.default_resolution = request.resolution == 0 ? kLowestResolution : request.resolution;
   model.atlas = atlas->report;
@@ -130,7 +146,7 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
 
   progress.begin_stage(kBuilt, 1);
   progress.report(0, "Saving");
-  fresh.sources.push_back({base_filename(request.filename), request.file});
+  fresh.sources = sources_of(request.files);
   progress.report(0.5, "Saving");
   auto created = store.create_model(
       fresh, [&progress] { return progress.cancelled(); }, answer);

@@ -5,14 +5,18 @@
 #include <string_view>
 
 #include "core/progress.h"
+#include "mesh/input_files.h"
 #include "store/store.h"
 
 namespace strata::jobs {
 
+using ImportFile = mesh::InputFile;
+
 struct ImportRequest {
-  std::filesystem::path file;  // uploaded bytes
-  std::string filename;        // the user's name of it: its extension names the format
-  std::string name;            // of the model; empty: from the file name
+  // One scan: a mesh alone or with what it refers to (.mtl, textures, .bin), in any order, or one zip of them. All are kept
+  // bit for bit.
+  std::vector<ImportFile> files;
+  std::string name;  // of the model; empty: from the name of the mesh
   std::string project = "default";
   std::optional<Unit> unit;  // empty: metres, `unit_assumed`
   std::string up;            // "", "x", "y", "z"
@@ -21,13 +25,14 @@ struct ImportRequest {
   bool strict = false;  // refuse a file that needs repair
 };
 
-// Whether everything but the file's content can be used, before a file travels: 422 or 415, with the field's name.
+// Whether everything but the files' content can be used, before they travel: 422 or 415, with the field's name. Only the
+// files' names are looked at.
 Result<void> check(const ImportRequest& request);
 
 // The last part of a user's path, which may come from any system, without control characters; at most 255 bytes.
 std::string base_filename(std::string_view path);
 
-// File → mesh → atlas → geometry → one transaction, which also keeps the caller's answer. Everything or nothing: a bad file or a
+// Files → mesh → atlas → geometry → one transaction, which also keeps the caller's answer. Everything or nothing: a bad file or a
 // cancel leaves nothing behind.
 Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,
                            const store::FirstAnswer<Model>& answer = {});

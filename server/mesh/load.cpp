@@ -1,25 +1,20 @@
 #include "mesh/load.h"
 
-#include "core/mapped_file.h"
 #include "mesh/load_formats.h"
 
 namespace strata::mesh {
 namespace {
 
-enum class Format { ply, obj };
-
-Result<Format> format_of(const std::string& filename) {
-  std::string extension = std::filesystem::path(filename).extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  if (extension == ".ply") return Format::ply;
-  if (extension == ".obj") return Format::obj;
-  return fail(415, "Unknown mesh format", "\"" + extension + "\" files are not read; give a .ply or an .obj.",
-              "filename");
-}
-
-Result<LoadedMesh> parse(Format format, std::span<const std::uint8_t> bytes, Progress& progress) {
+Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
+  const auto bytes = files.scan().bytes;
   if (bytes.empty()) return refuse_file("The file is empty.");
-  auto loaded = format == Format::ply ? parse_ply(bytes, progress) : parse_obj(bytes, progress);
+  auto loaded = [&]() -> Result<LoadedMesh> {
+    switch (input_kind(files.scan().name)) {
+      case InputKind::ply: return parse_ply(bytes, progress);
+      case InputKind::obj: return parse_obj(bytes, progress);
+      default: return fail(415, "Format not taken", "PLY and OBJ files are read.", "filename");
+    }
+  }();
   if (!loaded) return loaded;
   if (loaded->mesh.triangles.empty()) {
     return refuse_file(
@@ -31,29 +26,34 @@ Result<LoadedMesh> parse(Format format, std::span<const std::uint8_t> bytes, Pro
   return loaded;
 }
 
-}  // namespace
-
-Result<LoadedMesh> load_mesh(const std::filesystem::path& file, const std::string& filename, Progress& progress) {
-  const auto format = format_of(filename);
-  if (!format) return tl::unexpected(format.error());
-  auto loaded = [&]() -> Result<LoadedMesh> {
-    const auto mapped = MappedFile::open(file);
-    if (!mapped) return refuse_file(mapped.error().detail);
-    return parse(*format, mapped->bytes(), progress);
-  }();  // unmapped here: `repair` needs the memory
+// Takes the files, so that they are unmapped before `repair` needs the memory.
+Result<LoadedMesh> load(Result<InputFiles> files, Progress& progress) {
+  if (!files) return tl::unexpected(files.error());
+  auto loaded = [&] {
+    const InputFiles opened = std::move(*files);
+    return parse(opened, progress);
+  }();
   if (!loaded) return loaded;
   if (auto repaired = repair(*loaded, progress); !repaired) return tl::unexpected(repaired.error());
   return loaded;
 }
 
+}  // namespace
+
+Result<LoadedMesh> load_mesh(std::span<const InputFile> files, Progress& progress) {
+  return load(InputFiles::open(files), progress);
+}
+
+Result<LoadedMesh> load_mesh(const std::filesystem::path& file, const std::string& filename, Progress& progress) {
+  const InputFile one{filename, file};
+  return load_mesh(std::span(&one, 1), progress);
+}
+
 Result<LoadedMesh> load_mesh_bytes(std::span<const std::uint8_t> bytes, const std::string& filename,
                                    Progress& progress) {
-  const auto format = format_of(filename);
-  if (!format) return tl::unexpected(format.error());
-  auto loaded = parse(*format, bytes, progress);
-  if (!loaded) return loaded;
-  if (auto repaired = repair(*loaded, progress); !repaired) return tl::unexpected(repaired.error());
-  return loaded;
+  std::vector<InputFiles::Entry> entries;
+  entries.push_back({filename, bytes, std::nullopt});
+  return load(InputFiles::of(std::move(entries)), progress);
 }
 
 }  // namespace strata::mesh

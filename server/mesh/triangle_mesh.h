@@ -2,18 +2,42 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
 #include "core/model.h"
 
 namespace strata::mesh {
 
+// How a texture goes on outside [0,1].
+enum class Wrap : std::uint8_t { repeat, clamp, mirror };
+
+// A picture of a file, as it is encoded there (JPEG or PNG).
+struct Texture {
+  std::string name;
+  std::vector<std::uint8_t> bytes;
+};
+
+struct Material {
+  std::string name;
+  glm::vec4 color{1};  // sRGB, 0…1; where there is a texture its texels are multiplied by it, in linear light
+  int texture = -1;    // of TriangleMesh::textures; -1: the colour alone
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+};
+
+constexpr std::uint16_t kNoMaterial = 0xffff;
+
 // A mesh as files give it: plain arrays, double coordinates in world units. No GL, no connectivity.
 struct TriangleMesh {
   std::vector<glm::dvec3> positions;
   std::vector<std::uint32_t> triangles;      // 3 position indices a triangle
-  std::vector<glm::vec2> corner_uvs;         // empty, or 3 a triangle; uv origin lower left
+  std::vector<glm::vec2> corner_uvs;         // empty, or 3 a triangle; uv origin lower left of the material's texture
   std::vector<std::uint32_t> vertex_colors;  // empty, or RGBA8 (red in the low byte) a position
+
+  std::vector<std::uint16_t> triangle_materials;  // empty, or one a triangle: of `materials`, or kNoMaterial
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  bool colors_tint_textures = false;  // vertex colours multiply textures (glTF); otherwise a texture hides them
 
   std::size_t triangle_count() const { return triangles.size() / 3; }
 };

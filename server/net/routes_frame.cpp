@@ -1,5 +1,5 @@
+#include "core/picture.h"
 #include "net/routes.h"
-#include "stream/jpeg_pool.h"
 
 namespace strata::net {
 namespace {
@@ -31,10 +31,9 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   if (!picture) return tl::unexpected(picture.error());
   const bool is_png = asked->format == protocol::FrameRequestFormat::png;
   Response response =
-      is_png
-          ? bytes_response(stream::encode_png(picture->pixels, picture->width, picture->height), "image/png")
-          : bytes_response(stream::encode_jpeg(picture->pixels, picture->width, picture->height, {kJpegQuality, true}),
-                           "image/jpeg");
+      is_png ? bytes_response(encode_png(picture->pixels, picture->width, picture->height), "image/png")
+             : bytes_response(encode_jpeg(picture->pixels, picture->width, picture->height, {kJpegQuality, true}),
+                              "image/jpeg");
   add_sequences(response, asked->at.value_or(sequence), (*room)->durable_sequence());
   return response;
 }

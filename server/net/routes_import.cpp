@@ -56,7 +56,7 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
   if (strict != "true" && strict != "false")
     return fail(422, "Neither true nor false", "`strict` is true or false.", "strict");
   asked.strict = strict == "true";
-  asked.filename = jobs::base_filename(request.query_or("filename", {}));
+  asked.files.push_back({jobs::base_filename(request.query_or("filename", {})), {}});
   return asked;
 }
 
@@ -64,7 +64,7 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
 Result<void> check_import(const RouteContext& context, const Request& request) {
   auto asked = import_request(context, request);
   if (!asked) return tl::unexpected(asked.error());
-  if (asked->filename.empty()) asked->filename = "named in the body.ply";
+  if (asked->files[0].filename.empty()) asked->files[0].filename = "named in the body.ply";
   return jobs::check(*asked);
 }
 
@@ -97,9 +97,9 @@ Result<Response> start_import(const RouteContext& context, ImportBook& book, con
   if (!upload) return tl::unexpected(upload.error());
   auto file = keep_upload(request, upload->file, context.options.upload_dir);
   if (!file) return tl::unexpected(file.error());
-  if (asked->filename.empty()) asked->filename = upload->filename;
+  if (asked->files[0].filename.empty()) asked->files[0].filename = upload->filename;
   if (auto good = jobs::check(*asked); !good) return tl::unexpected(good.error());
-  asked->file = (*file)->path();
+  asked->files[0].path = (*file)->path();
 
   const store::FirstAnswer<Model> answer{scoped_key(request), [print = fingerprint(request)](const Model& model) {
                                            return nlohmann::json{{"request", print}, {"model", model.id}};

@@ -3,19 +3,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
 #include <vector>
 
+#include "core/picture.h"
+
 namespace strata::stream {
-
-struct JpegSettings {
-  int quality = 80;         // 1…100
-  bool full_color = false;  // 4:4:4 instead of 4:2:0
-};
-
-// RGBA8 rows, top first → JPEG, which leaves alpha out. Thread-safe. Throws where `rgba` is not width × height × 4 bytes.
-std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int width, int height, JpegSettings settings);
-std::vector<std::uint8_t> encode_png(std::span<const std::uint8_t> rgba, int width, int height);
 
 // A few threads that encode pictures; the queue is bounded by the viewers' credit (one picture in work per viewer).
 class JpegPool {

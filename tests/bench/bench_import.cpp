@@ -26,8 +26,8 @@ render::Frame first_frame(Site& site, const std::string& model) {
 int run(const Options& options) {
   Site site;
   jobs::ImportRequest request;
-  request.file = mesh_file(options.model, options.cache);
-  request.filename = request.file.filename().string();
+  const auto file = mesh_file(options.model, options.cache);
+  request.files = {{file.filename().string(), file}};
   Progress progress;
 
   double start = now_ms();

@@ -17,8 +17,8 @@ struct Options {
 int run(const Options& options) {
   Site site;
   jobs::ImportRequest request;
-  request.file = mesh_file(options.model, options.cache);
-  request.filename = request.file.filename().string();
+  const auto file = mesh_file(options.model, options.cache);
+  request.files = {{file.filename().string(), file}};
   Progress progress;
   const Model model = must(jobs::import_model(*site.store, request, progress));
   auto room = must(site.rooms->open(model.slug));

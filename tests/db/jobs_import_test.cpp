@@ -29,8 +29,7 @@ class Import : public ::testing::Test {
     const auto path = folder_.path() / "upload";
     std::ofstream(path, std::ios::binary) << content;
     ImportRequest request;
-    request.file = path;
-    request.filename = filename;
+    request.files = {{filename, path}};
     return request;
   }
   std::int64_t count(const std::string& table) {
@@ -59,8 +58,7 @@ TEST_F(Import, a_real_scan_becomes_a_model_that_holds_all_of_it) {
   const auto file = kData / "gargoyle_3dhop_50k_colour_normals.ply";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "SKIPPED: no scan at " << file;
   ImportRequest request;
-  request.file = file;
-  request.filename = "C:\\scans\\Gárgola 7.PLY";
+  request.files = {{"C:\\scans\\Gárgola 7.PLY", file}};
   request.unit = Unit::mm;
   request.up = "y";
   request.crs = "EPSG:25830";
@@ -141,8 +139,7 @@ TEST_F(Import, a_bad_file_is_refused_and_leaves_nothing_behind) {
 
 TEST_F(Import, a_file_that_is_not_there_is_refused) {
   ImportRequest missing;
-  missing.file = folder_.path() / "nowhere";
-  missing.filename = "scan.ply";
+  missing.files = {{"scan.ply", folder_.path() / "nowhere"}};
   EXPECT_FALSE(import_model(*store_, missing, progress_));
   expect_nothing_left();
 }
@@ -174,7 +171,7 @@ TEST_F(Import, options_that_mean_nothing_are_refused_with_their_field) {
   EXPECT_EQ(field_of([](auto& r) { r.crs = "EPSG:"; }), "crs");
   EXPECT_EQ(field_of([](auto& r) { r.resolution = 3000; }), "resolution");
   EXPECT_EQ(field_of([](auto& r) { r.resolution = 32768; }), "resolution");
-  EXPECT_EQ(field_of([](auto& r) { r.filename = "folder/"; }), "filename");
+  EXPECT_EQ(field_of([](auto& r) { r.files[0].filename = "folder/"; }), "filename");
   ImportRequest lost = good;
   lost.project = "nowhere";
   EXPECT_EQ(import_model(*store_, lost, progress_).error().status, 404);
@@ -185,8 +182,7 @@ TEST_F(Import, a_cancel_at_any_time_leaves_nothing_behind) {
   const auto file = kData / "vessel_lekythos_gigamesh_15k.ply";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "SKIPPED: no scan at " << file;
   ImportRequest scan;
-  scan.file = file;
-  scan.filename = "lekythos.ply";
+  scan.files = {{"lekythos.ply", file}};
   for (const double from : {0.0, 0.1, 0.2, 0.5, 0.8, 0.9}) {
     Progress progress;
     std::atomic<bool> over{false};

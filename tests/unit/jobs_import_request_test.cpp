@@ -7,7 +7,7 @@ namespace {
 
 ImportRequest good() {
   ImportRequest request;
-  request.filename = "pot.ply";
+  request.files = {{"pot.ply", {}}};
   return request;
 }
 
@@ -45,18 +45,34 @@ TEST(ImportRequest, what_a_scan_may_be_asked_for_is_checked_without_its_bytes) {
 }
 
 TEST(ImportRequest, the_ending_names_the_format) {
-  for (const char* name : {"pot.PLY", "a.b.obj", "folder/pot.ply", "C:\\scans\\pot.Obj"}) {
+  for (const char* name :
+       {"pot.PLY", "a.b.obj", "pot.stl", "pot.gltf", "pot.GLB", "pot.zip", "folder/pot.ply", "C:\\scans\\pot.Obj"}) {
     ImportRequest request = good();
-    request.filename = name;
+    request.files[0].filename = name;
     EXPECT_TRUE(check(request)) << name;
   }
   ImportRequest request = good();
-  request.filename = "pot.stl";
+  request.files[0].filename = "pot.jpg";
   EXPECT_EQ(check(request).error().status, 415);
-  request.filename = "pot";
+  request.files[0].filename = "pot";
   EXPECT_EQ(check(request).error().status, 422);
-  request.filename = "";
+  request.files[0].filename = "";
   EXPECT_EQ(check(request).error().field, "filename");
+  request.files.clear();
+  EXPECT_EQ(check(request).error().field, "file");
+}
+
+TEST(ImportRequest, one_of_several_files_is_the_scan) {
+  ImportRequest request = good();
+  request.files = {{"Textures/pot.jpg", {}}, {"pot.mtl", {}}, {"pot.obj", {}}, {"more.zip", {}}};
+  EXPECT_TRUE(check(request));
+  request.files.push_back({"lid.ply", {}});
+  const auto two = check(request);
+  ASSERT_FALSE(two);
+  EXPECT_EQ(two.error().status, 422);
+  EXPECT_NE(two.error().detail.find("pot.obj, lid.ply"), std::string::npos) << two.error().detail;
+  request.files = {{"pot.mtl", {}}, {"pot.jpg", {}}};
+  EXPECT_EQ(check(request).error().status, 415);
 }
 
 TEST(ImportRequest, file_names_lose_their_folders) {

@@ -40,7 +40,7 @@ TEST(MeshLoad, corner_coordinates_and_colours_follow_their_triangles_and_vertice
 
 TEST(MeshLoad, unknown_formats_and_missing_files_are_refused) {
   EXPECT_EQ(load_text("x", "a.stl").error().status, 415);
-  EXPECT_EQ(load_text("x", "ply").error().status, 415);
+  EXPECT_EQ(load_text("x", "ply").error().status, 422);
   Progress progress;
   EXPECT_EQ(mesh::load_mesh("/nonexistent/a.ply", "a.ply", progress).error().status, 422);
   EXPECT_EQ(mesh::load_mesh("/tmp", "a.ply", progress).error().status, 422);

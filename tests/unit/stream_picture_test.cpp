@@ -1,10 +1,8 @@
 #include <gtest/gtest.h>
 #include <turbojpeg.h>
 
-#include <png.h>
 #include <atomic>
 #include <condition_variable>
-#include <cstdlib>
 #include <mutex>
 #include <set>
 
@@ -43,49 +41,6 @@ Decoded decode(const std::vector<std::uint8_t>& jpeg) {
             0);
   tjDestroy(handle);
   return out;
-}
-
-TEST(StreamPicture, a_jpeg_shows_what_was_drawn_top_row_first) {
-  const auto rgba = gradient(200, 120);
-  for (const bool full_color : {false, true}) {
-    const Decoded back = decode(encode_jpeg(rgba, 200, 120, {90, full_color}));
-    ASSERT_EQ(back.width, 200);
-    ASSERT_EQ(back.height, 120);
-    EXPECT_EQ(back.sampling, full_color ? TJSAMP_444 : TJSAMP_420);
-    int worst = 0;
-    for (std::size_t i = 0; i < rgba.size(); ++i) worst = std::max(worst, std::abs(int(rgba[i]) - int(back.rgba[i])));
-    EXPECT_LE(worst, 12);
-  }
-}
-
-TEST(StreamPicture, higher_quality_costs_more_bytes) {
-  const auto rgba = gradient(256, 256);
-  EXPECT_LT(encode_jpeg(rgba, 256, 256, {40, false}).size(), encode_jpeg(rgba, 256, 256, {95, true}).size());
-}
-
-TEST(StreamPicture, a_picture_of_one_pixel_is_encoded) {
-  const std::vector<std::uint8_t> red{255, 0, 0, 255};
-  EXPECT_EQ(decode(encode_jpeg(red, 1, 1, {90, true})).width, 1);
-  EXPECT_FALSE(encode_png(red, 1, 1).empty());
-}
-
-TEST(StreamPicture, pixels_that_do_not_have_the_size_are_refused) {
-  const std::vector<std::uint8_t> few(16);
-  EXPECT_THROW(encode_jpeg(few, 4, 4, {}), std::invalid_argument);
-  EXPECT_THROW(encode_png(few, 0, 4), std::invalid_argument);
-}
-
-TEST(StreamPicture, a_png_keeps_every_pixel) {
-  auto rgba = gradient(61, 33);
-  rgba[3] = 128;
-  const auto png = encode_png(rgba, 61, 33);
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  ASSERT_TRUE(png_image_begin_read_from_memory(&image, png.data(), png.size()));
-  image.format = PNG_FORMAT_RGBA;
-  std::vector<std::uint8_t> back(PNG_IMAGE_SIZE(image));
-  ASSERT_TRUE(png_image_finish_read(&image, nullptr, back.data(), 0, nullptr));
-  EXPECT_EQ(back, rgba);
 }
 
 TEST(StreamPicture, the_pool_encodes_every_picture_it_is_given) {

@@ -1,0 +1,126 @@
+#include "mesh/input_files.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "mesh/load_formats.h"
+
+namespace strata::mesh {
+namespace {
+
+constexpr std::string_view kTaken = "send PLY, OBJ, STL, glTF or GLB, alone, with its textures, or as a zip of them";
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return result;
+}
+
+std::string_view last_part(std::string_view path) {
+  const auto slash = path.find_last_of("/\\");
+  return slash == std::string_view::npos ? path : path.substr(slash + 1);
+}
+
+std::string ending(std::string_view filename) {
+  const std::string_view name = last_part(filename);
+  const auto dot = name.find_last_of('.');
+  return dot == std::string_view::npos || dot == 0 ? std::string() : lower(name.substr(dot));
+}
+
+// How many parts of two paths are the same, counted from their ends.
+int common_parts(std::string_view a, std::string_view b) {
+  int parts = 0;
+  while (!a.empty() && !b.empty()) {
+    const std::string_view x = last_part(a), y = last_part(b);
+    if (lower(x) != lower(y)) break;
+    ++parts;
+    a.remove_suffix(std::min(a.size(), x.size() + 1));
+    b.remove_suffix(std::min(b.size(), y.size() + 1));
+  }
+  return parts;
+}
+
+std::string listed(std::span<const std::string> filenames, std::span<const std::size_t> which) {
+  std::string list;
+  for (const std::size_t i : which.first(std::min<std::size_t>(which.size(), 5)))
+    list += (list.empty() ? "" : ", ") + std::string(last_part(filenames[i]));
+  return which.size() > 5 ? list + ", …" : list;
+}
+
+}  // namespace
+
+InputKind input_kind(std::string_view filename) {
+  static constexpr std::pair<std::string_view, InputKind> kKinds[] = {
+      {".ply", InputKind::ply},   {".obj", InputKind::obj}, {".stl", InputKind::stl},
+      {".gltf", InputKind::gltf}, {".glb", InputKind::glb}, {".zip", InputKind::zip}};
+  const std::string end = ending(filename);
+  for (const auto& [name, kind] : kKinds)
+    if (name == end) return kind;
+  return InputKind::companion;
+}
+
+bool is_mesh(InputKind kind) { return kind != InputKind::companion && kind != InputKind::zip; }
+
+Result<std::size_t> pick_scan(std::span<const std::string> filenames) {
+  std::vector<std::size_t> meshes, archives;
+  for (std::size_t i = 0; i < filenames.size(); ++i) {
+    const InputKind kind = input_kind(filenames[i]);
+    if (is_mesh(kind)) meshes.push_back(i);
+    if (kind == InputKind::zip) archives.push_back(i);
+  }
+  const auto& scans = meshes.empty() ? archives : meshes;
+  if (scans.size() == 1) return scans.front();
+  if (scans.size() > 1)
+    return fail(422, "More than one scan",
+                "One import makes one model, but several meshes were sent: " + listed(filenames, scans) +
+                    ". Import them one by one.",
+                "filename");
+  if (filenames.empty())
+    return fail(422, "No file", "There is no file to import; " + std::string(kTaken) + ".", "file");
+  if (filenames.size() == 1 && ending(filenames[0]).empty())
+    return fail(422, "File name missing",
+                "Give the file's name, such as NAME.ply or NAME.obj: its ending names the format.", "filename");
+  if (filenames.size() == 1)
+    return fail(415, "Format not taken",
+                "'" + ending(filenames[0]) + "' files are not taken; " + std::string(kTaken) + ".", "filename");
+  return fail(415, "No mesh among the files",
+              "None of the " + std::to_string(filenames.size()) + " files is a mesh; " + std::string(kTaken) + ".",
+              "filename");
+}
+
+Result<InputFiles> InputFiles::open(std::span<const InputFile> files) {
+  std::vector<Entry> entries;
+  entries.reserve(files.size());
+  for (const InputFile& file : files) {
+    auto mapped = MappedFile::open(file.path);
+    if (!mapped) return refuse_file(mapped.error().detail);
+    const auto bytes = mapped->bytes();
+    entries.push_back({file.filename, bytes, std::move(*mapped)});
+  }
+  return of(std::move(entries));
+}
+
+Result<InputFiles> InputFiles::of(std::vector<Entry> entries) {
+  std::vector<std::string> names;
+  for (const Entry& entry : entries) names.push_back(entry.name);
+  const auto scan = pick_scan(names);
+  if (!scan) return tl::unexpected(scan.error());
+  InputFiles files;
+  files.entries_ = std::move(entries);
+  files.scan_ = *scan;
+  return files;
+}
+
+const InputFiles::Entry* InputFiles::find(std::string_view reference) const {
+  const Entry* best = nullptr;
+  int most = 0;
+  for (const Entry& entry : entries_) {
+    const int common = common_parts(entry.name, reference);
+    if (common <= most) continue;
+    most = common;
+    best = &entry;
+  }
+  return best;
+}
+
+}  // namespace strata::mesh

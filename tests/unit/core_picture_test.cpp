@@ -1,0 +1,95 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <stdexcept>
+#include <utility>
+
+#include "core/picture.h"
+
+namespace strata {
+namespace {
+
+std::vector<std::uint8_t> gradient(int width, int height) {
+  std::vector<std::uint8_t> rgba(std::size_t(width) * height * 4);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      auto* p = &rgba[(std::size_t(y) * width + x) * 4];
+      p[0] = static_cast<std::uint8_t>(x * 255 / width);
+      p[1] = static_cast<std::uint8_t>(y * 255 / height);
+      p[2] = 90;
+      p[3] = 255;
+    }
+  return rgba;
+}
+
+TEST(Picture, a_jpeg_shows_what_was_drawn_top_row_first) {
+  const auto rgba = gradient(200, 120);
+  for (const bool full_color : {false, true}) {
+    const auto back = decode_picture(encode_jpeg(rgba, 200, 120, {90, full_color}));
+    ASSERT_TRUE(back);
+    ASSERT_EQ(std::pair(back->width, back->height), std::pair(200, 120));
+    int worst = 0;
+    for (std::size_t i = 0; i < rgba.size(); ++i) worst = std::max(worst, std::abs(int(rgba[i]) - int(back->rgba[i])));
+    EXPECT_LE(worst, 12);
+  }
+}
+
+TEST(Picture, higher_quality_costs_more_bytes) {
+  const auto rgba = gradient(256, 256);
+  EXPECT_LT(encode_jpeg(rgba, 256, 256, {40, false}).size(), encode_jpeg(rgba, 256, 256, {95, true}).size());
+}
+
+TEST(Picture, a_png_keeps_every_pixel) {
+  auto rgba = gradient(61, 33);
+  rgba[3] = 128;
+  const auto png = encode_png(rgba, 61, 33);
+  const auto back = decode_picture(png);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->width, 61);
+  EXPECT_EQ(back->rgba, rgba);
+}
+
+TEST(Picture, a_picture_of_one_pixel_is_encoded) {
+  const std::vector<std::uint8_t> red{255, 0, 0, 255};
+  EXPECT_EQ(decode_picture(encode_jpeg(red, 1, 1, {90, true}))->width, 1);
+  EXPECT_EQ(decode_picture(encode_png(red, 1, 1))->rgba, red);
+}
+
+TEST(Picture, pixels_that_do_not_have_the_size_are_refused) {
+  const std::vector<std::uint8_t> few(16);
+  EXPECT_THROW(encode_jpeg(few, 4, 4, {}), std::invalid_argument);
+  EXPECT_THROW(encode_png(few, 0, 4), std::invalid_argument);
+}
+
+TEST(Picture, format_and_size_are_told_without_decoding) {
+  const auto rgba = gradient(200, 120);
+  const auto jpeg = encode_jpeg(rgba, 200, 120, {}), png = encode_png(rgba, 200, 120);
+  EXPECT_EQ(picture_format(jpeg), PictureFormat::jpeg);
+  EXPECT_EQ(picture_format(png), PictureFormat::png);
+  EXPECT_EQ(media_type(PictureFormat::png), "image/png");
+  for (const auto& bytes : {jpeg, png}) {
+    const auto info = inspect_picture(bytes);
+    ASSERT_TRUE(info);
+    EXPECT_EQ(std::pair(info->width, info->height), std::pair(200, 120));
+  }
+}
+
+TEST(Picture, what_is_no_picture_or_too_large_or_cut_short_is_refused) {
+  const auto rgba = gradient(200, 120);
+  const std::vector<std::uint8_t> text{'B', 'M', 1, 2, 3};
+  EXPECT_EQ(decode_picture(text).error().status, 415);
+  EXPECT_EQ(inspect_picture({}).error().status, 415);
+  for (auto bytes : {encode_jpeg(rgba, 200, 120, {}), encode_png(rgba, 200, 120)}) {
+    EXPECT_EQ(decode_picture(bytes, 199).error().status, 422);
+    EXPECT_EQ(inspect_picture(bytes, 199).error().status, 422);
+    EXPECT_TRUE(decode_picture(bytes, 200));
+    for (const std::size_t kept : {bytes.size() / 2, std::size_t{30}, std::size_t{9}}) {
+      const auto cut = decode_picture(std::span(bytes).first(kept));
+      ASSERT_FALSE(cut) << kept;
+      EXPECT_EQ(cut.error().status, 422);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace strata
