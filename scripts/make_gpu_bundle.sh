@@ -32,6 +32,10 @@ export STRATA_SHADERS="$here/shaders" STRATA_PEER_SHADERS="$here/peer-shaders" S
 if [ "$1" = tests ]; then
   failed=0
   for test in "$here"/bin/*_test; do "$test" || failed=$((failed + 1)); done
+  # What strokes paint is tested on the CPU's path, too.
+  for test in render_edit_test render_picture_test render_paper_test; do
+    STRATA_TEST_EDIT_PATH=kernel "$here/bin/$test" || failed=$((failed + 1))
+  done
   echo "$failed test programs failed"
   [ "$failed" = 0 ]; exit
 fi

@@ -23,160 +23,24 @@ std::pair<double, double> ratio_bounds(double a, double b, double radius, double
   return {(qb - root) / qa, (qb + root) / qa};
 }
 
-class Culler {
- public:
-  Culler(const mesh::SurfaceMap& map, const glm::dmat4& clip, int width, int height, const ToolPath& path,
-         const DepthBias& bias, const DepthGrid& grid)
-      : map_(map), clip_(clip), width_(width), height_(height), path_(path), bias_(bias), grid_(grid) {}
+double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
+  const glm::dvec2 a{s.ends.x, s.ends.y}, along = glm::dvec2(s.ends.z, s.ends.w) - a;
+  const double squared = glm::dot(along, along);
+  const double t = squared > 0 ? std::clamp(glm::dot(point - a, along) / squared, 0.0, 1.0) : 0.0;
+  return glm::length(point - (a + along * t));
+}
 
-  Candidates run() {
-    const int tiles = map_.resolution / kTileSize;
-    std::vector<std::uint32_t> under_tile, under_32, under_block;
-    for (int y = 0; y < tiles; ++y) {
-      for (int x = 0; x < tiles; ++x) {
-        const auto& bounds = map_.bounds_128[static_cast<std::size_t>(y * tiles + x)];
-        if (bounds.radius < 0) continue;
-        const auto box = project(bounds);
-        if (!box) continue;
-        segments_under(*box, under_tile);
-        if (under_tile.empty() || is_hidden(*box)) continue;
-        visit_tile(x, y, under_tile, under_32, under_block);
-      }
-    }
-    return std::move(found_);
+// Neighbouring blocks mostly share their list.
+std::uint32_t list_of(const std::vector<std::uint32_t>& segments, Candidates& candidates) {
+  auto& lists = candidates.segment_lists;
+  auto& last_list = candidates.last_list;
+  const std::span<const std::uint32_t> last(lists.data() + last_list, lists.size() - last_list);
+  if (lists.empty() || !std::equal(last.begin(), last.end(), segments.begin(), segments.end())) {
+    last_list = lists.size();
+    lists.insert(lists.end(), segments.begin(), segments.end());
   }
-
- private:
-  void visit_tile(int tile_x, int tile_y, const std::vector<std::uint32_t>& under_tile,
-                  std::vector<std::uint32_t>& under_32, std::vector<std::uint32_t>& under_block) {
-    const int per_side_32 = map_.resolution / 32;
-    for (int i = 0; i < 16; ++i) {
-      const int x = tile_x * 4 + i % 4, y = tile_y * 4 + i / 4;
-      if (!passes(map_.bounds_32[static_cast<std::size_t>(y * per_side_32 + x)], under_tile, under_32)) continue;
-      for (int k = 0; k < 16; ++k) {
-        const int block_x = x * 4 + k % 4, block_y = y * 4 + k / 4;
-        const auto slot = map_.slot_of_block[static_cast<std::size_t>(block_y * map_.blocks_per_side + block_x)];
-        if (slot == mesh::kNoSlot || !passes(map_.bounds_8[slot], under_32, under_block)) continue;
-        const auto place = static_cast<std::uint32_t>((block_x & 15) | (block_y & 15) << 4);
-        const TileAddress tile{static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y)};
-        found_.blocks.push_back(
-            {slot, tile, place, list_of(under_block), static_cast<std::uint32_t>(under_block.size())});
-      }
-    }
-  }
-
-  bool passes(const mesh::SurfaceMap::Bounds& bounds, const std::vector<std::uint32_t>& parent,
-              std::vector<std::uint32_t>& mine) const {
-    if (bounds.radius < 0) return false;
-    const auto box = project(bounds);
-    if (!box) return false;
-    mine.clear();
-    for (const auto segment : parent) {
-      if (lies_under(*box, segment)) mine.push_back(segment);
-    }
-    if (mine.empty() || is_hidden(*box)) return false;
-    keep_covering(*box, mine);
-    return true;
-  }
-
-  std::optional<WindowBox> project(const mesh::SurfaceMap::Bounds& bounds) const {
-    const double radius = bounds.radius * (1 + kMarginRadius);
-    auto found = project_sphere(clip_, width_, height_, glm::dvec3(bounds.center), radius);
-    if (!found) return found;
-    auto& box = found->box;
-    box = {box.x0 - kMargin_px, box.y0 - kMargin_px, box.x1 + kMargin_px, box.y1 + kMargin_px};
-    if (box.x1 < 0 || box.y1 < 0 || box.x0 > width_ || box.y0 > height_ || !box.overlaps(path_.box))
-      return std::nullopt;
-    return found;
-  }
-
-  void segments_under(const WindowBox& box, std::vector<std::uint32_t>& list) const {
-    list.clear();
-    for (std::size_t group = 0; group < path_.group_boxes.size(); ++group) {
-      if (!path_.group_boxes[group].overlaps(box.box)) continue;
-      const std::size_t first = group * ToolPath::kSegmentsPerGroup;
-      const std::size_t last = std::min(first + ToolPath::kSegmentsPerGroup, path_.segments.size());
-      for (std::size_t i = first; i < last; ++i) {
-        if (lies_under(box, static_cast<std::uint32_t>(i))) list.push_back(static_cast<std::uint32_t>(i));
-      }
-    }
-  }
-
-  // The circle around the box against the segment's axis: long slanted segments have boxes much larger than they are.
-  bool lies_under(const WindowBox& window, std::uint32_t segment) const {
-    const PixelBox& box = window.box;
-    if (!path_.boxes[segment].overlaps(box)) return false;
-    const auto& s = path_.segments[segment];
-    const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};
-    const double around = std::hypot(box.x1 - box.x0, box.y1 - box.y0) / 2;
-    const double reach = std::max(s.tool.x, s.tool.y) * std::sqrt(2.0) + around;  // √2: squares reach that far
-    return distance_to_axis(s, center) <= reach;
-  }
-
-  static double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
-    const glm::dvec2 a{s.ends.x, s.ends.y}, along = glm::dvec2(s.ends.z, s.ends.w) - a;
-    const double squared = glm::dot(along, along);
-    const double t = squared > 0 ? std::clamp(glm::dot(point - a, along) / squared, 0.0, 1.0) : 0.0;
-    return glm::length(point - (a + along * t));
-  }
-
-  // Where one segment covers the whole box the others do not matter.
-  void keep_covering(const WindowBox& window, std::vector<std::uint32_t>& list) const {
-    if (list.size() < 2) return;
-    const PixelBox& box = window.box;
-    const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};
-    const double around = std::hypot(box.x1 - box.x0, box.y1 - box.y0) / 2 + kMargin_px;
-    for (const auto segment : list) {
-      const auto& s = path_.segments[segment];
-      if (distance_to_axis(s, center) + around < std::min(s.tool.x, s.tool.y)) {
-        list.assign(1, segment);
-        return;
-      }
-    }
-  }
-
-  bool is_hidden(const WindowBox& window) const {
-    if (!grid_.cells || window.w0 <= 0) return false;
-    const double bias = bias_.is_fixed ? bias_.fixed : bias_.scale / (window.w0 * window.w0) * (1 + bias_.slope_limit);
-    const double nearest = window.z0 - bias - kMarginDepth;
-    const auto cell = [](double pixel, int count) {
-      return static_cast<int>(std::clamp(std::floor(pixel / shader::kDepthCell), 0.0, count - 1.0));
-    };
-    const PixelBox& box = window.box;
-    const int x0 = cell(std::max(box.x0, path_.box.x0), grid_.width),
-              x1 = cell(std::min(box.x1, path_.box.x1), grid_.width);
-    const int y0 = cell(std::max(box.y0, path_.box.y0), grid_.height),
-              y1 = cell(std::min(box.y1, path_.box.y1), grid_.height);
-    for (int y = y0; y <= y1; ++y) {
-      for (int x = x0; x <= x1; ++x) {
-        if (grid_.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width) +
-                        static_cast<std::size_t>(x)] >= nearest)
-          return false;
-      }
-    }
-    return true;
-  }
-
-  // Neighbouring blocks mostly share their list.
-  std::uint32_t list_of(const std::vector<std::uint32_t>& segments) {
-    auto& lists = found_.segment_lists;
-    const std::span<const std::uint32_t> last(lists.data() + last_list_, lists.size() - last_list_);
-    if (lists.empty() || !std::equal(last.begin(), last.end(), segments.begin(), segments.end())) {
-      last_list_ = lists.size();
-      lists.insert(lists.end(), segments.begin(), segments.end());
-    }
-    return static_cast<std::uint32_t>(last_list_);
-  }
-
-  const mesh::SurfaceMap& map_;
-  const glm::dmat4& clip_;
-  const int width_, height_;
-  const ToolPath& path_;
-  const DepthBias& bias_;
-  const DepthGrid& grid_;
-  Candidates found_;
-  std::size_t last_list_ = 0;
-};
+  return static_cast<std::uint32_t>(last_list);
+}
 
 }  // namespace
 
@@ -212,9 +76,132 @@ std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int w
       w - w_reach};
 }
 
-Candidates cull_blocks(const mesh::SurfaceMap& map, const glm::dmat4& clip_from_model, int width, int height,
-                       const ToolPath& path, const DepthBias& bias, const DepthGrid& grid) {
-  return Culler(map, clip_from_model, width, height, path, bias, grid).run();
+std::vector<BlockCuller::Tile> BlockCuller::tiles() const {
+  const int per_side = map_.resolution / kTileSize;
+  std::vector<Tile> found;
+  for (int y = 0; y < per_side; ++y) {
+    for (int x = 0; x < per_side; ++x) {
+      const auto& bounds = map_.bounds_128[static_cast<std::size_t>(y * per_side + x)];
+      if (bounds.radius < 0) continue;
+      const auto box = project(bounds);
+      if (!box) continue;
+      auto segments = segments_under(*box);
+      if (segments.empty() || is_hidden(*box)) continue;
+      found.push_back({{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, std::move(segments)});
+    }
+  }
+  return found;
+}
+
+Candidates BlockCuller::all() const {
+  Candidates candidates;
+  for (const Tile& tile : tiles()) add_blocks(tile, candidates);
+  return candidates;
+}
+
+void BlockCuller::add_blocks(const Tile& tile, Candidates& candidates) const {
+  const int per_side_32 = map_.resolution / 32;
+  Under under_32, under_block;
+  for (int i = 0; i < 16; ++i) {
+    const int x = tile.address.x * 4 + i % 4, y = tile.address.y * 4 + i / 4;
+    if (!passes(map_.bounds_32[static_cast<std::size_t>(y * per_side_32 + x)], tile.segments, under_32)) continue;
+    for (int k = 0; k < 16; ++k) {
+      const int block_x = x * 4 + k % 4, block_y = y * 4 + k / 4;
+      const auto slot = map_.slot_of_block[static_cast<std::size_t>(block_y * map_.blocks_per_side + block_x)];
+      if (slot == mesh::kNoSlot) continue;
+      // Under a large tool most blocks are taken by the sixteen: to test each costs as much as to paint it.
+      if (!under_32.all_of_it && !passes(map_.bounds_8[slot], under_32.segments, under_block)) continue;
+      const Under& under = under_32.all_of_it ? under_32 : under_block;
+      const auto place = static_cast<std::uint32_t>((block_x & 15) | (block_y & 15) << 4);
+      candidates.blocks.push_back({slot, tile.address, place, list_of(under.segments, candidates),
+                                   static_cast<std::uint32_t>(under.segments.size()), under.all_of_it});
+    }
+  }
+}
+
+bool BlockCuller::passes(const mesh::SurfaceMap::Bounds& bounds, const std::vector<std::uint32_t>& parent,
+                         Under& under) const {
+  if (bounds.radius < 0) return false;
+  const auto box = project(bounds);
+  if (!box) return false;
+  under.segments.clear();
+  for (const auto segment : parent) {
+    if (lies_under(*box, segment)) under.segments.push_back(segment);
+  }
+  if (under.segments.empty() || is_hidden(*box)) return false;
+  under.all_of_it = keep_covering(*box, under.segments);
+  return true;
+}
+
+std::optional<WindowBox> BlockCuller::project(const mesh::SurfaceMap::Bounds& bounds) const {
+  const double radius = bounds.radius * (1 + kMarginRadius);
+  auto found = project_sphere(clip_, width_, height_, glm::dvec3(bounds.center), radius);
+  if (!found) return found;
+  auto& box = found->box;
+  box = {box.x0 - kMargin_px, box.y0 - kMargin_px, box.x1 + kMargin_px, box.y1 + kMargin_px};
+  if (box.x1 < 0 || box.y1 < 0 || box.x0 > width_ || box.y0 > height_ || !box.overlaps(path_.box)) return std::nullopt;
+  return found;
+}
+
+std::vector<std::uint32_t> BlockCuller::segments_under(const WindowBox& box) const {
+  std::vector<std::uint32_t> list;
+  for (std::size_t group = 0; group < path_.group_boxes.size(); ++group) {
+    if (!path_.group_boxes[group].overlaps(box.box)) continue;
+    const std::size_t first = group * ToolPath::kSegmentsPerGroup;
+    const std::size_t last = std::min(first + ToolPath::kSegmentsPerGroup, path_.segments.size());
+    for (std::size_t i = first; i < last; ++i) {
+      if (lies_under(box, static_cast<std::uint32_t>(i))) list.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  return list;
+}
+
+// The circle around the box against the segment's axis: long slanted segments have boxes much larger than they are.
+bool BlockCuller::lies_under(const WindowBox& window, std::uint32_t segment) const {
+  const PixelBox& box = window.box;
+  if (!path_.boxes[segment].overlaps(box)) return false;
+  const auto& s = path_.segments[segment];
+  const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};
+  const double around = std::hypot(box.x1 - box.x0, box.y1 - box.y0) / 2;
+  const double reach = std::max(s.tool.x, s.tool.y) * std::sqrt(2.0) + around;  // √2: squares reach that far
+  return distance_to_axis(s, center) <= reach;
+}
+
+// Where one segment covers the whole box the others do not matter: true, and it alone is kept.
+bool BlockCuller::keep_covering(const WindowBox& window, std::vector<std::uint32_t>& list) const {
+  const PixelBox& box = window.box;
+  const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};
+  const double around = std::hypot(box.x1 - box.x0, box.y1 - box.y0) / 2 + kMargin_px;
+  for (const auto segment : list) {
+    const auto& s = path_.segments[segment];
+    if (distance_to_axis(s, center) + around < std::min(s.tool.x, s.tool.y)) {
+      list.assign(1, segment);
+      return true;
+    }
+  }
+  return false;
+}
+
+bool BlockCuller::is_hidden(const WindowBox& window) const {
+  if (!grid_.cells || window.w0 <= 0) return false;
+  const double bias = bias_.is_fixed ? bias_.fixed : bias_.scale / (window.w0 * window.w0) * (1 + bias_.slope_limit);
+  const double nearest = window.z0 - bias - kMarginDepth;
+  const auto cell = [](double pixel, int count) {
+    return static_cast<int>(std::clamp(std::floor(pixel / shader::kDepthCell), 0.0, count - 1.0));
+  };
+  const PixelBox& box = window.box;
+  const int x0 = cell(std::max(box.x0, path_.box.x0), grid_.width),
+            x1 = cell(std::min(box.x1, path_.box.x1), grid_.width);
+  const int y0 = cell(std::max(box.y0, path_.box.y0), grid_.height),
+            y1 = cell(std::min(box.y1, path_.box.y1), grid_.height);
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      if (grid_.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(grid_.width) +
+                      static_cast<std::size_t>(x)] >= nearest)
+        return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace strata::render

@@ -19,6 +19,7 @@ void DepthBuffer::start(const DepthKey& new_key) {
   key = new_key;
   complete = false;
   std::fill(grid.begin(), grid.end(), -1.0f);
+  copy.reset();
 }
 
 Result<DepthBuffers> DepthBuffers::create(const std::filesystem::path& shader_dir, std::size_t triangles_per_slice,
@@ -108,6 +109,14 @@ bool DepthBuffers::evict_one() {
 
 void DepthBuffers::forget_model(std::uint64_t model) {
   std::erase_if(recent_, [&](const auto& buffer) { return buffer->key.model == model; });
+}
+
+void DepthBuffers::copy_to_memory(DepthBuffer& buffer, int threads) {
+  const int width = buffer.key.width, height = buffer.key.height;
+  std::vector<float> depth(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  glGetTextureImage(buffer.texture.id(), 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                    static_cast<GLsizei>(depth.size() * sizeof(float)), depth.data());
+  buffer.copy = std::make_shared<const DepthCopy>(make_depth_copy(std::move(depth), width, height, threads));
 }
 
 Result<DepthBuffers::GridRead> DepthBuffers::begin_grid(const DepthBuffer& buffer, const PixelBox& box) {

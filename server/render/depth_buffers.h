@@ -9,6 +9,7 @@
 #include "core/camera.h"
 #include "gl/framebuffer.h"
 #include "gl/readback.h"
+#include "render/depth_copy.h"
 #include "render/mesh_pass.h"
 #include "render/tool_path.h"
 
@@ -31,7 +32,8 @@ struct DepthBuffer {
   gl::Framebuffer framebuffer;
   GpuMemory::Share share;
   int grid_width = 0, grid_height = 0;
-  std::vector<float> grid;  // row by row from below; negative: not known yet
+  std::vector<float> grid;                // row by row from below; negative: not known yet
+  std::shared_ptr<const DepthCopy> copy;  // null: nobody asked for it yet
 
   void start(const DepthKey& new_key);  // forgets what it holds
 };
@@ -54,6 +56,9 @@ class DepthBuffers {
                   MeshProgress& progress);
   bool evict_one();
   void forget_model(std::uint64_t model);
+
+  // Makes `buffer.copy`, on `threads` threads. Waits for the GPU: a fence after the drawing tells when it does not.
+  static void copy_to_memory(DepthBuffer& buffer, int threads);
 
   // Cells of the grid on their way from the GPU; empty when all were known.
   struct GridRead {

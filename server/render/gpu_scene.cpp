@@ -77,6 +77,9 @@ Result<std::unique_ptr<GpuScene>> GpuScene::create(const RendererOptions& option
 
 Result<void> GpuScene::load() {
   info_ = read_info();
+  info_.edit_path = options_.edit_path != EditPath::automatic ? options_.edit_path
+                    : info_.software                          ? EditPath::kernel
+                                                              : EditPath::compute;
   memory_.set_budget(options_.gpu_memory_bytes > 0 ? options_.gpu_memory_bytes : default_budget());
   memory_.set_evictor([this] { return evict_one(); });
   glPixelStorei(GL_PACK_ALIGNMENT, 1);

@@ -44,6 +44,8 @@ class GpuScene {
   DepthBuffers& depths() { return *depths_; }
   EditPass& edit_pass() { return *edit_pass_; }
   TileReader& tile_reader() { return *tile_reader_; }
+  // Strokes are painted by KernelPainter, which needs no surface maps on the GPU.
+  bool edits_on_cpu() const { return info_.edit_path == EditPath::kernel; }
   MeshPass& gbuffer_pass() { return *gbuffer_pass_; }
   ShadePass& shade_pass() { return *shade_pass_; }
   DetailBudget& detail_budget() { return detail_budget_; }

@@ -1,13 +1,13 @@
 #include "render/page_pool.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cassert>
 #include <numeric>
 #include <string>
 
 #include "render/texel_width.h"
+#include "render/tile_bytes.h"
 #include "shared/pages.h"
 
 namespace strata::render {
@@ -68,13 +68,24 @@ void PagePool::clear(PageId page) {
 void PagePool::upload(PageId page, const TileData& data) {
   assert(data.values.size() == static_cast<std::size_t>(kTexelsPerTile * texel_bytes_));
   const Place p = place_of(page);
-  std::array<std::uint8_t, kTexelsPerTile> flags;
-  for (int i = 0; i < kTexelsPerTile; ++i) flags[static_cast<std::size_t>(i)] = data.valid.test(i) ? 1 : 0;
+  TileFlags flags;
+  flags_of(data.valid, flags);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTextureSubImage3D(values(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER,
                       texel_component(texel_bytes_), data.values.data());
   glTextureSubImage3D(valid(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER,
                       GL_UNSIGNED_BYTE, flags.data());
+}
+
+void PagePool::read(PageId page, TileData& data) const {
+  assert(data.values.size() == static_cast<std::size_t>(kTexelsPerTile * texel_bytes_));
+  const Place p = place_of(page);
+  TileFlags flags;
+  glGetTextureSubImage(values(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER,
+                       texel_component(texel_bytes_), static_cast<GLsizei>(data.values.size()), data.values.data());
+  glGetTextureSubImage(valid(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER,
+                       GL_UNSIGNED_BYTE, static_cast<GLsizei>(flags.size()), flags.data());
+  data.valid = mask_of(flags);
 }
 
 Result<void> PagePool::add_chunk() {

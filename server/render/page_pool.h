@@ -34,6 +34,8 @@ class PagePool {
   void free(PageId page);
   // `data` is of this texel width.
   void upload(PageId page, const TileData& data);
+  // Waits for the GPU: cheap where that is the CPU, else use TileReader.
+  void read(PageId page, TileData& data) const;
   void clear(PageId page);  // no value, not valid
   // Gives the memory of one chunk without pages back; false when there is none.
   bool drop_empty_chunk();

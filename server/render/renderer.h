@@ -24,17 +24,22 @@ using ModelHandle = std::uint64_t;
 using LayerHandle = std::uint64_t;
 using ViewHandle = std::uint64_t;
 
+// Where strokes are painted: a compute pass, or a kernel on the CPU, which is several times faster where the GPU is a CPU.
+enum class EditPath { automatic, compute, kernel };
+
 struct RendererOptions {
   std::string shader_dir;              // folder `shaders`
   std::uint64_t gpu_memory_bytes = 0;  // budget; 0: 70 % of what the driver reports, or 4 GiB
   bool debug = false;                  // KHR_debug context; errors are counted (see `debug_errors`)
   std::size_t queue_capacity = 4096;
   bool paper_depth_bias = false;  // the paper's fixed depth bias instead of the slope-aware one
+  EditPath edit_path = EditPath::automatic;
 };
 
 struct GpuInfo {
   std::string vendor, renderer, version;
   bool software = false;
+  EditPath edit_path = EditPath::compute;  // what was chosen
   int max_texture_size = 0, max_array_layers = 0, max_texture_units = 0, max_image_units = 0;
 };
 
@@ -47,10 +52,13 @@ struct WrittenTile {
 struct StrokeOutcome {
   std::vector<WrittenTile> tiles;
   glm::vec3 written_min{0}, written_max{0};  // model-space box of the written blocks; for changed screen rectangles
-  double gpu_ms = 0;         // of the dispatch, by timer query; or the call, where the driver executes in it (on CPUs)
-  double cull_ms = 0;        // choosing the blocks, on the CPU
-  double dispatch_ms = 0;    // from the start of culling until the commands were given, without the dispatch
-  std::size_t bytes_up = 0;  // blocks and parameters sent for the dispatch
+  // EditPath::compute:                                                             EditPath::kernel:
+  double gpu_ms = 0;       // the dispatch, by timer query; or the call, where the    tiles read, changed and uploaded
+                           // driver executes in it (on CPUs)
+  double cull_ms = 0;      // choosing the blocks, on the CPU                         with the test of their texels
+  double dispatch_ms = 0;  // from the start of culling until the commands were       the same
+                           // given, without the dispatch
+  std::size_t bytes_up = 0, bytes_down = 0;  // between CPU and GPU
 };
 
 struct TileUpload {

@@ -38,7 +38,14 @@ Result<std::unique_ptr<SurfaceMapTextures>> SurfaceMapTextures::create(std::shar
   return textures;
 }
 
+std::unique_ptr<SurfaceMapTextures> SurfaceMapTextures::on_cpu(std::shared_ptr<const mesh::SurfaceMap> map) {
+  auto textures = std::make_unique<SurfaceMapTextures>();
+  textures->map_ = std::move(map);
+  return textures;
+}
+
 bool SurfaceMapTextures::upload_slice() {
+  if (complete()) return true;
   if (const std::size_t left = map_->packed_box.size() - uploaded_boxes_; left > 0) {
     const std::size_t count = std::min(left, kBoxesPerUpload);
     boxes_.upload_values(uploaded_boxes_ * sizeof(mesh::SurfaceMap::PackedBox),

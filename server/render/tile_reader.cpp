@@ -12,11 +12,11 @@ namespace {
 constexpr GLuint kRunsPerTile = 512, kRunsPerGroup = 64;
 constexpr std::size_t kMaskBytes = kMaskWords * sizeof(std::uint64_t);
 
-std::size_t bytes_per_tile(const PagePool& pool) {
+}  // namespace
+
+std::size_t TileReader::bytes_per_tile(const PagePool& pool) {
   return kMaskBytes + static_cast<std::size_t>(kTexelsPerTile * pool.texel_bytes());
 }
-
-}  // namespace
 
 Result<TileReader> TileReader::create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback) {
   TileReader reader;

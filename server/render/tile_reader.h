@@ -17,6 +17,7 @@ class TileReader {
 
   static Result<TileReader> create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback);
 
+  static std::size_t bytes_per_tile(const PagePool& pool);  // as it comes back
   // Room for reading up to `pages` pages at a time: what can fail of a read, so that it can be had before what is read
   // is changed.
   Result<gl::Readback> make_room(const PagePool& pool, std::size_t pages) const;

@@ -43,6 +43,7 @@ Step SurfaceMapUpload::step(GpuScene& scene) {
     abort(model.error());
     return Step::done;
   }
+  if (!textures_ && scene.edits_on_cpu()) textures_ = SurfaceMapTextures::on_cpu(map_);
   if (!textures_) {
     auto textures = SurfaceMapTextures::create(map_, scene.memory());
     if (!textures) {

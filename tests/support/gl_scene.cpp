@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <glm/gtc/matrix_transform.hpp>
+#include <string_view>
 
 #include "support/shader_dirs.h"
 
@@ -107,6 +109,8 @@ Scene make_scene(const mesh::TriangleMesh& mesh, int resolution) {
 }
 
 TestRenderer::TestRenderer(render::RendererOptions options) {
+  if (const char* path = std::getenv("STRATA_TEST_EDIT_PATH"); path && options.edit_path == render::EditPath::automatic)
+    options.edit_path = std::string_view(path) == "kernel" ? render::EditPath::kernel : render::EditPath::compute;
   options.shader_dir = shader_dir().string();
   options.debug = true;
   renderer_ = expect(render::Renderer::start(options));

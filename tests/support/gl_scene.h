@@ -37,7 +37,7 @@ Result<T> await(Call call) {
 }
 
 // A renderer in a debug context with blocking calls, where any Problem fails the test. Its destructor checks that no GL
-// error was reported.
+// error was reported. STRATA_TEST_EDIT_PATH (`compute` or `kernel`) says where strokes are painted if the options do not.
 class TestRenderer {
  public:
   explicit TestRenderer(render::RendererOptions options = {});

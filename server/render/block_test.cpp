@@ -1,0 +1,195 @@
+#include "render/block_test.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+// Compiled with -O3 and without traps and errno of floating point (CMakeLists.txt): else the loops below stay scalar.
+#define STRATA_LANES inline __attribute__((always_inline))
+
+namespace strata::render {
+namespace {
+
+constexpr int kLanes = kBlockSize * kBlockSize;
+static_assert(std::endian::native == std::endian::little, "positions are read as pairs of 32 bits");
+
+// Of each texel: where it lies in the window, and whether it is still to be written.
+struct alignas(64) Lanes {
+  float x[kLanes], y[kLanes], depth[kLanes], w[kLanes];
+  std::int32_t live[kLanes];   // 0 or 1
+  std::int32_t pixel[kLanes];  // of the depth; 0 where not live
+};
+
+STRATA_LANES void project(const BlockTest& test, const std::uint64_t* positions, const mesh::SurfaceMap::PackedBox& box,
+                          Lanes& lanes) {
+  alignas(64) std::uint32_t packed[2 * kLanes];
+  std::memcpy(packed, positions, sizeof packed);
+  const glm::mat4& m = test.clip_from_model;
+  const float m00 = m[0][0], m01 = m[0][1], m02 = m[0][2], m03 = m[0][3], m10 = m[1][0], m11 = m[1][1], m12 = m[1][2],
+              m13 = m[1][3], m20 = m[2][0], m21 = m[2][1], m22 = m[2][2], m23 = m[2][3], m30 = m[3][0], m31 = m[3][1],
+              m32 = m[3][2], m33 = m[3][3];
+  const float x0 = box.min.x, y0 = box.min.y, z0 = box.min.z, dx = box.step.x, dy = box.step.y, dz = box.step.z;
+  const auto width = static_cast<float>(test.width), height = static_cast<float>(test.height);
+  const int pitch = test.width;
+  for (int i = 0; i < kLanes; ++i) {
+    const std::uint32_t low = packed[2 * i], high = packed[2 * i + 1];
+    const float px = x0 + static_cast<float>(static_cast<std::int32_t>(low & 0x1fffffu)) * dx;
+    const float py = y0 + static_cast<float>(static_cast<std::int32_t>(low >> 21 | (high & 0x3ffu) << 11)) * dy;
+    const float pz = z0 + static_cast<float>(static_cast<std::int32_t>(high >> 10)) * dz;
+    const float cx = m00 * px + m10 * py + m20 * pz + m30, cy = m01 * px + m11 * py + m21 * pz + m31;
+    const float cz = m02 * px + m12 * py + m22 * pz + m32, cw = m03 * px + m13 * py + m23 * pz + m33;
+    const float x = (cx / cw * 0.5f + 0.5f) * width, y = (cy / cw * 0.5f + 0.5f) * height;
+    const std::int32_t live = std::int32_t{(low & high) != 0xffffffffu} & std::int32_t{cw > 0.0f} &
+                              std::int32_t{std::abs(cz) <= cw} & std::int32_t{x >= 0.0f} & std::int32_t{y >= 0.0f} &
+                              std::int32_t{x < width} & std::int32_t{y < height};
+    lanes.x[i] = x;
+    lanes.y[i] = y;
+    lanes.depth[i] = cz / cw * 0.5f + 0.5f;
+    lanes.w[i] = cw;
+    lanes.live[i] = live;
+    lanes.pixel[i] = live ? static_cast<std::int32_t>(y) * pitch + static_cast<std::int32_t>(x) : 0;
+  }
+}
+
+STRATA_LANES void add_dab(const shader::EditSegment& s, const Lanes& lanes, std::int32_t* inside) {
+  const float ax = s.ends.x, ay = s.ends.y, radius = std::max(s.tool.x, s.tool.y), squared = radius * radius;
+  for (int i = 0; i < kLanes; ++i) {
+    const float dx = lanes.x[i] - ax, dy = lanes.y[i] - ay;
+    inside[i] |= std::int32_t{dx * dx + dy * dy < squared};
+  }
+}
+
+STRATA_LANES void add_swept_disc(const shader::EditSegment& s, const Lanes& lanes, std::int32_t* inside) {
+  const float ax = s.ends.x, ay = s.ends.y, length = s.tool.w, shift = s.tool.z, r0 = s.tool.x, r1 = s.tool.y;
+  const float ux = (s.ends.z - ax) / length, uy = (s.ends.w - ay) / length;
+  for (int i = 0; i < kLanes; ++i) {
+    const float px = lanes.x[i] - ax, py = lanes.y[i] - ay;
+    const float beside = std::abs(py * ux - px * uy);
+    float along = px * ux + py * uy + beside * shift;
+    along = along < 0.0f ? 0.0f : along;
+    along = along > length ? length : along;
+    const float t = along / length, radius = r0 * (1.0f - t) + r1 * t;
+    const float dx = px - ux * along, dy = py - uy * along;
+    inside[i] |= std::int32_t{dx * dx + dy * dy < radius * radius};
+  }
+}
+
+// Some t in [0, 1] has the point inside the square around a + t (b - a): four linear conditions c + t g > 0.
+STRATA_LANES void add_swept_square(const shader::EditSegment& s, const Lanes& lanes, std::int32_t* inside) {
+  const float sx = s.ends.z - s.ends.x, sy = s.ends.w - s.ends.y, grow = s.tool.y - s.tool.x;
+  const float g[4] = {grow + sx, grow + sy, grow - sx, grow - sy};
+  const float radius = s.tool.x;
+  const std::int32_t is_dab = s.tool.w == 0.0f;
+  for (int i = 0; i < kLanes; ++i) {
+    const float px = lanes.x[i] - s.ends.x, py = lanes.y[i] - s.ends.y;
+    const float c[4] = {radius - px, radius - py, radius + px, radius + py};
+    float low = 0.0f, high = 1.0f;
+    std::int32_t ok = 1;
+    for (int k = 0; k < 4; ++k) {
+      const float t = -c[k] / g[k];
+      ok &= std::int32_t{g[k] != 0.0f} | std::int32_t{c[k] > 0.0f};
+      const float raised = t > low ? t : low, lowered = t < high ? t : high;
+      low = g[k] > 0.0f ? raised : low;
+      high = g[k] < 0.0f ? lowered : high;
+    }
+    inside[i] |= ok & (std::int32_t{low < high} | (std::int32_t{low == high} & is_dab));
+  }
+}
+
+STRATA_LANES void test_tool(const BlockTest& test, std::span<const std::uint32_t> segments, Lanes& lanes) {
+  alignas(64) std::int32_t inside[kLanes] = {};
+  for (const std::uint32_t number : segments) {
+    const shader::EditSegment& s = test.path->segments[number];
+    if (test.square)
+      add_swept_square(s, lanes, inside);
+    else if (s.tool.w > 0.0f)
+      add_swept_disc(s, lanes, inside);
+    else
+      add_dab(s, lanes, inside);
+  }
+  for (int i = 0; i < kLanes; ++i) lanes.live[i] &= inside[i];
+}
+
+STRATA_LANES void test_depth(const BlockTest& test, Lanes& lanes) {
+  const float* const depth = test.depth->depth.data();
+  if (test.bias.is_fixed) {
+    const auto fixed = static_cast<float>(test.bias.fixed);
+    for (int i = 0; i < kLanes; ++i) lanes.live[i] &= std::int32_t{lanes.depth[i] - fixed <= depth[lanes.pixel[i]]};
+    return;
+  }
+  const float* const slopes = test.depth->slope.data();
+  const auto scale = static_cast<float>(test.bias.scale), factor = static_cast<float>(test.bias.slope_factor),
+             limit = static_cast<float>(test.bias.slope_limit);
+  for (int i = 0; i < kLanes; ++i) {
+    const float base = scale / (lanes.w[i] * lanes.w[i]);
+    const float by_slope = factor * slopes[lanes.pixel[i]], most = limit * base;
+    const float bias = base + (by_slope < most ? by_slope : most);
+    lanes.live[i] &= std::int32_t{lanes.depth[i] - bias <= depth[lanes.pixel[i]]};
+  }
+}
+
+// Bit i is lane i.
+STRATA_LANES std::uint64_t bits_of(const std::int32_t* lanes) {
+  alignas(64) std::uint8_t bytes[kLanes];
+  for (int i = 0; i < kLanes; ++i) bytes[i] = static_cast<std::uint8_t>(lanes[i]);
+  std::uint64_t bits = 0;
+  for (int row = 0; row < kBlockSize; ++row) {
+    std::uint64_t eight;
+    std::memcpy(&eight, bytes + row * kBlockSize, sizeof eight);
+    bits |= (eight * 0x0102040810204080u >> 56) << (row * kBlockSize);  // the lowest bit of each byte, side by side
+  }
+  return bits;
+}
+
+STRATA_LANES std::uint64_t test_lanes(const BlockTest& test, const std::uint64_t* positions,
+                                      const mesh::SurfaceMap::PackedBox& box, std::span<const std::uint32_t> segments,
+                                      bool in_tool) {
+  Lanes lanes;
+  project(test, positions, box, lanes);
+  if (!in_tool) test_tool(test, segments, lanes);
+  if (test.depth) test_depth(test, lanes);
+  return bits_of(lanes.live);
+}
+
+std::uint64_t test_plain(const BlockTest& test, const std::uint64_t* positions, const mesh::SurfaceMap::PackedBox& box,
+                         std::span<const std::uint32_t> segments, bool in_tool) {
+  return test_lanes(test, positions, box, segments, in_tool);
+}
+
+#if defined(__x86_64__)
+__attribute__((target("avx2,fma"))) std::uint64_t test_avx2(const BlockTest& test, const std::uint64_t* positions,
+                                                            const mesh::SurfaceMap::PackedBox& box,
+                                                            std::span<const std::uint32_t> segments, bool in_tool) {
+  return test_lanes(test, positions, box, segments, in_tool);
+}
+
+__attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,fma,prefer-vector-width=512"))) std::uint64_t test_avx512(
+    const BlockTest& test, const std::uint64_t* positions, const mesh::SurfaceMap::PackedBox& box,
+    std::span<const std::uint32_t> segments, bool in_tool) {
+  return test_lanes(test, positions, box, segments, in_tool);
+}
+#endif
+
+}  // namespace
+
+VectorUnit best_vector_unit() {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("fma"))
+    return VectorUnit::avx512;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return VectorUnit::avx2;
+#endif
+  return VectorUnit::plain;
+}
+
+TestBlock test_block_on(VectorUnit unit) {
+#if defined(__x86_64__)
+  if (unit == VectorUnit::avx512) return test_avx512;
+  if (unit == VectorUnit::avx2) return test_avx2;
+#endif
+  (void)unit;
+  return test_plain;
+}
+
+}  // namespace strata::render

@@ -1,0 +1,67 @@
+#include "render/edit_kernel.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "mesh/parallel.h"
+
+namespace strata::render {
+namespace {
+
+// A thread is worth its start for so many tiles.
+constexpr int kTilesPerThread = 4;
+
+struct TileResult {
+  TileMask written;
+  glm::vec3 low{std::numeric_limits<float>::max()}, high{-std::numeric_limits<float>::max()};
+  std::size_t tested_blocks = 0;
+  bool any = false;
+};
+
+void put(std::uint64_t bits, std::uint32_t block_in_tile, TileMask& mask) {
+  const std::uint32_t first = (block_in_tile >> 4) * kBlockSize * kTileSize + (block_in_tile & 15) * kBlockSize;
+  for (std::uint32_t row = 0; row < kBlockSize; ++row) {
+    const std::uint32_t texel = first + row * kTileSize;
+    mask.words[texel / 64] |= (bits >> (row * kBlockSize) & 0xffu) << (texel % 64);
+  }
+}
+
+}  // namespace
+
+KernelResult run_edit_kernel(const mesh::SurfaceMap& map, const BlockCuller& culler, const BlockTest& test,
+                             TestBlock test_block, int threads) {
+  const auto tiles = culler.tiles();
+  std::vector<TileResult> results(tiles.size());
+  const int count = static_cast<int>(tiles.size());
+  mesh::parallel_for(std::min(threads, count / kTilesPerThread + 1), count, [&](int number) {
+    const auto index = static_cast<std::size_t>(number);
+    Candidates candidates;
+    culler.add_blocks(tiles[index], candidates);
+    TileResult& result = results[index];
+    result.tested_blocks = candidates.blocks.size();
+    for (const CandidateBlock& block : candidates.blocks) {
+      const std::span segments(candidates.segment_lists.data() + block.segments, block.segment_count);
+      const std::uint64_t bits = test_block(test, map.packed_position.data() + std::size_t{block.slot} * 64,
+                                            map.packed_box[block.slot], segments, block.in_tool);
+      if (bits == 0) continue;
+      put(bits, block.block_in_tile, result.written);
+      const auto& bounds = map.bounds_8[block.slot];
+      result.low = glm::min(result.low, bounds.center - bounds.radius);
+      result.high = glm::max(result.high, bounds.center + bounds.radius);
+      result.any = true;
+    }
+  });
+
+  KernelResult found;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const TileResult& result = results[i];
+    found.tested_blocks += result.tested_blocks;
+    if (!result.any) continue;
+    found.written_min = found.tiles.empty() ? result.low : glm::min(found.written_min, result.low);
+    found.written_max = found.tiles.empty() ? result.high : glm::max(found.written_max, result.high);
+    found.tiles.push_back({tiles[i].address, result.written});
+  }
+  return found;
+}
+
+}  // namespace strata::render
