@@ -80,7 +80,10 @@ float depth_bias(ivec2 pixel, float here, float w) {
 bool painted(uvec2 packed_position, vec3 box_min, vec3 box_step, uint first, uint count) {
   vec3 q = vec3(packed_position.x & 0x1fffffu, (packed_position.x >> 21) | ((packed_position.y & 0x3ffu) << 11),
                 packed_position.y >> 10);
-  vec4 clip = edit.clip_from_model * vec4(box_min + q * box_step, 1.0);
+  vec3 position = box_min + q * box_step;
+  for (uint i = 0u; i < edit.section_count; ++i)
+    if (dot(edit.section[i].xyz, position) + edit.section[i].w < 0.0) return false;
+  vec4 clip = edit.clip_from_model * vec4(position, 1.0);
   if (clip.w <= 0.0 || abs(clip.z) > clip.w) return false;
   vec3 ndc = clip.xyz / clip.w;
   vec2 window = (ndc.xy * 0.5 + 0.5) * edit.window.xy;
@@ -89,6 +92,7 @@ bool painted(uvec2 packed_position, vec3 box_min, vec3 box_step, uint first, uin
   if ((edit.flags & kEditThrough) != 0u) return true;
   ivec2 pixel = ivec2(window);
   float here = texelFetch(depth, pixel, 0).r;
+  if (edit.section_count > 0u && (floatBitsToUint(here) & kInsideMark) != 0u) return false;
   return ndc.z * 0.5 + 0.5 - depth_bias(pixel, here, clip.w) <= here;
 }
 

@@ -5,6 +5,9 @@
 layout(location = 0) in vec2 surface_uv;
 layout(location = 1) in vec4 surface_normal;
 layout(location = 2) in vec3 surface_color;
+#ifdef SECTION
+const vec3 kInsideColor = vec3(0.47, 0.36, 0.31);
+#endif
 layout(std140, binding = 0) uniform MeshBlock { MeshUniforms mesh; };
 
 layout(location = 0) out uint packed_uv;
@@ -26,4 +29,12 @@ void main() {
   float light = 0.22 + 0.18 * sky + 0.56 * wrapped * wrapped + 0.16 * fill;
   light = min(light, 1.0);
   lit = vec4(surface_color * light, light);
+#ifdef SECTION
+  bool inside = !gl_FrontFacing && mesh.eye_is_cut_away != 0u;
+  gl_FragDepth = marked_depth(gl_FragCoord.z, inside);
+  if (inside) {
+    packed_uv = kBackground;  // nothing is painted there
+    lit = vec4(kInsideColor, 1.0);
+  }
+#endif
 }

@@ -8,6 +8,9 @@ layout(location = 3) in vec4 color;
 layout(std140, binding = 0) uniform MeshBlock { MeshUniforms mesh; };
 
 invariant gl_Position;
+#ifdef SECTION
+out float gl_ClipDistance[kSectionPlanes];
+#endif
 layout(location = 0) out vec2 surface_uv;
 layout(location = 1) out vec4 surface_normal;  // w: cosine to the eye
 layout(location = 2) out vec3 surface_color;
@@ -17,4 +20,7 @@ void main() {
   surface_uv = uv;
   surface_normal = vec4(normal.xyz, dot(normal.xyz, normalize(mesh.eye.xyz - position * mesh.eye.w)));
   surface_color = color.rgb;
+#ifdef SECTION
+  for (uint i = 0u; i < kSectionPlanes; ++i) gl_ClipDistance[i] = dot(mesh.section[i].xyz, position) + mesh.section[i].w;
+#endif
 }

@@ -121,6 +121,7 @@ void main() {
   vec4 color = vec4(shade.first_pass != 0u ? surface.rgb : vec3(0.0), 1.0);
 #if CHUNK_COUNT > 0
   uint q = texelFetch(surface_uv, pixel, 0).r;
+  if (q != kBackground) {  // not the inside of a solid that is cut open
 #ifdef LAYERS
 #define SHADE_LAYER(index, mode, type, units) color = add_layer(color, layers[index], mode, type, units, q, surface.a);
   LAYERS
@@ -129,6 +130,7 @@ void main() {
     color = add_layer(color, layers[i], layers[i].mode, layers[i].type, 0x3fu, q, surface.a);
   }
 #endif
+  }
 #endif
   picture = vec4(color.rgb, shade.first_pass != 0u ? 1.0 : color.a);
 }

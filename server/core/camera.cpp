@@ -1,8 +1,10 @@
 #include "core/camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <limits>
 
 namespace strata {
 namespace {
@@ -13,6 +15,8 @@ bool is_finite(const glm::dmat4& m) {
     if (!std::isfinite(p[i])) return false;
   return true;
 }
+
+constexpr double kShortestNormal = 1e-100;
 
 // A determinant alone says little of a matrix in small or large units; what is needed is a usable inverse.
 bool is_invertible(const glm::dmat4& m) {
@@ -41,7 +45,19 @@ Result<void> validate(const Camera& camera, const std::string& field) {
     return {};
   };
   if (auto ok = matrix(camera.view, "view"); !ok) return ok;
-  return matrix(camera.projection, "projection");
+  if (auto ok = matrix(camera.projection, "projection"); !ok) return ok;
+  if (camera.section.size() > kMaxSectionPlanes)
+    return fail(422, "Too many planes", "A section has at most " + std::to_string(kMaxSectionPlanes) + " planes.",
+                field + ".section");
+  for (std::size_t i = 0; i < camera.section.size(); ++i) {
+    const glm::dvec4& plane = camera.section[i];
+    const double length = glm::length(glm::dvec3(plane));
+    if (!std::isfinite(length) || !std::isfinite(plane.w) || !(length > kShortestNormal))
+      return fail(422, "Plane without a direction",
+                  "A plane is [a, b, c, d] with finite numbers and a, b, c not all 0.",
+                  field + ".section[" + std::to_string(i) + "]");
+  }
+  return {};
 }
 
 bool is_orthographic(const Camera& camera) {
@@ -53,6 +69,38 @@ glm::dvec3 eye_in_world(const Camera& camera) { return glm::dvec3(glm::inverse(c
 
 glm::mat4 clip_from_model(const Camera& camera, const glm::dvec3& origin) {
   return glm::mat4(camera.projection * camera.view * glm::translate(glm::dmat4(1.0), origin));
+}
+
+SectionPlanes section_in_model(const Camera& camera, const glm::dvec3& origin) {
+  SectionPlanes planes;
+  planes.fill(glm::vec4(0, 0, 0, 1));
+  for (std::size_t i = 0; i < camera.section.size(); ++i) {
+    const glm::dvec3 normal(camera.section[i]);
+    const double length = glm::length(normal);
+    planes[i] = glm::vec4(glm::dvec4(normal, camera.section[i].w + glm::dot(normal, origin)) / length);
+  }
+  return planes;
+}
+
+bool eye_is_cut_away(const Camera& camera) {
+  const glm::dvec4 eye = is_orthographic(camera) ? glm::inverse(camera.view) * glm::dvec4(0, 0, 1, 0)
+                                                 : glm::dvec4(eye_in_world(camera), 1);
+  return std::ranges::any_of(camera.section, [&](const glm::dvec4& plane) { return glm::dot(plane, eye) < 0; });
+}
+
+RaySpan kept_span(const Camera& camera, const Ray& ray) {
+  RaySpan span{0, std::numeric_limits<double>::infinity()};
+  for (const glm::dvec4& plane : camera.section) {
+    const double at_origin = glm::dot(plane, glm::dvec4(ray.origin, 1));
+    const double slope = glm::dot(glm::dvec3(plane), ray.direction);
+    if (slope > 0)
+      span.begin = std::max(span.begin, -at_origin / slope);
+    else if (slope < 0)
+      span.end = std::min(span.end, -at_origin / slope);
+    else if (at_origin < 0)
+      span.end = -1;
+  }
+  return span;
 }
 
 Ray ray_through_pixel(const Camera& camera, double x, double y) {

@@ -55,10 +55,16 @@ SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const 
                   const std::vector<LayerView>& layers) {
   if (!(x >= 0 && y >= 0 && x <= camera.width && y <= camera.height)) return off_the_model(layers);
   const Ray ray = ray_through_pixel(camera, x, y);
-  const glm::vec3 start(ray.origin - origin), direction(ray.direction);
+  const RaySpan kept = kept_span(camera, ray);
+  if (kept.begin > kept.end) return off_the_model(layers);
+  const glm::vec3 start(ray.origin + kept.begin * ray.direction - origin), direction(ray.direction);
   if (!is_finite(start) || !is_finite(direction)) return off_the_model(layers);
-  const auto hit = tree.first_hit(start, direction);
-  return hit ? surface_point(*hit, origin, layers) : off_the_model(layers);
+  auto hit = tree.first_hit(start, direction);
+  if (!hit || kept.begin + hit->distance > kept.end) return off_the_model(layers);
+  if (eye_is_cut_away(camera) && glm::dot(hit->normal, direction) > 0)
+    return off_the_model(layers);  // a solid's inside
+  hit->distance += static_cast<float>(kept.begin);
+  return surface_point(*hit, origin, layers);
 }
 
 }  // namespace strata::query

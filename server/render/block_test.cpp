@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "shared/section.h"
+
 // Compiled with -O3 and without traps and errno of floating point (CMakeLists.txt): else the loops below stay scalar.
 #define STRATA_LANES inline __attribute__((always_inline))
 
@@ -48,6 +50,31 @@ STRATA_LANES void project(const BlockTest& test, const std::uint64_t* positions,
     lanes.w[i] = cw;
     lanes.live[i] = live;
     lanes.pixel[i] = live ? static_cast<std::int32_t>(y) * pitch + static_cast<std::int32_t>(x) : 0;
+  }
+}
+
+// What the planes cut away, and where the inside of a solid is seen (shaders/shared/section.h).
+STRATA_LANES void test_section(const BlockTest& test, const std::uint64_t* positions,
+                               const mesh::SurfaceMap::PackedBox& box, Lanes& lanes) {
+  alignas(64) std::uint32_t packed[2 * kLanes];
+  std::memcpy(packed, positions, sizeof packed);
+  for (const glm::vec4& plane : test.section) {
+    const float a = plane.x, b = plane.y, c = plane.z, d = plane.w;
+    const float x0 = box.min.x, y0 = box.min.y, z0 = box.min.z, dx = box.step.x, dy = box.step.y, dz = box.step.z;
+    for (int i = 0; i < kLanes; ++i) {
+      const std::uint32_t low = packed[2 * i], high = packed[2 * i + 1];
+      const float px = x0 + static_cast<float>(static_cast<std::int32_t>(low & 0x1fffffu)) * dx;
+      const float py = y0 + static_cast<float>(static_cast<std::int32_t>(low >> 21 | (high & 0x3ffu) << 11)) * dy;
+      const float pz = z0 + static_cast<float>(static_cast<std::int32_t>(high >> 10)) * dz;
+      lanes.live[i] &= std::int32_t{a * px + b * py + c * pz + d >= 0.0f};
+    }
+  }
+  if (!test.depth) return;
+  const float* const depth = test.depth->depth.data();
+  for (int i = 0; i < kLanes; ++i) {
+    std::uint32_t bits;
+    std::memcpy(&bits, depth + lanes.pixel[i], sizeof bits);
+    lanes.live[i] &= std::int32_t{(bits & shader::kInsideMark) == 0};
   }
 }
 
@@ -148,6 +175,7 @@ STRATA_LANES std::uint64_t test_lanes(const BlockTest& test, const std::uint64_t
   project(test, positions, box, lanes);
   if (!in_tool) test_tool(test, segments, lanes);
   if (test.depth) test_depth(test, lanes);
+  if (!test.section.empty()) test_section(test, positions, box, lanes);
   return bits_of(lanes.live);
 }
 

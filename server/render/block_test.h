@@ -16,6 +16,7 @@ struct BlockTest {
   int width = 0, height = 0;         // of the window, which is the depth's
   bool square = false;
   DepthBias bias;
+  std::span<const glm::vec4> section;  // planes in model space that cut the model open
 };
 
 // The texels of an 8 × 8 block that the stroke writes, bit (y * 8 + x): the tests of shaders/edit_pass.comp in C++. `positions`

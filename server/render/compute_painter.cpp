@@ -81,9 +81,8 @@ Result<void> ComputePainter::dispatch(GpuScene& scene, const PaintTarget& target
     if (!room) return tl::unexpected(room.error());
     tiles_ = std::move(*room);
   }
-  auto edit = scene.edit_pass().dispatch(stroke_, strata::clip_from_model(camera, geometry.origin), path_, bias,
-                                         std::move(candidates), target.map, depth_ ? &depth_->texture : nullptr,
-                                         target.layer, scene.tables());
+  auto edit = scene.edit_pass().dispatch(stroke_, geometry.origin, path_, bias, std::move(candidates), target.map,
+                                         depth_ ? &depth_->texture : nullptr, target.layer, scene.tables());
   if (!edit) return tl::unexpected(edit.error());
   edit_ = std::move(*edit);
   outcome_.bytes_up = edit_.bytes_up;

@@ -15,6 +15,10 @@ constexpr int kCell = static_cast<int>(shader::kDepthCell);
 
 }  // namespace
 
+DepthKey depth_key(std::uint64_t model, const Camera& camera, int width, int height) {
+  return {model, camera.view, camera.projection, width, height, 0, camera.section};
+}
+
 void DepthBuffer::start(const DepthKey& new_key) {
   key = new_key;
   complete = false;
@@ -91,11 +95,11 @@ Result<std::shared_ptr<DepthBuffer>> DepthBuffers::start(const DepthKey& key) {
   return make(key);
 }
 
-bool DepthBuffers::draw_slice(const std::shared_ptr<DepthBuffer>& buffer, const MeshBuffers& mesh, const Camera& camera,
-                              MeshProgress& progress) {
-  const auto uniforms = mesh_uniforms(camera, mesh.geometry().origin);
-  if (!pass_.draw_slice(mesh, uniforms, buffer->framebuffer, buffer->key.width, buffer->key.height, progress))
-    return false;
+Result<bool> DepthBuffers::draw_slice(const std::shared_ptr<DepthBuffer>& buffer, const MeshBuffers& mesh,
+                                      const Camera& camera, MeshProgress& progress) {
+  const auto drawn = pass_.draw_slice(mesh, mesh_view(camera, mesh.geometry().origin), buffer->framebuffer,
+                                      buffer->key.width, buffer->key.height, progress);
+  if (!drawn || !*drawn) return drawn;
   buffer->complete = true;
   recent_.push_front(buffer);
   return true;

@@ -21,8 +21,11 @@ struct DepthKey {
   glm::dmat4 view{1.0}, projection{1.0};
   int width = 0, height = 0;
   int level = 0;  // of the model's detail; edits need the full mesh, 0
+  std::vector<glm::dvec4> section;
   bool operator==(const DepthKey&) const = default;
 };
+// Of a picture of width x height pixels, which the camera's window is scaled to.
+DepthKey depth_key(std::uint64_t model, const Camera& camera, int width, int height);
 
 // Depth of a mesh from one camera, with a coarse grid of largest depths that is filled where it is asked for.
 struct DepthBuffer {
@@ -52,8 +55,8 @@ class DepthBuffers {
   // For a camera that no buffer is found for: one to be drawn by `draw_slice`.
   Result<std::shared_ptr<DepthBuffer>> start(const DepthKey& key);
   // True when the mesh is complete; the buffer is then kept as a recent one.
-  bool draw_slice(const std::shared_ptr<DepthBuffer>& buffer, const MeshBuffers& mesh, const Camera& camera,
-                  MeshProgress& progress);
+  Result<bool> draw_slice(const std::shared_ptr<DepthBuffer>& buffer, const MeshBuffers& mesh, const Camera& camera,
+                          MeshProgress& progress);
   bool evict_one();
   void forget_model(std::uint64_t model);
 

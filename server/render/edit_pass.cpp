@@ -11,15 +11,18 @@
 namespace strata::render {
 namespace {
 
-shader::EditUniforms make_uniforms(const StrokeBatch& stroke, const glm::mat4& clip_from_model, const DepthBias& bias) {
+shader::EditUniforms make_uniforms(const StrokeBatch& stroke, const glm::dvec3& origin, const DepthBias& bias) {
+  static_assert(kMaxSectionPlanes == shader::kSectionPlanes);
   shader::EditUniforms uniforms{};
-  uniforms.clip_from_model = clip_from_model;
+  uniforms.clip_from_model = clip_from_model(stroke.camera, origin);
   uniforms.window = glm::vec4(stroke.camera.width, stroke.camera.height, 0, 0);
   uniforms.bias = glm::vec4(bias.fixed, bias.scale, bias.slope_factor, bias.slope_limit);
   uniforms.value = stroke.value_bits;
   uniforms.flags = (stroke.erase ? shader::kEditErase : 0u) | (stroke.through ? shader::kEditThrough : 0u) |
                    (stroke.shape == ToolShape::square ? shader::kEditSquare : 0u) |
                    (bias.is_fixed ? shader::kEditFixedBias : 0u);
+  uniforms.section_count = static_cast<std::uint32_t>(stroke.camera.section.size());
+  std::ranges::copy(section_in_model(stroke.camera, origin), uniforms.section);
   return uniforms;
 }
 
@@ -62,10 +65,9 @@ Result<std::vector<TileAddress>> EditPass::make_pages(const std::vector<Candidat
   return fresh;
 }
 
-Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::mat4& clip_from_model,
-                                          const ToolPath& path, const DepthBias& bias, Candidates candidates,
-                                          const SurfaceMapTextures& map, const gl::Texture* depth, LayerTextures& layer,
-                                          PageTables& tables) {
+Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::dvec3& origin, const ToolPath& path,
+                                          const DepthBias& bias, Candidates candidates, const SurfaceMapTextures& map,
+                                          const gl::Texture* depth, LayerTextures& layer, PageTables& tables) {
   DispatchedEdit edit;
   edit.blocks = std::move(candidates.blocks);
   if (edit.blocks.empty()) return edit;
@@ -93,7 +95,7 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
     blocks.push_back(
         {block.slot, layer.page(block.tile), block.segments, block.block_in_tile | block.segment_count << 8});
   }
-  const auto uniforms = make_uniforms(stroke, clip_from_model, bias);
+  const auto uniforms = make_uniforms(stroke, origin, bias);
   auto rows = readback_->begin(blocks.size() * shader::kEditRowsPerBlock * sizeof(std::uint32_t));
   if (!rows) return give_up(rows.error());
   for (auto sent :

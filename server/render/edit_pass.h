@@ -39,8 +39,8 @@ class EditPass {
   static Result<EditPass> create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback);
 
   // Makes pages for the candidates' tiles (unless erasing) and dispatches. On a Problem nothing was changed. `depth` may
-  // be null when the stroke goes through.
-  Result<DispatchedEdit> dispatch(const StrokeBatch& stroke, const glm::mat4& clip_from_model, const ToolPath& path,
+  // be null when the stroke goes through. `origin`: of the model.
+  Result<DispatchedEdit> dispatch(const StrokeBatch& stroke, const glm::dvec3& origin, const ToolPath& path,
                                   const DepthBias& bias, Candidates candidates, const SurfaceMapTextures& map,
                                   const gl::Texture* depth, LayerTextures& layer, PageTables& tables);
   // The written texels of each tile, once `edit.rows` is ready; tiles without any are left out.

@@ -95,7 +95,7 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
                   "layers");
     }
   }
-  DepthKey key{view.model, request.camera.view, request.camera.projection, request.width, request.height};
+  auto key = depth_key(view.model, request.camera, request.width, request.height);
   view.drawing = true;
   if (request.moving) {
     key.level = view.key.level;  // what there is of this camera serves
@@ -113,7 +113,7 @@ Result<int> FrameJob::choose_level(GpuScene& scene, const View& view) const {
   if (!model) return tl::unexpected(model.error());
   std::vector<std::size_t> triangles;
   for (const auto& mesh : (*model)->levels) {
-    const auto uniforms = mesh_uniforms(task_.request.camera, mesh->geometry().origin);
+    const auto uniforms = mesh_view(task_.request.camera, mesh->geometry().origin).uniforms;
     triangles.push_back(mesh->visible_clusters(uniforms.clip_from_model, uniforms.eye).size() *
                         mesh::Geometry::kTrianglesPerCluster);
   }
@@ -125,10 +125,9 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
   if (!model) return tl::unexpected(model.error());
   const MeshBuffers& mesh = *(*model)->levels[static_cast<std::size_t>(view.key.level)];
   if (!progress_.cleared) mesh_begin_ = std::chrono::steady_clock::now();
-  const auto uniforms = mesh_uniforms(task_.request.camera, mesh.geometry().origin);
-  const bool complete =
-      scene.gbuffer_pass().draw_slice(mesh, uniforms, view.gbuffer, view.key.width, view.key.height, progress_);
-  if (!complete) return false;
+  const auto complete = scene.gbuffer_pass().draw_slice(mesh, mesh_view(task_.request.camera, mesh.geometry().origin),
+                                                        view.gbuffer, view.key.width, view.key.height, progress_);
+  if (!complete || !*complete) return complete;
   view.gbuffer_complete = view.depth->complete = true;
   // A software renderer works while it is called, a GPU until the picture can be read.
   if (scene.info().software) scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));

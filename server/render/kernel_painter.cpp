@@ -65,6 +65,8 @@ KernelResult KernelPainter::find_written(GpuScene& scene, const PaintTarget& tar
   test.height = stroke_.camera.height;
   test.square = stroke_.shape == ToolShape::square;
   test.bias = depth_bias(scene.options(), geometry);
+  const SectionPlanes section = section_in_model(stroke_.camera, geometry.origin);
+  test.section = std::span(section).first(stroke_.camera.section.size());
   const BlockCuller culler(target.map.map(), clip_from_model(geometry), test.width, test.height, path, test.bias,
                            test.depth ? grid_of(*test.depth) : DepthGrid{});
   static const TestBlock test_block = test_block_on(best_vector_unit());

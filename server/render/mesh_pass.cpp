@@ -7,21 +7,31 @@
 namespace strata::render {
 
 Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader_dir, std::size_t triangles_per_slice) {
-  auto program =
-      gl::Program::load(shader_dir, {"mesh.vert", kind == Kind::depth ? "depth_pass.frag" : "gbuffer_pass.frag"});
-  if (!program) return tl::unexpected(program.error());
   auto uniforms = gl::Buffer::create(sizeof(shader::MeshUniforms), gl::Buffer::Use::fixed, "mesh uniforms");
   if (!uniforms) return tl::unexpected(uniforms.error());
   MeshPass pass;
   pass.kind_ = kind;
-  pass.program_ = std::move(*program);
+  pass.shader_dir_ = shader_dir;
   pass.uniforms_ = std::move(*uniforms);
   pass.clusters_per_slice_ = std::max<std::size_t>(1, triangles_per_slice / mesh::Geometry::kTrianglesPerCluster);
+  if (auto built = pass.program({}); !built) return tl::unexpected(built.error());
   return pass;
 }
 
-bool MeshPass::draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& uniforms, const gl::Framebuffer& target,
-                          int width, int height, MeshProgress& progress) const {
+Result<const gl::Program*> MeshPass::program(const MeshView& view) {
+  if (const auto built = programs_.find(view.is_cut); built != programs_.end()) return &built->second;
+  std::vector<std::string> defines;
+  if (view.is_cut) defines.emplace_back("SECTION");
+  auto program = gl::Program::load(
+      shader_dir_, {"mesh.vert", kind_ == Kind::depth ? "depth_pass.frag" : "gbuffer_pass.frag"}, defines);
+  if (!program) return tl::unexpected(program.error());
+  return &programs_.emplace(view.is_cut, std::move(*program)).first->second;
+}
+
+Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view, const gl::Framebuffer& target,
+                                  int width, int height, MeshProgress& progress) {
+  auto built = program(view);
+  if (!built) return tl::unexpected(built.error());
   if (!progress.cleared) {
     const float farthest = 1;
     glClearNamedFramebufferfv(target.id(), GL_DEPTH, 0, &farthest);
@@ -31,12 +41,12 @@ bool MeshPass::draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& u
       glClearNamedFramebufferuiv(target.id(), GL_COLOR, 0, background.data());
       glClearNamedFramebufferfv(target.id(), GL_COLOR, 1, dark.data());
     }
-    progress.clusters = mesh.visible_clusters(uniforms.clip_from_model, uniforms.eye);
+    progress.clusters = mesh.visible_clusters(view.uniforms.clip_from_model, view.uniforms.eye);
     progress.cleared = true;
   }
-  uniforms_.upload_values(0, std::span(&uniforms, 1));
+  uniforms_.upload_values(0, std::span(&view.uniforms, 1));
   uniforms_.bind_uniform(0);
-  program_.use();
+  (*built)->use();
   mesh.vertex_array().bind();
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.id());
   glViewport(0, 0, width, height);
@@ -44,6 +54,8 @@ bool MeshPass::draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& u
   glDepthFunc(GL_LESS);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
+  glFrontFace(view.is_mirrored ? GL_CW : GL_CCW);
+  for (GLuint i = 0; view.is_cut && i < shader::kSectionPlanes; ++i) glEnable(GL_CLIP_DISTANCE0 + i);
   const std::size_t end = std::min(progress.next_cluster + clusters_per_slice_, progress.clusters.size());
   std::vector<GLsizei> counts;
   std::vector<const void*> offsets;
@@ -56,23 +68,30 @@ bool MeshPass::draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& u
   if (!counts.empty())
     glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
                         static_cast<GLsizei>(counts.size()));
+  for (GLuint i = 0; view.is_cut && i < shader::kSectionPlanes; ++i) glDisable(GL_CLIP_DISTANCE0 + i);
   glFlush();  // lets the driver draw this slice while the next is prepared
   return progress.next_cluster == progress.clusters.size();
 }
 
-shader::MeshUniforms mesh_uniforms(const Camera& camera, const glm::dvec3& origin) {
+MeshView mesh_view(const Camera& camera, const glm::dvec3& origin) {
   const glm::dmat4 world_from_view = glm::inverse(camera.view);
   const auto direction = [&](const glm::dvec3& in_view) {
     return glm::vec4(glm::normalize(glm::vec3(glm::dmat3(world_from_view) * in_view)), 0);
   };
-  shader::MeshUniforms uniforms;
+  MeshView view;
+  shader::MeshUniforms& uniforms = view.uniforms;
   uniforms.clip_from_model = clip_from_model(camera, origin);
   uniforms.eye =
       is_orthographic(camera) ? direction({0, 0, 1}) : glm::vec4(glm::vec3(eye_in_world(camera) - origin), 1);
   uniforms.key_light = direction({-0.45, 0.60, 0.75});
   uniforms.fill_light = direction({0.80, 0.05, 0.45});
   uniforms.up = direction({0, 1, 0.15});
-  return uniforms;
+  std::ranges::copy(section_in_model(camera, origin), uniforms.section);
+  uniforms.eye_is_cut_away = eye_is_cut_away(camera) ? 1 : 0;
+  view.is_cut = !camera.section.empty();
+  // Clip space is left-handed.
+  view.is_mirrored = glm::determinant(camera.projection) * glm::determinant(camera.view) > 0;
+  return view;
 }
 
 }  // namespace strata::render

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <vector>
 
 #include "core/camera.h"
@@ -12,6 +13,15 @@
 #include "shared/mesh.h"
 
 namespace strata::render {
+
+// What a mesh is drawn with.
+struct MeshView {
+  shader::MeshUniforms uniforms;
+  bool is_cut = false;       // by section planes
+  bool is_mirrored = false;  // the camera swaps left and right: triangles that face it turn clockwise
+};
+// For a model whose coordinates are relative to `origin`.
+MeshView mesh_view(const Camera& camera, const glm::dvec3& origin);
 
 // Position in a drawing of a mesh that is done in slices.
 struct MeshProgress {
@@ -31,17 +41,18 @@ class MeshPass {
   static Result<MeshPass> create(Kind kind, const std::filesystem::path& shader_dir, std::size_t triangles_per_slice);
 
   // Draws the next slice into `target` (cleared before the first); true when the mesh is complete.
-  bool draw_slice(const MeshBuffers& mesh, const shader::MeshUniforms& uniforms, const gl::Framebuffer& target,
-                  int width, int height, MeshProgress& progress) const;
+  Result<bool> draw_slice(const MeshBuffers& mesh, const MeshView& view, const gl::Framebuffer& target, int width,
+                          int height, MeshProgress& progress);
 
  private:
+  // Built when it is first needed.
+  Result<const gl::Program*> program(const MeshView& view);
+
   Kind kind_ = Kind::depth;
-  gl::Program program_;
-  mutable gl::Buffer uniforms_;
+  std::filesystem::path shader_dir_;
+  std::map<bool, gl::Program> programs_;  // by is_cut
+  gl::Buffer uniforms_;
   std::size_t clusters_per_slice_ = 0;
 };
-
-// Matrices and lights of a camera for a model whose coordinates are relative to `origin`.
-shader::MeshUniforms mesh_uniforms(const Camera& camera, const glm::dvec3& origin);
 
 }  // namespace strata::render

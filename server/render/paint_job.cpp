@@ -62,8 +62,11 @@ Result<Step> PaintJob::advance(GpuScene& scene, const PaintTarget& target) {
       stage_ = Stage::depth;
       return Step::more;
     case Stage::depth:
-      if (depth_ && !depth_->complete && !scene.depths().draw_slice(depth_, target.mesh, stroke_.camera, drawn_))
-        return Step::yield;
+      if (depth_ && !depth_->complete) {
+        auto complete = scene.depths().draw_slice(depth_, target.mesh, stroke_.camera, drawn_);
+        if (!complete) return tl::unexpected(complete.error());
+        if (!*complete) return Step::yield;
+      }
       if (scene.edits_on_cpu())
         painter_ = std::make_unique<KernelPainter>(stroke_, depth_);
       else
@@ -88,7 +91,7 @@ Result<void> PaintJob::begin(GpuScene& scene, const PaintTarget& target) {
 Result<void> PaintJob::find_depth(GpuScene& scene) {
   if (stroke_.through && stroke_.radius_px > 0) return {};
   const Camera& camera = stroke_.camera;
-  const DepthKey key{(*scene.layer(layer_))->model, camera.view, camera.projection, camera.width, camera.height};
+  const auto key = depth_key((*scene.layer(layer_))->model, camera, camera.width, camera.height);
   depth_ = scene.depths().find(key);
   if (depth_) return {};
   auto started = scene.depths().start(key);

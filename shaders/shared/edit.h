@@ -1,4 +1,5 @@
 #pragma once
+#include "shared/section.h"
 #include "shared/types.h"
 STRATA_SHARED_BEGIN
 // One piece of a stroke in window pixels, origin lower left. `tool` is: radius at the start, radius at the end, how far along
@@ -28,8 +29,9 @@ struct EditUniforms {
   vec4 bias;          // fixed; scale of 1/w^2; slope factor; limit of the slope part, in units of the scaled part
   uint value;
   uint flags;
-  uint reserved_0;
-  uint reserved_1;
+  uint section_count;
+  uint reserved;
+  vec4 section[kSectionPlanes];  // section_count are used
 };
 
 const uint kEditRowsPerBlock = 8u;   // one thread a row of 8 texels
@@ -40,6 +42,6 @@ STRATA_SHARED_END
 #include <cstddef>
 static_assert(sizeof(strata::shader::EditSegment) == 32);
 static_assert(sizeof(strata::shader::EditBlock) == 16);
-static_assert(sizeof(strata::shader::EditUniforms) == 112);
+static_assert(sizeof(strata::shader::EditUniforms) == 208);
 static_assert(offsetof(strata::shader::EditUniforms, value) == 96);
 #endif

@@ -1,4 +1,5 @@
 #pragma once
+#include "shared/section.h"
 #include "shared/types.h"
 STRATA_SHARED_BEGIN
 struct MeshUniforms {
@@ -7,11 +8,16 @@ struct MeshUniforms {
   vec4 key_light;  // unit directions in model space, fixed to the camera; w unused
   vec4 fill_light;
   vec4 up;
+  vec4 section[kSectionPlanes];
+  uint eye_is_cut_away;
+  uint reserved_0;
+  uint reserved_1;
+  uint reserved_2;
 };
-const uint kBackground = 0xffffffffu;  // texture coordinate of a pixel that shows no surface
+const uint kBackground = 0xffffffffu;  // texture coordinate of a pixel that shows nothing of the surface
 STRATA_SHARED_END
 #ifdef __cplusplus
 #include <cstddef>
-static_assert(sizeof(strata::shader::MeshUniforms) == 128);
+static_assert(sizeof(strata::shader::MeshUniforms) == 240);
 static_assert(offsetof(strata::shader::MeshUniforms, up) == 112);
 #endif

@@ -62,10 +62,9 @@ class PaperPeer {
       buffers_ = must(render::MeshBuffers::create(scene.mesh.geometry, memory_));
       while (!buffers_->upload_slice()) {
       }
-      depth_ = must(
-          depths_->start({1, scene.camera.view, scene.camera.projection, scene.camera.width, scene.camera.height}));
+      depth_ = must(depths_->start(render::depth_key(1, scene.camera, scene.camera.width, scene.camera.height)));
       render::MeshProgress progress;
-      while (!depths_->draw_slice(depth_, *buffers_, scene.camera, progress)) {
+      while (!must(depths_->draw_slice(depth_, *buffers_, scene.camera, progress))) {
       }
       glFinish();
     });

@@ -1,8 +1,10 @@
 #include "support/edit_oracle.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 
 #include "render/edit_pass.h"
 
@@ -11,6 +13,7 @@ namespace {
 
 constexpr double kRounding_px = 2e-3;
 constexpr double kRoundingDepth = 1e-6;
+constexpr double kRoundingOfSize = 1e-6;  // of the model's diagonal, at a section plane
 
 // How far inside the tool a point is, in pixels; negative outside. Steps along each segment finely enough for kRounding_px:
 // independent of the closed form in the shader.
@@ -48,6 +51,13 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
             const std::vector<float>& depth, const glm::dmat4& clip_from_model, const render::DepthBias& bias,
             const glm::vec3& position, bool& undecided) {
   const Camera& camera = stroke.camera;
+  const double rounding = kRoundingOfSize * glm::length(glm::dvec3(scene.geometry->box_max - scene.geometry->box_min));
+  double section_margin = std::numeric_limits<double>::infinity();
+  for (const glm::dvec4& plane : camera.section) {
+    const double above = glm::dot(plane, glm::dvec4(glm::dvec3(position) + scene.geometry->origin, 1));
+    section_margin = std::min(section_margin, above / glm::length(glm::dvec3(plane)));
+  }
+  if (section_margin < -rounding) return false;
   const glm::dvec4 clip = clip_from_model * glm::dvec4(position, 1);
   if (clip.w <= 0 || std::abs(clip.z) > clip.w) return false;
   const glm::dvec3 ndc = glm::dvec3(clip) / clip.w;
@@ -55,8 +65,9 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
   const double window_margin = std::min({window.x, window.y, camera.width - window.x, camera.height - window.y});
   double margin_px = std::min(window_margin, inside(stroke, radii, window));
   if (margin_px < -kRounding_px) return false;
-  undecided = std::abs(margin_px) < kRounding_px;
-  if (stroke.through || window_margin <= 0) return margin_px > 0;
+  const bool kept = section_margin >= 0;
+  undecided = std::abs(margin_px) < kRounding_px || std::abs(section_margin) < rounding;
+  if (stroke.through || window_margin <= 0) return kept && margin_px > 0;
 
   const int x = static_cast<int>(window.x), y = static_cast<int>(window.y);
   const auto at = [&](int px, int py) {
@@ -65,6 +76,7 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
               static_cast<std::size_t>(std::clamp(px, 0, camera.width - 1))]};
   };
   const double here = at(x, y);
+  const bool inside = !camera.section.empty() && (std::bit_cast<std::uint32_t>(static_cast<float>(here)) & 1u) != 0;
   const double slope = std::min(std::abs(here - at(x - 1, y)), std::abs(at(x + 1, y) - here)) +
                        std::min(std::abs(here - at(x, y - 1)), std::abs(at(x, y + 1) - here));
   const double base = bias.scale / (clip.w * clip.w);
@@ -73,8 +85,7 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
   // Near a pixel's border the other pixel may have been asked.
   const double border = std::min({window.x - x, window.y - y, x + 1 - window.x, y + 1 - window.y});
   undecided = undecided || std::abs(depth_margin) < kRoundingDepth || border < kRounding_px;
-  (void)scene;
-  return margin_px > 0 && depth_margin >= 0;
+  return kept && !inside && margin_px > 0 && depth_margin >= 0;
 }
 
 }  // namespace

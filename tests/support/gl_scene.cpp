@@ -153,9 +153,9 @@ void TestRenderer::write(render::LayerHandle layer, std::vector<render::TileUplo
 
 std::shared_ptr<render::DepthBuffer> draw_depth(render::DepthBuffers& depths, const render::MeshBuffers& mesh,
                                                 const Camera& camera) {
-  auto buffer = expect(depths.start({1, camera.view, camera.projection, camera.width, camera.height}));
+  auto buffer = expect(depths.start(render::depth_key(1, camera, camera.width, camera.height)));
   render::MeshProgress progress;
-  while (!depths.draw_slice(buffer, mesh, camera, progress)) {
+  while (!expect(depths.draw_slice(buffer, mesh, camera, progress))) {
   }
   return buffer;
 }

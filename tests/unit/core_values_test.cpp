@@ -74,6 +74,26 @@ TEST(Palette, linear_mixes_step_holds_categorical_names) {
   EXPECT_EQ(color_of(palette, 7), generated_color(7));
 }
 
+TEST(Camera, refuses_sections_that_are_none) {
+  Camera camera{glm::dmat4(1), glm::dmat4(1), 100, 100};
+  camera.section = {{0, 0, 1, 5}, {0, 0, 0, 5}};
+  EXPECT_EQ(validate(camera).error().field, "camera.section[1]");
+  camera.section = {{0, std::nan(""), 1, 5}};
+  EXPECT_EQ(validate(camera).error().field, "camera.section[0]");
+  camera.section.assign(7, {0, 0, 1, 5});
+  EXPECT_EQ(validate(camera).error().field, "camera.section");
+  camera.section.resize(6);
+  EXPECT_TRUE(validate(camera));
+}
+
+TEST(Camera, a_section_is_relative_to_the_origin_and_has_unit_normals) {
+  Camera camera;
+  camera.section = {{0, 0, -10, 40'000'000}};
+  const auto planes = section_in_model(camera, {0, 0, 4'000'000 - 2});
+  EXPECT_EQ(planes[0], glm::vec4(0, 0, -1, 2));
+  EXPECT_EQ(planes[5], glm::vec4(0, 0, 0, 1)) << "keeps everything";
+}
+
 TEST(Camera, refuses_singular_and_endless_matrices) {
   Camera camera{glm::dmat4(1), glm::dmat4(1), 100, 100};
   EXPECT_TRUE(validate(camera));

@@ -97,5 +97,38 @@ TEST(QueryValues, a_pixel_picks_what_is_under_it) {
   EXPECT_FALSE(pick(tree, kOrigin, camera, -5, 200, {view}).hit) << "outside the window";
 }
 
+TEST(QueryValues, a_pick_sees_what_the_section_keeps) {
+  auto geometry = std::make_shared<mesh::Geometry>(*square());
+  for (int i = 0; i < 4; ++i) {  // a second square below, facing up as well
+    mesh::Vertex vertex = geometry->vertices[static_cast<std::size_t>(i)];
+    vertex.position.z = -1;
+    vertex.position_index += 4;
+    geometry->vertices.push_back(vertex);
+    geometry->positions.push_back(glm::dvec3(vertex.position) + kOrigin);
+  }
+  for (const std::uint32_t i : {0, 1, 3, 0, 3, 2}) geometry->indices.push_back(4 + i);
+  const mesh::SearchTree tree(geometry);
+  Camera camera{glm::lookAt(kOrigin + glm::dvec3(0, 0, 5), kOrigin, glm::dvec3(0, 1, 0)),
+                glm::ortho(-2.0, 2.0, -2.0, 2.0, 0.1, 20.0), 400, 400};
+  const auto height = [&]() -> std::optional<double> {
+    const auto point = pick(tree, kOrigin, camera, 250, 150, {});
+    return point.hit ? std::optional(point.position.z - kOrigin.z) : std::nullopt;
+  };
+  EXPECT_NEAR(*height(), 0, 1e-6);
+  camera.section = {{0, 0, -3, 3 * (kOrigin.z - 0.5)}};  // keeps what is below -0.5
+  EXPECT_NEAR(*height(), -1, 1e-6);
+  EXPECT_NEAR(pick(tree, kOrigin, camera, 250, 150, {}).distance, 5.9, 1e-4) << "from the near plane, as ever";
+  camera.section.push_back({0, 0, 1, -kOrigin.z + 0.7});  // and above -0.7
+  EXPECT_FALSE(height());
+  camera.section = {{1, 0, 0, -kOrigin.x - 1.5}};  // beside the ray
+  EXPECT_FALSE(height());
+  // From below, a plane between the eye and the lower square's back: the solid between them is closed there.
+  camera.view = glm::lookAt(kOrigin + glm::dvec3(0, 0, -5), kOrigin, glm::dvec3(0, 1, 0));
+  camera.section = {{0, 0, 1, -kOrigin.z + 0.5}};
+  EXPECT_FALSE(height());
+  camera.section.clear();
+  EXPECT_NEAR(*height(), -1, 1e-6) << "uncut surface is picked from both sides";
+}
+
 }  // namespace
 }  // namespace strata::query

@@ -24,12 +24,15 @@ void read_core(const nlohmann::json& json, Uuid& value) {
 }
 void read_core(const nlohmann::json& json, glm::dvec2& value) { read_numbers<2>(json, glm::value_ptr(value)); }
 void read_core(const nlohmann::json& json, glm::dvec3& value) { read_numbers<3>(json, glm::value_ptr(value)); }
+void read_core(const nlohmann::json& json, glm::dvec4& value) { read_numbers<4>(json, glm::value_ptr(value)); }
 void read_core(const nlohmann::json& json, glm::dmat4& value) { read_numbers<16>(json, glm::value_ptr(value)); }
 void read_core(const nlohmann::json& json, strata::Camera& value) {
   read_core(json.at("view"), value.view);
   read_core(json.at("projection"), value.projection);
   json.at("width").get_to(value.width);
   json.at("height").get_to(value.height);
+  value.section.clear();
+  if (const auto section = json.find("section"); section != json.end()) read_value(*section, value.section);
 }
 void read_core(const nlohmann::json& json, strata::ToolShape& value) {
   value = json.get_ref<const std::string&>() == "square" ? ToolShape::square : ToolShape::disc;
@@ -53,12 +56,15 @@ void read_core(const nlohmann::json& json, IdOrSlug& value) {
 nlohmann::json write_core(const Uuid& value) { return to_string(value); }
 nlohmann::json write_core(const glm::dvec2& value) { return write_numbers<2>(glm::value_ptr(value)); }
 nlohmann::json write_core(const glm::dvec3& value) { return write_numbers<3>(glm::value_ptr(value)); }
+nlohmann::json write_core(const glm::dvec4& value) { return write_numbers<4>(glm::value_ptr(value)); }
 nlohmann::json write_core(const glm::dmat4& value) { return write_numbers<16>(glm::value_ptr(value)); }
 nlohmann::json write_core(const strata::Camera& value) {
-  return {{"view", write_core(value.view)},
-          {"projection", write_core(value.projection)},
-          {"width", value.width},
-          {"height", value.height}};
+  nlohmann::json json{{"view", write_core(value.view)},
+                      {"projection", write_core(value.projection)},
+                      {"width", value.width},
+                      {"height", value.height}};
+  if (!value.section.empty()) json["section"] = write_value(value.section);
+  return json;
 }
 nlohmann::json write_core(const strata::ToolShape& value) { return value == ToolShape::square ? "square" : "disc"; }
 nlohmann::json write_core(const strata::ValueType& value) { return name(value); }

@@ -9,6 +9,12 @@ export type Point2 = [number, number];
 /** 4 × 4 matrix. Sixteen numbers, column-major. */
 export type Matrix = number[];
 
+/** Plane in space. [a, b, c, d]: what has a x + b y + c z + d below 0 is cut away. World coordinates. */
+export type Plane = [number, number, number, number];
+
+/** Planes that cut the model open. A box has six. What is cut away is neither seen, picked nor painted; where the inside of the solid would be seen, the cut is shown closed. */
+export type Section = Plane[];
+
 /** Pointer path. Pixels of the camera's window; consecutive points are joined, one point is a dab. */
 export type Path = Point2[];
 
@@ -26,6 +32,7 @@ export interface Camera {
   projection: Matrix;
   width: number;
   height: number;
+  section?: Section;
 }
 
 /** Shape of the brush. */
@@ -227,6 +234,7 @@ export interface CameraUpdate {
   projection: Matrix;
   width: number;
   height: number;
+  section?: Section;
   /** More cameras will follow at once: speed before quality. Default: false. */
   moving?: boolean;
 }

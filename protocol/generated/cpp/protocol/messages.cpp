@@ -371,6 +371,7 @@ void read(const nlohmann::json& json, CameraUpdate& value) {
   read_member(json, "projection", value.projection);
   read_member(json, "width", value.width);
   read_member(json, "height", value.height);
+  read_optional_member(json, "section", value.section);
   read_optional_member(json, "moving", value.moving);
 }
 
@@ -383,12 +384,13 @@ nlohmann::json to_json(const CameraUpdate& value) {
   write_member(json, "projection", value.projection);
   write_member(json, "width", value.width);
   write_member(json, "height", value.height);
+  write_optional_member(json, "section", value.section);
   write_member(json, "moving", value.moving);
   return json;
 }
 
 strata::Camera camera_of(const CameraUpdate& value) {
-  return {value.view, value.projection, value.width, value.height};
+  return {value.view, value.projection, value.width, value.height, value.section.value_or(std::vector<glm::dvec4>{})};
 }
 
 Result<void> check(const CameraUpdate& value, const std::string& field) {

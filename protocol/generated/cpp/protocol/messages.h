@@ -28,6 +28,8 @@ enum class Schema {
   Point3,
   Point2,
   Matrix,
+  Plane,
+  Section,
   Path,
   LayerRef,
   Uuid,
@@ -108,7 +110,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 82;
+constexpr int kSchemaCount = 84;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -294,6 +296,7 @@ struct CameraUpdate {
   glm::dmat4 projection{1};
   int width = 0;
   int height = 0;
+  std::optional<std::vector<glm::dvec4>> section;
   bool moving = false;  // More cameras will follow at once: speed before quality.
   bool operator==(const CameraUpdate&) const = default;
 };

@@ -8,6 +8,8 @@ std::string_view name(Schema schema) {
     case Schema::Point3: return "Point3";
     case Schema::Point2: return "Point2";
     case Schema::Matrix: return "Matrix";
+    case Schema::Plane: return "Plane";
+    case Schema::Section: return "Section";
     case Schema::Path: return "Path";
     case Schema::LayerRef: return "LayerRef";
     case Schema::Uuid: return "Uuid";
@@ -96,10 +98,12 @@ std::string_view schema_bundle() {
 "Point3":{"type":"array","minItems":3,"maxItems":3,"items":{"type":"number","minimum":-1000000000000000.0,"maximum":1000000000000000.0}},
 "Point2":{"type":"array","minItems":2,"maxItems":2,"items":{"type":"number","minimum":-1000000.0,"maximum":1000000.0}},
 "Matrix":{"type":"array","minItems":16,"maxItems":16,"items":{"type":"number","minimum":-1000000000000000.0,"maximum":1000000000000000.0}},
+"Plane":{"type":"array","minItems":4,"maxItems":4,"items":{"type":"number","minimum":-1000000000000000.0,"maximum":1000000000000000.0}},
+"Section":{"type":"array","minItems":0,"maxItems":6,"items":{"$ref":"#/definitions/Plane"}},
 "Path":{"type":"array","minItems":1,"maxItems":4096,"items":{"$ref":"#/definitions/Point2"}},
 "LayerRef":{"oneOf":[{"type":"integer","minimum":1,"maximum":9007199254740991},{"type":"string","minLength":1,"maxLength":128}]},
 "Uuid":{"type":"string","minLength":36,"maxLength":36,"pattern":"^[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}$"},
-"Camera":{"type":"object","additionalProperties":false,"required":["view","projection","width","height"],"properties":{"view":{"$ref":"#/definitions/Matrix"},"projection":{"$ref":"#/definitions/Matrix"},"width":{"type":"integer","minimum":1,"maximum":8192},"height":{"type":"integer","minimum":1,"maximum":8192}}},
+"Camera":{"type":"object","additionalProperties":false,"required":["view","projection","width","height"],"properties":{"view":{"$ref":"#/definitions/Matrix"},"projection":{"$ref":"#/definitions/Matrix"},"width":{"type":"integer","minimum":1,"maximum":8192},"height":{"type":"integer","minimum":1,"maximum":8192},"section":{"$ref":"#/definitions/Section"}}},
 "ToolShape":{"type":"string","enum":["disc","square"]},
 "EditStroke":{"type":"object","additionalProperties":false,"required":["op","camera","path"],"oneOf":[{"required":["radius_px"]},{"required":["radius_mm"]}],"anyOf":[{"required":["value"]},{"required":["erase"],"properties":{"erase":{"const":true}}}],"properties":{"op":{"const":"stroke"},"value":{"type":"number","minimum":-3.4028234663852886e+38,"maximum":3.4028234663852886e+38},"erase":{"type":"boolean"},"camera":{"$ref":"#/definitions/Camera"},"radius_px":{"type":"number","exclusiveMinimum":0,"maximum":8192},"radius_mm":{"type":"number","exclusiveMinimum":0,"maximum":10000000.0},"shape":{"$ref":"#/definitions/ToolShape"},"path":{"$ref":"#/definitions/Path"},"through":{"type":"boolean"}}},
 "EditFill":{"type":"object","additionalProperties":false,"required":["op","mode","where"],"anyOf":[{"required":["value"]},{"required":["erase"],"properties":{"erase":{"const":true}}}],"properties":{"op":{"const":"fill"},"value":{"type":"number","minimum":-3.4028234663852886e+38,"maximum":3.4028234663852886e+38},"erase":{"type":"boolean"},"mode":{"const":"where"},"where":{"type":"string","enum":["true"]}}},
@@ -121,7 +125,7 @@ std::string_view schema_bundle() {
 "SurfaceValues":{"type":"object","maxProperties":1000,"additionalProperties":{"$ref":"#/definitions/SurfaceValue"}},
 "Role":{"type":"string","enum":["viewer","annotator","curator","administrator","owner"]},
 "Hello":{"type":"object","additionalProperties":false,"required":["op"],"properties":{"op":{"const":"hello"},"client":{"type":"string","maxLength":200},"dpr":{"type":"number","minimum":0.1,"maximum":16},"accept":{"type":"array","minItems":0,"maxItems":16,"items":{"type":"string","minLength":1,"maxLength":32}}}},
-"CameraUpdate":{"type":"object","additionalProperties":false,"required":["op","seq","view","projection","width","height"],"properties":{"op":{"const":"camera"},"view_id":{"type":"integer","minimum":0,"maximum":15},"seq":{"type":"integer","minimum":0,"maximum":9007199254740991},"view":{"$ref":"#/definitions/Matrix"},"projection":{"$ref":"#/definitions/Matrix"},"width":{"type":"integer","minimum":1,"maximum":8192},"height":{"type":"integer","minimum":1,"maximum":8192},"moving":{"type":"boolean"}}},
+"CameraUpdate":{"type":"object","additionalProperties":false,"required":["op","seq","view","projection","width","height"],"properties":{"op":{"const":"camera"},"view_id":{"type":"integer","minimum":0,"maximum":15},"seq":{"type":"integer","minimum":0,"maximum":9007199254740991},"view":{"$ref":"#/definitions/Matrix"},"projection":{"$ref":"#/definitions/Matrix"},"width":{"type":"integer","minimum":1,"maximum":8192},"height":{"type":"integer","minimum":1,"maximum":8192},"section":{"$ref":"#/definitions/Section"},"moving":{"type":"boolean"}}},
 "LayerOverride":{"type":"object","additionalProperties":false,"required":["layer"],"properties":{"layer":{"$ref":"#/definitions/LayerRef"},"visible":{"type":"boolean"},"opacity":{"type":"number","minimum":0,"maximum":1},"palette":{"$ref":"#/definitions/Palette"}}},
 "LayersUpdate":{"type":"object","additionalProperties":false,"required":["op","layers"],"properties":{"op":{"const":"layers"},"view_id":{"type":"integer","minimum":0,"maximum":15},"layers":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/LayerOverride"}}}},
 "StrokeBegin":{"type":"object","additionalProperties":false,"required":["op","id","stroke","layer","camera"],"oneOf":[{"required":["radius_px"]},{"required":["radius_mm"]}],"anyOf":[{"required":["value"]},{"required":["erase"],"properties":{"erase":{"const":true}}}],"properties":{"op":{"const":"stroke.begin"},"id":{"$ref":"#/definitions/Uuid"},"stroke":{"$ref":"#/definitions/Uuid"},"layer":{"$ref":"#/definitions/LayerRef"},"value":{"type":"number","minimum":-3.4028234663852886e+38,"maximum":3.4028234663852886e+38},"erase":{"type":"boolean"},"camera":{"$ref":"#/definitions/Camera"},"radius_px":{"type":"number","exclusiveMinimum":0,"maximum":8192},"radius_mm":{"type":"number","exclusiveMinimum":0,"maximum":10000000.0},"shape":{"$ref":"#/definitions/ToolShape"},"through":{"type":"boolean"}}},

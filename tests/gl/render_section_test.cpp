@@ -1,0 +1,168 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "support/edit_oracle.h"
+
+namespace strata::test {
+namespace {
+
+constexpr int kResolution = 1024, kSize = 400;
+constexpr std::array<int, 3> kInside{120, 92, 79};  // gbuffer_pass.frag
+
+// A ball of radius 1 with a hollow of radius 0.7: the outer surface lies in the left half of the atlas.
+mesh::TriangleMesh hollow_ball() {
+  auto ball = bumpy_sphere(40);
+  const auto outer = ball;
+  const auto first = static_cast<std::uint32_t>(ball.positions.size());
+  for (const auto& position : outer.positions) ball.positions.push_back(0.7 * position);
+  for (std::size_t i = 0; i < outer.triangles.size(); i += 3)
+    for (const std::size_t corner : {0, 2, 1}) {
+      ball.triangles.push_back(first + outer.triangles[i + corner]);
+      ball.corner_uvs.push_back(outer.corner_uvs[i + corner]);
+    }
+  for (std::size_t i = 0; i < ball.corner_uvs.size(); ++i)
+    ball.corner_uvs[i].x = ball.corner_uvs[i].x / 2 + (i < outer.corner_uvs.size() ? 0.0f : 0.5f);
+  return ball;
+}
+
+int count(const render::StrokeOutcome& outcome, bool outer) {
+  int count = 0;
+  for (const auto& tile : outcome.tiles)
+    if ((tile.address.x < kResolution / kTileSize / 2) == outer) count += tile.written.count();
+  return count;
+}
+
+class Section : public testing::Test {
+ protected:
+  Section() : scene_(make_scene(hollow_ball(), kResolution)), model_(renderer_.add(scene_)) {
+    camera_ = orthographic_camera({4, 0, 0}, {0, 0, 0}, kSize, kSize, 1.25);
+    camera_.section = {{-2, 0, 0, 0}};  // keeps x below 0: the half that is away from the eye
+  }
+  std::array<int, 3> pixel(const Camera& camera, int x, int y) {
+    render::FrameRequest request;
+    request.view = renderer_.add_view(model_);
+    request.camera = camera;
+    request.width = camera.width, request.height = camera.height;
+    const auto frame = renderer_.draw(request);
+    renderer_->remove_view(request.view);
+    const auto* p = &frame.pixels[4 * static_cast<std::size_t>(y * frame.width + x)];
+    return {p[0], p[1], p[2]};
+  }
+  // From the middle to the right, where the ball's wall is cut between 0.7 and 1.
+  static int at_radius(double radius) { return static_cast<int>(kSize / 2 * (1 + radius / 1.25)); }
+  render::StrokeOutcome paint(const StrokeBatch& stroke) {
+    return renderer_.paint(renderer_.add_layer(model_, ValueType::u8, kResolution), stroke);
+  }
+  void expect_as_oracle(const StrokeBatch& stroke, int at_least) {
+    const auto expected = oracle_edit(scene_, stroke, std::vector<double>(stroke.path.size(), stroke.radius_px),
+                                      renderer_.depth(scene_, stroke.camera));
+    const auto difference = compare(expected, paint(stroke));
+    EXPECT_GE(expected.count, at_least);
+    EXPECT_EQ(difference.surface, 0) << "of " << difference.compared;
+    EXPECT_LE(difference.undecided, 2 + difference.compared / 5'000);
+  }
+
+  TestRenderer renderer_;
+  Scene scene_;
+  render::ModelHandle model_;
+  Camera camera_;
+};
+
+TEST_F(Section, a_cut_ball_shows_its_hollow_and_a_closed_wall) {
+  const int middle = kSize / 2;
+  EXPECT_EQ(pixel(camera_, at_radius(0.85), middle), kInside);
+  EXPECT_EQ(pixel(camera_, middle, kSize - at_radius(0.85)), kInside);
+  EXPECT_NE(pixel(camera_, middle, middle), kInside) << "the hollow is surface";
+  Camera whole = camera_;
+  whole.section.clear();
+  EXPECT_NE(pixel(whole, at_radius(0.85), middle), kInside);
+  Camera nothing = camera_;
+  nothing.section = {{1, 0, 0, -5}};
+  EXPECT_EQ(pixel(nothing, middle, middle), pixel(camera_, 2, middle)) << "all is cut away";
+}
+
+TEST_F(Section, the_wall_is_closed_for_perspective_and_mirrored_cameras) {
+  Camera camera = perspective_camera({4, 0, 0}, {0, 0, 0}, kSize, kSize, 2 * 57.29578 * std::atan(1.25 / 4));
+  camera.section = camera_.section;
+  EXPECT_EQ(pixel(camera, at_radius(0.85), kSize / 2), kInside);
+  Camera mirrored = camera_;
+  mirrored.view = glm::scale(glm::dmat4(1), {-1, 1, 1}) * mirrored.view;
+  EXPECT_EQ(pixel(mirrored, at_radius(0.85), kSize / 2), kInside);
+  EXPECT_NE(pixel(mirrored, kSize / 2, kSize / 2), kInside);
+}
+
+TEST_F(Section, from_the_side_that_is_kept_nothing_is_closed) {
+  Camera camera = orthographic_camera({-4, 0, 0}, {0, 0, 0}, kSize, kSize, 1.25);
+  const auto before = pixel(camera, at_radius(0.85), kSize / 2);
+  camera.section = camera_.section;
+  EXPECT_EQ(pixel(camera, at_radius(0.85), kSize / 2), before);
+}
+
+TEST_F(Section, a_box_of_six_planes_keeps_what_is_inside) {
+  camera_.section = {{1, 0, 0, 2}, {-1, 0, 0, 0.5}, {0, 1, 0, 0.5}, {0, -1, 0, 0.5}, {0, 0, 1, 2}, {0, 0, -1, 2}};
+  const int middle = kSize / 2;
+  EXPECT_EQ(pixel(camera_, middle + 2, at_radius(0.6)), pixel(camera_, 2, at_radius(0.6))) << "above the box";
+  EXPECT_EQ(pixel(camera_, at_radius(0.7), middle), kInside) << "the wall at the near side of the box";
+}
+
+TEST_F(Section, a_dab_through_the_opening_paints_the_inside_as_the_oracle_says) {
+  const auto stroke = dab(camera_, kSize / 2, kSize / 2, 50);
+  expect_as_oracle(stroke, 500);
+  const auto outcome = paint(stroke);
+  EXPECT_EQ(count(outcome, true), 0) << "the outer surface is cut away or hidden";
+  StrokeBatch uncut = stroke;
+  uncut.camera.section.clear();
+  EXPECT_EQ(count(paint(uncut), false), 0) << "without the section the outer surface is painted";
+}
+
+TEST_F(Section, the_cut_itself_takes_no_paint) {
+  EXPECT_EQ(count(paint(dab(camera_, at_radius(0.85), kSize / 2, 6)), true), 0);
+  EXPECT_EQ(count(paint(dab(camera_, at_radius(0.85), kSize / 2, 6)), false), 0);
+}
+
+TEST_F(Section, painting_through_stops_at_the_planes) {
+  StrokeBatch stroke = dab(camera_, kSize / 2, kSize / 2, 500);
+  stroke.through = true;
+  expect_as_oracle(stroke, 10'000);
+  const auto outcome = paint(stroke);
+  EXPECT_GT(count(outcome, true), 5'000);
+  for (std::uint32_t slot = 0; slot < scene_.map->block_of_slot.size(); ++slot) {
+    const int block = static_cast<int>(scene_.map->block_of_slot[slot]);
+    const int x = block % scene_.map->blocks_per_side, y = block / scene_.map->blocks_per_side;
+    for (const auto& tile : outcome.tiles) {
+      if (tile.address.x != x / 16 || tile.address.y != y / 16) continue;
+      for (int i = 0; i < 64; ++i) {
+        const bool written = tile.written.test((y % 16 * 8 + i / 8) * kTileSize + x % 16 * 8 + i % 8);
+        EXPECT_TRUE(!written || scene_.map->position(slot, i).x <= 1e-5f);
+      }
+    }
+  }
+}
+
+TEST_F(Section, an_edit_does_not_use_the_depth_of_another_section) {
+  (void)pixel(camera_, 0, 0);  // a view of the cut ball leaves its depth behind
+  StrokeBatch uncut = dab(camera_, kSize / 2, kSize / 2, 20);
+  uncut.camera.section.clear();
+  expect_as_oracle(uncut, 100);
+  expect_as_oracle(dab(camera_, kSize / 2, kSize / 2, 20), 100);
+}
+
+TEST_F(Section, a_view_is_drawn_anew_when_only_its_section_changes) {
+  render::FrameRequest request;
+  request.view = renderer_.add_view(model_);
+  request.camera = camera_;
+  request.width = request.height = kSize;
+  const auto cut = renderer_.draw(request).pixels;
+  request.camera.section.clear();
+  const auto whole = renderer_.draw(request).pixels;
+  EXPECT_NE(cut, whole);
+  request.camera.section = camera_.section;
+  EXPECT_EQ(renderer_.draw(request).pixels, cut);
+}
+
+}  // namespace
+}  // namespace strata::test
