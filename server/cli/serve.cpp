@@ -21,7 +21,7 @@ struct ServeOptions {
   DataOptions data;
   std::string listen = "127.0.0.1:8080";
   std::vector<std::string> origins;
-  std::uint64_t gpu_memory = 0;
+  std::uint64_t gpu_memory = 0, memory = 0;
   bool debug = false;
 };
 
@@ -102,7 +102,9 @@ int run(const ServeOptions& options) {
   log::info("drawing with " + gpu.renderer + (gpu.software ? " (software)" : ""));
 
   stream::JpegPool encoder(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1));
-  room::Rooms rooms(store, **renderer, {renderer->get(), &encoder}, {});
+  room::RoomOptions room_options;
+  room_options.memory_bytes = options.memory;
+  room::Rooms rooms(store, **renderer, {renderer->get(), &encoder}, room_options);
   jobs::JobQueue jobs;
 
   net::ServerOptions server_options;
@@ -147,6 +149,11 @@ Command add_serve(CLI::App& app) {
       ->add_option("--gpu-memory", options->gpu_memory,
                    "Budget of GPU memory, e.g. 4GiB (default: what the driver has)")
       ->envname("STRATA_GPU_MEMORY")
+      ->transform(CLI::AsSizeValue(false));
+  command
+      ->add_option("--memory", options->memory,
+                   "Budget of main memory for open models, e.g. 8GiB (default: 60 % of the machine's)")
+      ->envname("STRATA_MEMORY")
       ->transform(CLI::AsSizeValue(false));
   command->add_flag("--gl-debug", options->debug, "Ask the driver for debug messages (slow)");
   return [options] { return run(*options); };

@@ -139,6 +139,11 @@ void find_boxes(Geometry& geometry) {
   }
 }
 
+std::size_t Geometry::bytes() const {
+  const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return of(positions) + of(vertices) + of(indices) + of(clusters);
+}
+
 double surface_area(const Geometry& geometry) {
   const auto corner = [&](std::size_t i) -> const glm::dvec3& {
     return geometry.positions[geometry.vertices[geometry.indices[i]].position_index];

@@ -38,6 +38,7 @@ struct Geometry {
   static constexpr std::size_t kTrianglesPerCluster = 1024;
 
   std::size_t triangle_count() const { return indices.size() / 3; }
+  std::size_t bytes() const;
 };
 
 // Fills in the boxes, which follow from vertices and indices.

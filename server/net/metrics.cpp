@@ -31,6 +31,7 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   gauge("strata_open_rooms", "Models in memory.", gauges.open_rooms);
   gauge("strata_waiting_requests", "Requests that wait for a worker.", gauges.waiting_requests);
   gauge("strata_gpu_bytes", "GPU memory in use.", gauges.gpu_bytes);
+  gauge("strata_memory_bytes", "Main memory that open models hold.", gauges.memory_bytes);
   counter("strata_edits_applied_total", "Edits that became visible.", metrics.edits_applied);
   counter("strata_edits_saved_total", "Edits that became durable.", metrics.edits_saved);
   counter("strata_edits_unsaved_total", "Edits that were visible and had to be taken back.", metrics.edits_unsaved);

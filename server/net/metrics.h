@@ -21,7 +21,7 @@ struct Metrics {
 
 struct Gauges {
   std::size_t open_rooms = 0;
-  std::uint64_t gpu_bytes = 0;
+  std::uint64_t gpu_bytes = 0, memory_bytes = 0;
   std::size_t waiting_requests = 0;
 };
 

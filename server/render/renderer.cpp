@@ -159,6 +159,12 @@ void Renderer::add_surface_map(ModelHandle model, std::shared_ptr<const mesh::Su
   impl_->post(Lane::background, std::make_shared<SurfaceMapUpload>(model, std::move(map), std::move(done)));
 }
 
+void Renderer::remove_surface_map(ModelHandle model, int resolution) {
+  impl_->post_removal([model, resolution](GpuScene& scene) {
+    if (auto found = scene.model(model)) (*found)->maps.erase(resolution);
+  });
+}
+
 void Renderer::add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done) {
   impl_->post_simple<LayerHandle>(std::move(done), [impl = impl_.get(), model, type, resolution](GpuScene& scene) {
     auto handle = scene.add_layer(model, type, resolution);

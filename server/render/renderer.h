@@ -132,6 +132,8 @@ class Renderer {
   // Needed before strokes at this resolution; baked by the caller, uploaded in slices.
   void add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map, Done<void> done);
 
+  void remove_surface_map(ModelHandle model, int resolution);  // strokes at it are refused (409) from then on
+
   void add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done);
   void remove_layer(LayerHandle layer);
   // Sets whole tiles (fill, undo, import); done after the GPU has them. In order with strokes. Frames that are drawn before

@@ -78,6 +78,7 @@ void EditPipeline::edit(EditRequest request, Room::Applied applied, Room::Saved 
   if (!parts_.writer.accepting())
     return saved(
         fail(503, "Not saved", "The database does not take edits at the moment. Viewing goes on; try again shortly."));
+  if (parts_.memory.exceeded()) return saved(tl::unexpected(parts_.memory.used_up(0, "what an edit may add")));
   running_[request.id];
   waiting_.push_back({std::move(request), std::move(applied), std::move(saved), {}});
   step();

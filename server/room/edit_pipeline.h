@@ -58,10 +58,12 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     boost::asio::thread_pool& readers;
     Strand strand;
     std::shared_ptr<SurfaceMaps> maps;
+    const MemoryLedger& memory;
   };
   EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_sequence);
 
   void edit(EditRequest request, Room::Applied applied, Room::Saved saved);
+  bool is_still() const { return in_flight_ == 0 && !busy_; }  // nothing is being painted or computed
   // Calls `work` on a worker, where it may block, when every edit before it is durable; nothing else runs meanwhile. Where that
   // will never be, calls it with the reason, on the strand.
   using Work = std::function<void(const Result<void>&)>;

@@ -52,7 +52,7 @@ OpenRoom::OpenRoom(const RoomParts& parts, Model model, render::ModelGeometry ge
       geometry_(std::move(geometry.full)),
       coarser_(std::move(geometry.coarser)),
       strand_(parts.strands.get_executor()),
-      maps_(std::make_shared<SurfaceMaps>(geometry_, parts.renderer, parts.workers)),
+      maps_(std::make_shared<SurfaceMaps>(geometry_, parts.renderer, parts.memory, parts.workers)),
       model_(std::move(model)),
       last_used_(std::chrono::steady_clock::now()),
       recovery_(strand_) {}
@@ -64,21 +64,30 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const s
   if (!model) return tl::unexpected(model.error());
   auto geometry = read_geometry(parts.store, model->id);
   if (!geometry) return tl::unexpected(geometry.error());
+  std::uint64_t bytes = geometry->full->bytes();
+  for (const auto& level : geometry->coarser) bytes += level->bytes();
+  auto share = parts.memory.reserve(bytes, "the model's triangles");
+  if (!share) return tl::unexpected(share.error());
   auto room = std::make_shared<OpenRoom>(parts, std::move(*model), std::move(*geometry));
+  room->geometry_share_ = std::move(*share);
   auto journal = read_journal(parts.store, room->model_id_, {});
   if (!journal) return tl::unexpected(journal.error());
-  auto gpu = fill_gpu(parts.renderer, {room->geometry_, room->coarser_}, journal->layers);
-  if (!gpu) return tl::unexpected(gpu.error());
   for (LayerState& state : journal->layers) {
-    state.handle = gpu->layers.at(state.layer.id);
-    room->layers_.emplace(state.layer.id, std::move(state));
+    const std::int64_t id = state.layer.id;
+    room->layers_.emplace(id, std::move(state));
   }
+  auto mirrors = parts.memory.reserve(room->mirror_bytes(), "what its layers hold");
+  if (!mirrors) return tl::unexpected(mirrors.error());
+  room->mirrors_share_ = std::move(*mirrors);
+  auto gpu = fill_gpu(parts.renderer, {room->geometry_, room->coarser_}, room->layer_states());
+  if (!gpu) return tl::unexpected(gpu.error());
+  for (auto& [id, state] : room->layers_) state.handle = gpu->layers.at(id);
   room->model_handle_ = gpu->model;
   room->maps_->set_model(gpu->model);
   room->sequence_ = room->durable_ = journal->last_sequence;
   room->pipeline_ =
       std::make_shared<EditPipeline>(EditPipeline::Parts{parts.store, parts.writer, parts.renderer, parts.workers,
-                                                         parts.readers, room->strand_, room->maps_},
+                                                         parts.readers, room->strand_, room->maps_, parts.memory},
                                      *room, journal->last_sequence);
   // Painting needs the maps of the layers there are; bake them while people look around.
   for (const auto& state : room->layer_states()) room->maps_->request(state.layer.resolution, [](auto) {});
@@ -212,6 +221,7 @@ Result<void> OpenRoom::delete_layer(std::int64_t id, const store::FirstAnswer<>&
         if (found == layers_.end()) return;
         gone = std::move(found->second);
         layers_.erase(found);
+        mirrors_share_.recount(mirror_bytes());
       }
       parts_.renderer.remove_layer(gone.handle);
       tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::deleted, gone.layer); });
@@ -270,6 +280,13 @@ LayerState* OpenRoom::find_layer(std::int64_t id) {
 void OpenRoom::set_sequence(LayerState& layer, std::int64_t sequence) {
   std::lock_guard lock(mutex_);
   layer.layer.sequence = sequence;
+  mirrors_share_.recount(mirror_bytes());
+}
+
+std::uint64_t OpenRoom::mirror_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const auto& [id, state] : layers_) bytes += state.mirror->bytes();
+  return bytes;
 }
 
 void OpenRoom::content_changed(const LayerState& layer, const std::optional<render::FrameRequest::Box>& box,
@@ -336,11 +353,17 @@ void OpenRoom::touch() {
   last_used_ = std::chrono::steady_clock::now();
 }
 
+bool OpenRoom::empty() const {
+  std::lock_guard lock(members_mutex_);
+  return members_.empty();
+}
+
+bool OpenRoom::drop_map() {
+  return on_strand([&] { return pipeline_->is_still() && maps_->drop_oldest(); });
+}
+
 bool OpenRoom::deserted(std::chrono::steady_clock::time_point now) const {
-  {
-    std::lock_guard lock(members_mutex_);
-    if (!members_.empty()) return false;
-  }
+  if (!empty()) return false;
   std::lock_guard lock(mutex_);
   return now - last_used_ > parts_.options.close_after;
 }

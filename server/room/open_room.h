@@ -21,6 +21,7 @@ struct RoomParts {
   stream::StreamContext stream;
   boost::asio::thread_pool& strands;  // room strands run here: short work, nothing that waits
   boost::asio::thread_pool& workers;  // bakes, history, loading: long work
+  MemoryLedger& memory;               // of what rooms hold, but for the GPU's
   boost::asio::thread_pool& readers;  // questions to the journal before each edit: they wait for the database only
   RoomOptions options;
 };
@@ -79,6 +80,9 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void gpu_lost();
   bool deserted(std::chrono::steady_clock::time_point now) const;  // nobody for `close_after`
   void touch();
+  bool empty() const;  // nobody is in it
+  const SurfaceMaps& maps() const { return *maps_; }
+  bool drop_map();  // the one that was not used for the longest time, where nothing is being painted. Blocks
   void take_no_edits() { takes_edits_ = false; }  // new ones are refused
   bool idle() const { return unanswered_ == 0; }  // every edit is durable or refused
   void shut(const Problem& why);                  // refuses what waits and what comes, lets go of the GPU; blocks
@@ -98,6 +102,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void on_journal_read(Result<JournalContents> contents);
   void retry_recovery(const Problem& why);
   void sort_layers_changed();
+  std::uint64_t mirror_bytes() const;  // with `mutex_` held
   std::shared_ptr<const mesh::SearchTree> search_tree();
   Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs) const;
   Result<LayerState> state(const std::string& ref) const;
@@ -114,6 +119,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   mutable std::mutex mutex_;
   Model model_;
   std::map<std::int64_t, LayerState> layers_;
+  MemoryLedger::Share geometry_share_, mirrors_share_;
   render::ModelHandle model_handle_ = 0;
   std::chrono::steady_clock::time_point last_used_;  // under `mutex_` everywhere
 

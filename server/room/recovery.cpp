@@ -72,6 +72,7 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
       }
     }
     before = std::exchange(layers_, read);
+    mirrors_share_.recount(mirror_bytes());
   }
   pipeline_->journal_read(contents->last_sequence);
   sequence_ = durable_ = contents->last_sequence;

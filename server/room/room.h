@@ -115,6 +115,8 @@ struct RoomOptions {
   std::size_t max_waiting_edits = 512;          // of a room, not yet answered; more are refused (429)
   std::chrono::milliseconds retry_for{30'000};  // commits that fail
   std::chrono::milliseconds drain_for{40'000};  // longer than commits are retried
+  // Budget of what open models hold in main memory: geometry, surface maps, layers. 0: 60 % of the machine's or the container's.
+  std::uint64_t memory_bytes = 0;
 };
 
 // Opens rooms on first use and closes them after the last user left.
@@ -122,10 +124,12 @@ class Rooms {
  public:
   Rooms(store::Store& store, render::Renderer& renderer, stream::StreamContext stream, RoomOptions options);
   ~Rooms();
-  // Blocking: loads the model (geometry and layers) when it is not open.
+  // Blocking: loads the model (geometry and layers) when it is not open. Where memory is used up, rooms that nobody is in are
+  // closed for it.
   Result<std::shared_ptr<Room>> open(const std::string& model_ref);
   void forget(std::int64_t model_id);  // the model was deleted: members are told, the room closes
   std::size_t open_rooms() const;
+  std::uint64_t memory_bytes_used() const;
   // Refuses new edits, and returns when every other is durable or refused, after `drain_for` at the latest: then what still waits
   // is refused.
   void drain();

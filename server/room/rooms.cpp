@@ -1,5 +1,10 @@
+#include <unistd.h>
+
+#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <condition_variable>
+#include <fstream>
+#include <functional>
 #include <set>
 #include <thread>
 
@@ -15,6 +20,15 @@ constexpr int kWorkerThreads = 2;
 constexpr int kReaderThreads = 2;
 constexpr auto kSweepEvery = std::chrono::seconds(5);
 
+// A share of what the machine has, or of what its container may take.
+std::uint64_t default_budget() {
+  std::uint64_t bytes =
+      static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  std::uint64_t limit = 0;
+  if (std::ifstream("/sys/fs/cgroup/memory.max") >> limit) bytes = std::min(bytes, limit);  // "max" is no number
+  return bytes / 10 * 6;
+}
+
 const Problem kClosing{503, "Model is closing", "The server is letting go of this model; try again in a moment.", {}};
 const Problem kStopping{503, "Server is stopping", "Try again when it is back.", {}};
 
@@ -27,7 +41,9 @@ struct Rooms::Impl {
         strands(kStrandThreads),
         workers(kWorkerThreads),
         readers(kReaderThreads),
-        parts{store, writer, renderer, stream, strands, workers, readers, options} {
+        memory("main memory", "--memory", options.memory_bytes > 0 ? options.memory_bytes : default_budget()),
+        parts{store, writer, renderer, stream, strands, workers, memory, readers, options} {
+    memory.set_evictor([this] { return drop_a_map(); });
     renderer.on_context_lost([this] {
       std::lock_guard lock(mutex);
       ++context_losses;
@@ -65,33 +81,59 @@ struct Rooms::Impl {
 
   // Lets go of rooms that nobody has been in for a while.
   void sweep() {
-    std::unique_lock lock(mutex);
-    while (!stopping) {
-      changed.wait_for(lock, kSweepEvery, [&] { return stopping; });
-      std::vector<std::shared_ptr<OpenRoom>> leaving;
+    for (;;) {
+      {
+        std::unique_lock lock(mutex);
+        if (changed.wait_for(lock, kSweepEvery, [&] { return stopping; })) return;
+      }
       const auto now = std::chrono::steady_clock::now();
-      for (auto found = rooms.begin(); !stopping && found != rooms.end();) {
-        // Ours is the only reference: no request is looking at it, and no edit waits for an answer.
-        if (found->second.use_count() == 1 && found->second->deserted(now)) {
+      close_rooms([&](const OpenRoom& room) { return room.deserted(now); }, "nobody is looking");
+    }
+  }
+
+  // The surface map that was not used for the longest time, of a room where nothing is being painted. Those who ask wait, and so
+  // must not be on a strand.
+  bool drop_a_map() {
+    std::vector<std::pair<SurfaceMaps::Clock::time_point, std::shared_ptr<OpenRoom>>> by_use;
+    {
+      std::lock_guard lock(mutex);
+      for (auto& [id, room] : rooms)
+        if (const auto use = room->maps().oldest_use()) by_use.emplace_back(*use, room);
+    }
+    std::sort(by_use.begin(), by_use.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    return std::any_of(by_use.begin(), by_use.end(), [](const auto& entry) { return entry.second->drop_map(); });
+  }
+
+  // Without waiting for their time; false when somebody is in every room.
+  bool close_empty_rooms() {
+    return close_rooms([](const OpenRoom& room) { return room.empty(); }, "for another that needs its memory");
+  }
+
+  // Closes the rooms that no request is looking at and where no edit waits for an answer: ours is the only reference.
+  bool close_rooms(const std::function<bool(const OpenRoom&)>& may_close, const char* why) {
+    std::vector<std::shared_ptr<OpenRoom>> leaving;
+    {
+      std::lock_guard lock(mutex);
+      for (auto found = rooms.begin(); found != rooms.end();) {
+        if (found->second.use_count() == 1 && may_close(*found->second)) {
           leaving.push_back(std::move(found->second));
           found = rooms.erase(found);
         } else {
           ++found;
         }
       }
-      lock.unlock();
-      for (auto& room : leaving) {
-        room->shut(kClosing);
-        log::info("closed model " + std::to_string(room->id()) + ", nobody is looking");
-      }
-      leaving.clear();
-      lock.lock();
     }
+    for (auto& room : leaving) {
+      room->shut(kClosing);
+      log::info("closed model " + std::to_string(room->id()) + ", " + why);
+    }
+    return !leaving.empty();
   }
 
   render::Renderer& renderer;
   store::JournalWriter writer;
   boost::asio::thread_pool strands, workers, readers;
+  MemoryLedger memory;
   const RoomParts parts;
   std::mutex mutex;
   std::condition_variable changed;
@@ -127,6 +169,8 @@ Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref) {
     impl_->opening.insert(model->id);
   }
   auto room = OpenRoom::open(impl_->parts, std::to_string(model->id));
+  if (!room && is_used_up(room.error()) && impl_->close_empty_rooms())
+    room = OpenRoom::open(impl_->parts, std::to_string(model->id));
   std::unique_lock lock(impl_->mutex);
   impl_->opening.erase(model->id);
   impl_->changed.notify_all();
@@ -155,6 +199,8 @@ void Rooms::forget(std::int64_t model_id) {
   }
   room->shut_deleted();
 }
+
+std::uint64_t Rooms::memory_bytes_used() const { return impl_->memory.used(); }
 
 std::size_t Rooms::open_rooms() const {
   std::lock_guard lock(impl_->mutex);

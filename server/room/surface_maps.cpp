@@ -9,7 +9,9 @@ namespace strata::room {
 SurfaceMaps::MapPtr SurfaceMaps::get(int resolution) const {
   std::lock_guard lock(mutex_);
   auto found = entries_.find(resolution);
-  return found != entries_.end() && found->second.on_gpu ? found->second.baked : nullptr;
+  if (found == entries_.end() || !found->second.on_gpu) return nullptr;
+  found->second.last_use = Clock::now();
+  return found->second.baked;
 }
 
 void SurfaceMaps::request(int resolution, Ready ready) {
@@ -22,6 +24,7 @@ void SurfaceMaps::request(int resolution, Ready ready) {
       if (!entry.working) start(resolution);
       return;
     }
+    entry.last_use = Clock::now();
     map = entry.baked;
   }
   ready(map);
@@ -40,6 +43,30 @@ void SurfaceMaps::set_model(render::ModelHandle model) {
   }
 }
 
+SurfaceMaps::Entries::const_iterator SurfaceMaps::oldest() const {
+  auto oldest = entries_.end();
+  for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+    if (!entry->second.baked || entry->second.working) continue;
+    if (oldest == entries_.end() || entry->second.last_use < oldest->second.last_use) oldest = entry;
+  }
+  return oldest;
+}
+
+std::optional<SurfaceMaps::Clock::time_point> SurfaceMaps::oldest_use() const {
+  std::lock_guard lock(mutex_);
+  const auto entry = oldest();
+  return entry == entries_.end() ? std::nullopt : std::optional(entry->second.last_use);
+}
+
+bool SurfaceMaps::drop_oldest() {
+  std::lock_guard lock(mutex_);
+  const auto entry = oldest();
+  if (entry == entries_.end()) return false;
+  renderer_.remove_surface_map(model_, entry->first);
+  entries_.erase(entry);
+  return true;
+}
+
 void SurfaceMaps::start(int resolution) {
   Entry& entry = entries_[resolution];
   entry.working = true;
@@ -54,9 +81,12 @@ void SurfaceMaps::start(int resolution) {
     if (!map) {
       auto baked = mesh::bake_surface_map(*self->geometry_, resolution, self->progress_);
       if (!baked) return self->finish(resolution, tl::unexpected(baked.error()), model);
+      auto share = self->memory_.reserve(baked->bytes(), "a surface map of " + std::to_string(resolution) + " texels");
+      if (!share) return self->finish(resolution, tl::unexpected(share.error()), model);
       map = std::make_shared<const mesh::SurfaceMap>(std::move(*baked));
       std::lock_guard lock(self->mutex_);
       self->entries_[resolution].baked = map;
+      self->entries_[resolution].share = std::move(*share);
     }
     self->upload(resolution, std::move(map), model);
   });
@@ -82,6 +112,7 @@ void SurfaceMaps::finish(int resolution, Result<MapPtr> result, render::ModelHan
     }
     entry.working = false;
     entry.on_gpu = result.has_value();
+    entry.last_use = Clock::now();
     waiting.swap(entry.waiting);
   }
   for (auto& ready : waiting) ready(result);

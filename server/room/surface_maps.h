@@ -1,12 +1,15 @@
 #pragma once
 
 #include <boost/asio/thread_pool.hpp>
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
+#include "core/memory_ledger.h"
 #include "core/progress.h"
 #include "mesh/surface_map.h"
 #include "render/renderer.h"
@@ -20,9 +23,9 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
   using MapPtr = std::shared_ptr<const mesh::SurfaceMap>;
   using Ready = std::function<void(Result<MapPtr>)>;
 
-  SurfaceMaps(std::shared_ptr<const mesh::Geometry> geometry, render::Renderer& renderer,
+  SurfaceMaps(std::shared_ptr<const mesh::Geometry> geometry, render::Renderer& renderer, MemoryLedger& memory,
               boost::asio::thread_pool& workers)
-      : geometry_(std::move(geometry)), renderer_(renderer), workers_(workers) {}
+      : geometry_(std::move(geometry)), renderer_(renderer), memory_(memory), workers_(workers) {}
 
   // The map if it is baked and on the GPU, otherwise null (and nothing is started).
   MapPtr get(int resolution) const;
@@ -33,26 +36,36 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
 
   // The model's handle, new after a lost context: baked maps are put on the GPU again.
   void set_model(render::ModelHandle model);
+  // Maps that can be done without, for the moment: they are baked again when they are asked for.
+  using Clock = std::chrono::steady_clock;
+  std::optional<Clock::time_point> oldest_use() const;  // of the map that was not used for the longest time
+  // Drops it; false when there is none. Only while nothing is being painted, which would miss it on the GPU.
+  bool drop_oldest();
   void stop() { progress_.cancel(); }
 
  private:
   struct Entry {
     MapPtr baked;
+    MemoryLedger::Share share;  // of `baked`
+    mutable Clock::time_point last_use{};
     bool on_gpu = false;
     bool working = false;
     std::vector<Ready> waiting;
   };
-  void start(int resolution);  // with the lock held
+  using Entries = std::map<int, Entry>;
+  Entries::const_iterator oldest() const;  // with the lock held
+  void start(int resolution);              // with the lock held
   void upload(int resolution, MapPtr map, render::ModelHandle model);
   void finish(int resolution, Result<MapPtr> result, render::ModelHandle model);
 
   const std::shared_ptr<const mesh::Geometry> geometry_;
   render::Renderer& renderer_;
+  MemoryLedger& memory_;
   boost::asio::thread_pool& workers_;
   Progress progress_;
   mutable std::mutex mutex_;
   render::ModelHandle model_ = 0;
-  std::map<int, Entry> entries_;
+  Entries entries_;
 };
 
 }  // namespace strata::room

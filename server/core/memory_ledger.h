@@ -1,0 +1,60 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "core/problem.h"
+
+namespace strata {
+
+// The ledger of one kind of memory: every large object holds a share of the budget while it lives. Thread-safe, but for
+// `set_budget` and `set_evictor`, which belong to the start and the end.
+class MemoryLedger {
+ public:
+  // A counted number of bytes, given back on destruction. Move-only; must not outlive the ledger.
+  class Share {
+   public:
+    Share() = default;
+    Share(Share&& other) noexcept;
+    Share& operator=(Share&& other) noexcept;
+    ~Share() { reset(); }
+    std::uint64_t bytes() const { return bytes_; }
+    // Of something that grew or shrank already: counted also beyond the budget. Not for an empty share.
+    void recount(std::uint64_t bytes);
+    void reset();
+
+   private:
+    friend class MemoryLedger;
+    Share(MemoryLedger* ledger, std::uint64_t bytes) : ledger_(ledger), bytes_(bytes) {}
+    MemoryLedger* ledger_ = nullptr;
+    std::uint64_t bytes_ = 0;
+  };
+
+  // `kind` and `option` are for people: "GPU memory", "--gpu-memory".
+  MemoryLedger(std::string kind, std::string option, std::uint64_t budget_bytes)
+      : kind_(std::move(kind)), option_(std::move(option)), budget_bytes_(budget_bytes) {}
+  void set_budget(std::uint64_t budget_bytes) { budget_bytes_ = budget_bytes; }
+  std::uint64_t budget() const { return budget_bytes_; }
+  std::uint64_t used() const { return used_bytes_; }
+  bool exceeded() const { return used_bytes_ > budget_bytes_; }
+
+  // Frees one thing that is not used or can be made again; false when there is none. Called by `reserve`, on its thread.
+  void set_evictor(std::function<bool()> evict_one) { evict_one_ = std::move(evict_one); }
+  // A Problem 503 when `bytes` do not fit even after eviction; `what` names their use in it.
+  Result<Share> reserve(std::uint64_t bytes, std::string_view what);
+  Problem used_up(std::uint64_t bytes, std::string_view what) const;
+
+ private:
+  const std::string kind_, option_;
+  std::uint64_t budget_bytes_;
+  std::atomic<std::uint64_t> used_bytes_{0};
+  std::function<bool()> evict_one_;
+};
+
+// Whether something was refused because a budget is used up.
+bool is_used_up(const Problem& problem);
+
+}  // namespace strata
