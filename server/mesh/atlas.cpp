@@ -6,7 +6,9 @@
 #include <string>
 
 #include "mesh/atlas_report.h"
+#include "mesh/chart_conflicts.h"
 #include "mesh/charts.h"
+#include "mesh/flatten.h"
 #include "mesh/packing.h"
 #include "mesh/parallel.h"
 #include "mesh/unit_mesh.h"
@@ -14,50 +16,60 @@
 namespace strata::mesh {
 namespace {
 
+constexpr int kThreads = 2;
 constexpr double kExpectedCoverage = 0.66;
 // A narrow cone stretches least. Rugged surfaces fall into many small charts by it, whose margins fill the atlas: where
 // less than kGoodCoverage is used, a wider cone is tried and the denser of the two atlases taken.
 constexpr std::array<float, 2> kCones{55, 65};
 constexpr double kGoodCoverage = 0.6;
+// Faces that keep less than 1 / kMostStretch of their area get charts of their own, if they are worth as many texels; the
+// footprint of faces in those charts is at least kStraightFootprint. None has kNoFootprint: each is a chart then.
+constexpr float kMostStretch = 2.6f, kStraightFootprint = 0.45f, kNoFootprint = 2;
+constexpr double kSmallestSqueezed = 0.1;
 // Laplacian rounds: scanner noise is gone after two, and more would only add stretch.
 constexpr int kSmoothing = 2;
 // No texel has two owners at the lowest resolution, nor at twice and four times that: layers are usually so fine.
 constexpr int kVerifiedResolutions = 3;
 constexpr int kMostMendingRounds = 20;
+// Density is lowered by this factor, so often, before a new one is searched for.
+constexpr double kRepackingStep = 0.995;
+constexpr int kMostRepackings = 8;
 constexpr int kLargestResolution = 16384;
 // 1/8192 texel at the lowest resolution: a multiple of 2^-24 of the atlas at 2048, so that float UVs hold it exactly
 // and every GPU snaps the same vertex to the same place.
 constexpr double kUvSteps = 8192;
 
-std::vector<glm::vec2> lay_out(const ChartSurface& surface, std::span<const Chart> charts,
-                               std::span<const Outline> outlines, const Packing& packing, int resolution) {
-  std::vector<glm::vec2> uvs(3 * surface.mesh.triangle_count(), glm::vec2(0));
-  for (std::size_t c = 0; c < charts.size(); ++c) {
-    const Placement& placement = packing.placements[c];
-    for (const auto face : charts[c].faces)
-      for (int k = 0; k < 3; ++k) {
-        const glm::vec2 local = outlines[c].from_chart(charts[c].project(surface.corner(charts[c], face, k)));
-        glm::dvec2 texels = glm::dvec2(local) * packing.texels_per_unit;
+// What unwrapping makes of a surface on the way to an atlas.
+struct Unwrap {
+  std::vector<Chart> charts;
+  std::vector<glm::vec2> plane;  // of each corner, in its chart's plane
+  std::vector<Outline> outlines;
+  Packing packing;
+  int gap = 4;          // texels between charts
+  double coverage = 0;  // of the atlas, by area
+};
+
+std::vector<glm::vec2> lay_out(const Unwrap& unwrap, int resolution) {
+  std::vector<glm::vec2> uvs(unwrap.plane.size(), glm::vec2(0));
+  parallel_for(kThreads, static_cast<int>(unwrap.charts.size()), [&](int c) {
+    const Placement& placement = unwrap.packing.placements[c];
+    for (const auto face : unwrap.charts[c].faces)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const glm::vec2 local = unwrap.outlines[c].from_chart(unwrap.plane[3 * std::size_t{face} + k]);
+        glm::dvec2 texels = glm::dvec2(local) * unwrap.packing.texels_per_unit;
         texels = glm::clamp(glm::round(texels * kUvSteps) / kUvSteps, glm::dvec2(0), glm::dvec2(placement.box));
-        uvs[3 * face + k] = glm::vec2(placement.to_atlas(texels) / double(resolution));
+        uvs[3 * std::size_t{face} + k] = glm::vec2(placement.to_atlas(texels) / double(resolution));
       }
-  }
+  });
   return uvs;
 }
 
-// Faces that share a texel with an earlier one at any of the verified resolutions.
-std::vector<std::uint32_t> faces_in_conflict(const TriangleMesh& mesh, std::span<const glm::vec2> uvs,
-                                             int lowest_resolution) {
-  std::array<std::vector<std::uint32_t>, kVerifiedResolutions> found;
-  parallel_for(2, kVerifiedResolutions, [&](int i) {
-    const int resolution = lowest_resolution << (kVerifiedResolutions - 1 - i);  // the longest work first
-    if (resolution <= kLargestResolution) found[i] = count_owners(mesh, uvs, resolution).shared_by;
-  });
-  std::vector<std::uint32_t> faces;
-  for (const auto& some : found) faces.insert(faces.end(), some.begin(), some.end());
-  std::sort(faces.begin(), faces.end());
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  return faces;
+std::vector<int> verified_resolutions(int lowest_resolution) {
+  std::vector<int> resolutions;
+  for (int i = 0; i < kVerifiedResolutions; ++i)
+    if (const int resolution = lowest_resolution << i; resolution <= kLargestResolution)
+      resolutions.push_back(resolution);
+  return resolutions;
 }
 
 tl::unexpected<Problem> no_room(std::size_t charts, int resolution) {
@@ -69,51 +81,82 @@ tl::unexpected<Problem> no_room(std::size_t charts, int resolution) {
 }
 
 // Widest gap first: at lowest_resolution the gutter rings of neighbours (2 texels each) then stay apart.
-Result<Packing> pack_with_gap(std::span<const Outline> outlines, double guess, int resolution,
-                              const Progress& progress) {
+Result<void> pack_with_gap(int resolution, const Progress& progress, Unwrap& unwrap) {
   for (const int gap : {4, 2}) {
-    auto packing = pack_densely(outlines, guess, resolution, gap, progress);
-    if (packing) return std::move(*packing);
+    auto packing = pack_densely(unwrap.outlines, resolution, gap, progress, kThreads);
     if (progress.cancelled()) return cancelled_problem();
+    if (!packing) continue;
+    unwrap.packing = std::move(*packing);
+    unwrap.gap = gap;
+    return {};
   }
-  return no_room(outlines.size(), resolution);
+  return no_room(unwrap.outlines.size(), resolution);
 }
 
-struct Unwrap {
-  std::vector<Chart> charts;
-  std::vector<Outline> outlines;
-  Packing packing;
-  double coverage = 0;  // of the atlas, by area
-};
+ChartOptions chart_options(const ChartSurface& surface, int lowest_resolution) {
+  const double side = lowest_resolution;
+  ChartOptions options;
+  options.texels_per_unit = std::sqrt(kExpectedCoverage * side * side / surface.smoothed_frames.total_area);
+  options.largest_half_side = lowest_resolution / 5;
+  return options;
+}
 
-double area_in_planes(const ChartSurface& surface, std::span<const Chart> charts) {
+// Gives the faces charts of their own and flattens these.
+Result<void> split(const ChartSurface& surface, std::span<const std::uint32_t> faces, float smallest_footprint,
+                   int lowest_resolution, const Progress& progress, Unwrap& unwrap) {
+  if (faces.empty()) return {};
+  ChartOptions options = chart_options(surface, lowest_resolution);
+  options.smallest_footprint = smallest_footprint;
+  const auto first = split_off(surface, faces, options, progress, unwrap.charts);
+  if (!first) return cancelled_problem();
+  flatten(surface, unwrap.charts, *first, progress, unwrap.plane, kThreads);
+  return {};
+}
+
+double area_in_planes(std::span<const glm::vec2> plane) {
   double area = 0;
-  for (const Chart& chart : charts)
-    for (const auto face : chart.faces) {
-      const glm::vec2 a = chart.project(surface.corner(chart, face, 0));
-      const glm::vec2 ab = chart.project(surface.corner(chart, face, 1)) - a;
-      const glm::vec2 ac = chart.project(surface.corner(chart, face, 2)) - a;
-      area += std::abs(ab.x * ac.y - ab.y * ac.x) / 2;
-    }
+  for (std::size_t i = 0; i < plane.size(); i += 3) {
+    const glm::vec2 ab = plane[i + 1] - plane[i], ac = plane[i + 2] - plane[i];
+    area += std::abs(ab.x * ac.y - ab.y * ac.x) / 2;
+  }
   return area;
 }
 
 Result<Unwrap> unwrap_once(const ChartSurface& surface, int attempt, int lowest_resolution, Progress& progress) {
   const double side = lowest_resolution;
-  ChartOptions options;
+  ChartOptions options = chart_options(surface, lowest_resolution);
   options.cone_degrees = kCones[attempt];
   options.progress_from = 0.1 + 0.35 * attempt;
-  options.progress_to = options.progress_from + 0.3;
-  options.texels_per_unit = std::sqrt(kExpectedCoverage * side * side / surface.smoothed_frames.total_area);
-  options.largest_half_side = lowest_resolution / 5;
+  options.progress_to = options.progress_from + 0.25;
   auto charts = grow_charts(surface, options, progress);
   if (!charts) return cancelled_problem();
-  progress.report(options.progress_to, "Packing the charts");
-  auto outlines = make_outlines(surface, *charts);
-  auto packing = pack_with_gap(outlines, options.texels_per_unit, lowest_resolution, progress);
-  if (!packing) return tl::unexpected(packing.error());
-  const double texels = area_in_planes(surface, *charts) * packing->texels_per_unit * packing->texels_per_unit;
-  return Unwrap{std::move(*charts), std::move(outlines), std::move(*packing), texels / (side * side)};
+  Unwrap unwrap;
+  unwrap.charts = std::move(*charts);
+  progress.report(options.progress_to, "Flattening the charts");
+  flatten(surface, unwrap.charts, 0, progress, unwrap.plane, kThreads);
+  const auto smallest_area =
+      static_cast<float>(kSmallestSqueezed / (options.texels_per_unit * options.texels_per_unit));
+  const auto squeezed = squeezed_faces(surface, unwrap.plane, kMostStretch, smallest_area);
+  if (auto done = split(surface, squeezed, kStraightFootprint, lowest_resolution, progress, unwrap); !done)
+    return tl::unexpected(done.error());
+  if (progress.cancelled()) return cancelled_problem();
+  progress.report(options.progress_to + 0.05, "Packing the charts");
+  unwrap.outlines = make_outlines(surface, unwrap.charts, unwrap.plane);
+  if (auto packed = pack_with_gap(lowest_resolution, progress, unwrap); !packed) return tl::unexpected(packed.error());
+  const double density = unwrap.packing.texels_per_unit;
+  unwrap.coverage = area_in_planes(unwrap.plane) * density * density / (side * side);
+  return unwrap;
+}
+
+// Packs again what has a few small charts more: it usually fits as it is, or nearly.
+Result<void> pack_again(int lowest_resolution, const Progress& progress, Unwrap& unwrap) {
+  for (int attempt = 0; attempt < kMostRepackings; ++attempt) {
+    const double density = unwrap.packing.texels_per_unit * std::pow(kRepackingStep, attempt);
+    auto packing = pack_at(unwrap.outlines, density, lowest_resolution, unwrap.gap, progress);
+    if (packing) return unwrap.packing = std::move(*packing), Result<void>{};
+    if (progress.cancelled()) return cancelled_problem();
+  }
+  return pack_with_gap(lowest_resolution, progress, unwrap);
 }
 
 }  // namespace
@@ -135,28 +178,28 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
     if (!best || unwrap->coverage > best->coverage) best = std::move(*unwrap);
     if (is_dense) break;
   }
-  auto& [charts, outlines, packing, coverage] = *best;
 
   Atlas atlas;
+  const auto resolutions = verified_resolutions(lowest_resolution);
   // Each round sends the later of two faces that share a texel to a chart of its own, so two or three rounds end it;
   // should one ever not, the report says what overlaps.
   for (int round = 0; round < kMostMendingRounds; ++round) {
     if (progress.cancelled()) return cancelled_problem();
     progress.report(0.85, "Checking that nothing overlaps");
-    atlas.corner_uvs = lay_out(surface, charts, outlines, packing, lowest_resolution);
-    const auto conflicts = faces_in_conflict(mesh, atlas.corner_uvs, lowest_resolution);
+    atlas.corner_uvs = lay_out(*best, lowest_resolution);
+    const auto conflicts = faces_in_conflict(best->charts, atlas.corner_uvs, resolutions, kThreads);
     if (conflicts.empty()) break;
-    split_off(surface, conflicts, charts);
-    outlines = make_outlines(surface, charts);
-    auto repacked = pack_with_gap(outlines, packing.texels_per_unit, lowest_resolution, progress);
-    if (!repacked) return tl::unexpected(repacked.error());
-    packing = std::move(*repacked);
+    const float footprint = round == 0 ? kStraightFootprint : kNoFootprint;
+    if (auto done = split(surface, conflicts, footprint, lowest_resolution, progress, *best); !done)
+      return tl::unexpected(done.error());
+    best->outlines = make_outlines(surface, best->charts, best->plane);
+    if (auto packed = pack_again(lowest_resolution, progress, *best); !packed) return tl::unexpected(packed.error());
   }
   progress.report(0.95, "Measuring the unfolded surface");
   atlas.report = to_report(count_owners(mesh, atlas.corner_uvs, lowest_resolution),
                            measure_areas(mesh, atlas.corner_uvs, lowest_resolution), lowest_resolution);
   atlas.report.source = "made";
-  atlas.report.charts = static_cast<int>(charts.size());
+  atlas.report.charts = static_cast<int>(best->charts.size());
   progress.report(1, "Surface unfolded");
   return atlas;
 }

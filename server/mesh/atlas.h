@@ -16,9 +16,10 @@ struct Atlas {
 // `overlap`). Otherwise an error that says why, and the caller makes an atlas.
 Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress& progress);
 
-// Our own unwrap: cone-bounded charts grown on a smoothed copy, planar projection, injective at texel level by an
-// occupancy grid, small charts absorbed, skyline packing with ≥ 2 texels between charts at `lowest_resolution`,
-// verified at final density (conflicting faces are moved to charts of their own).
+// Our own unwrap: cone-bounded charts grown on a smoothed copy and flattened so that no triangle is folded and few are
+// squeezed, each at the scale of its surface, packed by their exact texels with ≥ 2 texels between them at
+// `lowest_resolution`, verified at final density (conflicting faces are moved to charts of their own). Two threads; the
+// result does not depend on their number.
 Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progress& progress);
 
 }  // namespace strata::mesh

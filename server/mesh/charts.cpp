@@ -12,8 +12,7 @@
 namespace strata::mesh {
 namespace {
 
-constexpr std::uint32_t kNoChart = 0xffffffffu;
-constexpr float kSmallestFootprint = 0.15f;  // a face's area in the plane, relative to its area in space
+constexpr std::uint32_t kNoChart = 0xffffffffu, kKept = 0xfffffffeu;
 constexpr std::size_t kWorthRegrowing = 16;  // faces
 constexpr std::size_t kTinyChart = 24;       // faces: smaller charts give their faces away where they can
 
@@ -45,15 +44,21 @@ class Grower {
         chart_of_face_(surface.mesh.triangle_count(), kNoChart),
         queued_at_(surface.mesh.triangle_count(), 0) {}
 
-  bool grow_all(Progress& progress);
+  // Leaves all but these faces as they are.
+  void keep_all_but(std::span<const std::uint32_t> faces) {
+    std::fill(chart_of_face_.begin(), chart_of_face_.end(), kKept);
+    for (const auto face : faces) chart_of_face_[face] = kNoChart;
+  }
+  bool grow_all(Progress* shown, const Progress& progress);  // false when cancelled
   void absorb_tiny();
   std::vector<Chart> take() { return std::move(charts_); }
 
  private:
   bool can_project(std::uint32_t face, glm::vec3 axis) const {
     const float cosine = glm::dot(surface_.smoothed_frames.normals[face], axis);
-    return cosine >= kSmallestFootprint &&
-           surface_.smoothed_frames.areas[face] * cosine >= kSmallestFootprint * surface_.original_frames.areas[face];
+    return cosine >= options_.smallest_footprint &&
+           surface_.smoothed_frames.areas[face] * cosine >=
+               options_.smallest_footprint * surface_.original_frames.areas[face];
   }
   bool claim(const Chart& chart, std::uint32_t face, Occupancy::Overlap overlap) {
     glm::vec2 p[3];
@@ -145,17 +150,16 @@ std::uint32_t Grower::next_seed() {
   return kNoTriangle;
 }
 
-bool Grower::grow_all(Progress& progress) {
+bool Grower::grow_all(Progress* shown, const Progress& progress) {
   std::size_t done = 0;
   for (std::uint32_t seed = next_seed(); seed != kNoTriangle; seed = next_seed()) {
     if (progress.cancelled()) return false;
     add_chart(seed);
     done += charts_.back().faces.size();
-    if (charts_.size() % 16 == 0)
-      progress.report(options_.progress_from + (options_.progress_to - options_.progress_from) *
-                                                   static_cast<double>(done) /
-                                                   static_cast<double>(chart_of_face_.size()),
-                      "Cutting the surface into charts");
+    if (shown && charts_.size() % 16 == 0)
+      shown->report(options_.progress_from + (options_.progress_to - options_.progress_from) *
+                                                 static_cast<double>(done) / static_cast<double>(chart_of_face_.size()),
+                    "Cutting the surface into charts");
   }
   return true;
 }
@@ -163,7 +167,7 @@ bool Grower::grow_all(Progress& progress) {
 // The large neighbouring chart on whose plane the face has the largest footprint.
 std::uint32_t Grower::best_host(std::uint32_t face) const {
   std::uint32_t best = kNoChart;
-  float best_cosine = kSmallestFootprint;
+  float best_cosine = options_.smallest_footprint;
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t next = surface_.neighbours[3 * face + k];
     if (next == kNoTriangle) continue;
@@ -215,13 +219,9 @@ void append_connected_parts(const ChartSurface& surface, Chart chart, std::vecto
         pending[next] = 0;
         part.push_back(next);
       }
-    if (part.size() == 1) {
-      charts.push_back(single_face_chart(surface, part.front()));
-    } else {
-      Chart whole = chart;
-      whole.faces = part;
-      charts.push_back(std::move(whole));
-    }
+    Chart whole = part.size() == 1 ? single_face_chart(surface, part.front()) : chart;
+    whole.faces = part;
+    charts.push_back(std::move(whole));
   }
 }
 
@@ -239,7 +239,7 @@ ChartSurface make_chart_surface(const UnitMesh& mesh, int smoothing) {
 std::optional<std::vector<Chart>> grow_charts(const ChartSurface& surface, const ChartOptions& options,
                                               Progress& progress) {
   Grower grower(surface, options);
-  if (!grower.grow_all(progress)) return std::nullopt;
+  if (!grower.grow_all(&progress, progress)) return std::nullopt;
   grower.absorb_tiny();
   std::vector<Chart> connected;
   std::vector<std::uint8_t> pending(surface.mesh.triangle_count(), 0);
@@ -247,7 +247,9 @@ std::optional<std::vector<Chart>> grow_charts(const ChartSurface& surface, const
   return connected;
 }
 
-void split_off(const ChartSurface& surface, std::span<const std::uint32_t> faces, std::vector<Chart>& charts) {
+std::optional<std::size_t> split_off(const ChartSurface& surface, std::span<const std::uint32_t> faces,
+                                     const ChartOptions& options, const Progress& progress,
+                                     std::vector<Chart>& charts) {
   std::vector<std::uint8_t> leaves(surface.mesh.triangle_count(), 0);
   std::vector<std::uint8_t> pending(surface.mesh.triangle_count(), 0);
   for (const auto face : faces) leaves[face] = 1;
@@ -258,8 +260,13 @@ void split_off(const ChartSurface& surface, std::span<const std::uint32_t> faces
     else if (!chart.faces.empty())
       append_connected_parts(surface, std::move(chart), pending, result);
   }
-  for (const auto face : faces) result.push_back(single_face_chart(surface, face));
+  const std::size_t first = result.size();
+  Grower grower(surface, options);
+  grower.keep_all_but(faces);
+  if (!grower.grow_all(nullptr, progress)) return std::nullopt;
+  for (Chart& chart : grower.take()) result.push_back(std::move(chart));
   charts = std::move(result);
+  return first;
 }
 
 }  // namespace strata::mesh

@@ -21,9 +21,10 @@ struct Chart {
 };
 
 struct ChartOptions {
-  float cone_degrees = 55;        // largest angle between a face's averaged normal and the chart's axis
-  double texels_per_unit = 1000;  // density at which no two faces of a chart may share a texel
-  int largest_half_side = 400;    // texels from a chart's seed to its farthest point
+  float cone_degrees = 55;           // largest angle between a face's averaged normal and the chart's axis
+  float smallest_footprint = 0.15f;  // of a face's area in the plane, relative to its area in space
+  double texels_per_unit = 1000;     // density at which no two faces of a chart may share a texel
+  int largest_half_side = 400;       // texels from a chart's seed to its farthest point
   double progress_from = 0.1, progress_to = 0.7;
 };
 
@@ -49,8 +50,10 @@ ChartSurface make_chart_surface(const UnitMesh& mesh, int smoothing);
 std::optional<std::vector<Chart>> grow_charts(const ChartSurface& surface, const ChartOptions& options,
                                               Progress& progress);
 
-// Takes the given faces out of their charts and makes each a chart of its own; what a chart loses its connection by
-// becomes several charts.
-void split_off(const ChartSurface& surface, std::span<const std::uint32_t> faces, std::vector<Chart>& charts);
+// Takes the given faces out of their charts and cuts them into charts of their own, of several faces where `options` allow
+// it; what a chart loses its connection by becomes several charts. Returns the number of the first new chart: the ones
+// before it are parts of what was there. Empty when cancelled.
+std::optional<std::size_t> split_off(const ChartSurface& surface, std::span<const std::uint32_t> faces,
+                                     const ChartOptions& options, const Progress& progress, std::vector<Chart>& charts);
 
 }  // namespace strata::mesh

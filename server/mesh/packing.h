@@ -6,22 +6,9 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "mesh/charts.h"
+#include "mesh/outline.h"
 
 namespace strata::mesh {
-
-// The rim of a chart in its plane, turned so that its bounding box has the least area, lower left corner at 0.
-struct Outline {
-  std::vector<glm::vec2> segments;  // two points each, any order
-  glm::vec2 size{0};                // of the box, in units of the mesh
-  float cosine = 1, sine = 0;       // of the turn
-  glm::vec2 low{0};                 // the box's corner, after the turn
-
-  glm::vec2 from_chart(glm::vec2 p) const {
-    return glm::vec2(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y) - low;
-  }
-};
-std::vector<Outline> make_outlines(const ChartSurface& surface, std::span<const Chart> charts);
 
 // Where a chart lies in the atlas.
 struct Placement {
@@ -47,10 +34,14 @@ struct Packing {
   std::vector<Placement> placements;
 };
 
-// Lays all charts into a square of `side` texels at the densest scale, within about 1 %, searched from `first_guess`,
-// so that `gap` whole texels stay between any two of them: by the skyline method with four turns. Empty where even a
-// single texel each is too much, or when cancelled.
-std::optional<Packing> pack_densely(std::span<const Outline> outlines, double first_guess, int side, int gap,
-                                    const Progress& progress);
+// Lays all charts into a square of `side` texels at the densest scale found, so that `gap` whole texels stay between any
+// two of them: each in turn at the lowest place where its exact shape fits, holes and bays included, in four turns. Empty where
+// even a single texel each is too much, or when cancelled. The result does not depend on the number of threads.
+std::optional<Packing> pack_densely(std::span<const Outline> outlines, int side, int gap, const Progress& progress,
+                                    int threads = 2);
+
+// The same at one density; empty where it is too much.
+std::optional<Packing> pack_at(std::span<const Outline> outlines, double texels_per_unit, int side, int gap,
+                               const Progress& progress);
 
 }  // namespace strata::mesh

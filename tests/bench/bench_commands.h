@@ -6,6 +6,7 @@
 namespace strata::bench {
 
 using Command = std::function<int()>;
+Command add_atlas(CLI::App& app);
 Command add_edit(CLI::App& app);
 Command add_import(CLI::App& app);
 Command add_query(CLI::App& app);

@@ -40,7 +40,7 @@ std::string cpu_name() {
 }
 
 bool is_preset(const std::string& name) {
-  return name == "vessel" || name == "excavation" || name == "amazon" || name == "thai";
+  return name == "vessel" || name == "excavation" || name == "amazon" || name == "thai" || name == "textured10m";
 }
 
 mesh::TriangleMesh pot_of(const std::string& name) {

@@ -9,7 +9,6 @@
 #include <string>
 #include <thread>
 
-#include "mesh/packing.h"
 #include "mesh/uv_islands.h"
 #include "support/meshes.h"
 #include "support/scan_atlas.h"
@@ -120,7 +119,7 @@ TEST_P(EveryMeshClass, gives_every_triangle_with_an_area_a_footprint) {
   for (std::size_t t = 0; t < mesh().triangle_count(); ++t) {
     const double relative = area_of(mesh(), t) / total;
     if (relative < 1e-9) continue;
-    EXPECT_GT(uv_area(atlas, t) / total_uv, relative / 30) << "triangle " << t;
+    EXPECT_GT(uv_area(atlas, t) / total_uv, relative / 10) << "triangle " << t;
   }
 }
 
@@ -183,7 +182,7 @@ TEST(mesh_atlas, reports_the_largest_texel_in_the_units_of_the_file) {
   EXPECT_NEAR(large->report.texel_area_max / small->report.texel_area_max, 1024.0 * 1024.0, 1024);
   const double mean = 4 * M_PI / (small->report.coverage * kLowest * kLowest);
   EXPECT_GT(small->report.texel_area_max, mean);
-  EXPECT_LT(small->report.texel_area_max, 6 * mean);
+  EXPECT_LT(small->report.texel_area_max, 3 * mean);
 }
 
 TEST(mesh_atlas, lays_a_flat_sheet_out_without_stretch) {
@@ -231,20 +230,6 @@ TEST(mesh_atlas, stops_packing_when_cancelled) {
   EXPECT_EQ(atlas.error().status, 499);
 }
 
-TEST(mesh_atlas, charts_of_a_single_texel_each_are_packed_or_refused_but_not_shrunk_for_ever) {
-  // 600 would fit by their area with the gaps, but no more than 24 fit beside each other between the rims.
-  std::vector<Outline> outlines(600);
-  for (auto& outline : outlines) {
-    outline.segments = {{0, 0}, {1, 1}};
-    outline.size = {1, 1};
-  }
-  EXPECT_FALSE(pack_densely(outlines, 1000, 72, 2, Progress{}));
-  outlines.resize(400);
-  const auto packing = pack_densely(outlines, 1000, 72, 2, Progress{});
-  ASSERT_TRUE(packing);
-  EXPECT_EQ(packing->placements.size(), 400u);
-}
-
 TEST(mesh_atlas, refuses_a_mesh_without_area) {
   TriangleMesh line;
   line.positions = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
@@ -267,6 +252,9 @@ TEST(mesh_atlas, of_real_scans_uses_most_texels_with_little_stretch) {
     EXPECT_GE(scan->atlas.report.coverage, 0.6) << name;
     EXPECT_LE(scan->atlas.report.stretch_mean, 1.35) << name;
     EXPECT_EQ(scan->atlas.report.overlap, 0) << name;
+    const auto& report = scan->atlas.report;
+    const double texels = report.coverage * report.lowest_resolution * report.lowest_resolution;
+    EXPECT_LE(report.texel_area_max, 3 * surface_area(scan->mesh) / texels) << name;
   }
   if (found == 0) GTEST_SKIP() << "no scans at " << data;
 }

@@ -1,0 +1,116 @@
+// What an atlas makes of each mesh: texels used, stretch, texel footprints; seconds and memory of each step.
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <thread>
+
+#include "bench/bench_commands.h"
+#include "bench/harness.h"
+#include "bench/step_watch.h"
+#include "mesh/atlas.h"
+#include "mesh/atlas_report.h"
+#include "mesh/load.h"
+
+namespace strata::bench {
+namespace {
+
+constexpr int kLowest = 2048;
+
+struct Options {
+  std::vector<std::string> meshes;
+  std::string cache = "build/bench", json;
+  std::vector<int> resolutions{2048, 4096, 8192};
+  bool make_always = false;
+};
+
+nlohmann::json precision(const mesh::TriangleMesh& mesh, const mesh::Atlas& atlas, int resolution) {
+  const auto measure = mesh::measure_areas(mesh, atlas.corner_uvs, resolution);
+  const auto owners = mesh::count_owners(mesh, atlas.corner_uvs, resolution);
+  const double mean = measure.area / double(std::max<std::uint64_t>(owners.covered, 1));
+  return {{"resolution", resolution},
+          {"texels", owners.covered},
+          {"shared_texels", owners.shared},
+          {"texel_area_mean", mean},
+          {"texel_area_max", measure.texel_area_max},
+          {"max_over_mean", measure.texel_area_max / mean}};
+}
+
+nlohmann::json facts(const std::string& name, const Options& options) {
+  StepWatch watch;
+  Progress progress;
+  const auto file = mesh_file(name, options.cache);
+  auto loaded = watch.run("read", progress, [&] { return mesh::load_mesh(file, file.filename().string(), progress); });
+  if (!loaded) return {{"mesh", name}, {"refused", loaded.error().detail}};
+  const mesh::TriangleMesh& mesh = loaded->mesh;
+  Result<mesh::Atlas> atlas = fail(0, "", "not tried");
+  if (!options.make_always && !mesh.corner_uvs.empty())
+    atlas = watch.run("keep", progress, [&] { return mesh::keep_uvs(mesh, kLowest, progress); });
+  if (!atlas) atlas = watch.run("make", progress, [&] { return mesh::make_atlas(mesh, kLowest, progress); });
+  if (!atlas) return {{"mesh", name}, {"triangles", mesh.triangle_count()}, {"refused", atlas.error().detail}};
+  nlohmann::json resolutions = nlohmann::json::array();
+  for (const int resolution : options.resolutions) resolutions.push_back(precision(mesh, *atlas, resolution));
+  const auto& report = atlas->report;
+  return {{"mesh", name},
+          {"triangles", mesh.triangle_count()},
+          {"source", report.source},
+          {"charts", report.charts},
+          {"coverage", report.coverage},
+          {"overlap", report.overlap},
+          {"stretch_mean", report.stretch_mean},
+          {"stretch_p99", report.stretch_p99},
+          {"steps", watch.json()},
+          {"resolutions", resolutions}};
+}
+
+void print(const nlohmann::json& row) {
+  if (row.contains("refused")) {
+    std::printf("%-36s refused: %s\n", row["mesh"].get<std::string>().c_str(),
+                row["refused"].get<std::string>().c_str());
+    return;
+  }
+  const auto& first = row["resolutions"][0];
+  double seconds = 0, peak = 0;
+  std::string steps;
+  for (const auto& step : row["steps"]) {
+    char text[160];
+    std::snprintf(text, sizeof text, " [%s %.2f/%.2f]", step["step"].get<std::string>().c_str(),
+                  step["seconds"].get<double>(), step["cpu_seconds"].get<double>());
+    steps += text;
+    if (step["step"] != "read") seconds += step["seconds"].get<double>();
+    peak = std::max(peak, step["peak_mib"].get<double>());
+  }
+  std::printf(
+      "%-36s %9llu %-5s charts %5d used %.4f stretch %.3f p99 %.2f largest/ideal %.2f shared %llu  %.2f s peak %.0f MiB |%s\n",
+      row["mesh"].get<std::string>().c_str(), row["triangles"].get<unsigned long long>(),
+      row["source"].get<std::string>().c_str(), row["charts"].get<int>(), row["coverage"].get<double>(),
+      row["stretch_mean"].get<double>(), row["stretch_p99"].get<double>(), first["max_over_mean"].get<double>(),
+      first["shared_texels"].get<unsigned long long>(), seconds, peak, steps.c_str());
+  std::fflush(stdout);
+}
+
+int run(const Options& options) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const auto& name : options.meshes) {
+    rows.push_back(facts(name, options));
+    print(rows.back());
+  }
+  write_result(options.json, machine(nullptr), rows);
+  return 0;
+}
+
+}  // namespace
+
+Command add_atlas(CLI::App& app) {
+  auto* command =
+      app.add_subcommand("atlas", "Facts of the atlas of each mesh: texels used, stretch, footprints, seconds");
+  auto options = std::make_shared<Options>();
+  command->add_option("meshes", options->meshes, "Presets (vessel, excavation, amazon, thai, textured10m) or files")
+      ->required();
+  command->add_option("--resolutions", options->resolutions, "Where footprints are measured")->delimiter(',');
+  command->add_flag("--make", options->make_always, "Never keep the file's own texture coordinates");
+  command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();
+  command->add_option("--json", options->json, "Write the results here");
+  return [options] { return run(*options); };
+}
+
+}  // namespace strata::bench

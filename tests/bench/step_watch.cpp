@@ -1,0 +1,73 @@
+#include "bench/step_watch.h"
+
+#include <chrono>
+#include <ctime>
+#include <fstream>
+
+namespace strata::bench {
+namespace {
+
+double status_mib(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with(key + ":")) return std::stod(line.substr(key.size() + 1)) / 1024;
+  return 0;
+}
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return double(now.tv_sec) + double(now.tv_nsec) * 1e-9;
+}
+
+}  // namespace
+
+double memory_mib() { return status_mib("VmRSS"); }
+double peak_memory_mib() { return status_mib("VmHWM"); }
+void forget_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+StepWatch::Sampling::Sampling(StepWatch& watch, std::string name, Progress& progress) {
+  const std::string before = progress.message();
+  thread_ = std::jthread([this, &watch, &progress, name = std::move(name), before] {
+    using Clock = std::chrono::steady_clock;
+    std::string shown = before;
+    auto start = Clock::now();
+    double cpu_start = cpu_seconds();
+    watch.steps_.push_back({name});
+    forget_peak_memory();
+    const auto finish_step = [&] {
+      watch.steps_.back().seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      watch.steps_.back().cpu_seconds = cpu_seconds() - cpu_start;
+      watch.steps_.back().peak_mib = peak_memory_mib();
+    };
+    while (!ended_) {
+      if (const std::string now = progress.message(); now != shown) {
+        finish_step();
+        shown = now;
+        start = Clock::now();
+        cpu_start = cpu_seconds();
+        watch.steps_.push_back({name + ": " + now});
+        forget_peak_memory();
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    finish_step();
+  });
+}
+
+StepWatch::Sampling::~Sampling() {
+  ended_ = true;
+  thread_.join();
+}
+
+nlohmann::json StepWatch::json() const {
+  nlohmann::json steps = nlohmann::json::array();
+  for (const Step& step : steps_)
+    steps.push_back({{"step", step.name},
+                     {"seconds", step.seconds},
+                     {"cpu_seconds", step.cpu_seconds},
+                     {"peak_mib", step.peak_mib}});
+  return steps;
+}
+
+}  // namespace strata::bench
