@@ -34,6 +34,12 @@ nlohmann::json to_json(const Project& project) {
 }
 
 nlohmann::json to_json(const AtlasReport& atlas, double metres_per_unit) {
+  const double square_metres = metres_per_unit * metres_per_unit;
+  nlohmann::json sizes = nlohmann::json::array();
+  for (const auto& size : atlas.texel_sizes)
+    sizes.push_back({{"resolution", size.resolution},
+                     {"area_mean_m2", size.area_mean * square_metres},
+                     {"area_max_m2", size.area_max * square_metres}});
   return {{"source", atlas.source},
           {"lowest_resolution", atlas.lowest_resolution},
           {"charts", atlas.charts},
@@ -41,7 +47,8 @@ nlohmann::json to_json(const AtlasReport& atlas, double metres_per_unit) {
           {"overlap", atlas.overlap},
           {"stretch_mean", atlas.stretch_mean},
           {"stretch_p99", atlas.stretch_p99},
-          {"texel_area_max_m2", atlas.texel_area_max * metres_per_unit * metres_per_unit}};
+          {"texel_area_max_m2", atlas.texel_area_max * square_metres},
+          {"texel_sizes", sizes}};
 }
 
 AtlasReport atlas_from_json(const nlohmann::json& json) {
@@ -54,6 +61,9 @@ AtlasReport atlas_from_json(const nlohmann::json& json) {
   atlas.stretch_mean = json.value("stretch_mean", 0.0);
   atlas.stretch_p99 = json.value("stretch_p99", 0.0);
   atlas.texel_area_max = json.value("texel_area_max_m2", 0.0);  // stored with metres_per_unit = 1
+  for (const auto& size : json.value("texel_sizes", nlohmann::json::array()))
+    atlas.texel_sizes.push_back(
+        {size.value("resolution", 0), size.value("area_mean_m2", 0.0), size.value("area_max_m2", 0.0)});
   return atlas;
 }
 

@@ -26,6 +26,11 @@ std::optional<Unit> parse_unit(std::string_view name);
 
 // What `atlas` reports of a model (GET /models/{model}).
 struct AtlasReport {
+  // How much surface one texel of a layer holds: the precision of what is painted.
+  struct TexelSize {
+    int resolution = 0;
+    double area_mean = 0, area_max = 0;  // unit²
+  };
   std::string source;  // "file": UVs of the scan were kept; "made": unwrapped here
   int lowest_resolution = 2048;
   int charts = 0;
@@ -33,7 +38,8 @@ struct AtlasReport {
   double overlap = 0;       // share of covered texels with more than one owner, at lowest_resolution
   double stretch_mean = 0;  // area-weighted surface area per uv area, relative to the mean
   double stretch_p99 = 0;
-  double texel_area_max = 0;  // unit², largest surface area of one texel at lowest_resolution
+  double texel_area_max = 0;           // unit², largest surface area of one texel at lowest_resolution
+  std::vector<TexelSize> texel_sizes;  // from lowest_resolution up; empty in models of before it was measured
 };
 
 struct Repair {

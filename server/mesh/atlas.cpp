@@ -196,8 +196,9 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
     if (auto packed = pack_again(lowest_resolution, progress, *best); !packed) return tl::unexpected(packed.error());
   }
   progress.report(0.95, "Measuring the unfolded surface");
-  atlas.report = to_report(count_owners(mesh, atlas.corner_uvs, lowest_resolution),
-                           measure_areas(mesh, atlas.corner_uvs, lowest_resolution), lowest_resolution);
+  atlas.report =
+      make_report(mesh, atlas.corner_uvs, lowest_resolution, count_owners(mesh, atlas.corner_uvs, lowest_resolution),
+                  measure_areas(mesh, atlas.corner_uvs));
   atlas.report.source = "made";
   atlas.report.charts = static_cast<int>(best->charts.size());
   progress.report(1, "Surface unfolded");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/parallel.h"
 #include "mesh/texel_pieces.h"
 #include "mesh/texel_raster.h"
 
@@ -23,6 +24,7 @@ struct Stretch {
 
 // Stretch beyond this factor of the mean counts as this factor: a sliver's ratio says nothing about the atlas.
 constexpr double kLargestStretch = 50;
+constexpr int kLargestMeasured = 8192;  // where a float for each texel takes 256 MiB
 
 void sum_stretch(std::vector<Stretch> faces, double area, double uv_area, AtlasMeasure& measure) {
   if (area <= 0 || uv_area <= 0) return;
@@ -42,43 +44,55 @@ void sum_stretch(std::vector<Stretch> faces, double area, double uv_area, AtlasM
   }
 }
 
+// What areas are multiplied with so that the mean triangle has 1: nanometre and megametre models stay inside float.
+double scale_of(const TriangleMesh& mesh, double area) {
+  return area > 0 ? static_cast<double>(mesh.triangle_count()) / area : 1;
+}
+
 }  // namespace
 
-AtlasMeasure measure_areas(const TriangleMesh& mesh, std::span<const glm::vec2> uvs, int resolution) {
+AtlasMeasure measure_areas(const TriangleMesh& mesh, std::span<const glm::vec2> uvs) {
   AtlasMeasure measure;
-  const auto side = static_cast<std::size_t>(resolution);
-  std::vector<float> texel_areas(side * side, 0.f);
+  measure.area = surface_area(mesh);
+  const double scale = scale_of(mesh, measure.area);
   std::vector<Stretch> faces;
   faces.reserve(mesh.triangle_count());
+  for (std::size_t f = 0; f < mesh.triangle_count(); ++f) {
+    const double area = area_of(mesh, f);
+    const glm::dvec2 a = uvs[3 * f], ab = glm::dvec2(uvs[3 * f + 1]) - a, ac = glm::dvec2(uvs[3 * f + 2]) - a;
+    const double uv_area = std::abs(ab.x * ac.y - ab.y * ac.x) / 2;
+    if (uv_area == 0) measure.area_without_uv += area;
+    if (area == 0) continue;
+    measure.uv_area += uv_area;
+    faces.push_back({static_cast<float>(area * scale / std::max(uv_area, 1e-18)), static_cast<float>(area * scale)});
+  }
+  sum_stretch(std::move(faces), measure.area * scale, measure.uv_area, measure);
+  return measure;
+}
+
+double largest_texel_area(const TriangleMesh& mesh, std::span<const glm::vec2> uvs, int resolution) {
+  const auto side = static_cast<std::size_t>(resolution);
+  std::vector<float> texel_areas(side * side, 0.f);
   const auto texel = [&](double x, double y) -> float& {
     const auto column = std::min<std::size_t>(static_cast<std::size_t>(x), side - 1);
     return texel_areas[std::min<std::size_t>(static_cast<std::size_t>(y), side - 1) * side + column];
   };
-  double uv_area = 0;
+  const double scale = scale_of(mesh, surface_area(mesh));
   TexelPieces pieces;
-  for (std::size_t f = 0; f < mesh.triangle_count(); ++f) measure.area += area_of(mesh, f);
-  // Relative to the mean face, so that nanometre and megametre models stay inside float.
-  const double scale = measure.area > 0 ? static_cast<double>(mesh.triangle_count()) / measure.area : 1;
   for (std::size_t f = 0; f < mesh.triangle_count(); ++f) {
-    const double area = area_of(mesh, f);
+    const double area = area_of(mesh, f) * scale;
+    if (area == 0) continue;
     pieces.set(glm::dvec2(uvs[3 * f]) * double(resolution), glm::dvec2(uvs[3 * f + 1]) * double(resolution),
                glm::dvec2(uvs[3 * f + 2]) * double(resolution));
-    if (pieces.area() == 0) measure.area_without_uv += area;
-    if (area == 0) continue;
-    uv_area += pieces.area();
-    faces.push_back(
-        {static_cast<float>(area * scale / std::max(pieces.area(), 1e-12)), static_cast<float>(area * scale)});
     if (pieces.is_line()) {
-      texel(pieces.centroid().x, pieces.centroid().y) += static_cast<float>(area * scale);
+      texel(pieces.centroid().x, pieces.centroid().y) += static_cast<float>(area);
     } else {
-      const double area_per_texel = area * scale / pieces.area();
+      const double area_per_texel = area / pieces.area();
       pieces.for_each(0, resolution,
                       [&](int x, int y, double piece) { texel(x, y) += static_cast<float>(piece * area_per_texel); });
     }
   }
-  for (const float area : texel_areas) measure.texel_area_max = std::max(measure.texel_area_max, double{area} / scale);
-  sum_stretch(std::move(faces), measure.area * scale, uv_area, measure);
-  return measure;
+  return double{*std::max_element(texel_areas.begin(), texel_areas.end())} / scale;
 }
 
 TexelOwners count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> uvs, int resolution) {
@@ -107,15 +121,26 @@ TexelOwners count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> uv
   return result;
 }
 
-AtlasReport to_report(const TexelOwners& owners, const AtlasMeasure& measure, int resolution) {
+AtlasReport make_report(const TriangleMesh& mesh, std::span<const glm::vec2> uvs, int lowest_resolution,
+                        const TexelOwners& owners, const AtlasMeasure& measure) {
   AtlasReport report;
-  report.lowest_resolution = resolution;
+  report.lowest_resolution = lowest_resolution;
   const auto covered = static_cast<double>(owners.covered);
-  report.coverage = covered / (double(resolution) * resolution);
+  report.coverage = covered / (double(lowest_resolution) * lowest_resolution);
   report.overlap = covered > 0 ? static_cast<double>(owners.shared) / covered : 0;
   report.stretch_mean = measure.stretch_mean;
   report.stretch_p99 = measure.stretch_p99;
-  report.texel_area_max = measure.texel_area_max;
+  for (int resolution = lowest_resolution; resolution <= std::min(4 * lowest_resolution, kLargestMeasured);
+       resolution *= 2) {
+    const double texels = measure.uv_area * resolution * resolution;
+    report.texel_sizes.push_back({resolution, texels > 0 ? measure.area / texels : 0, 0});
+  }
+  const int count = static_cast<int>(report.texel_sizes.size());
+  parallel_for(2, count, [&](int i) {  // the longest first
+    auto& size = report.texel_sizes[count - 1 - i];
+    size.area_max = largest_texel_area(mesh, uvs, size.resolution);
+  });
+  report.texel_area_max = report.texel_sizes.empty() ? 0 : report.texel_sizes.front().area_max;
   return report;
 }
 

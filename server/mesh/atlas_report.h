@@ -15,18 +15,24 @@ struct TexelOwners {
   std::vector<std::uint32_t> shared_by;  // triangles that cover a texel which one before them covers
 };
 
-// What an atlas does to areas at one resolution.
+// What an atlas does to areas.
 struct AtlasMeasure {
   double area = 0;                           // of the surface, unit²
   double area_without_uv = 0;                // of triangles whose uv area is 0, unit²
+  double uv_area = 0;                        // of the triangles, share of the atlas
   double stretch_mean = 0, stretch_p99 = 0;  // as in AtlasReport; a triangle counts at most 50
-  double texel_area_max = 0;                 // unit²
 };
 
-// `corner_uvs` must lie in [0,1]².
+// `corner_uvs` must lie in [0,1]², everywhere here.
 TexelOwners count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution);
-AtlasMeasure measure_areas(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution);
+AtlasMeasure measure_areas(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs);
 
-AtlasReport to_report(const TexelOwners& owners, const AtlasMeasure& measure, int resolution);
+// The surface that lies in the texel that holds most, unit²: triangles are clipped against the texels.
+double largest_texel_area(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution);
+
+// All of the report but `source` and `charts`, from what was found at `lowest_resolution`; texel sizes are measured there and at
+// twice and four times that, on two threads.
+AtlasReport make_report(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int lowest_resolution,
+                        const TexelOwners& owners, const AtlasMeasure& measure);
 
 }  // namespace strata::mesh

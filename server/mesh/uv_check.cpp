@@ -60,14 +60,14 @@ Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress
                   std::to_string(lowest_resolution) + " have more than one owner; " + percent(kMostOverlap) + " may.");
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.5, "Measuring the file's texture coordinates");
-  const auto measure = measure_areas(mesh, atlas.corner_uvs, lowest_resolution);
+  const auto measure = measure_areas(mesh, atlas.corner_uvs);
   if (measure.area_without_uv > kMostAreaWithoutUv * measure.area)
     return refuse("Triangles with " + percent(measure.area_without_uv / measure.area) +
                   " of the surface have no area in the texture; " + percent(kMostAreaWithoutUv) + " may.");
 
   std::vector<std::uint32_t> indices;
   const auto vertices = weld_corners(mesh.triangles, atlas.corner_uvs, mesh.positions.size(), indices);
-  atlas.report = to_report(owners, measure, lowest_resolution);
+  atlas.report = make_report(mesh, atlas.corner_uvs, lowest_resolution, owners, measure);
   atlas.report.source = "file";
   atlas.report.charts = static_cast<int>(find_islands(indices, vertices).count);
   progress.report(1, "Texture coordinates kept");

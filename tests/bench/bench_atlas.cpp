@@ -20,26 +20,22 @@ struct Options {
   std::vector<std::string> meshes;
   std::string cache = "build/bench", json;
   std::vector<int> resolutions{2048, 4096, 8192};
-  bool make_always = false;
+  bool make_always = false, all = false;
 };
 
-nlohmann::json precision(const mesh::TriangleMesh& mesh, const mesh::Atlas& atlas, int resolution) {
-  const auto measure = mesh::measure_areas(mesh, atlas.corner_uvs, resolution);
+nlohmann::json precision(const mesh::TriangleMesh& mesh, const mesh::Atlas& atlas, double area, int resolution) {
   const auto owners = mesh::count_owners(mesh, atlas.corner_uvs, resolution);
-  const double mean = measure.area / double(std::max<std::uint64_t>(owners.covered, 1));
-  return {{"resolution", resolution},
-          {"texels", owners.covered},
-          {"shared_texels", owners.shared},
-          {"texel_area_mean", mean},
-          {"texel_area_max", measure.texel_area_max},
-          {"max_over_mean", measure.texel_area_max / mean}};
+  const double mean = area / double(std::max<std::uint64_t>(owners.covered, 1));
+  const double largest = mesh::largest_texel_area(mesh, atlas.corner_uvs, resolution);
+  return {{"resolution", resolution}, {"texels", owners.covered},  {"shared_texels", owners.shared},
+          {"texel_area_mean", mean},  {"texel_area_max", largest}, {"max_over_mean", largest / mean}};
 }
 
 nlohmann::json facts(const std::string& name, const Options& options) {
   StepWatch watch;
   Progress progress;
-  const auto file = mesh_file(name, options.cache);
-  auto loaded = watch.run("read", progress, [&] { return mesh::load_mesh(file, file.filename().string(), progress); });
+  const auto files = mesh_files(name, options.cache);
+  auto loaded = watch.run("read", progress, [&] { return mesh::load_mesh(files, progress); });
   if (!loaded) return {{"mesh", name}, {"refused", loaded.error().detail}};
   const mesh::TriangleMesh& mesh = loaded->mesh;
   Result<mesh::Atlas> atlas = fail(0, "", "not tried");
@@ -47,11 +43,13 @@ nlohmann::json facts(const std::string& name, const Options& options) {
     atlas = watch.run("keep", progress, [&] { return mesh::keep_uvs(mesh, kLowest, progress); });
   if (!atlas) atlas = watch.run("make", progress, [&] { return mesh::make_atlas(mesh, kLowest, progress); });
   if (!atlas) return {{"mesh", name}, {"triangles", mesh.triangle_count()}, {"refused", atlas.error().detail}};
+  const double area = mesh::surface_area(mesh);
   nlohmann::json resolutions = nlohmann::json::array();
-  for (const int resolution : options.resolutions) resolutions.push_back(precision(mesh, *atlas, resolution));
+  for (const int resolution : options.resolutions) resolutions.push_back(precision(mesh, *atlas, area, resolution));
   const auto& report = atlas->report;
   return {{"mesh", name},
           {"triangles", mesh.triangle_count()},
+          {"area", area},
           {"source", report.source},
           {"charts", report.charts},
           {"coverage", report.coverage},
@@ -59,38 +57,33 @@ nlohmann::json facts(const std::string& name, const Options& options) {
           {"stretch_mean", report.stretch_mean},
           {"stretch_p99", report.stretch_p99},
           {"steps", watch.json()},
+          {"seconds", watch.seconds()},
+          {"cpu_seconds", watch.cpu_seconds()},
+          {"peak_mib", watch.peak_mib()},
           {"resolutions", resolutions}};
 }
 
 void print(const nlohmann::json& row) {
+  const auto name = std::filesystem::path(row["mesh"].get<std::string>()).filename().string();
   if (row.contains("refused")) {
-    std::printf("%-36s refused: %s\n", row["mesh"].get<std::string>().c_str(),
-                row["refused"].get<std::string>().c_str());
-    return;
+    std::printf("%-40s refused: %s\n", name.c_str(), row["refused"].get<std::string>().c_str());
+  } else {
+    const auto& first = row["resolutions"][0];
+    std::printf(
+        "%-40s %8llu %-5s charts %5d used %.3f stretch %.2f p99 %.2f largest/mean %.2f shared %llu  %6.2f s %6.2f s of "
+        "processor %5.0f MiB\n",
+        name.c_str(), row["triangles"].get<unsigned long long>(), row["source"].get<std::string>().c_str(),
+        row["charts"].get<int>(), row["coverage"].get<double>(), row["stretch_mean"].get<double>(),
+        row["stretch_p99"].get<double>(), first["max_over_mean"].get<double>(),
+        first["shared_texels"].get<unsigned long long>(), row["seconds"].get<double>(),
+        row["cpu_seconds"].get<double>(), row["peak_mib"].get<double>());
   }
-  const auto& first = row["resolutions"][0];
-  double seconds = 0, peak = 0;
-  std::string steps;
-  for (const auto& step : row["steps"]) {
-    char text[160];
-    std::snprintf(text, sizeof text, " [%s %.2f/%.2f]", step["step"].get<std::string>().c_str(),
-                  step["seconds"].get<double>(), step["cpu_seconds"].get<double>());
-    steps += text;
-    if (step["step"] != "read") seconds += step["seconds"].get<double>();
-    peak = std::max(peak, step["peak_mib"].get<double>());
-  }
-  std::printf(
-      "%-36s %9llu %-5s charts %5d used %.4f stretch %.3f p99 %.2f largest/ideal %.2f shared %llu  %.2f s peak %.0f MiB |%s\n",
-      row["mesh"].get<std::string>().c_str(), row["triangles"].get<unsigned long long>(),
-      row["source"].get<std::string>().c_str(), row["charts"].get<int>(), row["coverage"].get<double>(),
-      row["stretch_mean"].get<double>(), row["stretch_p99"].get<double>(), first["max_over_mean"].get<double>(),
-      first["shared_texels"].get<unsigned long long>(), seconds, peak, steps.c_str());
   std::fflush(stdout);
 }
 
 int run(const Options& options) {
   nlohmann::json rows = nlohmann::json::array();
-  for (const auto& name : options.meshes) {
+  for (const auto& name : options.all ? all_meshes() : options.meshes) {
     rows.push_back(facts(name, options));
     print(rows.back());
   }
@@ -104,8 +97,8 @@ Command add_atlas(CLI::App& app) {
   auto* command =
       app.add_subcommand("atlas", "Facts of the atlas of each mesh: texels used, stretch, footprints, seconds");
   auto options = std::make_shared<Options>();
-  command->add_option("meshes", options->meshes, "Presets (vessel, excavation, amazon, thai, textured10m) or files")
-      ->required();
+  command->add_option("meshes", options->meshes, "Presets (vessel, excavation, amazon, thai, textured10m) or files");
+  command->add_flag("--all", options->all, "Every mesh of the data folder, and the presets");
   command->add_option("--resolutions", options->resolutions, "Where footprints are measured")->delimiter(',');
   command->add_flag("--make", options->make_always, "Never keep the file's own texture coordinates");
   command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();

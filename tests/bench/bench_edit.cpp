@@ -25,17 +25,6 @@ constexpr int kWidth = 1280, kHeight = 720;
 // Dabs on the model as `camera()` sees it; the same for every method.
 const glm::dvec2 kCenters[] = {{640, 360}, {560, 400}, {700, 330}, {640, 290}, {580, 340}, {690, 420}, {620, 380}};
 
-template <class T, class Start>
-T await(Start start) {
-  auto promise = std::make_shared<std::promise<Result<T>>>();
-  auto future = promise->get_future();
-  start([promise](Result<T> result) { promise->set_value(std::move(result)); });
-  if constexpr (std::is_void_v<T>)
-    must(future.get());
-  else
-    return must(future.get());
-}
-
 // What both methods are asked to paint on.
 struct Scene {
   BenchMesh mesh;

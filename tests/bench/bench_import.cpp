@@ -3,6 +3,7 @@
 
 #include "bench/bench_commands.h"
 #include "bench/harness.h"
+#include "bench/step_watch.h"
 #include "jobs/import_job.h"
 
 namespace strata::bench {
@@ -30,10 +31,12 @@ int run(const Options& options) {
   request.files = {{file.filename().string(), file}};
   Progress progress;
 
+  StepWatch watch;
   double start = now_ms();
-  const Model model = must(jobs::import_model(*site.store, request, progress));
+  const Model model =
+      must(watch.run("start", progress, [&] { return jobs::import_model(*site.store, request, progress); }));
   const double import_ms = now_ms() - start;
-  first_frame(site, model.slug);
+  watch.run("first frame", progress, [&] { return first_frame(site, model.slug); });
   const double import_to_frame_ms = now_ms() - start;
 
   // Paint every layer, so that a restart has something to load.
@@ -58,14 +61,24 @@ int run(const Options& options) {
   const double restart_ms = now_ms() - start;
 
   const auto gpu = site.renderer->info();
-  const nlohmann::json result{{"method", "import"},           {"model", options.model},
-                              {"triangles", model.triangles}, {"atlas", to_json(model.atlas, model.metres())},
-                              {"import_ms", import_ms},       {"import_to_first_frame_ms", import_to_frame_ms},
-                              {"layers", options.layers},     {"texture", options.resolution},
-                              {"restart_ready_ms", ready_ms}, {"restart_to_first_frame_ms", restart_ms}};
+  const nlohmann::json result{{"method", "import"},
+                              {"model", options.model},
+                              {"triangles", model.triangles},
+                              {"atlas", to_json(model.atlas, model.metres())},
+                              {"import_ms", import_ms},
+                              {"steps", watch.json()},
+                              {"peak_mib", watch.peak_mib()},
+                              {"cpu_seconds", watch.cpu_seconds()},
+                              {"import_to_first_frame_ms", import_to_frame_ms},
+                              {"layers", options.layers},
+                              {"texture", options.resolution},
+                              {"restart_ready_ms", ready_ms},
+                              {"restart_to_first_frame_ms", restart_ms}};
   std::printf("%s: %llu triangles, %d charts, %.1f %% of texels used\n", options.model.c_str(),
               static_cast<unsigned long long>(model.triangles), model.atlas.charts, model.atlas.coverage * 100);
-  std::printf("import %.2f s, to the first frame %.2f s\n", import_ms / 1000, import_to_frame_ms / 1000);
+  std::printf("import %.2f s, to the first frame %.2f s (%.2f s of processor), peak memory %.0f MiB\n",
+              import_ms / 1000, import_to_frame_ms / 1000, watch.cpu_seconds(), watch.peak_mib());
+  watch.print();
   std::printf("restart with %d painted %d² layers: ready %.2f s, first frame %.2f s\n", options.layers,
               options.resolution, ready_ms / 1000, restart_ms / 1000);
   write_result(options.json, machine(&gpu), nlohmann::json::array({result}));
@@ -77,7 +90,8 @@ int run(const Options& options) {
 Command add_import(CLI::App& app) {
   auto* command = app.add_subcommand("import", "Import to first frame, and restart with painted layers to first frame");
   auto options = std::make_shared<Options>();
-  command->add_option("--model", options->model, "vessel, excavation, amazon, thai, or a file")->capture_default_str();
+  command->add_option("--model", options->model, "vessel, excavation, amazon, thai, textured10m, or a file")
+      ->capture_default_str();
   command->add_option("--layers", options->layers, "Painted layers at the restart")->capture_default_str();
   command->add_option("--texture", options->resolution, "Their resolution")->capture_default_str();
   command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();

@@ -3,11 +3,13 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "mesh/input_files.h"
 #include "render/renderer.h"
 #include "room/room.h"
 #include "store/cluster.h"
@@ -35,15 +37,21 @@ nlohmann::json machine(const render::GpuInfo* gpu);
 void write_result(const std::string& json_file, const nlohmann::json& machine, const nlohmann::json& results);
 
 // A mesh by name: `pot` or `pot:TRIANGLES` (generated here), a file, or a preset of the data folder's make_big_mesh.py
-// (vessel, excavation, amazon, thai), made once into `cache`. Exits with a message where it cannot be had.
+// (vessel, excavation, amazon, thai, textured10m), made once into `cache`. Exits with a message where it cannot be had.
 struct BenchMesh {
   std::string name;
   std::filesystem::path file;                      // empty for `pot`
   std::shared_ptr<const mesh::Geometry> geometry;  // with an atlas
   double area = 0;
+  AtlasReport atlas;
 };
 std::filesystem::path mesh_file(const std::string& name, const std::filesystem::path& cache);
-BenchMesh load_bench_mesh(const std::string& name, const std::filesystem::path& cache);
+// With what lies beside an OBJ or glTF. Files that end in .xz or .gz are unpacked into `cache`.
+std::vector<mesh::InputFile> mesh_files(const std::string& name, const std::filesystem::path& cache);
+// Every mesh of the data folder but those of nasty/, and the presets.
+std::vector<std::string> all_meshes();
+// The file's own texture coordinates where they can carry layers, unless `make_always`.
+BenchMesh load_bench_mesh(const std::string& name, const std::filesystem::path& cache, bool make_always = false);
 
 std::unique_ptr<render::Renderer> start_renderer();
 template <class T>
@@ -53,6 +61,18 @@ T must(Result<T> result) {
     std::exit(1);
   }
   if constexpr (!std::is_void_v<T>) return std::move(*result);
+}
+
+// Waits for what `start` is given as its callback.
+template <class T, class Start>
+T await(Start start) {
+  auto promise = std::make_shared<std::promise<Result<T>>>();
+  auto future = promise->get_future();
+  start([promise](Result<T> result) { promise->set_value(std::move(result)); });
+  if constexpr (std::is_void_v<T>)
+    must(future.get());
+  else
+    return must(future.get());
 }
 
 // Looks at a model from a direction, so that it fills the window.

@@ -6,11 +6,10 @@ int main(int argc, char** argv) {
   CLI::App app{"strata-bench: how fast Strata is, beside the methods it is compared with"};
   app.set_version_flag("--version", "strata-bench " STRATA_VERSION);
   app.require_subcommand(1);
-  const std::map<std::string, strata::bench::Command> commands{{"atlas", strata::bench::add_atlas(app)},
-                                                               {"edit", strata::bench::add_edit(app)},
-                                                               {"import", strata::bench::add_import(app)},
-                                                               {"query", strata::bench::add_query(app)},
-                                                               {"stream", strata::bench::add_stream(app)}};
+  const std::map<std::string, strata::bench::Command> commands{
+      {"atlas", strata::bench::add_atlas(app)},   {"edit", strata::bench::add_edit(app)},
+      {"import", strata::bench::add_import(app)}, {"query", strata::bench::add_query(app)},
+      {"sheet", strata::bench::add_sheet(app)},   {"stream", strata::bench::add_stream(app)}};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,6 +1,8 @@
 #include "bench/step_watch.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
 #include <fstream>
 
@@ -14,7 +16,7 @@ double status_mib(const std::string& key) {
   return 0;
 }
 
-double cpu_seconds() {
+double process_cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return double(now.tv_sec) + double(now.tv_nsec) * 1e-9;
@@ -32,12 +34,12 @@ StepWatch::Sampling::Sampling(StepWatch& watch, std::string name, Progress& prog
     using Clock = std::chrono::steady_clock;
     std::string shown = before;
     auto start = Clock::now();
-    double cpu_start = cpu_seconds();
+    double cpu_start = process_cpu_seconds();
     watch.steps_.push_back({name});
     forget_peak_memory();
     const auto finish_step = [&] {
       watch.steps_.back().seconds = std::chrono::duration<double>(Clock::now() - start).count();
-      watch.steps_.back().cpu_seconds = cpu_seconds() - cpu_start;
+      watch.steps_.back().cpu_seconds = process_cpu_seconds() - cpu_start;
       watch.steps_.back().peak_mib = peak_memory_mib();
     };
     while (!ended_) {
@@ -45,7 +47,7 @@ StepWatch::Sampling::Sampling(StepWatch& watch, std::string name, Progress& prog
         finish_step();
         shown = now;
         start = Clock::now();
-        cpu_start = cpu_seconds();
+        cpu_start = process_cpu_seconds();
         watch.steps_.push_back({name + ": " + now});
         forget_peak_memory();
       }
@@ -58,6 +60,30 @@ StepWatch::Sampling::Sampling(StepWatch& watch, std::string name, Progress& prog
 StepWatch::Sampling::~Sampling() {
   ended_ = true;
   thread_.join();
+}
+
+double StepWatch::peak_mib() const {
+  double peak = 0;
+  for (const Step& step : steps_) peak = std::max(peak, step.peak_mib);
+  return peak;
+}
+
+double StepWatch::seconds() const {
+  double sum = 0;
+  for (const Step& step : steps_) sum += step.seconds;
+  return sum;
+}
+
+double StepWatch::cpu_seconds() const {
+  double sum = 0;
+  for (const Step& step : steps_) sum += step.cpu_seconds;
+  return sum;
+}
+
+void StepWatch::print() const {
+  for (const Step& step : steps_)
+    std::printf("  %-60s %7.2f s  %7.2f s of processor  %6.0f MiB\n", step.name.c_str(), step.seconds, step.cpu_seconds,
+                step.peak_mib);
 }
 
 nlohmann::json StepWatch::json() const {

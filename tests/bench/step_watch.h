@@ -21,6 +21,10 @@ class StepWatch {
   }
   // [{step, seconds, cpu_seconds, peak_mib}] in the order they began.
   nlohmann::json json() const;
+  void print() const;
+  double seconds() const;
+  double peak_mib() const;
+  double cpu_seconds() const;  // of this process; what its PostgreSQL took is not in it
 
  private:
   struct Step {

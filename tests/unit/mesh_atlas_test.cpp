@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "mesh/atlas_report.h"
 #include "mesh/uv_islands.h"
 #include "support/meshes.h"
 #include "support/scan_atlas.h"
@@ -183,6 +184,36 @@ TEST(mesh_atlas, reports_the_largest_texel_in_the_units_of_the_file) {
   const double mean = 4 * M_PI / (small->report.coverage * kLowest * kLowest);
   EXPECT_GT(small->report.texel_area_max, mean);
   EXPECT_LT(small->report.texel_area_max, 3 * mean);
+}
+
+TEST(mesh_atlas, reports_how_much_surface_texels_hold_at_each_resolution) {
+  Progress progress;
+  const auto mesh = test::sphere(40);
+  const auto atlas = make_atlas(mesh, kLowest, progress);
+  ASSERT_TRUE(atlas);
+  const auto& sizes = atlas->report.texel_sizes;
+  ASSERT_EQ(sizes.size(), 3u);
+  EXPECT_EQ(sizes[0].area_max, atlas->report.texel_area_max);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(sizes[i].resolution, kLowest << i);
+    EXPECT_NEAR(sizes[i].area_mean * std::pow(4, i), sizes[0].area_mean, 1e-9);
+    EXPECT_GT(sizes[i].area_max, sizes[i].area_mean);
+    EXPECT_LT(sizes[i].area_max, 3 * sizes[i].area_mean);
+  }
+  double uv_sum = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) uv_sum += uv_area(*atlas, t);
+  EXPECT_NEAR(sizes[0].area_mean * uv_sum * kLowest * kLowest, surface_area(mesh), 1e-6);
+}
+
+TEST(mesh_atlas, the_largest_texel_of_an_even_sheet_is_any_texel) {
+  // A unit square over [0.05, 0.95]², then over half of that.
+  const auto mesh = test::open_grid(10, 0);
+  ASSERT_NEAR(surface_area(mesh), 1, 1e-6);
+  const double side = 1 / (0.9 * 100);
+  EXPECT_NEAR(largest_texel_area(mesh, mesh.corner_uvs, 100), side * side, 1e-3 * side * side);
+  auto uvs = mesh.corner_uvs;
+  for (auto& uv : uvs) uv = {uv.x, uv.y / 2};
+  EXPECT_NEAR(largest_texel_area(mesh, uvs, 100), 2 * side * side, 2e-3 * side * side);
 }
 
 TEST(mesh_atlas, lays_a_flat_sheet_out_without_stretch) {

@@ -52,6 +52,11 @@ describe("numbers as people write them", () => {
     expect(choices.map((choice) => choice.resolution)).toEqual([2048, 4096, 8192]);
     expect(choices.map((choice) => format_length(choice.detail_m))).toEqual(["0.8 mm", "0.4 mm", "0.2 mm"]);
   });
+  it("the smallest detail is what was measured at that resolution, where it was", () => {
+    const texel_sizes = [{ resolution: 4096, area_mean_m2: 1e-7, area_max_m2: 2.5e-7 }];
+    const choices = detail_choices({ lowest_resolution: 2048, texel_area_max_m2: 6.4e-7, texel_sizes });
+    expect(choices.map((choice) => format_length(choice.detail_m))).toEqual(["0.8 mm", "0.5 mm", "0.2 mm"]);
+  });
 });
 
 const classes_without_points = complete_palette({ mode: "categorical" });

@@ -68,12 +68,17 @@ export interface DetailChoice {
 }
 
 /** The choices of "smallest detail" for a new layer, coarsest first. */
-export function detail_choices(atlas: Pick<Atlas, "lowest_resolution" | "texel_area_max_m2">): DetailChoice[] {
+export function detail_choices(
+  atlas: Pick<Atlas, "lowest_resolution" | "texel_area_max_m2" | "texel_sizes">,
+): DetailChoice[] {
   const choices: DetailChoice[] = [];
   for (let resolution = Math.max(2048, atlas.lowest_resolution); resolution <= 8192; resolution *= 2) {
+    const measured = atlas.texel_sizes?.find((size) => size.resolution === resolution);
     choices.push({
       resolution,
-      detail_m: (Math.sqrt(atlas.texel_area_max_m2) * atlas.lowest_resolution) / resolution,
+      detail_m: measured
+        ? Math.sqrt(measured.area_max_m2)
+        : (Math.sqrt(atlas.texel_area_max_m2) * atlas.lowest_resolution) / resolution,
     });
   }
   return choices;

@@ -133,6 +133,13 @@ export interface Bounds {
   max: Point3;
 }
 
+/** How much surface a texel holds. */
+export interface TexelSize {
+  resolution: number;
+  area_mean_m2: number;
+  area_max_m2: number;
+}
+
 /** How the surface lies in the texture. */
 export interface Atlas {
   /** Whether the scan's own texture coordinates were kept. */
@@ -143,7 +150,10 @@ export interface Atlas {
   overlap: number;
   stretch_mean: number;
   stretch_p99: number;
+  /** Surface in the texel that holds most, at lowest_resolution. */
   texel_area_max_m2: number;
+  /** Precision of layers by their resolution, the lowest first; not known of models imported before it was measured. */
+  texel_sizes?: TexelSize[];
 }
 
 /** What was mended at import. */

@@ -287,6 +287,20 @@ nlohmann::json to_json(const Bounds& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, TexelSize& value) {
+  read_member(json, "resolution", value.resolution);
+  read_member(json, "area_mean_m2", value.area_mean_m2);
+  read_member(json, "area_max_m2", value.area_max_m2);
+}
+
+nlohmann::json to_json(const TexelSize& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "resolution", value.resolution);
+  write_member(json, "area_mean_m2", value.area_mean_m2);
+  write_member(json, "area_max_m2", value.area_max_m2);
+  return json;
+}
+
 void read(const nlohmann::json& json, Atlas& value) {
   read_member(json, "source", value.source);
   read_member(json, "lowest_resolution", value.lowest_resolution);
@@ -296,6 +310,7 @@ void read(const nlohmann::json& json, Atlas& value) {
   read_member(json, "stretch_mean", value.stretch_mean);
   read_member(json, "stretch_p99", value.stretch_p99);
   read_member(json, "texel_area_max_m2", value.texel_area_max_m2);
+  read_optional_member(json, "texel_sizes", value.texel_sizes);
 }
 
 nlohmann::json to_json(const Atlas& value) {
@@ -308,6 +323,7 @@ nlohmann::json to_json(const Atlas& value) {
   write_member(json, "stretch_mean", value.stretch_mean);
   write_member(json, "stretch_p99", value.stretch_p99);
   write_member(json, "texel_area_max_m2", value.texel_area_max_m2);
+  write_optional_member(json, "texel_sizes", value.texel_sizes);
   return json;
 }
 

@@ -48,6 +48,7 @@ enum class Schema {
   Axis,
   Bounds,
   Atlas,
+  TexelSize,
   Repair,
   SourceFile,
   Model,
@@ -110,7 +111,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 84;
+constexpr int kSchemaCount = 85;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -209,6 +210,18 @@ nlohmann::json to_json(const Bounds& value);
 template <>
 inline constexpr Schema kSchemaOf<Bounds> = Schema::Bounds;
 
+// How much surface a texel holds.
+struct TexelSize {
+  int resolution = 0;
+  double area_mean_m2 = 0;
+  double area_max_m2 = 0;
+  bool operator==(const TexelSize&) const = default;
+};
+void read(const nlohmann::json& json, TexelSize& value);
+nlohmann::json to_json(const TexelSize& value);
+template <>
+inline constexpr Schema kSchemaOf<TexelSize> = Schema::TexelSize;
+
 enum class AtlasSource { file, made };
 std::string_view name(AtlasSource value);
 void read(const nlohmann::json& json, AtlasSource& value);
@@ -223,7 +236,8 @@ struct Atlas {
   double overlap = 0;
   double stretch_mean = 0;
   double stretch_p99 = 0;
-  double texel_area_max_m2 = 0;
+  double texel_area_max_m2 = 0;  // Surface in the texel that holds most, at lowest_resolution.
+  std::optional<std::vector<TexelSize>> texel_sizes;  // Precision of layers by their resolution, the lowest first; not known of models imported before it was measured.
   bool operator==(const Atlas&) const = default;
 };
 void read(const nlohmann::json& json, Atlas& value);
