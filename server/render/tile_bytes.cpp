@@ -18,19 +18,20 @@ constexpr std::array<std::uint64_t, 256> make_spread() {
 }
 constexpr auto kSpread = make_spread();
 
+// Eight texels at a time: most are written all or none.
 template <class Texel>
 void fill_texels(const TileMask& mask, Texel value, std::uint8_t* values) {
-  for (std::size_t word = 0; word < mask.words.size(); ++word) {
-    std::uint8_t* const first = values + word * 64 * sizeof(Texel);
-    std::uint64_t bits = mask.words[word];
-    if (bits == ~std::uint64_t{0}) {
-      std::array<Texel, 64> row;
-      row.fill(value);
-      std::memcpy(first, row.data(), sizeof row);
+  std::array<Texel, 8> run;
+  run.fill(value);
+  for (std::size_t i = 0; i < kTexelsPerTile / run.size(); ++i) {
+    auto bits = static_cast<std::uint32_t>(mask.words[i / 8] >> (i % 8 * 8) & 0xff);
+    std::uint8_t* const first = values + i * sizeof run;
+    if (bits == 0xff) {
+      std::memcpy(first, run.data(), sizeof run);
       continue;
     }
     for (; bits != 0; bits &= bits - 1)
-      std::memcpy(first + static_cast<std::size_t>(std::countr_zero(bits)) * sizeof(Texel), &value, sizeof value);
+      std::memcpy(first + static_cast<std::size_t>(std::countr_zero(bits)) * sizeof value, &value, sizeof value);
   }
 }
 

@@ -1,277 +1,213 @@
-// Edits by the compute pass over tiles, beside the paper's own algorithms, on one context in one run.
-#include <future>
-#include <iostream>
-#include <random>
+// Edits by tiles, beside the paper's own algorithms and its octree rival, on one context in one run.
+#include <algorithm>
+#include <cstdio>
+#include <map>
 
 #include "bench/bench_commands.h"
-#include "bench/harness.h"
-#include "bench/peers/paper.h"
-#include "render/depth_buffers.h"
-#include "render/edit_pass.h"
-#include "render/mesh_buffers.h"
+#include "bench/edit_methods.h"
 #include "support/shader_dirs.h"
 
 namespace strata::bench {
 namespace {
 
+const std::vector<std::string> kMethods{"tiles", "paper", "paper-compute", "octree", "octree-fair"};
+const std::vector<std::string> kModels{"vessel", "excavation", "amazon", "thai"};
+
 struct Options {
-  std::vector<std::string> models{"pot:1000000"}, methods{"tiles", "paper"};
-  std::vector<int> textures{2048, 4096, 8192}, radii{10, 40, 70, 100, 200};
-  int repeats = 5;
-  std::string cache = "build/bench", json;
+  std::vector<std::string> models{"vessel", "excavation"}, methods = kMethods;
+  std::vector<int> textures{2048, 4096}, radii{10, 40, 70, 100, 200};
+  int repeats = 2;
+  bool full = false;
+  std::string cache = "build/bench", json, edit_path = "automatic";
 };
 
 constexpr int kWidth = 1280, kHeight = 720;
 // Dabs on the model as `camera()` sees it; the same for every method.
 const glm::dvec2 kCenters[] = {{640, 360}, {560, 400}, {700, 330}, {640, 290}, {580, 340}, {690, 420}, {620, 380}};
-
-// What both methods are asked to paint on.
-struct Scene {
-  BenchMesh mesh;
-  Camera camera;
-  render::ModelHandle model = 0;
-};
+// What a texel takes at least: position 8, depth 4, value and flag read and written 4, and what a cache line brings besides.
+constexpr double kBytesPerTexel = 20;
 
 struct Measured {
-  Samples edit, outcome;     // outcome: until the changed tiles are in main memory
-  Samples cull, gpu;         // parts of the edit
-  std::uint64_t texels = 0;  // of the last dab
-  std::uint64_t bytes_up = 0, bytes_down = 0;
+  Samples ms, to_memory;
+  EditCost last;
 };
 
-// The paper's system keeps its depth texture from drawing the scene; so does ours. Neither is timed here.
-class PaperPeer {
- public:
-  PaperPeer(render::Renderer& renderer, const Scene& scene, int resolution) : renderer_(renderer), scene_(scene) {
-    renderer_.run_on_gpu_thread_for_test([&] {
-      editor_ = must(PaperEditor::create(*scene.mesh.geometry, resolution));
-      readback_ = std::make_unique<gl::ReadbackPool>();
-      depths_ = std::make_unique<render::DepthBuffers>(
-          must(render::DepthBuffers::create(test::shader_dir(), std::size_t{1} << 26, memory_, *readback_)));
-      buffers_ = must(render::MeshBuffers::create(scene.mesh.geometry, memory_));
-      while (!buffers_->upload_slice()) {
+// One model, texture and radius.
+struct Case {
+  std::map<std::string, Measured> of;
+  EditAgreement agreement;
+  bool has(const std::string& method) const { return of.contains(method); }
+  double median(const std::string& method) const { return of.at(method).ms.median(); }
+};
+
+// The methods in turn and back again (A B C C B A): what drifts in the machine falls on all alike.
+Case measure(EditMethods& methods, int radius, int repeats) {
+  Case result;
+  for (const auto& method : methods.all()) method->edit(kCenters[0], radius);  // warm
+  for (int round = 0; round < repeats; ++round) {
+    const glm::dvec2 center = kCenters[static_cast<std::size_t>(round) % std::size(kCenters)];
+    std::vector<EditMethod*> order;
+    for (const auto& method : methods.all()) order.push_back(method.get());
+    for (int turn = 0; turn < 2; ++turn) {
+      for (EditMethod* method : order) {
+        Measured& measured = result.of[method->name()];
+        measured.last = method->edit(center, radius);
+        measured.ms.add(measured.last.ms);
+        if (measured.last.ms_to_memory > 0) measured.to_memory.add(measured.last.ms_to_memory);
       }
-      depth_ = must(depths_->start(render::depth_key(1, scene.camera, scene.camera.width, scene.camera.height)));
-      render::MeshProgress progress;
-      while (!must(depths_->draw_slice(depth_, *buffers_, scene.camera, progress))) {
-      }
-      glFinish();
-    });
+      std::reverse(order.begin(), order.end());
+    }
   }
-  ~PaperPeer() {
-    renderer_.run_on_gpu_thread_for_test([&] {
-      depth_.reset();
-      buffers_.reset();
-      depths_.reset();
-      editor_.reset();
-      readback_.reset();
-    });
+  if (methods.find("tiles") && methods.find("paper"))
+    result.agreement = methods.compare_tiles_and_paper(kCenters[0], radius);
+  return result;
+}
+
+class Report {
+ public:
+  Report(const Options& options, const render::GpuInfo& gpu, double bandwidth)
+      : options_(options), machine_(machine(&gpu)), bandwidth_(bandwidth) {
+    machine_["edit_path"] = gpu.edit_path == render::EditPath::kernel ? "kernel" : "compute";
   }
 
-  double edit_ms(glm::dvec2 center, double radius) {
-    double ms = 0;
-    renderer_.run_on_gpu_thread_for_test([&] {
-      glFinish();
-      const double start = now_ms();
-      editor_->edit(scene_.camera, depth_->texture, center, radius, 200);
-      glFinish();
-      ms = now_ms() - start;
-    });
-    return ms;
+  void begin(const EditScene& scene, int texture, const EditMethods& methods) {
+    scene_ = &scene;
+    texture_ = texture;
+    std::printf("\n%s, %zu triangles, %d²\n", scene.mesh.name.c_str(), scene.mesh.geometry->triangle_count(), texture);
+    std::printf("  %-14s %11s %11s %13s %11s\n", "made", "seconds", "model MB", "structure MB", "layer MB");
+    for (const auto& method : methods.all()) {
+      const EditCreation c = method->creation();
+      std::printf("  %-14s %11.2f %11.1f %13.1f %11.1f\n", method->name().c_str(), c.structure_s, mb(c.model_bytes),
+                  mb(c.structure_bytes), mb(c.layer_bytes));
+      creation_.push_back({{"method", method->name()},
+                           {"model", scene.mesh.name},
+                           {"triangles", scene.mesh.geometry->triangle_count()},
+                           {"texture", texture},
+                           {"seconds", c.structure_s},
+                           {"model_bytes", c.model_bytes},
+                           {"structure_bytes", c.structure_bytes},
+                           {"layer_bytes", c.layer_bytes}});
+    }
+    for (const std::string& reason : methods.not_made()) {
+      std::printf("  not run: %s\n", reason.c_str());
+      not_run_.push_back({{"model", scene.mesh.name}, {"texture", texture}, {"why", reason}});
+    }
+    std::printf("  ms an edit; × is how many times as long as tiles; floor is %.0f bytes a texel at %.1f GB/s\n",
+                kBytesPerTexel, bandwidth_ / 1e9);
+    std::printf("  %5s %9s %9s %7s", "r px", "texels", "tiles", "/floor");
+    for (const auto& method : methods.all())
+      if (method->name() != "tiles") std::printf(" %13s %7s", method->name().c_str(), "×");
+    std::printf("  surface texels that differ\n");
   }
-  std::vector<std::uint8_t> mask_after(glm::dvec2 center, double radius) {
-    std::vector<std::uint8_t> mask;
-    renderer_.run_on_gpu_thread_for_test([&] {
-      editor_->clear();
-      editor_->edit(scene_.camera, depth_->texture, center, radius, 200);
-      mask = editor_->mask();
-    });
-    return mask;
-  }
-  std::vector<std::uint8_t> coverage() {
-    std::vector<std::uint8_t> coverage;
-    renderer_.run_on_gpu_thread_for_test([&] { coverage = editor_->coverage(); });
-    return coverage;
+
+  void add(int radius, const Case& found) {
+    const bool tiles = found.has("tiles");
+    const double floor_ms =
+        tiles ? static_cast<double>(found.of.at("tiles").last.cells) * kBytesPerTexel / bandwidth_ * 1000 : 0;
+    std::printf("  %5d %9llu %9.3f %7.1f", radius,
+                tiles ? static_cast<unsigned long long>(found.of.at("tiles").last.cells) : 0ull,
+                tiles ? found.median("tiles") : 0, tiles && floor_ms > 0 ? found.median("tiles") / floor_ms : 0);
+    for (const std::string& method : options_.methods) {
+      if (!found.has(method)) continue;
+      results_.push_back(row(method, radius, found, floor_ms));
+      if (method == "tiles") continue;
+      std::printf(" %13.3f %7.1f", found.median(method), tiles ? found.median(method) / found.median("tiles") : 0);
+    }
+    const EditAgreement& agreement = found.agreement;
+    std::printf("  %llu of %llu (off: tiles %llu, paper %llu; beyond rounding %llu)\n",
+                static_cast<unsigned long long>(agreement.differ), static_cast<unsigned long long>(agreement.compared),
+                static_cast<unsigned long long>(agreement.tiles_off),
+                static_cast<unsigned long long>(agreement.paper_off),
+                static_cast<unsigned long long>(agreement.beyond_rounding));
+    std::fflush(stdout);
+    // After each case, so that a long run that is ended keeps what it has.
+    write_result(options_.json, machine_, results_,
+                 {{"creation", creation_},
+                  {"not_run", not_run_},
+                  {"copy_bytes_per_second", bandwidth_},
+                  {"floor_bytes_per_texel", kBytesPerTexel}});
   }
 
  private:
-  render::Renderer& renderer_;
-  const Scene& scene_;
-  render::GpuMemory memory_{std::uint64_t{1} << 40};
-  std::unique_ptr<gl::ReadbackPool> readback_;
-  std::unique_ptr<PaperEditor> editor_;
-  std::unique_ptr<render::DepthBuffers> depths_;
-  std::unique_ptr<render::MeshBuffers> buffers_;
-  std::shared_ptr<render::DepthBuffer> depth_;
+  static double mb(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
+
+  nlohmann::json row(const std::string& method, int radius, const Case& found, double floor_ms) const {
+    const Measured& measured = found.of.at(method);
+    nlohmann::json json = measured.ms.json();
+    json.update({{"method", method},
+                 {"model", scene_->mesh.name},
+                 {"triangles", scene_->mesh.geometry->triangle_count()},
+                 {"texture", texture_},
+                 {"radius", radius},
+                 {"texels", measured.last.cells},
+                 {"bytes_up", measured.last.bytes_up},
+                 {"bytes_down", measured.last.bytes_down}});
+    if (!measured.to_memory.empty()) json["ms_to_main_memory_median"] = measured.to_memory.median();
+    if (method == "tiles") {
+      json["floor_ms"] = floor_ms;
+      if (const EditAgreement& agreement = found.agreement; agreement.compared > 0) {
+        json["surface_texels"] = agreement.compared;
+        json["surface_texels_differ"] = agreement.differ;
+        json["tiles_off"] = agreement.tiles_off;
+        json["paper_off"] = agreement.paper_off;
+        json["beyond_rounding"] = agreement.beyond_rounding;
+        json["identical"] = agreement.differ * 100'000 <= agreement.compared && agreement.beyond_rounding == 0;
+      }
+    } else if (found.has("tiles")) {
+      json["ratio_to_tiles"] = measured.ms.median() / found.median("tiles");
+    }
+    return json;
+  }
+
+  const Options& options_;
+  nlohmann::json machine_;
+  const double bandwidth_;
+  const EditScene* scene_ = nullptr;
+  int texture_ = 0;
+  nlohmann::json results_ = nlohmann::json::array(), creation_ = nlohmann::json::array(),
+                 not_run_ = nlohmann::json::array();
 };
 
-StrokeBatch dab(const Scene& scene, glm::dvec2 center, double radius) {
-  StrokeBatch stroke;
-  stroke.camera = scene.camera;
-  stroke.path = {center};
-  stroke.radius_px = radius;
-  stroke.value_bits = 200;
-  return stroke;
-}
-
-void measure_tiles(render::Renderer& renderer, render::LayerHandle layer, const Scene& scene, glm::dvec2 center,
-                   double radius, Measured& measured) {
-  const double start = now_ms();
-  const auto outcome = await<render::StrokeOutcome>(
-      [&](auto done) { renderer.paint(layer, dab(scene, center, radius), std::move(done)); });
-  measured.outcome.add(now_ms() - start);
-  measured.edit.add(outcome.dispatch_ms + outcome.gpu_ms);
-  measured.cull.add(outcome.cull_ms);
-  measured.gpu.add(outcome.gpu_ms);
-  measured.texels = 0;
-  for (const auto& tile : outcome.tiles) measured.texels += static_cast<std::uint64_t>(tile.written.count());
-  measured.bytes_up = outcome.bytes_up;
-  measured.bytes_down = outcome.tiles.size() * (kTexelsPerTile * 2 + sizeof(TileMask::words));
-}
-
-// Surface texels that one method painted and the other did not, and how many were painted.
-std::pair<std::uint64_t, std::uint64_t> compare(render::Renderer& renderer, const Scene& scene,
-                                                const mesh::SurfaceMap& map, PaperPeer& paper,
-                                                const std::vector<std::uint8_t>& coverage, double radius) {
-  const auto layer = await<render::LayerHandle>(
-      [&](auto done) { renderer.add_layer(scene.model, ValueType::u8, map.resolution, std::move(done)); });
-  const auto ours = await<render::StrokeOutcome>(
-      [&](auto done) { renderer.paint(layer, dab(scene, kCenters[0], radius), std::move(done)); });
-  renderer.remove_layer(layer);
-  const auto theirs = paper.mask_after(kCenters[0], radius);
-  std::vector<std::uint8_t> written(theirs.size());
-  for (const auto& tile : ours.tiles)
-    for (int i = 0; i < kTexelsPerTile; ++i)
-      if (tile.written.test(i))
-        written[std::size_t(tile.address.y * kTileSize + i / kTileSize) * map.resolution + tile.address.x * kTileSize +
-                i % kTileSize] = 1;
-  std::uint64_t differs = 0, edited = 0;
-  for (std::size_t slot = 0; slot < map.block_of_slot.size(); ++slot)
-    for (int i = 0; i < 64; ++i) {
-      if (!(map.surface_mask[slot] >> i & 1)) continue;
-      const std::size_t x = map.block_of_slot[slot] % map.blocks_per_side * 8 + i % 8;
-      const std::size_t y = map.block_of_slot[slot] / map.blocks_per_side * 8 + i / 8;
-      const std::size_t texel = y * map.resolution + x;
-      if (!coverage[texel]) continue;
-      edited += theirs[texel] || written[texel];
-      differs += (theirs[texel] != 0) != (written[texel] != 0);
-    }
-  return {differs, edited};
-}
-
-nlohmann::json row(const std::string& method, const Scene& scene, int texture, int radius, const Measured& measured) {
-  nlohmann::json json = measured.edit.json();
-  json.update({{"method", method},
-               {"model", scene.mesh.name},
-               {"triangles", scene.mesh.geometry->triangle_count()},
-               {"texture", texture},
-               {"radius", radius},
-               {"texels", measured.texels},
-               {"bytes_up", measured.bytes_up},
-               {"bytes_down", measured.bytes_down}});
-  if (!measured.outcome.empty()) {
-    json["ms_to_main_memory_median"] = measured.outcome.median();
-    json["ms_cull_median"] = measured.cull.median();
-    json["ms_gpu_median"] = measured.gpu.median();
+int run(Options options) {
+  if (options.full) {
+    options.models = kModels;
+    options.textures = {2048, 4096, 8192};
   }
-  return json;
-}
-
-void bench_texture(const Options& options, render::Renderer& renderer, const Scene& scene, int texture,
-                   nlohmann::json& results) {
-  const bool with_tiles = std::find(options.methods.begin(), options.methods.end(), "tiles") != options.methods.end();
-  const bool with_paper = std::find(options.methods.begin(), options.methods.end(), "paper") != options.methods.end();
-  Progress progress;
-  double start = now_ms();
-  auto map =
-      std::make_shared<const mesh::SurfaceMap>(must(mesh::bake_surface_map(*scene.mesh.geometry, texture, progress)));
-  const double bake_ms = now_ms() - start;
-  await<void>([&](auto done) { renderer.add_surface_map(scene.model, map, std::move(done)); });
-  const auto layer = await<render::LayerHandle>(
-      [&](auto done) { renderer.add_layer(scene.model, ValueType::u8, texture, std::move(done)); });
-  const auto empty_bytes = renderer.layer_bytes_used(layer);
-  std::unique_ptr<PaperPeer> paper;
-  std::vector<std::uint8_t> coverage;
-  if (with_paper) {
-    paper = std::make_unique<PaperPeer>(renderer, scene, texture);
-    coverage = paper->coverage();
-  }
-  std::printf("\n%s, %zu triangles, %d²: map baked in %.2f s, %.0f MB; an empty layer %.0f KB\n",
-              scene.mesh.name.c_str(), scene.mesh.geometry->triangle_count(), texture, bake_ms / 1000,
-              double(map->bytes()) / 1e6, double(empty_bytes) / 1e3);
-  std::printf("%6s %10s %12s %12s %12s %9s  %s\n", "r px", "texels", "tiles ms", "to memory", "paper ms", "ratio",
-              "surface texels that differ");
-  for (const int radius : options.radii) {
-    Measured tiles, literal;
-    Measured warm;
-    if (with_tiles) measure_tiles(renderer, layer, scene, kCenters[0], radius, warm);
-    if (with_paper) paper->edit_ms(kCenters[0], radius);
-    for (int i = 0; i < options.repeats; ++i) {
-      const auto center = kCenters[i % std::size(kCenters)];
-      // A B B A: what drifts in the machine falls on both alike.
-      const auto one = [&](bool is_tiles) {
-        if (is_tiles && with_tiles) measure_tiles(renderer, layer, scene, center, radius, tiles);
-        if (!is_tiles && with_paper) literal.edit.add(paper->edit_ms(center, radius));
-      };
-      one(true), one(false), one(false), one(true);
-    }
-    std::pair<std::uint64_t, std::uint64_t> difference{0, 0};
-    if (with_tiles && with_paper) difference = compare(renderer, scene, *map, *paper, coverage, radius);
-    literal.texels = tiles.texels;
-    literal.bytes_up = 64;  // the tool matrix
-    const double ratio = with_tiles && with_paper ? literal.edit.median() / tiles.edit.median() : 0;
-    std::printf("%6d %10llu %12.3f %12.3f %12.2f %9.1f  %llu of %llu\n", radius,
-                static_cast<unsigned long long>(tiles.texels), with_tiles ? tiles.edit.median() : 0,
-                with_tiles ? tiles.outcome.median() : 0, with_paper ? literal.edit.median() : 0, ratio,
-                static_cast<unsigned long long>(difference.first), static_cast<unsigned long long>(difference.second));
-    std::fflush(stdout);
-    if (with_tiles) {
-      auto json = row("tiles", scene, texture, radius, tiles);
-      if (with_paper) {
-        json["ratio_paper"] = ratio;
-        json["surface_texels_differ"] = difference.first;
-        json["identical"] = difference.first * 100'000 <= difference.second;
-      }
-      json["empty_layer_bytes"] = empty_bytes;
-      json["bake_ms"] = bake_ms;
-      results.push_back(std::move(json));
-    }
-    if (with_paper) results.push_back(row("paper", scene, texture, radius, literal));
-  }
-  renderer.remove_layer(layer);
-}
-
-int run(const Options& options) {
   render::RendererOptions renderer_options;
   renderer_options.shader_dir = test::shader_dir().string();
   renderer_options.paper_depth_bias = true;  // so that both paint the same
+  renderer_options.edit_path = options.edit_path == "kernel"    ? render::EditPath::kernel
+                               : options.edit_path == "compute" ? render::EditPath::compute
+                                                                : render::EditPath::automatic;
   auto renderer = must(render::Renderer::start(renderer_options));
   const auto gpu = renderer->info();
   std::printf("%s, %s\n", gpu.renderer.c_str(), gpu.version.c_str());
-  nlohmann::json results = nlohmann::json::array();
+  Report report(options, gpu, copy_bandwidth(*renderer));
   for (const auto& name : options.models) {
-    Scene scene{load_bench_mesh(name, options.cache), {}, 0};
+    EditScene scene{load_bench_mesh(name, options.cache), {}, 0};
     scene.camera = look_at(*scene.mesh.geometry, {0.45, -0.8, 0.5}, kWidth, kHeight);
     scene.model = await<render::ModelHandle>([&](auto done) {
       renderer->add_model({scene.mesh.geometry, {}}, std::move(done));
     });
-    for (const int texture : options.textures) bench_texture(options, *renderer, scene, texture, results);
+    for (const int texture : options.textures) {
+      EditMethods methods(*renderer, scene, texture, options.methods);
+      report.begin(scene, texture, methods);
+      for (const int radius : options.radii) report.add(radius, measure(methods, radius, options.repeats));
+    }
     renderer->remove_model(scene.model);
   }
-  write_result(options.json, machine(&gpu), results);
   return 0;
 }
 
 }  // namespace
 
 Command add_edit(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("edit", "One dab of the brush: culling and dispatch, beside the paper's TEA + TPA");
+  auto* command = app.add_subcommand("edit", "One dab of the brush, beside the paper's TEA + TPA and its octree rival");
   auto options = std::make_shared<Options>();
   command->add_option("--model", options->models, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or files")
       ->delimiter(',')
       ->capture_default_str();
-  command->add_option("--texture", options->textures, "Resolutions")
+  command->add_option("--texture", options->textures, "Resolutions; the octree's depth is their logarithm")
       ->delimiter(',')
       ->check(CLI::IsMember({2048, 4096, 8192, 16384}))
       ->capture_default_str();
@@ -279,15 +215,19 @@ Command add_edit(CLI::App& app) {
       ->delimiter(',')
       ->check(CLI::Range(1, 2000))
       ->capture_default_str();
-  command->add_option("--method", options->methods, "tiles, paper")
+  command->add_option("--method", options->methods, "tiles, paper, paper-compute, octree, octree-fair")
       ->delimiter(',')
-      ->check(CLI::IsMember({"tiles", "paper"}))
+      ->check(CLI::IsMember(kMethods))
       ->capture_default_str();
-  command->add_option("--repeats", options->repeats, "A B B A rounds")
+  command->add_option("--repeats", options->repeats, "Rounds there and back")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command->add_flag("--full", options->full, "The paper's matrix: all four models at 2048, 4096 and 8192");
+  command->add_option("--edit-path", options->edit_path, "How tiles are painted: automatic, compute, kernel")
+      ->check(CLI::IsMember({"automatic", "compute", "kernel"}))
+      ->capture_default_str();
   command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();
-  command->add_option("--json", options->json, "Write the results here");
+  command->add_option("--json", options->json, "Write the results here, after each case");
   return [options] { return run(*options); };
 }
 

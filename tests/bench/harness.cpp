@@ -83,10 +83,14 @@ nlohmann::json machine(const render::GpuInfo* gpu) {
   return json;
 }
 
-void write_result(const std::string& json_file, const nlohmann::json& machine, const nlohmann::json& results) {
+void write_result(const std::string& json_file, const nlohmann::json& machine, const nlohmann::json& results,
+                  const nlohmann::json& more) {
   if (json_file.empty()) return;
   std::ofstream out(json_file);
-  out << nlohmann::json{{"machine", machine}, {"results", results}}.dump(2) << "\n";
+  nlohmann::json json = more;
+  json["machine"] = machine;
+  json["results"] = results;
+  out << json.dump(2) << "\n";
   if (!out) stop("cannot write " + json_file);
 }
 

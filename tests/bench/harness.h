@@ -34,7 +34,9 @@ double now_ms();
 
 // {cpu, cores, gl_renderer, driver, commit}
 nlohmann::json machine(const render::GpuInfo* gpu);
-void write_result(const std::string& json_file, const nlohmann::json& machine, const nlohmann::json& results);
+// `more`: further members beside `machine` and `results`.
+void write_result(const std::string& json_file, const nlohmann::json& machine, const nlohmann::json& results,
+                  const nlohmann::json& more = nlohmann::json::object());
 
 // A mesh by name: `pot` or `pot:TRIANGLES` (generated here), a file, or a preset of the data folder's make_big_mesh.py
 // (vessel, excavation, amazon, thai, textured10m), made once into `cache`. Exits with a message where it cannot be had.

@@ -109,6 +109,33 @@ void count(const Scene& scene, const Dab& dab, const std::vector<float>& depth, 
   }
 }
 
+TEST(Paper, padding_by_a_compute_pass_sets_the_texels_that_the_raster_pass_sets) {
+  const auto scene = make_scene(bumpy_sphere(40), 1024);
+  TestRenderer renderer;
+  renderer->run_on_gpu_thread_for_test([&] {
+    render::GpuMemory memory(std::uint64_t{1} << 32);
+    gl::ReadbackPool readback;
+    auto depths = std::move(*render::DepthBuffers::create(shader_dir(), std::size_t{1} << 20, memory, readback));
+    auto mesh = std::move(*render::MeshBuffers::create(scene.geometry, memory));
+    while (!mesh->upload_slice()) {
+    }
+    const auto camera = perspective_camera({2.0, 2.0, 2.0}, {0, 0, 0}, 1280, 720);
+    const auto depth = draw_depth(depths, *mesh, camera);
+    auto paper = std::move(*bench::PaperEditor::create(*scene.geometry, 1024));
+    const auto masks_of = [&](bench::PaperEditor::Padding padding) {
+      paper->clear();
+      paper->edit(camera, depth->texture, {640, 360}, 120, 200, padding);
+      return std::pair{paper->data(), paper->mask()};
+    };
+    const auto raster = masks_of(bench::PaperEditor::Padding::raster);
+    const auto coverage = paper->coverage();
+    std::size_t padded = 0;
+    for (std::size_t i = 0; i < coverage.size(); ++i) padded += raster.second[i] && !coverage[i] ? 1 : 0;
+    EXPECT_GT(padded, 50u) << "the dab must lie over seams";
+    EXPECT_TRUE(masks_of(bench::PaperEditor::Padding::compute) == raster);
+  });
+}
+
 TEST(Paper, surface_texels_are_those_of_the_papers_algorithms_on_random_cameras_and_radii) {
   const auto scene = load_scan("statue_nefertiti_70k.ply");
   if (!scene) GTEST_SKIP() << "NO SCANS at " << STRATA_TEST_DATA << ": our edit was not compared with the paper's";

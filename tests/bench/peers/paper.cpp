@@ -10,6 +10,7 @@ namespace strata::bench {
 namespace {
 
 constexpr float kBias = 2e-4f;
+constexpr int kPaddingGroup = 16;  // texels a side of a work-group of texture_padding.comp
 
 // A texture's whole content to one number.
 void fill(const gl::Texture& texture, std::uint32_t value) {
@@ -45,7 +46,8 @@ Result<std::unique_ptr<PaperEditor>> PaperEditor::create(const mesh::Geometry& g
   } programs[] = {{editor->cover_, {"texture_space.vert", "cover.frag"}},
                   {editor->outline_pass_, {"whole_texture.vert", "outline.frag"}},
                   {editor->texture_editing_, {"texture_space.vert", "texture_editing.frag"}},
-                  {editor->texture_padding_, {"whole_texture.vert", "texture_padding.frag"}}};
+                  {editor->texture_padding_, {"whole_texture.vert", "texture_padding.frag"}},
+                  {editor->compute_padding_, {"texture_padding.comp"}}};
   for (const auto& [program, files] : programs) {
     auto loaded = gl::Program::load(test::peer_shader_dir(), files);
     if (!loaded) return tl::unexpected(loaded.error());
@@ -107,27 +109,36 @@ void PaperEditor::draw_texture(const gl::Framebuffer& target) const {
 }
 
 void PaperEditor::edit(const Camera& camera, const gl::Texture& depth, glm::dvec2 center, double radius_px,
-                       std::uint8_t value) {
+                       std::uint8_t value, Padding padding) {
   const glm::mat4 clip = clip_from_model(camera, origin_);
   const glm::vec2 lower_left(center.x, camera.height - center.y);
   ++edit_number_;
-  const GLuint editing = texture_editing_.id(), padding = texture_padding_.id();
+  const GLuint editing = texture_editing_.id();
+  const gl::Program& padder = padding == Padding::raster ? texture_padding_ : compute_padding_;
   glProgramUniformMatrix4fv(editing, 0, 1, GL_FALSE, glm::value_ptr(clip));
   glProgramUniform2f(editing, 1, static_cast<float>(camera.width), static_cast<float>(camera.height));
   glProgramUniform2f(editing, 2, lower_left.x, lower_left.y);
   glProgramUniform1f(editing, 3, static_cast<float>(radius_px));
   glProgramUniform1f(editing, 4, kBias);
-  for (const GLuint program : {editing, padding}) {
+  for (const GLuint program : {editing, padder.id()}) {
     glProgramUniform1ui(program, 5, value);
     glProgramUniform1ui(program, 6, edit_number_);
   }
   texture_editing_.use();
   depth.bind(0);
   draw_mesh(editing_);
-  texture_padding_.use();
+  padder.use();
   outline_.bind(0);
   edited_.bind(1);
-  draw_texture(padding_);
+  if (padding == Padding::raster) {
+    draw_texture(padding_);
+    return;
+  }
+  data_.bind_image(0, GL_WRITE_ONLY);
+  mask_.bind_image(1, GL_WRITE_ONLY);
+  const auto groups = static_cast<GLuint>(resolution_ / kPaddingGroup);
+  glDispatchCompute(groups, groups, 1);
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }
 
 void PaperEditor::clear() {
@@ -141,7 +152,5 @@ std::vector<std::uint8_t> PaperEditor::read(const gl::Texture& texture) {
                     texels.data());
   return texels;
 }
-
-std::uint64_t PaperEditor::bytes() const { return data_.bytes() + mask_.bytes() + edited_.bytes() + outline_.bytes(); }
 
 }  // namespace strata::bench

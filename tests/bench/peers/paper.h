@@ -15,19 +15,24 @@ namespace strata::bench {
 // Algorithm then filters the whole texture, setting outline texels (1 wide) beside the edited area. The outline mask is
 // made by its two passes when the model is loaded. The tool is a disc by formula; the window → tool map is derived anew,
 // because the printed translation factor has the wrong sign and lacks ½. GPU thread only; one dab an edit, values of 8 bits.
+// The padding is published as a raster pass; the same as a compute pass spares the few multiprocessors that rasterise on
+// H100-class GPUs.
 class PaperEditor {
  public:
+  enum class Padding { raster, compute };
   static Result<std::unique_ptr<PaperEditor>> create(const mesh::Geometry& geometry, int resolution);
 
   // `depth` is the system's depth texture: the mesh from this camera at its window's size.
-  void edit(const Camera& camera, const gl::Texture& depth, glm::dvec2 center, double radius_px, std::uint8_t value);
+  void edit(const Camera& camera, const gl::Texture& depth, glm::dvec2 center, double radius_px, std::uint8_t value,
+            Padding padding = Padding::raster);
   void clear();
 
   int resolution() const { return resolution_; }
   std::vector<std::uint8_t> data() const { return read(data_); }
   std::vector<std::uint8_t> mask() const { return read(mask_); }
   std::vector<std::uint8_t> coverage() const { return read(coverage_); }  // 1 where the parametrisation lies
-  std::uint64_t bytes() const;  // of textures that a layer and its editing need
+  std::uint64_t layer_bytes() const { return data_.bytes() + mask_.bytes(); }
+  std::uint64_t structure_bytes() const { return edited_.bytes() + outline_.bytes(); }  // of a resolution
 
  private:
   static std::vector<std::uint8_t> read(const gl::Texture& texture);
@@ -44,7 +49,7 @@ class PaperEditor {
   gl::VertexArray mesh_array_, empty_array_;
   gl::Texture data_, mask_, edited_, coverage_, outline_;
   gl::Framebuffer editing_, padding_, coverage_target_, outline_target_;
-  gl::Program cover_, outline_pass_, texture_editing_, texture_padding_;
+  gl::Program cover_, outline_pass_, texture_editing_, texture_padding_, compute_padding_;
 };
 
 }  // namespace strata::bench

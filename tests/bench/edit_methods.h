@@ -1,0 +1,79 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/harness.h"
+#include "render/depth_copy.h"
+
+namespace strata::bench {
+
+// What all methods are asked to paint on, as one camera sees it.
+struct EditScene {
+  BenchMesh mesh;
+  Camera camera;
+  render::ModelHandle model = 0;
+};
+
+struct EditCost {
+  double ms = 0;                               // until a frame may show the edit
+  double ms_to_memory = 0;                     // until main memory has it, too; 0: not asked
+  std::uint64_t cells = 0;                     // texels or leaves painted
+  std::uint64_t bytes_up = 0, bytes_down = 0;  // between CPU and GPU
+};
+
+// What must be there before the first edit.
+struct EditCreation {
+  double structure_s = 0;
+  std::uint64_t model_bytes = 0;      // mesh or tree
+  std::uint64_t structure_bytes = 0;  // beside it, of this resolution
+  std::uint64_t layer_bytes = 0;      // one layer of 8 bits, painted all over
+};
+
+// One way to paint a dab. Everything it makes is made by the constructor and not counted by `edit`, but by `creation`; so is
+// the depth of the scene, which every method but rays takes as given.
+class EditMethod {
+ public:
+  virtual ~EditMethod() = default;
+  virtual std::string name() const = 0;
+  virtual EditCost edit(glm::dvec2 center, double radius_px) = 0;
+  virtual EditCreation creation() const = 0;
+};
+
+// Surface texels that tiles and paper paint. Where they differ, arithmetic in double tells who is off.
+struct EditAgreement {
+  std::uint64_t compared = 0;  // painted by either
+  std::uint64_t differ = 0;
+  std::uint64_t tiles_off = 0, paper_off = 0;
+  std::uint64_t beyond_rounding = 0;  // differ, though no threshold is near
+};
+
+// The methods of one scene and texture size, made from `names`: tiles, paper, paper-compute, octree, octree-fair. What cannot
+// be made is told in `not_made`.
+class EditMethods {
+ public:
+  EditMethods(render::Renderer& renderer, const EditScene& scene, int texture, const std::vector<std::string>& names);
+  ~EditMethods();
+  const std::vector<std::unique_ptr<EditMethod>>& all() const { return methods_; }
+  EditMethod* find(const std::string& name) const;
+  const std::vector<std::string>& not_made() const { return not_made_; }
+  const mesh::SurfaceMap* map() const { return map_.get(); }
+
+  EditAgreement compare_tiles_and_paper(glm::dvec2 center, double radius_px);  // needs both
+
+ private:
+  class Paper;
+  class Tree;
+  render::Renderer& renderer_;
+  const EditScene& scene_;
+  std::shared_ptr<const mesh::SurfaceMap> map_;
+  std::shared_ptr<Paper> paper_;
+  std::vector<std::unique_ptr<EditMethod>> methods_;
+  std::vector<std::string> not_made_;
+};
+
+// Read and written bytes a second of a large copy, where edits are made: by all cores, or by the GPU.
+double copy_bandwidth(render::Renderer& renderer);
+
+}  // namespace strata::bench
