@@ -1,6 +1,6 @@
 #include "render/edit_kernel.h"
 
-#include <algorithm>
+#include <chrono>
 #include <limits>
 
 #include "mesh/parallel.h"
@@ -8,8 +8,10 @@
 namespace strata::render {
 namespace {
 
-// A thread is worth its start for so many tiles.
-constexpr int kTilesPerThread = 4;
+// A small dab is done before other threads would have begun.
+constexpr std::chrono::microseconds kAlone(200);
+
+using Clock = std::chrono::steady_clock;
 
 struct TileResult {
   TileMask written;
@@ -32,9 +34,7 @@ KernelResult run_edit_kernel(const mesh::SurfaceMap& map, const BlockCuller& cul
                              TestBlock test_block, int threads) {
   const auto tiles = culler.tiles();
   std::vector<TileResult> results(tiles.size());
-  const int count = static_cast<int>(tiles.size());
-  mesh::parallel_for(std::min(threads, count / kTilesPerThread + 1), count, [&](int number) {
-    const auto index = static_cast<std::size_t>(number);
+  const auto test_tile = [&](std::size_t index) {
     Candidates candidates;
     culler.add_blocks(tiles[index], candidates);
     TileResult& result = results[index];
@@ -50,7 +50,11 @@ KernelResult run_edit_kernel(const mesh::SurfaceMap& map, const BlockCuller& cul
       result.high = glm::max(result.high, bounds.center + bounds.radius);
       result.any = true;
     }
-  });
+  };
+  std::size_t next = 0;
+  for (const auto begin = Clock::now(); next < tiles.size() && Clock::now() - begin < kAlone; ++next) test_tile(next);
+  mesh::parallel_for(threads, static_cast<int>(tiles.size() - next),
+                     [&](int number) { test_tile(next + static_cast<std::size_t>(number)); });
 
   KernelResult found;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
