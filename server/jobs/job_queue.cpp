@@ -36,7 +36,7 @@ JobStatus snapshot(const Job& job) {
   return status;
 }
 
-Result<std::int64_t> run(const JobQueue::Work& work, Progress& progress) {
+Result<JobResult> run(const JobQueue::Work& work, Progress& progress) {
   if (progress.cancelled()) return cancelled_problem();
   try {
     return work(progress);
@@ -64,10 +64,10 @@ struct JobQueue::Impl {
   bool stopping = false;
   std::thread thread;
 
-  void end(Job& job, Result<std::int64_t> result) {
+  void end(Job& job, Result<JobResult> result) {
     job.work = nullptr;
     if (result) {
-      job.status = {job.status.id, JobState::done, 1.0, "Done", std::nullopt, *result};
+      job.status = {job.status.id, JobState::done, 1.0, "Done", std::nullopt, std::move(*result)};
       return;
     }
     job.status.progress = job.progress->fraction();

@@ -9,7 +9,7 @@ namespace {
 constexpr int kCellsPerRadius = 5;
 constexpr double kMostPieces = 2e7;
 // Cells of a group have 20 bits an axis.
-constexpr float kMostCells = 1 << 20;
+constexpr double kMostCells = 1 << 20;
 
 struct Piece {
   std::uint64_t group;  // fine cell and the way it faces
@@ -26,11 +26,10 @@ std::uint64_t facing(const glm::vec3& n) {
 
 }  // namespace
 
-float SurfaceSamples::least_radius(const Geometry& geometry, double area) {
-  const glm::vec3 extent = geometry.box_max - geometry.box_min;
+double SurfaceSamples::least_radius(double area, const glm::dvec3& extent) {
   const double by_pieces = kCellsPerRadius * std::sqrt(2 * area / kMostPieces);
   const double by_cells = kCellsPerRadius * std::max({extent.x, extent.y, extent.z}) / kMostCells;
-  return static_cast<float>(std::max(by_pieces, by_cells));
+  return std::max(by_pieces, by_cells);
 }
 
 SurfaceSamples::SurfaceSamples(const Geometry& geometry, float radius) : radius_(radius), low_(geometry.box_min) {

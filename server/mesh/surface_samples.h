@@ -21,8 +21,8 @@ class SurfaceSamples {
     float area;
   };
 
-  // The smallest radius that can be had: below it there would be tens of millions of samples. `area` of the mesh in unit².
-  static float least_radius(const Geometry& geometry, double area);
+  // The smallest radius that can be had of a mesh of that area (unit²) and box: below it there would be tens of millions of samples.
+  static double least_radius(double area, const glm::dvec3& extent);
 
   SurfaceSamples(const Geometry& geometry, float radius);  // radius ≥ least_radius
 

@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kBlocksPerTileSide = kTileSize / kBlockSize;
 constexpr const char* kLocating = "Locating texels on the surface";
-constexpr const char* kPainting = "Painting";
 
 std::uint32_t pack_weights(const glm::dvec2& w) {
   const auto part = [](double value) {
@@ -110,38 +109,43 @@ Result<TexelOwners> bake_texel_owners(const Geometry& geometry, int resolution, 
   return owners;
 }
 
-Result<TileMap> paint_texels(const TexelOwners& owners, ValueType type, const TexelBits& bits_at, Progress& progress,
-                             int threads) {
+Result<void> for_each_texel(const TexelOwners& owners, const TexelVisit& visit, const char* message, Progress& progress,
+                            int threads) {
+  constexpr auto kSlotsAtOnce = static_cast<std::uint32_t>(kTexelsAtOnce / 64);
   const auto slots = static_cast<std::uint32_t>(owners.block_of_slot.size());
-  std::vector<std::uint32_t> bits(std::size_t{slots} * 64);
-  std::vector<std::uint64_t> valid(slots, 0);
-  constexpr std::uint32_t kSlotsAtOnce = 256;
   std::mutex mutex;
   std::uint32_t done = 0;
   parallel_for(threads, static_cast<int>((slots + kSlotsAtOnce - 1) / kSlotsAtOnce), [&](int part) {
     const std::uint32_t first = part * kSlotsAtOnce, last = std::min(slots, first + kSlotsAtOnce);
     for (std::uint32_t slot = first; slot < last && !progress.cancelled(); ++slot)
-      for (std::uint64_t left = owners.surface_mask[slot]; left; left &= left - 1) {
-        const int i = std::countr_zero(left);
-        const std::size_t texel = std::size_t{slot} * 64 + i;
-        const auto value = bits_at(owners.triangle[texel], owners.weights_of(texel));
-        if (!value) continue;
-        bits[texel] = *value;
-        valid[slot] |= std::uint64_t{1} << i;
-      }
+      for (std::uint64_t left = owners.surface_mask[slot]; left; left &= left - 1)
+        visit(std::size_t{slot} * 64 + std::countr_zero(left));
     std::lock_guard lock(mutex);
     done += last - first;
-    progress.report(0.9 * done / slots, kPainting);
+    progress.report(static_cast<double>(done) / slots, message);
   });
   if (progress.cancelled()) return cancelled_problem();
+  return {};
+}
+
+Result<TileMap> paint_texels(const TexelOwners& owners, ValueType type, const TexelBits& bits_at, Progress& progress,
+                             int threads) {
+  std::vector<std::uint32_t> bits(owners.triangle.size());
+  std::vector<std::uint64_t> valid(owners.block_of_slot.size(), 0);
+  const auto paint = [&](std::size_t texel) {
+    const auto value = bits_at(texel);
+    if (!value) return;
+    bits[texel] = *value;
+    valid[texel / 64] |= std::uint64_t{1} << (texel % 64);  // a slot is one thread's
+  };
+  if (auto done = for_each_texel(owners, paint, "Painting", progress, threads); !done)
+    return tl::unexpected(done.error());
   for (const auto& [texel, owner] : owners.gutter) {
     if (!(valid[owner / 64] >> (owner % 64) & 1)) continue;
     bits[texel] = bits[owner];
     valid[texel / 64] |= std::uint64_t{1} << (texel % 64);
   }
-  TileMap tiles = TileSorter(owners, type).sort(bits, valid);
-  progress.report(1, kPainting);
-  return tiles;
+  return TileSorter(owners, type).sort(bits, valid);
 }
 
 }  // namespace strata::mesh

@@ -3,6 +3,7 @@
 #include "core/slug.h"
 #include "core/uuid.h"
 #include "net/digest.h"
+#include "net/wire.h"
 
 namespace strata::net {
 
@@ -62,6 +63,14 @@ void apply_edit(const RouteContext& context, const Request& request, const std::
         if (!answer->repeated) ++context.metrics.edits_saved;
         respond(json_response(room::to_json(*answer)).with("Strata-Sequence", std::to_string(answer->sequence)));
       });
+}
+
+Response job_response(const RouteContext& context, std::int64_t job) {
+  const auto status = context.jobs.status(job);
+  return json_response(status ? to_json(*status)
+                              : nlohmann::json{{"id", job}, {"state", "queued"}, {"progress", 0}, {"message", ""}},
+                       202)
+      .with("Location", "/api/v1/jobs/" + std::to_string(job));
 }
 
 Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& text) {

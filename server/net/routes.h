@@ -43,6 +43,7 @@ void add_edit_routes(Router& router, const RouteContext& context);
 void add_query_routes(Router& router, const RouteContext& context);
 void add_frame_routes(Router& router, const RouteContext& context);
 void add_texel_routes(Router& router, const RouteContext& context);
+void add_shape_routes(Router& router, const RouteContext& context);
 
 // --- shared by the route files
 
@@ -68,6 +69,9 @@ Uuid edit_id(const Request& request, const Layer& layer, std::string_view operat
 // Hands the edit to the room and answers once it is durable or refused. A key of another edit is refused.
 void apply_edit(const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room,
                 room::EditRequest edit, const Respond& respond);
+
+// 202 with the job and its address.
+Response job_response(const RouteContext& context, std::int64_t job);
 
 // Slug of a wish or of the name; a wished slug of digits only is refused.
 Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& name);

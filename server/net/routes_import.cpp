@@ -4,7 +4,7 @@
 #include "core/uuid.h"
 #include "jobs/import_job.h"
 #include "net/answer_book.h"
-#include "net/import_book.h"
+#include "net/job_book.h"
 #include "net/routes.h"
 #include "net/upload.h"
 #include "net/wire.h"
@@ -79,18 +79,10 @@ Result<std::shared_ptr<TemporaryFile>> keep_upload(const Request& request, const
   return std::make_shared<TemporaryFile>(kept);
 }
 
-Result<Response> accepted(const RouteContext& context, std::int64_t job) {
-  const auto status = context.jobs.status(job);
-  return json_response(status ? to_json(*status)
-                              : nlohmann::json{{"id", job}, {"state", "queued"}, {"progress", 0}, {"message", ""}},
-                       202)
-      .with("Location", "/api/v1/jobs/" + std::to_string(job));
-}
-
-Result<Response> start_import(const RouteContext& context, ImportBook& book, const Request& request) {
+Result<Response> start_import(const RouteContext& context, JobBook& book, const Request& request) {
   auto known = book.find(request);
   if (!known) return tl::unexpected(known.error());
-  if (*known) return std::move(accepted(context, **known)->with("Idempotency-Replayed", "true"));
+  if (*known) return std::move(job_response(context, **known).with("Idempotency-Replayed", "true"));
   auto asked = import_request(context, request);
   if (!asked) return tl::unexpected(asked.error());
   auto upload = take_upload(request, context.options.upload_dir);
@@ -105,30 +97,30 @@ Result<Response> start_import(const RouteContext& context, ImportBook& book, con
                                            return nlohmann::json{{"request", print}, {"model", model.id}};
                                          }};
   auto job = context.jobs.add(
-      [&store = context.store, asked = *asked, file = *file, answer](Progress& progress) -> Result<std::int64_t> {
+      [&store = context.store, asked = *asked, file = *file, answer](Progress& progress) -> Result<jobs::JobResult> {
         auto model = jobs::import_model(store, asked, progress, answer);
         if (!model) return tl::unexpected(model.error());
         return model->id;
       });
   if (!job) return tl::unexpected(job.error());
   book.started(request, *job);
-  return accepted(context, *job);
+  return job_response(context, *job);
 }
 
 // The import succeeded. Its job is known where this server did it.
-Result<Response> repeat_import(const RouteContext& context, ImportBook& book, const Request& request,
+Result<Response> repeat_import(const RouteContext& context, JobBook& book, const Request& request,
                                const nlohmann::json& kept) {
   auto known = book.find(request);
   if (!known) return tl::unexpected(known.error());
   auto job = *known ? Result<std::int64_t>(**known) : book.finished(request, kept.at("model").get<std::int64_t>());
   if (!job) return tl::unexpected(job.error());
-  return accepted(context, *job);
+  return job_response(context, *job);
 }
 
 }  // namespace
 
 void add_import_routes(Router& router, const RouteContext& context) {
-  auto book = std::make_shared<ImportBook>(context.jobs);
+  auto book = std::make_shared<JobBook>(context.jobs);
   router.add(
       {.method = Method::post,
        .pattern = "/api/v1/models",

@@ -1,6 +1,8 @@
 #include <algorithm>
 
 #include "net/answer_book.h"
+#include "net/computed_layers.h"
+#include "net/layer_jobs.h"
 #include "net/routes.h"
 
 namespace strata::net {
@@ -33,6 +35,8 @@ Result<Palette> palette_of(const std::optional<nlohmann::json>& asked, ValueType
 }
 
 Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, const std::vector<Layer>& others) {
+  if (asked.compute && asked.kind != LayerKind::numeric)
+    return fail(422, "Kind not usable", "What is computed from the shape is numeric.", "kind");
   Layer layer;
   layer.model_id = model.id;
   layer.name = asked.name;
@@ -40,7 +44,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
   if (!slug) return tl::unexpected(slug.error());
   layer.slug = *slug;
   layer.kind = asked.kind;
-  layer.type = asked.type;
+  layer.type = asked.type.value_or(asked.compute ? ValueType::f32 : ValueType::u8);
   const bool is_key = layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
   if (layer.kind == LayerKind::database && !is_key)
     return fail(422, "Type not usable", "A database layer holds keys: its type is u8, u16 or u32.", "type");
@@ -60,13 +64,11 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
   layer.palette = std::move(*palette);
   layer.opacity = asked.opacity;
   layer.visible = asked.visible;
-  int top = -1;
-  for (const auto& other : others) top = std::max(top, other.order);
-  layer.order = asked.order.value_or(top + 1);
+  layer.order = asked.order.value_or(order_on_top(others));
   return layer;
 }
 
-Result<Response> create_layer(const RouteContext& context, const Request& request) {
+Result<Response> create_layer(const RouteContext& context, JobBook& book, const Request& request) {
   auto asked = body_of<protocol::LayerCreate>(request);
   if (!asked) return tl::unexpected(asked.error());
   auto room = context.rooms.open(request.param("model"));
@@ -74,6 +76,7 @@ Result<Response> create_layer(const RouteContext& context, const Request& reques
   const Model model = (*room)->model();
   auto layer = new_layer(*asked, model, (*room)->layers());
   if (!layer) return tl::unexpected(layer.error());
+  if (asked->compute) return start_computing(context, book, request, *room, *asked, std::move(*layer));
   const auto answer = [model_slug = model.slug](const Layer& made) {
     return json_response(to_json(made), 201)
         .with("Location", "/api/v1/models/" + model_slug + "/layers/" + made.slug)
@@ -123,18 +126,23 @@ Result<Response> delete_layer(const RouteContext& context, const Request& reques
 }  // namespace
 
 void add_layer_routes(Router& router, const RouteContext& context) {
+  auto book = std::make_shared<JobBook>(context.jobs);
   const std::string layers = "/api/v1/models/{model}/layers";
   router.add({.method = Method::get,
               .pattern = layers,
               .handler = answering([&context](const Request& request) { return list_layers(context, request); }),
               .query = {"limit", "offset"}});
-  router.add({.method = Method::post,
-              .pattern = layers,
-              .handler = answering([&context](const Request& request) { return create_layer(context, request); }),
-              .role = Role::curator,
-              .body = BodyKind::memory,
-              .max_body = context.options.max_json_bytes,
-              .keeps_answer = true});
+  router.add(
+      {.method = Method::post,
+       .pattern = layers,
+       .handler = answering([&context, book](const Request& request) { return create_layer(context, *book, request); }),
+       .role = Role::curator,
+       .body = BodyKind::memory,
+       .max_body = context.options.max_json_bytes,
+       .keeps_answer = true,
+       .replay = [&context, book](const Request& request, const nlohmann::json& kept) -> Result<Response> {
+         return kept.contains("layers") ? repeat_layer_job(context, *book, request, kept) : response_of(kept);
+       }});
   router.add({.method = Method::get,
               .pattern = layers + "/{layer}",
               .handler = answering([&context](const Request& request) -> Result<Response> {

@@ -177,7 +177,10 @@ nlohmann::json to_json(const jobs::JobStatus& job) {
                       {"progress", job.progress},
                       {"message", job.message}};
   if (job.problem) json["problem"] = protocol::problem_body(*job.problem);
-  if (job.model) json["model"] = *job.model;
+  if (!job.result) return json;
+  json["model"] = job.result->model;
+  if (!job.result->layers.empty()) json["layers"] = job.result->layers;
+  if (!job.result->report.is_null()) json["report"] = job.result->report;
   return json;
 }
 
@@ -205,6 +208,7 @@ nlohmann::json to_json(const store::JournalRow& row) {
   if (row.answer.is_object())
     for (const char* member : {"texels_changed", "area_m2"})
       if (auto found = row.answer.find(member); found != row.answer.end()) json[member] = *found;
+  if (auto recipe = row.record.find("recipe"); recipe != row.record.end()) json["recipe"] = *recipe;
   return json;
 }
 

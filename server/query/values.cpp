@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/texel_lookup.h"
+
 namespace strata::query {
 namespace {
 
@@ -26,21 +28,9 @@ bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(
 }  // namespace
 
 LayerValue value_at(const LayerView& view, glm::vec2 uv) {
-  const int resolution = view.layer.resolution;
-  auto texel = [resolution](float coordinate) {
-    const float scaled = std::floor(coordinate * static_cast<float>(resolution));
-    return std::isfinite(scaled) ? static_cast<int>(std::clamp(scaled, 0.0f, static_cast<float>(resolution - 1))) : 0;
-  };
-  const int x = texel(uv.x), y = texel(uv.y);
-  LayerValue value{view.layer.slug, false, 0};
-  const TileAddress address{static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)};
-  const auto found = view.snapshot.tiles.find(address);
-  if (found == view.snapshot.tiles.end() || !found->second) return value;
-  const int in_tile = (y % kTileSize) * kTileSize + x % kTileSize;
-  if (!found->second->valid.test(in_tile)) return value;
-  value.valid = true;
-  value.value = decode_value(view.layer.type, found->second->bits(in_tile));
-  return value;
+  const auto bits = bits_at(view.snapshot.tiles, view.layer.resolution, uv);
+  if (!bits) return {view.layer.slug, false, 0};
+  return {view.layer.slug, true, decode_value(view.layer.type, *bits)};
 }
 
 SurfacePoint nearest_point(const mesh::SearchTree& tree, const glm::dvec3& origin, const glm::dvec3& world_point,

@@ -390,6 +390,13 @@ std::shared_ptr<const mesh::SearchTree> OpenRoom::search_tree() {
   return tree_;
 }
 
+Result<std::shared_ptr<const mesh::SurfaceMap>> OpenRoom::surface_map(int resolution) {
+  touch();
+  auto map = maps_->wait(resolution);
+  if (!map) return tl::unexpected(gpu_problem(map.error()));
+  return map;
+}
+
 Result<std::vector<query::LayerView>> OpenRoom::layer_views(const std::vector<std::string>& refs) const {
   std::vector<query::LayerView> views;
   for (const auto& ref : refs) {
@@ -431,8 +438,8 @@ Result<query::Statistics> OpenRoom::statistics(const std::string& layer) {
   touch();
   auto found = state(layer);
   if (!found) return tl::unexpected(found.error());
-  auto map = maps_->wait(found->layer.resolution);
-  if (!map) return tl::unexpected(gpu_problem(map.error()));
+  auto map = surface_map(found->layer.resolution);
+  if (!map) return tl::unexpected(map.error());
   return query::statistics({found->layer, found->mirror->snapshot()}, **map, geometry_->origin, model().metres());
 }
 

@@ -53,6 +53,9 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
                                    const std::vector<std::string>& layers) override;
   Result<query::Statistics> statistics(const std::string& layer) override;
   Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) override;
+  std::shared_ptr<const mesh::Geometry> geometry() const override { return geometry_; }
+  std::shared_ptr<const mesh::SearchTree> search_tree() override;
+  Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution) override;
   Result<render::Frame> picture(const Camera& camera, std::optional<std::vector<std::string>> layers,
                                 std::optional<std::int64_t> at) override;
 
@@ -103,7 +106,6 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void retry_recovery(const Problem& why);
   void sort_layers_changed();
   std::uint64_t mirror_bytes() const;  // with `mutex_` held
-  std::shared_ptr<const mesh::SearchTree> search_tree();
   Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs) const;
   Result<LayerState> state(const std::string& ref) const;
 

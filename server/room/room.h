@@ -104,6 +104,10 @@ class Room {
                                            const std::vector<std::string>& layers) = 0;
   virtual Result<query::Statistics> statistics(const std::string& layer) = 0;
   virtual Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) = 0;
+  // What the model is, for work that computes on the whole surface. The tree is built and the map baked when first asked for.
+  virtual std::shared_ptr<const mesh::Geometry> geometry() const = 0;
+  virtual std::shared_ptr<const mesh::SearchTree> search_tree() = 0;
+  virtual Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution) = 0;
   // One picture, waits for it. RGBA8, top row first. Without `layers`: those visible by default.
   // `at`: layers as they were after that sequence.
   virtual Result<render::Frame> picture(const Camera& camera, std::optional<std::vector<std::string>> layers,

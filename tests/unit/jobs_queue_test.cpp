@@ -27,7 +27,7 @@ struct Gate {
   std::promise<void> opened, entered;
   std::shared_future<void> open = opened.get_future().share();
   JobQueue::Work work() {
-    return [this](Progress& progress) -> Result<std::int64_t> {
+    return [this](Progress& progress) -> Result<JobResult> {
       progress.report(0.25, "Waiting at the gate");
       entered.set_value();
       open.wait();
@@ -38,31 +38,32 @@ struct Gate {
 
 TEST(JobsQueue, a_job_that_ends_names_its_model) {
   JobQueue queue;
-  const auto id = queue.add([](Progress&) -> Result<std::int64_t> { return 42; });
+  const auto id = queue.add([](Progress&) -> Result<JobResult> { return 42; });
   ASSERT_TRUE(id);
   const auto status = wait_until_over(queue, *id);
   EXPECT_EQ(status.state, JobState::done);
-  EXPECT_EQ(status.model, 42);
+  ASSERT_TRUE(status.result);
+  EXPECT_EQ(status.result->model, 42);
   EXPECT_EQ(status.progress, 1);
   EXPECT_FALSE(status.problem);
 }
 
 TEST(JobsQueue, a_job_that_fails_keeps_its_problem) {
   JobQueue queue;
-  const auto id = queue.add(
-      [](Progress&) -> Result<std::int64_t> { return fail(422, "Mesh file refused", "No triangle.", "file"); });
+  const auto id =
+      queue.add([](Progress&) -> Result<JobResult> { return fail(422, "Mesh file refused", "No triangle.", "file"); });
   const auto status = wait_until_over(queue, *id);
   EXPECT_EQ(status.state, JobState::failed);
   ASSERT_TRUE(status.problem);
   EXPECT_EQ(status.problem->detail, "No triangle.");
-  EXPECT_FALSE(status.model);
+  EXPECT_FALSE(status.result);
 }
 
 TEST(JobsQueue, a_job_that_throws_fails_and_the_next_one_runs) {
   JobQueue queue;
-  const auto bad = queue.add([](Progress&) -> Result<std::int64_t> { throw std::runtime_error("planted"); });
-  const auto huge = queue.add([](Progress&) -> Result<std::int64_t> { throw std::bad_alloc(); });
-  const auto good = queue.add([](Progress&) -> Result<std::int64_t> { return 7; });
+  const auto bad = queue.add([](Progress&) -> Result<JobResult> { throw std::runtime_error("planted"); });
+  const auto huge = queue.add([](Progress&) -> Result<JobResult> { throw std::bad_alloc(); });
+  const auto good = queue.add([](Progress&) -> Result<JobResult> { return 7; });
   EXPECT_EQ(wait_until_over(queue, *bad).problem->status, 500);
   EXPECT_EQ(wait_until_over(queue, *huge).problem->status, 507);
   EXPECT_EQ(wait_until_over(queue, *good).state, JobState::done);
@@ -74,7 +75,7 @@ TEST(JobsQueue, jobs_run_one_at_a_time_in_the_order_of_asking) {
   std::atomic<int> running{0};
   std::int64_t last = 0;
   for (int i = 0; i < 20; ++i)
-    last = *queue.add([&, i](Progress&) -> Result<std::int64_t> {
+    last = *queue.add([&, i](Progress&) -> Result<JobResult> {
       EXPECT_EQ(++running, 1);
       order.push_back(i);
       --running;
@@ -105,8 +106,8 @@ TEST(JobsQueue, more_than_64_waiting_jobs_are_refused) {
   JobQueue queue;
   ASSERT_TRUE(queue.add(gate.work()));
   gate.entered.get_future().wait();
-  for (int i = 0; i < 64; ++i) EXPECT_TRUE(queue.add([](Progress&) -> Result<std::int64_t> { return 1; }));
-  const auto refused = queue.add([](Progress&) -> Result<std::int64_t> { return 1; });
+  for (int i = 0; i < 64; ++i) EXPECT_TRUE(queue.add([](Progress&) -> Result<JobResult> { return 1; }));
+  const auto refused = queue.add([](Progress&) -> Result<JobResult> { return 1; });
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, 503);
   gate.opened.set_value();
@@ -118,7 +119,7 @@ TEST(JobsQueue, a_waiting_job_that_is_cancelled_never_runs) {
   queue.add(gate.work());
   gate.entered.get_future().wait();
   std::atomic<bool> ran{false};
-  const auto id = queue.add([&](Progress&) -> Result<std::int64_t> {
+  const auto id = queue.add([&](Progress&) -> Result<JobResult> {
     ran = true;
     return 1;
   });
@@ -126,7 +127,7 @@ TEST(JobsQueue, a_waiting_job_that_is_cancelled_never_runs) {
   EXPECT_EQ(queue.status(*id)->state, JobState::cancelled);
   EXPECT_FALSE(queue.cancel(*id)) << "it is over";
   gate.opened.set_value();
-  const auto after = queue.add([](Progress&) -> Result<std::int64_t> { return 1; });
+  const auto after = queue.add([](Progress&) -> Result<JobResult> { return 1; });
   wait_until_over(queue, *after);
   EXPECT_FALSE(ran);
 }
@@ -134,7 +135,7 @@ TEST(JobsQueue, a_waiting_job_that_is_cancelled_never_runs) {
 TEST(JobsQueue, a_running_job_that_is_cancelled_stops) {
   JobQueue queue;
   std::promise<void> entered;
-  const auto id = queue.add([&](Progress& progress) -> Result<std::int64_t> {
+  const auto id = queue.add([&](Progress& progress) -> Result<JobResult> {
     entered.set_value();
     while (!progress.cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return cancelled_problem();
@@ -149,7 +150,7 @@ TEST(JobsQueue, ending_the_queue_cancels_what_runs) {
   bool stopped = false;
   {
     JobQueue queue;
-    queue.add([&](Progress& progress) -> Result<std::int64_t> {
+    queue.add([&](Progress& progress) -> Result<JobResult> {
       entered.set_value();
       while (!progress.cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       stopped = true;
@@ -164,7 +165,7 @@ TEST(JobsQueue, the_newest_thousand_are_remembered) {
   JobQueue queue;
   std::int64_t last = 0;
   for (int i = 0; i < 1200; ++i) {
-    const auto id = queue.add([](Progress&) -> Result<std::int64_t> { return 1; });
+    const auto id = queue.add([](Progress&) -> Result<JobResult> { return 1; });
     if (id) last = *id;
     if (!id || i % 50 == 0) wait_until_over(queue, last);
   }

@@ -64,8 +64,8 @@ TEST(TexelOwners, paint_every_surface_texel_once_and_the_gutter_like_its_owner) 
     Progress progress;
     const auto tiles = paint_texels(
         owners, ValueType::f32,
-        [&, g = geometry](std::uint32_t triangle, const glm::vec3& w) -> std::optional<std::uint32_t> {
-          const glm::vec3 p = point_of(*g, triangle, w);
+        [&g = *geometry, &o = owners](std::size_t texel) -> std::optional<std::uint32_t> {
+          const glm::vec3 p = point_of(g, o.triangle[texel], o.weights_of(texel));
           if (p.x > 0.2f) return std::nullopt;
           return std::bit_cast<std::uint32_t>(p.y);
         },
@@ -121,7 +121,7 @@ TEST(TexelOwners, can_be_cancelled_and_refuse_an_impossible_resolution) {
   progress.cancel();
   EXPECT_EQ(bake_texel_owners(geometry, kResolution, progress).error().status, 499);
   TexelOwners owners;
-  const auto nothing = [](std::uint32_t, const glm::vec3&) { return std::optional<std::uint32_t>(); };
+  const auto nothing = [](std::size_t) { return std::optional<std::uint32_t>(); };
   EXPECT_EQ(paint_texels(owners, ValueType::f32, nothing, progress).error().status, 499);
 }
 

@@ -571,6 +571,32 @@ export interface ModelPatch {
   credit?: string;
 }
 
+/** One layer of a transfer. */
+export interface TransferredLayer {
+  /** Id of the layer it comes from. */
+  from: number;
+  /** Id of the new layer. */
+  layer: number;
+  name?: string;
+  /** Painted surface of the layer it comes from. */
+  source_m2: number;
+  /** Painted surface of the new layer. */
+  transferred_m2: number;
+  /** Of `source_m2`, what has no counterpart within the tolerance. */
+  lost_m2: number;
+}
+
+/** What a transfer of layers brought over. */
+export interface TransferReport {
+  /** Id of the model that the layers come from. */
+  from: number;
+  /** Surface of the model they are put on. */
+  area_m2: number;
+  /** Of that, what has a counterpart within the tolerance. */
+  matched_m2: number;
+  layers: TransferredLayer[];
+}
+
 /** Long work. */
 export interface Job {
   id: number;
@@ -581,6 +607,21 @@ export interface Job {
   problem?: Problem;
   /** Id of the model, once it is done. */
   model?: number;
+  /** Ids of the layers that it made on the model. */
+  layers?: number[];
+  report?: TransferReport;
+}
+
+/** Layers of another version of the same scan. */
+export interface Transfer {
+  /** Id or slug of the model whose layers are taken. Both models' coordinates must be of one system. */
+  from: string;
+  /** A place with no surface of the other model within this distance stays empty. */
+  tolerance_mm: number;
+  /** Degrees by which the surfaces may differ in direction: keeps the two sides of a thin wall apart. Default: 60. */
+  max_angle?: number;
+  /** Ids or slugs; absent: all. */
+  layers?: string[];
 }
 
 /** Jobs, newest first. */
@@ -595,6 +636,25 @@ export interface LayerList {
   total: number;
 }
 
+/** Values computed from the model's shape. The answer is a job; the layer is there once it is done. Unit, palette and description follow from the recipe where they are not given. */
+export interface ShapeRecipe {
+  kind: "height" | "slope" | "azimuth" | "mean_curvature" | "gaussian_curvature" | "max_curvature" | "min_curvature" | "roughness" | "ambient_occlusion" | "boundary_distance" | "model_distance" | "vertex_property";
+  /** Curvatures and roughness: of the neighbourhood; absent: four edges of the mesh. */
+  radius_mm?: number;
+  /** Ambient occlusion and model distance: as far as it looks; absent: a quarter or a tenth of the model's diagonal. */
+  distance_mm?: number;
+  /** Ambient occlusion: rays a point; absent: 64. */
+  rays?: number;
+  /** Height: the world's coordinate, not that above the lowest point. Default: false. */
+  absolute?: boolean;
+  /** Model distance: id or slug of the other model. */
+  model?: string;
+  /** Vertex property: its name in the PLY, such as quality. */
+  property?: string;
+  /** Vertex property: the source file; needed where several have it. */
+  source?: string;
+}
+
 /** New layer. */
 export interface LayerCreate {
   name: string;
@@ -602,7 +662,7 @@ export interface LayerCreate {
   slug?: string;
   /** Default: "numeric". */
   kind?: LayerKind;
-  /** Default: "u8". */
+  /** Absent: u8; f32 for a computed layer. */
   type?: ValueType;
   /** Absent: the model's default. */
   resolution?: Resolution;
@@ -619,6 +679,34 @@ export interface LayerCreate {
   order?: number;
   /** Database layers: the project's table whose keys the texels hold. */
   table?: string;
+  compute?: ShapeRecipe;
+}
+
+/** How a layer's content was computed. A shape recipe with its defaults filled in, or a transfer (`kind` is transfer). */
+export interface Recipe {
+  kind: string;
+  radius_mm?: number;
+  distance_mm?: number;
+  tolerance_mm?: number;
+  max_angle?: number;
+  rays?: number;
+  absolute?: boolean;
+  model?: string;
+  layer?: string;
+  property?: string;
+  source?: string;
+}
+
+/** A property and the file that has it. */
+export interface VertexPropertyName {
+  source: string;
+  property: string;
+}
+
+/** Numbers that the source files keep with their vertices. */
+export interface VertexPropertyList {
+  properties: VertexPropertyName[];
+  total: number;
 }
 
 /** Changes to a layer's description and defaults. */
@@ -652,6 +740,7 @@ export interface HistoryEntry {
   in_force?: boolean;
   texels_changed?: number;
   area_m2?: number;
+  recipe?: Recipe;
 }
 
 /** History of a layer, newest first. */

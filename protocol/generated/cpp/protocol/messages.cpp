@@ -151,6 +151,42 @@ void read(const nlohmann::json& json, JobState& value) {
 
 nlohmann::json to_json(const JobState& value) { return name(value); }
 
+std::string_view name(ShapeRecipeKind value) {
+  switch (value) {
+    case ShapeRecipeKind::height: return "height";
+    case ShapeRecipeKind::slope: return "slope";
+    case ShapeRecipeKind::azimuth: return "azimuth";
+    case ShapeRecipeKind::mean_curvature: return "mean_curvature";
+    case ShapeRecipeKind::gaussian_curvature: return "gaussian_curvature";
+    case ShapeRecipeKind::max_curvature: return "max_curvature";
+    case ShapeRecipeKind::min_curvature: return "min_curvature";
+    case ShapeRecipeKind::roughness: return "roughness";
+    case ShapeRecipeKind::ambient_occlusion: return "ambient_occlusion";
+    case ShapeRecipeKind::boundary_distance: return "boundary_distance";
+    case ShapeRecipeKind::model_distance: return "model_distance";
+    case ShapeRecipeKind::vertex_property: return "vertex_property";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ShapeRecipeKind& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "height") value = ShapeRecipeKind::height;
+  if (text == "slope") value = ShapeRecipeKind::slope;
+  if (text == "azimuth") value = ShapeRecipeKind::azimuth;
+  if (text == "mean_curvature") value = ShapeRecipeKind::mean_curvature;
+  if (text == "gaussian_curvature") value = ShapeRecipeKind::gaussian_curvature;
+  if (text == "max_curvature") value = ShapeRecipeKind::max_curvature;
+  if (text == "min_curvature") value = ShapeRecipeKind::min_curvature;
+  if (text == "roughness") value = ShapeRecipeKind::roughness;
+  if (text == "ambient_occlusion") value = ShapeRecipeKind::ambient_occlusion;
+  if (text == "boundary_distance") value = ShapeRecipeKind::boundary_distance;
+  if (text == "model_distance") value = ShapeRecipeKind::model_distance;
+  if (text == "vertex_property") value = ShapeRecipeKind::vertex_property;
+}
+
+nlohmann::json to_json(const ShapeRecipeKind& value) { return name(value); }
+
 std::string_view name(HistoryEntryOp value) {
   switch (value) {
     case HistoryEntryOp::stroke: return "stroke";
@@ -932,6 +968,42 @@ nlohmann::json to_json(const ModelPatch& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, TransferredLayer& value) {
+  read_member(json, "from", value.from);
+  read_member(json, "layer", value.layer);
+  read_optional_member(json, "name", value.name);
+  read_member(json, "source_m2", value.source_m2);
+  read_member(json, "transferred_m2", value.transferred_m2);
+  read_member(json, "lost_m2", value.lost_m2);
+}
+
+nlohmann::json to_json(const TransferredLayer& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "from", value.from);
+  write_member(json, "layer", value.layer);
+  write_optional_member(json, "name", value.name);
+  write_member(json, "source_m2", value.source_m2);
+  write_member(json, "transferred_m2", value.transferred_m2);
+  write_member(json, "lost_m2", value.lost_m2);
+  return json;
+}
+
+void read(const nlohmann::json& json, TransferReport& value) {
+  read_member(json, "from", value.from);
+  read_member(json, "area_m2", value.area_m2);
+  read_member(json, "matched_m2", value.matched_m2);
+  read_member(json, "layers", value.layers);
+}
+
+nlohmann::json to_json(const TransferReport& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "from", value.from);
+  write_member(json, "area_m2", value.area_m2);
+  write_member(json, "matched_m2", value.matched_m2);
+  write_member(json, "layers", value.layers);
+  return json;
+}
+
 void read(const nlohmann::json& json, Job& value) {
   read_member(json, "id", value.id);
   read_member(json, "state", value.state);
@@ -939,6 +1011,8 @@ void read(const nlohmann::json& json, Job& value) {
   read_member(json, "message", value.message);
   read_optional_member(json, "problem", value.problem);
   read_optional_member(json, "model", value.model);
+  read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "report", value.report);
 }
 
 nlohmann::json to_json(const Job& value) {
@@ -949,6 +1023,24 @@ nlohmann::json to_json(const Job& value) {
   write_member(json, "message", value.message);
   write_optional_member(json, "problem", value.problem);
   write_optional_member(json, "model", value.model);
+  write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "report", value.report);
+  return json;
+}
+
+void read(const nlohmann::json& json, Transfer& value) {
+  read_member(json, "from", value.from);
+  read_member(json, "tolerance_mm", value.tolerance_mm);
+  read_optional_member(json, "max_angle", value.max_angle);
+  read_optional_member(json, "layers", value.layers);
+}
+
+nlohmann::json to_json(const Transfer& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "from", value.from);
+  write_member(json, "tolerance_mm", value.tolerance_mm);
+  write_member(json, "max_angle", value.max_angle);
+  write_optional_member(json, "layers", value.layers);
   return json;
 }
 
@@ -961,6 +1053,30 @@ nlohmann::json to_json(const JobList& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "jobs", value.jobs);
   write_member(json, "total", value.total);
+  return json;
+}
+
+void read(const nlohmann::json& json, ShapeRecipe& value) {
+  read_member(json, "kind", value.kind);
+  read_optional_member(json, "radius_mm", value.radius_mm);
+  read_optional_member(json, "distance_mm", value.distance_mm);
+  read_optional_member(json, "rays", value.rays);
+  read_optional_member(json, "absolute", value.absolute);
+  read_optional_member(json, "model", value.model);
+  read_optional_member(json, "property", value.property);
+  read_optional_member(json, "source", value.source);
+}
+
+nlohmann::json to_json(const ShapeRecipe& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "kind", value.kind);
+  write_optional_member(json, "radius_mm", value.radius_mm);
+  write_optional_member(json, "distance_mm", value.distance_mm);
+  write_optional_member(json, "rays", value.rays);
+  write_member(json, "absolute", value.absolute);
+  write_optional_member(json, "model", value.model);
+  write_optional_member(json, "property", value.property);
+  write_optional_member(json, "source", value.source);
   return json;
 }
 
@@ -977,6 +1093,7 @@ void read(const nlohmann::json& json, LayerCreate& value) {
   read_optional_member(json, "visible", value.visible);
   read_optional_member(json, "order", value.order);
   read_optional_member(json, "table", value.table);
+  read_optional_member(json, "compute", value.compute);
 }
 
 nlohmann::json to_json(const LayerCreate& value) {
@@ -984,7 +1101,7 @@ nlohmann::json to_json(const LayerCreate& value) {
   write_member(json, "name", value.name);
   write_optional_member(json, "slug", value.slug);
   write_member(json, "kind", value.kind);
-  write_member(json, "type", value.type);
+  write_optional_member(json, "type", value.type);
   write_optional_member(json, "resolution", value.resolution);
   write_member(json, "unit", value.unit);
   write_member(json, "description", value.description);
@@ -993,6 +1110,31 @@ nlohmann::json to_json(const LayerCreate& value) {
   write_member(json, "visible", value.visible);
   write_optional_member(json, "order", value.order);
   write_optional_member(json, "table", value.table);
+  write_optional_member(json, "compute", value.compute);
+  return json;
+}
+
+void read(const nlohmann::json& json, VertexPropertyName& value) {
+  read_member(json, "source", value.source);
+  read_member(json, "property", value.property);
+}
+
+nlohmann::json to_json(const VertexPropertyName& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "source", value.source);
+  write_member(json, "property", value.property);
+  return json;
+}
+
+void read(const nlohmann::json& json, VertexPropertyList& value) {
+  read_member(json, "properties", value.properties);
+  read_member(json, "total", value.total);
+}
+
+nlohmann::json to_json(const VertexPropertyList& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "properties", value.properties);
+  write_member(json, "total", value.total);
   return json;
 }
 
@@ -1042,6 +1184,7 @@ void read(const nlohmann::json& json, HistoryEntry& value) {
   read_optional_member(json, "in_force", value.in_force);
   read_optional_member(json, "texels_changed", value.texels_changed);
   read_optional_member(json, "area_m2", value.area_m2);
+  read_optional_member(json, "recipe", value.recipe);
 }
 
 nlohmann::json to_json(const HistoryEntry& value) {
@@ -1055,6 +1198,7 @@ nlohmann::json to_json(const HistoryEntry& value) {
   write_optional_member(json, "in_force", value.in_force);
   write_optional_member(json, "texels_changed", value.texels_changed);
   write_optional_member(json, "area_m2", value.area_m2);
+  write_optional_member(json, "recipe", value.recipe);
   return json;
 }
 

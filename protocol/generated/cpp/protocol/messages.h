@@ -92,9 +92,16 @@ enum class Schema {
   ModelList,
   ModelPatch,
   Job,
+  TransferReport,
+  TransferredLayer,
+  Transfer,
   JobList,
   LayerList,
   LayerCreate,
+  ShapeRecipe,
+  Recipe,
+  VertexPropertyList,
+  VertexPropertyName,
   LayerPatch,
   EditResult,
   HistoryEntry,
@@ -111,7 +118,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 85;
+constexpr int kSchemaCount = 92;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -751,6 +758,34 @@ nlohmann::json to_json(const ModelPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ModelPatch> = Schema::ModelPatch;
 
+// One layer of a transfer.
+struct TransferredLayer {
+  std::int64_t from = 0;  // Id of the layer it comes from.
+  std::int64_t layer = 0;  // Id of the new layer.
+  std::optional<std::string> name;
+  double source_m2 = 0;  // Painted surface of the layer it comes from.
+  double transferred_m2 = 0;  // Painted surface of the new layer.
+  double lost_m2 = 0;  // Of `source_m2`, what has no counterpart within the tolerance.
+  bool operator==(const TransferredLayer&) const = default;
+};
+void read(const nlohmann::json& json, TransferredLayer& value);
+nlohmann::json to_json(const TransferredLayer& value);
+template <>
+inline constexpr Schema kSchemaOf<TransferredLayer> = Schema::TransferredLayer;
+
+// What a transfer of layers brought over.
+struct TransferReport {
+  std::int64_t from = 0;  // Id of the model that the layers come from.
+  double area_m2 = 0;  // Surface of the model they are put on.
+  double matched_m2 = 0;  // Of that, what has a counterpart within the tolerance.
+  std::vector<TransferredLayer> layers;
+  bool operator==(const TransferReport&) const = default;
+};
+void read(const nlohmann::json& json, TransferReport& value);
+nlohmann::json to_json(const TransferReport& value);
+template <>
+inline constexpr Schema kSchemaOf<TransferReport> = Schema::TransferReport;
+
 enum class JobState { queued, running, done, failed, cancelled };
 std::string_view name(JobState value);
 void read(const nlohmann::json& json, JobState& value);
@@ -764,12 +799,27 @@ struct Job {
   std::string message;  // The step at work, in plain words.
   std::optional<nlohmann::json> problem;
   std::optional<std::int64_t> model;  // Id of the model, once it is done.
+  std::optional<std::vector<std::int64_t>> layers;  // Ids of the layers that it made on the model.
+  std::optional<TransferReport> report;
   bool operator==(const Job&) const = default;
 };
 void read(const nlohmann::json& json, Job& value);
 nlohmann::json to_json(const Job& value);
 template <>
 inline constexpr Schema kSchemaOf<Job> = Schema::Job;
+
+// Layers of another version of the same scan.
+struct Transfer {
+  std::string from;  // Id or slug of the model whose layers are taken. Both models' coordinates must be of one system.
+  double tolerance_mm = 0;  // A place with no surface of the other model within this distance stays empty.
+  double max_angle = 60;  // Degrees by which the surfaces may differ in direction: keeps the two sides of a thin wall apart.
+  std::optional<std::vector<std::string>> layers;  // Ids or slugs; absent: all.
+  bool operator==(const Transfer&) const = default;
+};
+void read(const nlohmann::json& json, Transfer& value);
+nlohmann::json to_json(const Transfer& value);
+template <>
+inline constexpr Schema kSchemaOf<Transfer> = Schema::Transfer;
 
 // Jobs, newest first.
 struct JobList {
@@ -782,12 +832,34 @@ nlohmann::json to_json(const JobList& value);
 template <>
 inline constexpr Schema kSchemaOf<JobList> = Schema::JobList;
 
+enum class ShapeRecipeKind { height, slope, azimuth, mean_curvature, gaussian_curvature, max_curvature, min_curvature, roughness, ambient_occlusion, boundary_distance, model_distance, vertex_property };
+std::string_view name(ShapeRecipeKind value);
+void read(const nlohmann::json& json, ShapeRecipeKind& value);
+nlohmann::json to_json(const ShapeRecipeKind& value);
+
+// Values computed from the model's shape. The answer is a job; the layer is there once it is done. Unit, palette and description follow from the recipe where they are not given.
+struct ShapeRecipe {
+  ShapeRecipeKind kind{};
+  std::optional<double> radius_mm;  // Curvatures and roughness: of the neighbourhood; absent: four edges of the mesh.
+  std::optional<double> distance_mm;  // Ambient occlusion and model distance: as far as it looks; absent: a quarter or a tenth of the model's diagonal.
+  std::optional<int> rays;  // Ambient occlusion: rays a point; absent: 64.
+  bool absolute = false;  // Height: the world's coordinate, not that above the lowest point.
+  std::optional<std::string> model;  // Model distance: id or slug of the other model.
+  std::optional<std::string> property;  // Vertex property: its name in the PLY, such as quality.
+  std::optional<std::string> source;  // Vertex property: the source file; needed where several have it.
+  bool operator==(const ShapeRecipe&) const = default;
+};
+void read(const nlohmann::json& json, ShapeRecipe& value);
+nlohmann::json to_json(const ShapeRecipe& value);
+template <>
+inline constexpr Schema kSchemaOf<ShapeRecipe> = Schema::ShapeRecipe;
+
 // New layer.
 struct LayerCreate {
   std::string name;
   std::optional<std::string> slug;  // Made from the name when absent; never all digits.
   strata::LayerKind kind = strata::LayerKind::numeric;
-  strata::ValueType type = strata::ValueType::u8;
+  std::optional<strata::ValueType> type;  // Absent: u8; f32 for a computed layer.
   std::optional<int> resolution;  // Absent: the model's default.
   std::string unit;
   std::string description;
@@ -796,12 +868,35 @@ struct LayerCreate {
   bool visible = true;
   std::optional<int> order;  // Absent: on top.
   std::optional<std::string> table;  // Database layers: the project's table whose keys the texels hold.
+  std::optional<ShapeRecipe> compute;
   bool operator==(const LayerCreate&) const = default;
 };
 void read(const nlohmann::json& json, LayerCreate& value);
 nlohmann::json to_json(const LayerCreate& value);
 template <>
 inline constexpr Schema kSchemaOf<LayerCreate> = Schema::LayerCreate;
+
+// A property and the file that has it.
+struct VertexPropertyName {
+  std::string source;
+  std::string property;
+  bool operator==(const VertexPropertyName&) const = default;
+};
+void read(const nlohmann::json& json, VertexPropertyName& value);
+nlohmann::json to_json(const VertexPropertyName& value);
+template <>
+inline constexpr Schema kSchemaOf<VertexPropertyName> = Schema::VertexPropertyName;
+
+// Numbers that the source files keep with their vertices.
+struct VertexPropertyList {
+  std::vector<VertexPropertyName> properties;
+  std::int64_t total = 0;
+  bool operator==(const VertexPropertyList&) const = default;
+};
+void read(const nlohmann::json& json, VertexPropertyList& value);
+nlohmann::json to_json(const VertexPropertyList& value);
+template <>
+inline constexpr Schema kSchemaOf<VertexPropertyList> = Schema::VertexPropertyList;
 
 // Changes to a layer's description and defaults.
 struct LayerPatch {
@@ -847,6 +942,7 @@ struct HistoryEntry {
   std::optional<bool> in_force;  // False while it is taken back.
   std::optional<std::int64_t> texels_changed;
   std::optional<double> area_m2;
+  std::optional<nlohmann::json> recipe;
   bool operator==(const HistoryEntry&) const = default;
 };
 void read(const nlohmann::json& json, HistoryEntry& value);

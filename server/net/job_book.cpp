@@ -1,20 +1,20 @@
-#include "net/import_book.h"
+#include "net/job_book.h"
 
 #include "net/answer_book.h"
 
 namespace strata::net {
 
-Result<std::optional<std::int64_t>> ImportBook::find(const Request& request) {
+Result<std::optional<std::int64_t>> JobBook::find(const Request& request) {
   std::lock_guard lock(mutex_);
   const auto found = started_.find(scoped_key(request));
   if (found == started_.end() || !jobs_.status(found->second.job)) return std::nullopt;
   if (found->second.fingerprint != fingerprint(request))
     return fail(422, "Key used for another call",
-                "This Idempotency-Key was used with another file; take a new key for a new import.", "Idempotency-Key");
+                "This Idempotency-Key was used with another body; take a new key for a new call.", "Idempotency-Key");
   return found->second.job;
 }
 
-void ImportBook::started(const Request& request, std::int64_t job) {
+void JobBook::started(const Request& request, std::int64_t job) {
   const std::string key = scoped_key(request);
   if (key.empty()) return;
   std::lock_guard lock(mutex_);
@@ -22,8 +22,8 @@ void ImportBook::started(const Request& request, std::int64_t job) {
   started_[key] = {job, fingerprint(request)};
 }
 
-Result<std::int64_t> ImportBook::finished(const Request& request, std::int64_t model) {
-  auto job = jobs_.add([model](Progress&) -> Result<std::int64_t> { return model; });
+Result<std::int64_t> JobBook::finished(const Request& request, jobs::JobResult result) {
+  auto job = jobs_.add([result = std::move(result)](Progress&) -> Result<jobs::JobResult> { return result; });
   if (job) started(request, *job);
   return job;
 }

@@ -8,17 +8,17 @@
 
 namespace strata::net {
 
-// Which job an import's Idempotency-Key started. The server forgets its jobs when it stops; the key of an import that succeeded
-// is in the database with the model's id, and gets a job that is done. Thread-safe.
-class ImportBook {
+// Which job a call's Idempotency-Key started. The server forgets its jobs when it stops; the key of a job that succeeded is in the
+// database with what it made, and gets a job that is done. Thread-safe.
+class JobBook {
  public:
-  explicit ImportBook(jobs::JobQueue& jobs) : jobs_(jobs) {}
+  explicit JobBook(jobs::JobQueue& jobs) : jobs_(jobs) {}
 
   // Nothing: the key is new, or its job is forgotten. 422: it was used with another body.
   Result<std::optional<std::int64_t>> find(const Request& request);
   void started(const Request& request, std::int64_t job);
-  // The job of an import that an earlier server finished.
-  Result<std::int64_t> finished(const Request& request, std::int64_t model);
+  // The job that an earlier server finished.
+  Result<std::int64_t> finished(const Request& request, jobs::JobResult result);
 
  private:
   struct Started {

@@ -1,0 +1,328 @@
+#include "jobs/shape_layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "mesh/boundary.h"
+#include "mesh/curvature.h"
+#include "mesh/model_distance.h"
+#include "mesh/openness.h"
+#include "mesh/sampled_field.h"
+#include "mesh/texel_owners.h"
+#include "mesh/vertex_properties.h"
+
+namespace strata::jobs {
+namespace {
+
+using GeometryPtr = std::shared_ptr<const mesh::Geometry>;
+// The value at a place of a triangle, NaN: none. Called on several threads.
+using SurfaceValue = std::function<double(std::uint32_t triangle, const glm::vec3& weights)>;
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+// Share of the whole: measuring dominates where rays or neighbourhoods are asked for.
+constexpr double kMeasured = 0.7;
+// A surface that is flatter than this faces no way in particular.
+constexpr float kFlat = 0.02f;
+
+int axis_of(const Model& model) { return model.up == "x" ? 0 : model.up == "y" ? 1 : 2; }
+
+// The directions of east and north for an up of x, y or z: as on a map where z is up, and so that east × north = up.
+struct Compass {
+  explicit Compass(const Model& model) {
+    const int up = axis_of(model);
+    east = up == 0 ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+    north = up == 2 ? glm::vec3(0, 1, 0) : up == 1 ? glm::vec3(0, 0, -1) : glm::vec3(0, 0, 1);
+    char* end = nullptr;
+    const double turned = std::strtod(model.north.c_str(), &end);
+    if (!model.north.empty() && *end == '\0' && std::isfinite(turned)) north_degrees = turned;
+  }
+  float azimuth(const glm::vec3& normal) const {
+    const float x = glm::dot(normal, east), y = glm::dot(normal, north);
+    if (x * x + y * y < kFlat * kFlat) return kNone;
+    const double degrees = glm::degrees(std::atan2(double{x}, double{y})) - north_degrees;
+    return static_cast<float>(degrees - 360 * std::floor(degrees / 360));
+  }
+  glm::vec3 east, north;
+  double north_degrees = 0;
+};
+
+SurfaceValue at_vertices(GeometryPtr geometry, std::vector<double> values, ValueType type) {
+  return [geometry = std::move(geometry), values = std::move(values), is_key = !is_float(type)](std::uint32_t triangle,
+                                                                                                const glm::vec3& w) {
+    return mesh::value_in_triangle(*geometry, values, triangle, w, is_key);
+  };
+}
+
+class Measure {
+ public:
+  Measure(store::Store& store, const Model& model, GeometryPtr geometry, const ShapeRecipe& recipe, ValueType type,
+          Progress& progress)
+      : store_(store),
+        model_(model),
+        geometry_(std::move(geometry)),
+        recipe_(recipe),
+        type_(type),
+        progress_(progress) {}
+
+  Result<SurfaceValue> value() {
+    switch (recipe_.kind) {
+      case ShapeKind::height: return height();
+      case ShapeKind::slope: return slope();
+      case ShapeKind::azimuth: return azimuth();
+      case ShapeKind::roughness:
+      case ShapeKind::mean_curvature:
+      case ShapeKind::gaussian_curvature:
+      case ShapeKind::max_curvature:
+      case ShapeKind::min_curvature: return fitted();
+      case ShapeKind::ambient_occlusion: return openness();
+      case ShapeKind::boundary_distance: return to_boundary();
+      case ShapeKind::model_distance: return to_model();
+      case ShapeKind::vertex_property: return property();
+    }
+    return fail(500, "Unknown kind", "This kind of layer is not known.");
+  }
+  std::string other_model() const { return other_model_; }
+  std::string source() const { return source_; }
+
+ private:
+  double in_units(double millimetres) const { return millimetres / 1000 / model_.metres(); }
+  glm::dvec3 world(std::uint32_t triangle, const glm::vec3& weights) const {
+    glm::dvec3 point(0);
+    for (int k = 0; k < 3; ++k)
+      point +=
+          double{weights[k]} *
+          geometry_->positions[geometry_->vertices[geometry_->indices[3 * std::size_t{triangle} + k]].position_index];
+    return point;
+  }
+  // Points about as close as those of a scan of a million triangles, whatever this mesh has.
+  float even_spacing(double points) const {
+    return static_cast<float>(std::sqrt(std::max(model_.area, 1e-300) / points));
+  }
+
+  Result<SurfaceValue> sampled(float spacing, const mesh::PointFunction& function) {
+    const mesh::SurfaceNormals normals(geometry_);
+    auto field = mesh::SampledField::make(geometry_, normals, spacing, function, progress_);
+    if (!field) return tl::unexpected(field.error());
+    auto shared = std::make_shared<const mesh::SampledField>(std::move(*field));
+    return SurfaceValue([shared](std::uint32_t triangle, const glm::vec3& w) { return shared->at(triangle, w); });
+  }
+
+  Result<SurfaceValue> height() {
+    const int up = axis_of(model_);
+    const double zero = recipe_.absolute ? 0 : model_.bounds_min[up];
+    return SurfaceValue(
+        [this, up, zero](std::uint32_t t, const glm::vec3& w) { return static_cast<float>(world(t, w)[up] - zero); });
+  }
+
+  Result<SurfaceValue> slope() {
+    auto normals = std::make_shared<const mesh::SurfaceNormals>(geometry_);
+    const int up = axis_of(model_);
+    return SurfaceValue([normals, up](std::uint32_t t, const glm::vec3& w) {
+      return glm::degrees(std::acos(std::clamp(normals->at(t, w)[up], -1.0f, 1.0f)));
+    });
+  }
+
+  Result<SurfaceValue> azimuth() {
+    auto normals = std::make_shared<const mesh::SurfaceNormals>(geometry_);
+    return SurfaceValue([normals, compass = Compass(model_)](std::uint32_t t, const glm::vec3& w) {
+      return compass.azimuth(normals->at(t, w));
+    });
+  }
+
+  Result<SurfaceValue> fitted() {
+    const auto radius = static_cast<float>(in_units(*recipe_.radius_mm));
+    progress_.report(0, "Sampling the surface");
+    const mesh::SurfaceSamples samples(*geometry_, radius);
+    const auto curvature = [&](auto part) {
+      return [&samples, part](const glm::vec3& p, const glm::vec3& n) {
+        const auto c = mesh::curvature_at(samples, p, n);
+        return c ? static_cast<float>(part(*c)) : kNone;
+      };
+    };
+    const float spacing = std::max(radius / 3, even_spacing(1e6));
+    switch (recipe_.kind) {
+      case ShapeKind::mean_curvature: return sampled(spacing, curvature([](const auto& c) { return c.mean(); }));
+      case ShapeKind::gaussian_curvature:
+        return sampled(spacing, curvature([](const auto& c) { return c.gaussian(); }));
+      case ShapeKind::max_curvature: return sampled(spacing, curvature([](const auto& c) { return c.max; }));
+      case ShapeKind::min_curvature: return sampled(spacing, curvature([](const auto& c) { return c.min; }));
+      default: break;
+    }
+    return sampled(spacing, [&samples](const glm::vec3& p, const glm::vec3& n) {
+      const auto roughness = mesh::roughness_at(samples, p, n);
+      return roughness ? static_cast<float>(*roughness) : kNone;
+    });
+  }
+
+  Result<SurfaceValue> openness() {
+    progress_.report(0, "Preparing rays");
+    auto rays = mesh::Openness::make(geometry_, static_cast<float>(in_units(*recipe_.distance_mm)), *recipe_.rays);
+    if (!rays) return tl::unexpected(rays.error());
+    return sampled(even_spacing(5e5), [&](const glm::vec3& p, const glm::vec3& n) { return (*rays)->at(p, n); });
+  }
+
+  Result<SurfaceValue> to_boundary() {
+    progress_.report(0, "Looking for open edges");
+    const mesh::BoundaryDistance distance(*geometry_);
+    if (distance.is_closed())
+      return fail(422, "No boundary", "This model is closed: it has no open edge that a distance could be measured to.",
+                  "compute.kind");
+    return sampled(even_spacing(1e6), [&](const glm::vec3& p, const glm::vec3&) { return distance.at(p); });
+  }
+
+  Result<SurfaceValue> to_model() {
+    auto other = store_.model(recipe_.model);
+    if (!other) return refuse_model(other.error());
+    if (other->id == model_.id)
+      return fail(422, "The same model", "A model has no distance to itself; name another one.", "compute.model");
+    if (!other->crs.empty() && !model_.crs.empty() && other->crs != model_.crs)
+      return fail(422, "Other coordinates",
+                  "This model lies in " + model_.crs + ", the other one in " + other->crs +
+                      "; bring both into one coordinate system before importing them.",
+                  "compute.model");
+    other_model_ = other->name;
+    progress_.report(0, "Reading the other model");
+    auto bytes = store_.geometry(other->id);
+    if (!bytes) return refuse_model(bytes.error());
+    auto there = mesh::decode_geometry(*bytes);
+    if (!there) return tl::unexpected(there.error());
+    const mesh::ModelDistance distance(geometry_->origin, model_.metres(),
+                                       std::make_shared<const mesh::Geometry>(std::move(*there)), other->metres(),
+                                       in_units(*recipe_.distance_mm));
+    return sampled(even_spacing(1e6), [&](const glm::vec3& p, const glm::vec3&) { return distance.at(p); });
+  }
+  static tl::unexpected<Problem> refuse_model(Problem problem) {
+    if (problem.status == 404) problem.field = "compute.model";
+    return tl::unexpected(std::move(problem));
+  }
+
+  // In the source that is named, or in the only one that has such a property.
+  Result<SurfaceValue> property() {
+    std::vector<std::string> having;
+    for (const SourceFile& source : model_.source_files) {
+      if (!recipe_.source.empty() && source.name != recipe_.source) continue;
+      std::vector<std::uint8_t> beginning;
+      auto read = store_.read_source(model_.id, source.name, [&](std::span<const std::uint8_t> chunk) {
+        beginning.assign(chunk.begin(), chunk.end());
+        return false;
+      });
+      if (!read) return tl::unexpected(read.error());
+      const auto names = mesh::vertex_property_names(beginning);
+      if (std::find(names.begin(), names.end(), recipe_.property) != names.end()) having.push_back(source.name);
+    }
+    if (having.size() != 1)
+      return fail(422, having.empty() ? "No such property" : "Several files have it",
+                  having.empty()
+                      ? "No source file of this model has vertices with a number \"" + recipe_.property + "\"."
+                      : "Name the source file whose property \"" + recipe_.property + "\" is meant.",
+                  having.empty() ? "compute.property" : "compute.source");
+    source_ = having.front();
+    progress_.report(0, "Reading the scan");
+    auto file = read_source(store_, model_, source_, progress_);
+    if (!file) return tl::unexpected(file.error());
+    auto column = mesh::read_vertex_property(*file, recipe_.property);
+    if (!column) return tl::unexpected(column.error());
+    return at_vertices(geometry_, mesh::values_at_positions(*geometry_, *column, !is_float(type_)), type_);
+  }
+
+  store::Store& store_;
+  const Model& model_;
+  const GeometryPtr geometry_;
+  const ShapeRecipe& recipe_;
+  const ValueType type_;
+  Progress& progress_;
+  std::string other_model_, source_;
+};
+
+// Of what was painted, by a part of the tiles' texels at even steps.
+ValueRange range_of(const TileMap& tiles, ValueType type) {
+  constexpr std::size_t kMostValues = 1'000'000;
+  const std::size_t step = std::max<std::size_t>(1, tiles.size() * kTexelsPerTile / kMostValues);
+  std::vector<float> values;
+  double least = INFINITY, most = -INFINITY;
+  for (const auto& [address, tile] : tiles)
+    for (std::size_t texel = 0; texel < kTexelsPerTile; texel += step) {
+      if (!tile->valid.test(static_cast<int>(texel))) continue;
+      const double value = decode_value(type, tile->bits(static_cast<int>(texel)));
+      values.push_back(static_cast<float>(value));
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+  if (values.empty()) return {};
+  const auto quantile = [&](double share) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return double{*at};
+  };
+  return {least, quantile(0.02), quantile(0.98), most};
+}
+
+// `rounds`: measures become whole numbers where the type wants them; given numbers must be. `from`: share of the work already done.
+Result<TileMap> paint(const mesh::Geometry& geometry, const SurfaceValue& value, ValueType type, int resolution,
+                      bool rounds, double from, Progress& progress) {
+  progress.begin_stage(from, (1 + from) / 2);
+  const auto owners = mesh::bake_texel_owners(geometry, resolution, progress);
+  if (!owners) return tl::unexpected(owners.error());
+  progress.begin_stage((1 + from) / 2, 1);
+  std::mutex mutex;
+  std::optional<Problem> unfit;
+  const auto bits = [&](std::size_t texel) -> std::optional<std::uint32_t> {
+    const double number = value(owners->triangle[texel], owners->weights_of(texel));
+    if (!std::isfinite(number)) return std::nullopt;
+    auto encoded = encode_value(type, rounds && !is_float(type) ? std::round(number) : number);
+    if (encoded) return *encoded;
+    std::lock_guard lock(mutex);
+    unfit = encoded.error();
+    unfit->field = "type";
+    progress.cancel();
+    return std::nullopt;
+  };
+  auto tiles = mesh::paint_texels(*owners, type, bits, progress);
+  if (unfit) return tl::unexpected(*unfit);
+  return tiles;
+}
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> read_source(store::Store& store, const Model& model, const std::string& source,
+                                              Progress& progress) {
+  std::vector<std::uint8_t> file;
+  auto read = store.read_source(model.id, source, [&](std::span<const std::uint8_t> chunk) {
+    file.insert(file.end(), chunk.begin(), chunk.end());
+    return !progress.cancelled();
+  });
+  if (!read) return tl::unexpected(read.error());
+  if (progress.cancelled()) return cancelled_problem();
+  return file;
+}
+
+Result<TileMap> paint_vertex_values(const std::shared_ptr<const mesh::Geometry>& geometry, std::vector<double> values,
+                                    ValueType type, int resolution, Progress& progress) {
+  return paint(*geometry, at_vertices(geometry, std::move(values), type), type, resolution, false, 0, progress);
+}
+
+Result<ShapeLayer> compute_shape_layer(store::Store& store, const Model& model,
+                                       const std::shared_ptr<const mesh::Geometry>& geometry, const ShapeRecipe& recipe,
+                                       ValueType type, int resolution, Progress& progress) {
+  progress.begin_stage(0, kMeasured);
+  Measure measure(store, model, geometry, recipe, type, progress);
+  const auto value = measure.value();
+  if (!value) return tl::unexpected(value.error());
+  const bool rounds = recipe.kind != ShapeKind::vertex_property;
+  auto tiles = paint(*geometry, *value, type, resolution, rounds, kMeasured, progress);
+  if (!tiles) return tl::unexpected(tiles.error());
+
+  ShapeLayer layer;
+  layer.tiles = std::move(*tiles);
+  layer.unit = unit_of(recipe, model);
+  ShapeRecipe used = recipe;
+  if (used.kind == ShapeKind::vertex_property) used.source = measure.source();
+  layer.description = description_of(used, model, measure.other_model());
+  layer.palette = palette_of(recipe.kind, range_of(layer.tiles, type));
+  layer.recipe = to_json(used);
+  return layer;
+}
+
+}  // namespace strata::jobs

@@ -1,0 +1,242 @@
+#include "jobs/shape_recipe.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "mesh/surface_samples.h"
+
+namespace strata::jobs {
+namespace {
+
+constexpr std::array<std::string_view, 12> kNames{
+    "height",        "slope",     "azimuth",           "mean_curvature",    "gaussian_curvature", "max_curvature",
+    "min_curvature", "roughness", "ambient_occlusion", "boundary_distance", "model_distance",     "vertex_property"};
+
+constexpr double kEdgesPerRadius = 4;
+constexpr int kDefaultRays = 64;
+constexpr int kFewestRays = 16, kMostRays = 1024;
+
+bool takes_radius(ShapeKind kind) { return kind >= ShapeKind::mean_curvature && kind <= ShapeKind::roughness; }
+bool takes_distance(ShapeKind kind) {
+  return kind == ShapeKind::ambient_occlusion || kind == ShapeKind::model_distance;
+}
+
+double millimetres(double units, const Model& model) { return units * model.metres() * 1000; }
+double diagonal_mm(const Model& model) { return millimetres(glm::length(model.bounds_max - model.bounds_min), model); }
+
+// A little more than the mean: a mesh of equal equilateral triangles has edges of 1.52 √(area of one).
+double edge_mm(const Model& model) {
+  return millimetres(1.52 * std::sqrt(model.area / static_cast<double>(std::max<std::uint64_t>(1, model.triangles))),
+                     model);
+}
+
+// To two digits, as a person would say it.
+double rounded(double value) {
+  if (!(value > 0)) return value;
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+  return std::round(value / unit) * unit;
+}
+
+std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.6g", value);
+  return buffer;
+}
+
+Result<void> refuse_foreign(bool is_set, bool takes, const char* member, ShapeKind kind) {
+  if (!is_set || takes) return {};
+  return fail(
+      422, "Not of this kind",
+      "`" + std::string(member) + "` has no meaning for the kind " + std::string(name(kind)) + "; leave it out.",
+      "compute." + std::string(member));
+}
+
+Result<void> check_members(const ShapeRecipe& r) {
+  const ShapeKind kind = r.kind;
+  const struct {
+    bool is_set, takes;
+    const char* member;
+  } members[] = {{r.radius_mm.has_value(), takes_radius(kind), "radius_mm"},
+                 {r.distance_mm.has_value(), takes_distance(kind), "distance_mm"},
+                 {r.rays.has_value(), kind == ShapeKind::ambient_occlusion, "rays"},
+                 {r.absolute, kind == ShapeKind::height, "absolute"},
+                 {!r.model.empty(), kind == ShapeKind::model_distance, "model"},
+                 {!r.property.empty(), kind == ShapeKind::vertex_property, "property"},
+                 {!r.source.empty(), kind == ShapeKind::vertex_property, "source"}};
+  for (const auto& [is_set, takes, member] : members)
+    if (auto good = refuse_foreign(is_set, takes, member, kind); !good) return good;
+  if (kind == ShapeKind::model_distance && r.model.empty())
+    return fail(422, "Model missing", "Name the model whose surface the distance is measured to.", "compute.model");
+  if (kind == ShapeKind::vertex_property && r.property.empty())
+    return fail(422, "Property missing", "Name the property of the scan's vertices, such as quality.",
+                "compute.property");
+  return {};
+}
+
+double least_radius_mm(const Model& model) {
+  return millimetres(mesh::SurfaceSamples::least_radius(model.area, model.bounds_max - model.bounds_min), model);
+}
+
+Result<void> check_length(double value, double least, double most, const char* member) {
+  if (value >= least && value <= most) return {};
+  return fail(422, "Out of range for this model",
+              "For this model it is from " + text(rounded(least * 1.05)) + " to " + text(rounded(most)) + " mm.",
+              "compute." + std::string(member));
+}
+
+Palette linear(double low, double high, std::initializer_list<Rgba> colors) {
+  if (!(high > low)) high = low + (low == 0 ? 1 : std::abs(low) * 1e-3);
+  Palette palette{PaletteMode::linear, low, high, {}, {}};
+  const double last = static_cast<double>(colors.size() - 1);
+  for (const Rgba& color : colors)
+    palette.points.push_back({low + (high - low) * static_cast<double>(palette.points.size()) / last, color, {}});
+  return palette;
+}
+
+Palette viridis(double low, double high) {
+  Palette palette = default_palette(ValueType::f32, false);
+  const Palette span = linear(low, high, {{}, {}});
+  for (auto& point : palette.points) point.at = span.min + (span.max - span.min) * point.at;
+  palette.min = span.min;
+  palette.max = span.max;
+  return palette;
+}
+
+// Blue is hollow or behind, red bulges or stands in front: told apart with every colour vision.
+Palette diverging(double limit) {
+  return linear(
+      -limit, limit,
+      {{33, 102, 172, 255}, {103, 169, 207, 255}, {247, 247, 247, 255}, {239, 138, 98, 255}, {178, 24, 43, 255}});
+}
+
+Palette compass() {
+  Palette palette{PaletteMode::linear, 0, 360, {}, {}};
+  palette.points = {{0, {44, 90, 160, 255}, "north"},
+                    {90, {242, 209, 107, 255}, "east"},
+                    {180, {156, 47, 47, 255}, "south"},
+                    {270, {143, 199, 181, 255}, "west"},
+                    {360, {44, 90, 160, 255}, "north"}};
+  return palette;
+}
+
+std::string sentence(const ShapeRecipe& r, const Model& model, const std::string& other) {
+  const std::string within = r.radius_mm ? text(*r.radius_mm) + " mm" : "";
+  const std::string fit = " From the quadric that fits the surface within " + within + " best.";
+  switch (r.kind) {
+    case ShapeKind::height:
+      return r.absolute ? "World coordinate along the model's up (" + model.up + ")."
+                        : "Height above the model's lowest point, along its up (" + model.up + ").";
+    case ShapeKind::slope:
+      return "Inclination of the surface: 0° lies flat and faces up, 90° is a vertical wall, 180° faces down.";
+    case ShapeKind::azimuth:
+      return "Direction that the surface faces, clockwise from north as seen from above; none where it lies flat.";
+    case ShapeKind::mean_curvature:
+      return "Mean curvature: positive where the surface bulges, negative where it is hollow." + fit;
+    case ShapeKind::gaussian_curvature:
+      return "Gaussian curvature: positive in bumps and hollows, negative in saddles, 0 where it could be unrolled." +
+             fit;
+    case ShapeKind::max_curvature: return "Largest principal curvature: high on ridges and edges." + fit;
+    case ShapeKind::min_curvature: return "Smallest principal curvature: low in grooves and cracks." + fit;
+    case ShapeKind::roughness: return "Distance of the surface to the plane that fits it best within " + within + ".";
+    case ShapeKind::ambient_occlusion:
+      return "Share of the light from all around that reaches the surface: 1 in the open, 0 in deep cavities. " +
+             std::to_string(r.rays.value_or(kDefaultRays)) + " rays of " + text(r.distance_mm.value_or(0)) + " mm.";
+    case ShapeKind::boundary_distance: return "Straight distance to the nearest open edge of the mesh.";
+    case ShapeKind::model_distance:
+      return "Distance to the surface of " + other +
+             ": positive where this one lies in front of it (material was added), negative behind it. Looked for up to " +
+             text(r.distance_mm.value_or(0)) + " mm.";
+    case ShapeKind::vertex_property:
+      return "Property " + r.property + " of the scan's vertices, from " + r.source + ".";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string_view name(ShapeKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
+
+std::optional<ShapeKind> parse_shape_kind(std::string_view wanted) {
+  for (std::size_t i = 0; i < kNames.size(); ++i)
+    if (kNames[i] == wanted) return static_cast<ShapeKind>(i);
+  return std::nullopt;
+}
+
+Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model) {
+  if (auto good = check_members(recipe); !good) return tl::unexpected(good.error());
+  const double diagonal = diagonal_mm(model), least = least_radius_mm(model);
+  if (takes_radius(recipe.kind)) {
+    if (!recipe.radius_mm) recipe.radius_mm = rounded(std::max(kEdgesPerRadius * edge_mm(model), least * 1.05));
+    if (auto good = check_length(*recipe.radius_mm, least, std::max(diagonal, 2 * least), "radius_mm"); !good)
+      return tl::unexpected(good.error());
+  }
+  if (takes_distance(recipe.kind)) {
+    if (!recipe.distance_mm)
+      recipe.distance_mm = rounded(diagonal / (recipe.kind == ShapeKind::ambient_occlusion ? 4 : 10));
+    if (auto good = check_length(*recipe.distance_mm, diagonal * 1e-6, diagonal * 100, "distance_mm"); !good)
+      return tl::unexpected(good.error());
+  }
+  if (recipe.kind == ShapeKind::ambient_occlusion) {
+    if (!recipe.rays) recipe.rays = kDefaultRays;
+    if (*recipe.rays < kFewestRays || *recipe.rays > kMostRays)
+      return fail(422, "Out of range", "From 16 to 1024 rays a point.", "compute.rays");
+  }
+  return recipe;
+}
+
+nlohmann::json to_json(const ShapeRecipe& r) {
+  nlohmann::json json{{"kind", name(r.kind)}};
+  if (r.radius_mm) json["radius_mm"] = *r.radius_mm;
+  if (r.distance_mm) json["distance_mm"] = *r.distance_mm;
+  if (r.rays) json["rays"] = *r.rays;
+  if (r.absolute) json["absolute"] = true;
+  if (!r.model.empty()) json["model"] = r.model;
+  if (!r.property.empty()) json["property"] = r.property;
+  if (!r.source.empty()) json["source"] = r.source;
+  return json;
+}
+
+std::string unit_of(const ShapeRecipe& recipe, const Model& model) {
+  const std::string unit(name(model.unit));
+  switch (recipe.kind) {
+    case ShapeKind::slope:
+    case ShapeKind::azimuth: return "°";
+    case ShapeKind::mean_curvature:
+    case ShapeKind::max_curvature:
+    case ShapeKind::min_curvature: return "1/" + unit;
+    case ShapeKind::gaussian_curvature: return "1/" + unit + "²";
+    case ShapeKind::ambient_occlusion:
+    case ShapeKind::vertex_property: return "";
+    default: return unit;
+  }
+}
+
+std::string description_of(const ShapeRecipe& recipe, const Model& model, const std::string& other_model) {
+  return sentence(recipe, model, other_model) + " Computed from the mesh of " + std::to_string(model.triangles) +
+         " triangles.";
+}
+
+Palette palette_of(ShapeKind kind, const ValueRange& range) {
+  switch (kind) {
+    case ShapeKind::slope: return viridis(0, range.high <= 90 ? 90 : 180);
+    case ShapeKind::azimuth: return compass();
+    case ShapeKind::mean_curvature:
+    case ShapeKind::gaussian_curvature:
+    case ShapeKind::max_curvature:
+    case ShapeKind::min_curvature:
+    case ShapeKind::model_distance: {
+      const double limit = rounded(std::max(std::abs(range.low), std::abs(range.high)));
+      return diverging(limit > 0 ? limit : 1);
+    }
+    case ShapeKind::roughness: return viridis(0, rounded(range.high));
+    case ShapeKind::ambient_occlusion:
+      return linear(0, 1, {{16, 18, 27, 255}, {120, 122, 130, 255}, {255, 255, 255, 255}});
+    case ShapeKind::vertex_property: return viridis(range.low, range.high);
+    case ShapeKind::boundary_distance: return viridis(0, rounded(range.most));
+    case ShapeKind::height: break;
+  }
+  return viridis(range.least, range.most);
+}
+
+}  // namespace strata::jobs

@@ -1,0 +1,218 @@
+#include "jobs/transfer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "core/texel_lookup.h"
+#include "mesh/surface_normals.h"
+#include "mesh/texel_owners.h"
+
+namespace strata::jobs {
+namespace {
+
+using GeometryPtr = std::shared_ptr<const mesh::Geometry>;
+constexpr float kNoUv = -1;
+
+// One side of a transfer, and how its texels find their counterparts on the other.
+struct Side {
+  GeometryPtr geometry;
+  std::shared_ptr<const mesh::SearchTree> tree;
+  mesh::SurfaceNormals normals;
+  double metres;
+
+  Side(GeometryPtr the_geometry, std::shared_ptr<const mesh::SearchTree> the_tree, double the_metres)
+      : geometry(std::move(the_geometry)), tree(std::move(the_tree)), normals(geometry), metres(the_metres) {}
+
+  struct Spot {
+    glm::dvec3 world;
+    glm::vec3 normal;
+  };
+  Spot spot(const mesh::TexelOwners& owners, std::size_t texel) const {
+    const std::uint32_t triangle = owners.triangle[texel];
+    const glm::vec3 w = owners.weights_of(texel);
+    glm::vec3 position(0);
+    for (int k = 0; k < 3; ++k)
+      position += w[k] * geometry->vertices[geometry->indices[3 * std::size_t{triangle} + k]].position;
+    return {geometry->origin + glm::dvec3(position), normals.at(triangle, w)};
+  }
+};
+
+struct Tolerance {
+  double metres;
+  float least_cos;
+};
+
+std::optional<mesh::SearchTree::Hit> counterpart(const Side& from, const Side::Spot& spot, const Side& to,
+                                                 const Tolerance& tolerance) {
+  const glm::vec3 point(spot.world * (from.metres / to.metres) - to.geometry->origin);
+  return to.tree->nearest_facing(point, static_cast<float>(tolerance.metres / to.metres), spot.normal,
+                                 tolerance.least_cos);
+}
+
+// Sums of texels' areas by parts that are one thread's each: no lock, and the same sum on any number of threads.
+class AreaSum {
+ public:
+  explicit AreaSum(std::size_t texels) : parts_(texels / mesh::kTexelsAtOnce + 1) {}
+  void add(std::size_t texel, double area) { parts_[texel / mesh::kTexelsAtOnce] += area; }
+  double total() const { return std::accumulate(parts_.begin(), parts_.end(), 0.0); }
+
+ private:
+  std::vector<double> parts_;
+};
+
+// The layers of one resolution.
+class Group {
+ public:
+  Group(const TransferTarget& target, const Side& here, const Side& there, const Tolerance& tolerance,
+        int source_resolution, Progress& progress)
+      : target_(target),
+        here_(here),
+        there_(there),
+        tolerance_(tolerance),
+        source_resolution_(source_resolution),
+        resolution_(std::max(source_resolution, target.model.atlas.lowest_resolution)),
+        progress_(progress) {}
+
+  int resolution() const { return resolution_; }
+  double matched_m2() const { return matched_m2_; }
+
+  // Where on the source each of the target's texels takes its values from.
+  Result<void> match(double from, double to) {
+    progress_.begin_stage(from, from + 0.2 * (to - from));
+    auto map = target_.surface_map(resolution_);
+    if (!map) return tl::unexpected(map.error());
+    map_ = std::move(*map);
+    auto owners = mesh::bake_texel_owners(*here_.geometry, resolution_, progress_);
+    if (!owners) return tl::unexpected(owners.error());
+    owners_ = std::move(*owners);
+    source_uv_.assign(owners_.triangle.size(), glm::vec2(kNoUv));
+    AreaSum matched(owners_.triangle.size());
+    progress_.begin_stage(from + 0.2 * (to - from), to);
+    const auto find = [&](std::size_t texel) {
+      const auto hit = counterpart(here_, here_.spot(owners_, texel), there_, tolerance_);
+      if (!hit) return;
+      source_uv_[texel] = hit->uv;
+      matched.add(texel, map_->area[texel]);
+    };
+    auto done = mesh::for_each_texel(owners_, find, "Looking for the same places", progress_);
+    matched_m2_ = matched.total() * here_.metres * here_.metres;
+    return done;
+  }
+
+  // Painted surface of each layer on the source, and what of it no place of the target takes.
+  struct Balance {
+    double source_m2 = 0, lost_m2 = 0;
+  };
+  Result<std::vector<Balance>> balance(const std::vector<TileMap>& layers, double from, double to) {
+    progress_.begin_stage(from, from + 0.4 * (to - from));
+    auto map = mesh::bake_surface_map(*there_.geometry, source_resolution_, progress_);
+    if (!map) return tl::unexpected(map.error());
+    auto owners = mesh::bake_texel_owners(*there_.geometry, source_resolution_, progress_);
+    if (!owners) return tl::unexpected(owners.error());
+    std::vector<AreaSum> painted(layers.size(), AreaSum(owners->triangle.size())), lost = painted;
+    progress_.begin_stage(from + 0.4 * (to - from), to);
+    const auto weigh = [&](std::size_t texel) {
+      std::optional<bool> is_lost;
+      for (std::size_t i = 0; i < layers.size(); ++i) {
+        if (!is_valid(layers[i], *owners, texel)) continue;
+        if (!is_lost) is_lost = !counterpart(there_, there_.spot(*owners, texel), here_, tolerance_);
+        painted[i].add(texel, map->area[texel]);
+        if (*is_lost) lost[i].add(texel, map->area[texel]);
+      }
+    };
+    if (auto done = mesh::for_each_texel(*owners, weigh, "Looking for what is lost", progress_); !done)
+      return tl::unexpected(done.error());
+    std::vector<Balance> balances;
+    const double m2 = there_.metres * there_.metres;
+    for (std::size_t i = 0; i < layers.size(); ++i) balances.push_back({painted[i].total() * m2, lost[i].total() * m2});
+    return balances;
+  }
+
+  Result<TransferredLayer> paint(const Layer& layer, const TileMap& tiles, const Balance& balance) {
+    AreaSum area(owners_.triangle.size());
+    const auto bits = [&](std::size_t texel) -> std::optional<std::uint32_t> {
+      if (source_uv_[texel].x == kNoUv) return std::nullopt;
+      const auto found = bits_at(tiles, layer.resolution, source_uv_[texel]);
+      if (found) area.add(texel, map_->area[texel]);
+      return found;
+    };
+    auto painted = mesh::paint_texels(owners_, layer.type, bits, progress_);
+    if (!painted) return tl::unexpected(painted.error());
+    return TransferredLayer{
+        &layer,         resolution_, std::move(*painted), balance.source_m2, area.total() * here_.metres * here_.metres,
+        balance.lost_m2};
+  }
+
+ private:
+  static bool is_valid(const TileMap& tiles, const mesh::TexelOwners& owners, std::size_t texel) {
+    const auto block = owners.block_of_slot[texel / 64];
+    const int x = static_cast<int>(block % owners.blocks_per_side) * kBlockSize + static_cast<int>(texel % kBlockSize);
+    const int y =
+        static_cast<int>(block / owners.blocks_per_side) * kBlockSize + static_cast<int>(texel % 64) / kBlockSize;
+    const auto tile =
+        tiles.find({static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)});
+    return tile != tiles.end() && tile->second->valid.test(y % kTileSize * kTileSize + x % kTileSize);
+  }
+
+  const TransferTarget& target_;
+  const Side &here_, &there_;
+  const Tolerance tolerance_;
+  const int source_resolution_, resolution_;
+  Progress& progress_;
+  std::shared_ptr<const mesh::SurfaceMap> map_;
+  mesh::TexelOwners owners_;
+  std::vector<glm::vec2> source_uv_;  // of the target's texels; x is kNoUv: no counterpart
+  double matched_m2_ = 0;
+};
+
+}  // namespace
+
+Result<TransferSummary> transfer_layers(store::Store& store, const TransferTarget& target,
+                                        const TransferRequest& request, const Deliver& deliver, Progress& progress) {
+  progress.report(0, "Reading the other model");
+  auto bytes = store.geometry(request.source.id);
+  if (!bytes) return tl::unexpected(bytes.error());
+  auto decoded = mesh::decode_geometry(*bytes);
+  if (!decoded) return tl::unexpected(decoded.error());
+  bytes->clear();
+  const auto source = std::make_shared<const mesh::Geometry>(std::move(*decoded));
+  const Side there(source, std::make_shared<const mesh::SearchTree>(source), request.source.metres());
+  const Side here(target.geometry, target.tree, target.model.metres());
+  const Tolerance tolerance{request.tolerance_mm / 1000,
+                            static_cast<float>(std::cos(glm::radians(request.max_angle_degrees)))};
+
+  std::map<int, std::vector<const Layer*>> by_resolution;
+  for (const Layer& layer : request.layers) by_resolution[layer.resolution].push_back(&layer);
+  TransferSummary summary{target.model.area_m2(), 0};
+  double start = 0.02;
+  const double share = (1 - start) / static_cast<double>(std::max<std::size_t>(1, by_resolution.size()));
+  for (const auto& [resolution, layers] : by_resolution) {
+    Group group(target, here, there, tolerance, resolution, progress);
+    if (auto matched = group.match(start, start + 0.5 * share); !matched) return tl::unexpected(matched.error());
+    std::vector<TileMap> contents;
+    for (const Layer* layer : layers) {
+      auto tiles = store.load_tiles(*layer);
+      if (!tiles) return tl::unexpected(tiles.error());
+      contents.push_back(std::move(tiles->tiles));
+    }
+    auto balances = group.balance(contents, start + 0.5 * share, start + 0.8 * share);
+    if (!balances) return tl::unexpected(balances.error());
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      const double step = 0.2 * share / static_cast<double>(layers.size());
+      const double from = start + 0.8 * share + static_cast<double>(i) * step;
+      progress.begin_stage(from, from + step);
+      auto layer = group.paint(*layers[i], contents[i], (*balances)[i]);
+      if (!layer) return tl::unexpected(layer.error());
+      if (auto taken = deliver(std::move(*layer)); !taken) return tl::unexpected(taken.error());
+      contents[i].clear();
+    }
+    summary.matched_m2 = std::max(summary.matched_m2, group.matched_m2());
+    start += share;
+  }
+  return summary;
+}
+
+}  // namespace strata::jobs

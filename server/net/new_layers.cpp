@@ -1,0 +1,68 @@
+#include "net/new_layers.h"
+
+#include "core/log.h"
+#include "room/await.h"
+
+namespace strata::net {
+namespace {
+
+constexpr int kMostTries = 5;
+
+}  // namespace
+
+Result<Layer> NewLayers::add(Layer layer, TileMap tiles, nlohmann::json recipe) {
+  const bool visible = layer.visible;
+  layer.visible = false;
+  auto created = room_->create_layer(std::move(layer));
+  if (!created) return created;
+  made_.push_back({*created, visible});
+  room::EditRequest edit;
+  edit.id = random_uuid();
+  edit.user = user_;
+  edit.layer_id = created->id;
+  edit.record = {{"op", "import"}, {"recipe", std::move(recipe)}};
+  edit.edit = room::ImportEdit{std::move(tiles)};
+  auto painted = room::await<room::EditAnswer>([&](auto saved) {
+    room_->edit(
+        std::move(edit), [this](const room::EditAnswer&) { ++metrics_.edits_applied; }, std::move(saved));
+  });
+  if (!painted) {
+    ++metrics_.edits_refused;
+    return tl::unexpected(painted.error());
+  }
+  ++metrics_.edits_saved;
+  return created;
+}
+
+Result<void> NewLayers::show(const store::FirstAnswer<Layer>& answer) {
+  for (std::size_t i = 0; i < made_.size(); ++i) {
+    const bool is_last = i + 1 == made_.size();
+    for (int tries = 0;; ++tries) {
+      auto now = room_->layer(std::to_string(made_[i].layer.id));
+      if (!now) return tl::unexpected(now.error());
+      now->visible = made_[i].visible;
+      auto shown = room_->update_layer(*now, is_last ? answer : store::FirstAnswer<Layer>{});
+      if (shown) break;
+      // Someone renamed it at this very moment: then what they made of it is shown.
+      if (shown.error().status != 412 || tries == kMostTries) return tl::unexpected(shown.error());
+    }
+  }
+  return {};
+}
+
+void NewLayers::take_back() {
+  for (const Made& made : made_)
+    if (auto gone = room_->delete_layer(made.layer.id);
+        !gone && gone.error().status != 404 && gone.error().status != 410)
+      log::warning("layer " + std::to_string(made.layer.id) +
+                   " of work that failed could not be removed: " + gone.error().detail);
+  made_.clear();
+}
+
+std::vector<std::int64_t> NewLayers::ids() const {
+  std::vector<std::int64_t> ids;
+  for (const Made& made : made_) ids.push_back(made.layer.id);
+  return ids;
+}
+
+}  // namespace strata::net

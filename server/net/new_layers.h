@@ -1,0 +1,33 @@
+#pragma once
+
+#include "net/routes.h"
+
+namespace strata::net {
+
+// Layers that a job makes with their content. They are hidden until they are painted, so that nobody sees them half made; taken
+// away again where that fails. Used on the job's thread; blocks.
+class NewLayers {
+ public:
+  NewLayers(std::shared_ptr<room::Room> room, Metrics& metrics, std::string user)
+      : room_(std::move(room)), metrics_(metrics), user_(std::move(user)) {}
+
+  // Makes the layer and paints it as one edit of the user. `recipe`: for its history.
+  Result<Layer> add(Layer layer, TileMap tiles, nlohmann::json recipe);
+  // Shows them as they were asked for. The answer is kept with the last one.
+  Result<void> show(const store::FirstAnswer<Layer>& answer);
+  void take_back();  // all that were added
+
+  std::vector<std::int64_t> ids() const;
+
+ private:
+  struct Made {
+    Layer layer;
+    bool visible;  // as asked for
+  };
+  std::shared_ptr<room::Room> room_;
+  Metrics& metrics_;
+  const std::string user_;
+  std::vector<Made> made_;
+};
+
+}  // namespace strata::net
