@@ -3,6 +3,7 @@
 
 import { ApiError, name_of_file, type Api, type Upload } from "../core/api";
 import type { Job, ProblemBody } from "../core/types";
+import { follow_job } from "./follow-job";
 import { notices } from "./notices";
 import { texts } from "./texts";
 
@@ -18,8 +19,6 @@ export interface ImportEntry {
   model: number | null;
 }
 
-const kPoll_ms = 400;
-const kMostFailedPolls = 20;
 const kFileKinds = /\.(ply|obj)$/i;
 const kCompanions = /\.(mtl|png|jpe?g|tiff?|bmp|tga)$/i; // materials and pictures that lie beside an OBJ
 
@@ -97,24 +96,12 @@ export class Imports {
   }
 
   private async follow(key: number, first: Job): Promise<ImportResult> {
-    let job = first;
-    let failed_polls = 0;
-    for (;;) {
-      this.change(key, { state: job.state, progress: job.progress, message: job.message, problem: job.problem ?? null });
-      if (job.state === "failed") return { model: null, problem: job.problem ?? { status: 500, title: texts.import.failed } };
-      if (job.state === "done" || job.state === "cancelled") {
-        this.dismiss(key);
-        return { model: job.model ?? null, problem: null };
-      }
-      await new Promise((resolve) => setTimeout(resolve, kPoll_ms));
-      try {
-        job = await this.api_.job(job.id);
-        failed_polls = 0;
-      } catch (error) {
-        const passing = error instanceof ApiError && (error.status === 0 || error.status >= 500 || error.status === 429);
-        if (!passing || ++failed_polls > kMostFailedPolls) throw error;
-      }
-    }
+    const job = await follow_job(this.api_, first, ({ state, progress, message, problem }) =>
+      this.change(key, { state, progress, message, problem: problem ?? null }),
+    );
+    if (job.state === "failed") return { model: null, problem: job.problem ?? { status: 500, title: texts.import.failed } };
+    this.dismiss(key);
+    return { model: job.model ?? null, problem: null };
   }
 
   private fail(key: number, error: unknown): ImportResult {

@@ -24,6 +24,8 @@ import { layer_changes, type LayerWanted } from "./layer-changes";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { radio_group } from "./radio-group";
+import "./shape-fields";
+import type { StrataShapeFields } from "./shape-fields";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -32,6 +34,9 @@ interface ClassRow {
   label: string;
   color: string; // #rrggbbaa
 }
+
+/** What a new layer is for: something to paint, or values that are computed. */
+type Purpose = LayerPurpose | "shape";
 
 const kMostClasses = 255;
 const kTypes: Record<LayerPurpose, ValueType> = { presence: "u8", classes: "u8", measurement: "f32", records: "u32" };
@@ -45,7 +50,7 @@ export class StrataLayerDialog extends LitElement {
   /** The layer as it was when the person began to change it, and its version. */
   @state() private base_: { layer: Layer; etag: string } | null = null;
   @state() private stale_ = false; // somebody else changed it since
-  @state() private purpose_: LayerPurpose = "presence";
+  @state() private purpose_: Purpose = "presence";
   @state() private color_ = "#d55e00ff";
   @state() private classes_: ClassRow[] = [];
   @state() private stepped_ = false;
@@ -54,6 +59,7 @@ export class StrataLayerDialog extends LitElement {
   @state() private busy_ = false;
   @query("strata-dialog") private dialog_!: StrataDialog;
   @query("form") private form_!: HTMLFormElement;
+  @query("strata-shape-fields") private shape_!: StrataShapeFields;
 
   static override styles = [
     shared_styles,
@@ -86,6 +92,9 @@ export class StrataLayerDialog extends LitElement {
         font-size: 0.82rem;
         line-height: 1.35;
         color: var(--ink-soft);
+      }
+      .kinds button:last-child:nth-child(odd) {
+        grid-column: 1 / -1;
       }
       .kinds button[aria-checked="true"] {
         border-color: var(--accent);
@@ -186,7 +195,7 @@ export class StrataLayerDialog extends LitElement {
             ${this.stale_ ? words.reload : texts.try_again}
           </button>`
         : html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>
-            ${layer ? texts.save : words.create}
+            ${layer ? texts.save : this.purpose_ === "shape" ? words.compute : words.create}
           </button>`}
     </strata-dialog>`;
   }
@@ -198,6 +207,13 @@ export class StrataLayerDialog extends LitElement {
       this.base_?.etag,
       html`<form id="form" novalidate @submit=${this.on_submit}>
         ${layer ? nothing : this.kinds()}
+        ${this.purpose_ === "shape"
+          ? html`<strata-shape-fields
+              .session=${this.session}
+              .wrong=${this.problem_field_}
+              @kind-changed=${() => this.requestUpdate()}
+            ></strata-shape-fields>`
+          : nothing}
         <div class="two">
           <label class="field">
             <span>${words.name}</span>
@@ -207,7 +223,7 @@ export class StrataLayerDialog extends LitElement {
               maxlength="200"
               autocomplete="off"
               .value=${layer?.name ?? ""}
-              placeholder=${words.name_hint[this.purpose_]}
+              placeholder=${this.purpose_ === "shape" ? (this.shape_?.kind_title ?? "") : words.name_hint[this.purpose_]}
               aria-invalid=${this.problem_field_ === "name" ? "true" : "false"}
             />
           </label>
@@ -233,15 +249,16 @@ export class StrataLayerDialog extends LitElement {
   }
 
   private kinds(): TemplateResult {
-    const kinds: [LayerPurpose, string, string][] = [
+    const kinds: [Purpose, string, string][] = [
       ["presence", words.presence, words.presence_lead],
       ["classes", words.classes, words.classes_lead],
       ["measurement", words.measurement, words.measurement_lead],
       ["records", words.records, words.records_lead],
+      ["shape", words.shape, words.shape_lead],
     ];
     return html`<div>
       <p class="caption" id="question">${words.question}</p>
-      ${radio_group<LayerPurpose>({
+      ${radio_group<Purpose>({
         label: { id: "question" },
         class: "kinds",
         choices: kinds.map(([value, title, lead]) => ({ value, content: html`<b>${title}</b><span>${lead}</span>` })),
@@ -363,14 +380,33 @@ export class StrataLayerDialog extends LitElement {
     const form = new FormData(this.form_);
     const text = (name: string): string => String(form.get(name) ?? "").trim();
     this.problem_ = this.problem_field_ = "";
+    if (this.purpose_ === "shape") return this.compute(text("name") || this.shape_.kind_title, text("description"));
     const name = text("name");
     if (!name) return this.refuse("name", words.name_missing);
     const palette = this.palette(name, Number(text("min")), Number(text("max")));
     if (!palette) return;
-    this.busy_ = true;
-    try {
+    await this.attempt(async () => {
       const unit = this.purpose_ === "measurement" ? text("unit") : (this.base_?.layer.unit ?? "");
       await this.send({ name, unit, description: text("description"), palette });
+    });
+  }
+
+  private async compute(name: string, description: string): Promise<void> {
+    const compute = this.shape_.recipe();
+    if ("problem" in compute) return this.refuse(compute.field, compute.problem);
+    const { session } = this;
+    await this.attempt(async () => {
+      const { done } = await session.jobs.compute({ name, description, compute, ...this.resolution() });
+      void done.then((made) => session.show_made(made));
+      notices.show("success", texts.shape.started(name));
+    });
+  }
+
+  /** Closes the dialog when `work` is done, and says what is wrong otherwise. */
+  private async attempt(work: () => Promise<void>): Promise<void> {
+    this.busy_ = true;
+    try {
+      await work();
       this.dialog_.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -386,8 +422,12 @@ export class StrataLayerDialog extends LitElement {
     this.problem_field_ = field;
   }
 
+  private resolution(): Pick<LayerCreate, "resolution"> {
+    return this.chosen_resolution_ ? { resolution: this.chosen_resolution_ as Resolution } : {};
+  }
+
   private palette(name: string, min: number, max: number): Palette | null {
-    switch (this.purpose_) {
+    switch (this.purpose_ as LayerPurpose) {
       case "presence":
         return presence_palette(name, this.color_);
       case "records":
@@ -416,6 +456,7 @@ export class StrataLayerDialog extends LitElement {
 
   private async send(wanted: LayerWanted): Promise<void> {
     const { session, base_: base } = this;
+    const purpose = this.purpose_ as LayerPurpose; // what is computed goes another way
     if (base) {
       const change = layer_changes(base.layer, wanted);
       if (Object.keys(change).length > 0) await session.layers.change(base.layer, change, base.etag);
@@ -423,9 +464,9 @@ export class StrataLayerDialog extends LitElement {
     }
     const created: LayerCreate = {
       ...wanted,
-      kind: this.purpose_ === "records" ? "database" : "numeric",
-      type: kTypes[this.purpose_],
-      ...(this.chosen_resolution_ ? { resolution: this.chosen_resolution_ as Resolution } : {}),
+      kind: purpose === "records" ? "database" : "numeric",
+      type: kTypes[purpose],
+      ...this.resolution(),
     };
     session.add_created(await session.api.create_layer(session.model_id, created));
     notices.show("success", texts.layers.created(wanted.name));

@@ -6,6 +6,7 @@ import { repeat } from "lit/directives/repeat.js";
 import type { Layer } from "../core/types";
 import { ask } from "./dialog";
 import { icon } from "./icons";
+import { layer_job_row, layer_job_styles } from "./layer-job-row";
 import { layer_chip, legend, legend_styles } from "./legend";
 import "./menu";
 import type { ModelSession } from "./model-session";
@@ -13,7 +14,7 @@ import { notices } from "./notices";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
-export type LayerPanelRequest = { dialog: "create" } | { dialog: "edit" | "statistics"; layer: Layer };
+export type LayerPanelRequest = { dialog: "create" | "transfer" } | { dialog: "edit" | "statistics"; layer: Layer };
 
 @customElement("strata-layer-panel")
 export class StrataLayerPanel extends LitElement {
@@ -25,6 +26,7 @@ export class StrataLayerPanel extends LitElement {
   static override styles = [
     shared_styles,
     legend_styles,
+    layer_job_styles,
     css`
       :host {
         display: block;
@@ -172,9 +174,15 @@ export class StrataLayerPanel extends LitElement {
     return html`<div class="heading">
         <h2>${words.title}</h2>
         ${session.can_curate
-          ? html`<button @click=${() => this.request({ dialog: "create" })}>${icon("plus")}${words.new}</button>`
+          ? html`<button @click=${() => this.request({ dialog: "create" })}>${icon("plus")}${words.new}</button>
+              <strata-menu label=${words.more}>
+                <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "transfer" })}>
+                  ${icon("import")}${texts.transfer.open}
+                </button>
+              </strata-menu>`
           : nothing}
       </div>
+      ${session.jobs.entries.map((entry) => layer_job_row(session, entry))}
       ${shown.length === 0
         ? html`<div class="empty">
             <b>${words.empty_title}</b>

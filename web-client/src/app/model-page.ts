@@ -25,6 +25,7 @@ import { styled } from "./styled";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 import "./tool-rail";
+import "./transfer-dialog";
 import "./value-readout";
 
 type OpenDialog = LayerPanelRequest | { dialog: "scale" | "help" | "about" } | null;
@@ -239,6 +240,8 @@ export class StrataModelPage extends LitElement {
         return html``;
       case "create":
         return html`<strata-layer-dialog .session=${session} @closed=${closed}></strata-layer-dialog>`;
+      case "transfer":
+        return html`<strata-transfer-dialog .session=${session} @closed=${closed}></strata-transfer-dialog>`;
       case "edit":
         return html`<strata-layer-dialog .session=${session} .layer=${newest(session, dialog.layer)} @closed=${closed}></strata-layer-dialog>`;
       case "statistics":

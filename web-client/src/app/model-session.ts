@@ -13,6 +13,7 @@ import { OrbitTool, PanTool } from "../tools/navigate";
 import { PickTool } from "../tools/pick";
 import type { ToolName } from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
+import { LayerJobs } from "./layer-jobs";
 import { LayerList } from "./layer-list";
 import { notices } from "./notices";
 import { Painting } from "./painting";
@@ -33,6 +34,7 @@ export class ModelSession {
 
   readonly view: ViewControl;
   readonly layers: LayerList;
+  readonly jobs: LayerJobs;
   readonly pointer: PointerWatch;
   readonly painting: Painting;
   readonly tools: ToolManager;
@@ -65,6 +67,7 @@ export class ModelSession {
       send_overrides: (overrides) => this.connection_.set_layer_overrides(overrides),
       changed,
     });
+    this.jobs = new LayerJobs(api, model_id, changed);
     this.pointer = new PointerWatch({
       camera: () => this.view.camera,
       ready: () => this.connection_state === "open",
@@ -213,6 +216,12 @@ export class ModelSession {
     this.layers.put(layer);
     this.layers.select(layer);
     if (this.tools.active !== "brush") this.tools.choose("brush");
+  }
+
+  /** Layers that work made for this person: the first is what they look at next. */
+  show_made(ids: readonly number[]): void {
+    const layer = this.layers.find(ids[0] ?? null);
+    if (layer) this.layers.select(layer);
   }
 
   async change_model(change: ModelPatch): Promise<void> {

@@ -14,6 +14,8 @@ import {
   type ModelPatch,
   type ProblemBody,
   type Statistics,
+  type Transfer,
+  type VertexPropertyName,
 } from "./types";
 
 export class ApiError extends Error {
@@ -115,6 +117,17 @@ export class Api {
   }
   async create_layer(model: Id, layer: LayerCreate): Promise<Layer> {
     return complete_layer(await this.json<wire.Layer>("POST", `/models/${encodeURIComponent(model)}/layers`, layer));
+  }
+  /** With `compute`: the layer is there once the job is done. */
+  async compute_layer(model: Id, layer: LayerCreate): Promise<Job> {
+    return this.json("POST", `/models/${encodeURIComponent(model)}/layers`, layer);
+  }
+  async transfer(model: Id, wish: Transfer): Promise<Job> {
+    return this.json("POST", `/models/${encodeURIComponent(model)}/transfer`, wish);
+  }
+  async vertex_properties(model: Id): Promise<VertexPropertyName[]> {
+    const path = `/models/${encodeURIComponent(model)}/vertex-properties`;
+    return (await this.json<wire.VertexPropertyList>("GET", path)).properties;
   }
   async layer(model: Id, layer: Id): Promise<Versioned<Layer>> {
     const { value, etag } = await this.versioned<wire.Layer>("GET", layer_path(model, layer));

@@ -15,8 +15,12 @@ export type {
   PalettePoint,
   Resolution,
   Role,
+  ShapeRecipe,
   Statistics,
+  Transfer,
+  TransferReport,
   Unit,
+  VertexPropertyName,
   ValueType,
 } from "./protocol.gen";
 

@@ -1,0 +1,144 @@
+// Layers that are computed from the shape and layers brought over from another scan, as a person makes them on the page.
+import assert from "node:assert/strict";
+import { mkdirSync } from "node:fs";
+import { join } from "node:path";
+import { Browser } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const browser = await Browser.open();
+const { page } = browser;
+const server = new StrataServer({ demo: true });
+const pictures = process.env.STRATA_TEST_OUTPUT;
+let step = "start";
+const say = (text) => console.log((step = text));
+const button = (name) => page.getByRole("button", { name, exact: true });
+const base = "/models/demo-pot";
+
+/** For people to look at; nothing compares them. */
+async function keep_picture(name) {
+  if (!pictures) return;
+  mkdirSync(pictures, { recursive: true });
+  await page.screenshot({ path: join(pictures, `shape-${name}.png`) });
+}
+
+/** A hill of `cells` × `cells` squares, 100 mm wide, as a PLY with a number of its own. */
+function hill(cells) {
+  const at = Array.from({ length: cells + 1 }, (_, i) => (100 * i) / cells);
+  const vertices = at.flatMap((y) => at.map((x) => `${x} ${y} ${20 * Math.exp(-((x - 50) ** 2 + (y - 50) ** 2) / 600)} ${x / 100}`));
+  const faces = [];
+  for (let y = 0; y < cells; ++y)
+    for (let x = 0; x < cells; ++x) {
+      const a = y * (cells + 1) + x;
+      faces.push(`3 ${a} ${a + 1} ${a + cells + 2}`, `3 ${a} ${a + cells + 2} ${a + cells + 1}`);
+    }
+  const head = ["ply", "format ascii 1.0", `element vertex ${vertices.length}`, "property float x", "property float y", "property float z",
+    "property float quality", `element face ${faces.length}`, "property list uchar int vertex_indices", "end_header"];
+  return [...head, ...vertices, ...faces, ""].join("\n");
+}
+
+async function import_hill(name, cells) {
+  const started = await fetch(`${server.url}/api/v1/models?filename=${name}.ply&name=${name}&unit=mm`, {
+    method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" }, body: hill(cells),
+  });
+  assert.equal(started.status, 202, await started.clone().text());
+  const { id } = await started.json();
+  const job = await wait_for(async () => {
+    const now = await server.json("GET", `/jobs/${id}`);
+    return now.state === "done" || now.state === "failed" ? now : null;
+  }, `the import of ${name}`);
+  assert.equal(job.state, "done");
+  await server.json("PATCH", `/models/${job.model}`, { scale_verified: true });
+  return job.model;
+}
+
+async function start_computing(kind, fields = {}) {
+  await button("New layer").click();
+  await page.getByRole("radio", { name: /From the shape/ }).click();
+  await page.getByLabel("What to compute").selectOption({ label: kind });
+  for (const [label, value] of Object.entries(fields)) await page.getByLabel(label).fill(value);
+}
+
+try {
+  await server.start();
+  await page.goto(server.link);
+  await page.getByRole("link", { name: /Demo pot/ }).click();
+  await browser.drawn();
+
+  say("a layer is computed from the shape");
+  await start_computing("Curvature", { "Within a radius of": "0" });
+  await button("Compute layer").click();
+  await page.getByText("Give a length larger than 0").waitFor();
+  await page.getByLabel("Within a radius of").fill("4");
+  await keep_picture("dialog");
+  await button("Compute layer").click();
+  await page.getByText("“Curvature” is being computed.").waitFor();
+  await button("Paint on Curvature").waitFor();
+  const layer = await server.json("GET", `${base}/layers/curvature`);
+  assert.equal(layer.unit, "1/mm");
+  await page.getByText(/Quadric|quadric that fits the surface within 4 mm/).first().waitFor(); // its description: it is selected
+  assert.equal(await page.getByRole("progressbar").count(), 0, "the row of the work goes when it is done");
+  const statistics = await server.json("GET", `${base}/layers/curvature/statistics`);
+  const model = await server.json("GET", base);
+  assert.ok(Math.abs(statistics.area_m2 / model.area_m2 - 1) < 0.01, `${statistics.area_m2} of ${model.area_m2} m² have a curvature`);
+  await browser.settled();
+  await keep_picture("curvature");
+
+  say("it can be taken back like a stroke");
+  await page.keyboard.press("b");
+  await page.keyboard.press("Control+z");
+  await wait_for(async () => (await server.json("GET", `${base}/layers/curvature/statistics`)).texels === 0, "the layer to be empty");
+
+  say("long work shows how far it is, and is cancelled");
+  await start_computing("Openness", { Name: "Never", "Looks as far as": "30" });
+  await page.getByRole("radiogroup", { name: "Smallest detail" }).getByRole("radio").last().click(); // the finest takes longest
+  await button("Compute layer").click();
+  await page.getByRole("progressbar", { name: "Never" }).waitFor();
+  await button("Cancel Never").click();
+  await page.getByRole("progressbar", { name: "Never" }).waitFor({ state: "detached" });
+  assert.ok(!(await server.json("GET", `${base}/layers`)).layers.some(({ name }) => name === "Never"));
+
+  say("what cannot be computed says why");
+  await start_computing("Distance to the edge");
+  await button("Compute layer").click();
+  await page.getByText(/This model is closed/).waitFor();
+  await keep_picture("failed");
+  await button("Remove the note about Distance to the edge").click();
+
+  say("layers are brought over from another scan, with a report");
+  const then = await import_hill("Then", 40);
+  await import_hill("Now", 57);
+  const made = await server.json("POST", `/models/${then}/layers`, { name: "Terraces", type: "u8", compute: { kind: "height" } });
+  await wait_for(async () => (await server.json("GET", `/jobs/${made.id}`)).state === "done", "the terraces");
+  await page.goto(server.url);
+  await page.getByRole("link", { name: /Now/ }).click();
+  await browser.drawn();
+  await button("More about layers").click();
+  await page.getByRole("menuitem", { name: "Bring layers over…" }).click();
+  await page.locator("strata-transfer-dialog select").selectOption({ label: "Then" });
+  await page.getByRole("checkbox", { name: "Terraces" }).waitFor();
+  await keep_picture("transfer-dialog");
+  await button("Bring over").click();
+  await page.getByText(/of this surface has a counterpart/).waitFor();
+  const row = page.getByRole("row", { name: /Terraces/ });
+  assert.match(await row.innerText(), /cm²\s+0 %/);
+  await button("Paint on Terraces").waitFor();
+  await browser.settled();
+  await keep_picture("transferred");
+
+  say("numbers of the scan's file become a layer");
+  await start_computing("Values from the scan's file");
+  await button("Compute layer").click();
+  await button("Paint on quality").waitFor();
+  await browser.settled();
+  await keep_picture("quality");
+
+  browser.assert_no_complaints();
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}`);
+  await keep_picture("failure").catch(() => {});
+  throw error;
+} finally {
+  await browser.close();
+  await server.remove();
+}
