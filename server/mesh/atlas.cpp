@@ -196,9 +196,15 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
     if (auto packed = pack_again(lowest_resolution, progress, *best); !packed) return tl::unexpected(packed.error());
   }
   progress.report(0.95, "Measuring the unfolded surface");
-  atlas.report =
-      make_report(mesh, atlas.corner_uvs, lowest_resolution, count_owners(mesh, atlas.corner_uvs, lowest_resolution),
-                  measure_areas(mesh, atlas.corner_uvs));
+  TexelOwners owners;
+  AtlasMeasure measure;
+  parallel_for(kThreads, 2, [&](int i) {
+    if (i == 0)
+      owners = count_owners(mesh, atlas.corner_uvs, lowest_resolution);
+    else
+      measure = measure_areas(mesh, atlas.corner_uvs);
+  });
+  atlas.report = make_report(mesh, atlas.corner_uvs, lowest_resolution, owners, measure);
   atlas.report.source = "made";
   atlas.report.charts = static_cast<int>(best->charts.size());
   progress.report(1, "Surface unfolded");

@@ -7,6 +7,7 @@
 
 #include "mesh/adjacency.h"
 #include "mesh/occupancy.h"
+#include "mesh/parallel.h"
 #include "mesh/smooth.h"
 
 namespace strata::mesh {
@@ -228,9 +229,15 @@ void append_connected_parts(const ChartSurface& surface, Chart chart, std::vecto
 }  // namespace
 
 ChartSurface make_chart_surface(const UnitMesh& mesh, int smoothing) {
-  ChartSurface surface{mesh, edge_neighbours(mesh.triangles, mesh.positions.size()), {}, {}, {}, {}};
-  surface.smoothed = laplacian_smoothed(mesh.triangles, surface.neighbours, mesh.positions, smoothing);
-  surface.original_frames = face_frames(mesh.triangles, mesh.positions);
+  ChartSurface surface{mesh, {}, {}, {}, {}, {}};
+  parallel_for(2, 2, [&](int i) {
+    if (i == 0) {
+      surface.neighbours = edge_neighbours(mesh.triangles, mesh.positions.size());
+      surface.smoothed = laplacian_smoothed(mesh.triangles, surface.neighbours, mesh.positions, smoothing);
+    } else {
+      surface.original_frames = face_frames(mesh.triangles, mesh.positions);
+    }
+  });
   surface.smoothed_frames = face_frames(mesh.triangles, surface.smoothed);
   surface.trend_normals = averaged_normals(mesh.triangles, mesh.positions.size(), surface.smoothed_frames, 3);
   return surface;

@@ -34,20 +34,21 @@ nlohmann::json precision(const mesh::TriangleMesh& mesh, const mesh::Atlas& atla
 nlohmann::json facts(const std::string& name, const Options& options) {
   StepWatch watch;
   Progress progress;
+  const std::string title = std::filesystem::path(name).filename().string();
   const auto files = mesh_files(name, options.cache);
   auto loaded = watch.run("read", progress, [&] { return mesh::load_mesh(files, progress); });
-  if (!loaded) return {{"mesh", name}, {"refused", loaded.error().detail}};
+  if (!loaded) return {{"mesh", title}, {"refused", loaded.error().detail}};
   const mesh::TriangleMesh& mesh = loaded->mesh;
   Result<mesh::Atlas> atlas = fail(0, "", "not tried");
   if (!options.make_always && !mesh.corner_uvs.empty())
     atlas = watch.run("keep", progress, [&] { return mesh::keep_uvs(mesh, kLowest, progress); });
   if (!atlas) atlas = watch.run("make", progress, [&] { return mesh::make_atlas(mesh, kLowest, progress); });
-  if (!atlas) return {{"mesh", name}, {"triangles", mesh.triangle_count()}, {"refused", atlas.error().detail}};
+  if (!atlas) return {{"mesh", title}, {"triangles", mesh.triangle_count()}, {"refused", atlas.error().detail}};
   const double area = mesh::surface_area(mesh);
   nlohmann::json resolutions = nlohmann::json::array();
   for (const int resolution : options.resolutions) resolutions.push_back(precision(mesh, *atlas, area, resolution));
   const auto& report = atlas->report;
-  return {{"mesh", name},
+  return {{"mesh", title},
           {"triangles", mesh.triangle_count()},
           {"area", area},
           {"source", report.source},
@@ -64,7 +65,7 @@ nlohmann::json facts(const std::string& name, const Options& options) {
 }
 
 void print(const nlohmann::json& row) {
-  const auto name = std::filesystem::path(row["mesh"].get<std::string>()).filename().string();
+  const auto name = row["mesh"].get<std::string>();
   if (row.contains("refused")) {
     std::printf("%-40s refused: %s\n", name.c_str(), row["refused"].get<std::string>().c_str());
   } else {
