@@ -1,6 +1,7 @@
 #include "render/block_culler.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -29,6 +30,32 @@ double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
   const double t = squared > 0 ? std::clamp(glm::dot(point - a, along) / squared, 0.0, 1.0) : 0.0;
   return glm::length(point - (a + along * t));
 }
+
+// The sides of the tool's box in the window as planes through the eye. Spheres beyond one are left out by a tenth of what their
+// exact box costs: most of those that a small tool is tested against.
+class BoxPlanes {
+ public:
+  BoxPlanes(const glm::dmat4& clip, int width, int height, const PixelBox& tool) {
+    const glm::dmat4 rows = glm::transpose(clip);
+    // Window x · w is linear in the position, and w is above 0 where anything is painted.
+    const glm::dvec4 x = 0.5 * width * (rows[0] + rows[3]), y = 0.5 * height * (rows[1] + rows[3]), w = rows[3];
+    planes_ = {x - (std::max(tool.x0, 0.0) - kMargin_px) * w, (std::min(tool.x1, double(width)) + kMargin_px) * w - x,
+               y - (std::max(tool.y0, 0.0) - kMargin_px) * w, (std::min(tool.y1, double(height)) + kMargin_px) * w - y};
+    for (auto& plane : planes_) {
+      const double length = glm::length(glm::dvec3(plane));
+      plane = length > 0 ? plane / length : glm::dvec4(0, 0, 0, 1);
+    }
+  }
+  bool leave_out(const mesh::SurfaceMap::Bounds& bounds) const {
+    const glm::dvec4 center(glm::dvec3(bounds.center), 1);
+    const double reach = -bounds.radius * (1 + kMarginRadius);
+    return glm::dot(planes_[0], center) < reach || glm::dot(planes_[1], center) < reach ||
+           glm::dot(planes_[2], center) < reach || glm::dot(planes_[3], center) < reach;
+  }
+
+ private:
+  std::array<glm::dvec4, 4> planes_;
+};
 
 // Neighbouring blocks mostly share their list.
 std::uint32_t list_of(const std::vector<std::uint32_t>& segments, Candidates& candidates) {
@@ -78,11 +105,12 @@ std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int w
 
 std::vector<BlockCuller::Tile> BlockCuller::tiles() const {
   const int per_side = map_.resolution / kTileSize;
+  const BoxPlanes planes(clip_, width_, height_, path_.box);
   std::vector<Tile> found;
   for (int y = 0; y < per_side; ++y) {
     for (int x = 0; x < per_side; ++x) {
       const auto& bounds = map_.bounds_128[static_cast<std::size_t>(y * per_side + x)];
-      if (bounds.radius < 0) continue;
+      if (bounds.radius < 0 || planes.leave_out(bounds)) continue;
       const auto box = project(bounds);
       if (!box) continue;
       auto segments = segments_under(*box);
@@ -101,16 +129,20 @@ Candidates BlockCuller::all() const {
 
 void BlockCuller::add_blocks(const Tile& tile, Candidates& candidates) const {
   const int per_side_32 = map_.resolution / 32;
+  const BoxPlanes planes(clip_, width_, height_, path_.box);
   Under under_32, under_block;
   for (int i = 0; i < 16; ++i) {
     const int x = tile.address.x * 4 + i % 4, y = tile.address.y * 4 + i / 4;
-    if (!passes(map_.bounds_32[static_cast<std::size_t>(y * per_side_32 + x)], tile.segments, under_32)) continue;
+    const auto& bounds_32 = map_.bounds_32[static_cast<std::size_t>(y * per_side_32 + x)];
+    if (planes.leave_out(bounds_32) || !passes(bounds_32, tile.segments, under_32)) continue;
     for (int k = 0; k < 16; ++k) {
       const int block_x = x * 4 + k % 4, block_y = y * 4 + k / 4;
       const auto slot = map_.slot_of_block[static_cast<std::size_t>(block_y * map_.blocks_per_side + block_x)];
       if (slot == mesh::kNoSlot) continue;
       // Under a large tool most blocks are taken by the sixteen: to test each costs as much as to paint it.
-      if (!under_32.all_of_it && !passes(map_.bounds_8[slot], under_32.segments, under_block)) continue;
+      if (!under_32.all_of_it &&
+          (planes.leave_out(map_.bounds_8[slot]) || !passes(map_.bounds_8[slot], under_32.segments, under_block)))
+        continue;
       const Under& under = under_32.all_of_it ? under_32 : under_block;
       const auto place = static_cast<std::uint32_t>((block_x & 15) | (block_y & 15) << 4);
       candidates.blocks.push_back({slot, tile.address, place, list_of(under.segments, candidates),
