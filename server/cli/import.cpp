@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -5,6 +7,7 @@
 #include "cli/open_database.h"
 #include "cli/progress_line.h"
 #include "cli/remote_import.h"
+#include "jobs/companions.h"
 #include "jobs/import_job.h"
 
 namespace strata::cli {
@@ -25,6 +28,34 @@ Result<std::string> import_locally(store::Store& store, const jobs::ImportReques
   return to_json(*model, project->slug).dump(2);
 }
 
+// One list of files a model. The files that a mesh names come with it by themselves; others that are given belong to the one
+// mesh (or archive) that is given with them.
+Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(const std::vector<std::string>& paths) {
+  std::vector<std::vector<jobs::ImportFile>> scans;
+  std::vector<std::filesystem::path> others;
+  for (const std::filesystem::path path : paths) {
+    if (!std::filesystem::is_regular_file(path)) return fail(400, "No such file", path.string());
+    if (mesh::input_kind(path.filename().string()) == mesh::InputKind::companion && paths.size() > 1)
+      others.push_back(path);
+    else
+      scans.push_back(jobs::with_companions(path));
+  }
+  for (const auto& path : others) {
+    const auto has = [&](const auto& files) {
+      return std::ranges::any_of(files, [&](const auto& file) {
+        std::error_code error;
+        return std::filesystem::equivalent(file.path, path, error);
+      });
+    };
+    if (std::ranges::any_of(scans, has)) continue;
+    if (scans.size() != 1)
+      return fail(400, "Whose file is this?",
+                  path.string() + " is named by none of the scans. Import the scan that it belongs to on its own.");
+    scans[0].push_back({path.filename().string(), path});
+  }
+  return scans;
+}
+
 int run(const ImportOptions& options) {
   std::unique_ptr<OpenDatabase> database;
   if (options.server.empty()) {
@@ -32,11 +63,12 @@ int run(const ImportOptions& options) {
     if (!opened) return report(opened.error());
     database = std::move(*opened);
   }
-  for (const auto& file : options.files) {
+  auto scans = group_scans(options.files);
+  if (!scans) return report(scans.error());
+  for (const auto& files : *scans) {
     jobs::ImportRequest request = options.request;
-    request.files = {{std::filesystem::path(file).filename().string(), file}};
+    request.files = files;
     if (!options.unit.empty()) request.unit = parse_unit(options.unit);
-    if (!std::filesystem::is_regular_file(file)) return report({400, "No such file", file, {}});
     if (auto good = jobs::check(request); !good) return report(good.error());
     Progress progress;
     auto model = [&] {
@@ -45,7 +77,7 @@ int run(const ImportOptions& options) {
                       : import_remotely(options.server, options.token, request, progress);
     }();
     if (!model) {
-      std::cerr << file << ": ";
+      std::cerr << files[0].path.string() << ": ";
       return report(model.error());
     }
     std::cout << *model << std::endl;
@@ -56,10 +88,13 @@ int run(const ImportOptions& options) {
 }  // namespace
 
 Command add_import(CLI::App& app) {
-  auto* command = app.add_subcommand("import", "Bring scans in: PLY or OBJ; the model as JSON on stdout");
+  auto* command = app.add_subcommand("import", "Bring scans in; the models as JSON on stdout");
   auto options = std::make_shared<ImportOptions>();
   add_data_options(*command, options->data);
-  command->add_option("files", options->files, "PLY or OBJ files")->required();
+  command
+      ->add_option("files", options->files,
+                   "Scans: PLY, OBJ, STL, glTF, GLB or a zip; material and picture files that they name come with them")
+      ->required();
   command->add_option("--name", options->request.name, "Name of the model (default: the file's name)");
   command->add_option("--project", options->request.project, "Project it belongs to")->capture_default_str();
   command->add_option("--unit", options->unit, "Unit of the coordinates")->check(CLI::IsMember({"mm", "cm", "m"}));

@@ -57,31 +57,47 @@ class Client {
     headers_.reset(curl_slist_append(nullptr, ("Authorization: Bearer " + token).c_str()));
     curl_slist_append(headers_.get(), "Content-Type: application/octet-stream");
     curl_slist_append(headers_.get(), "Expect:");
+    form_headers_.reset(curl_slist_append(nullptr, ("Authorization: Bearer " + token).c_str()));  // curl names the type
+    curl_slist_append(form_headers_.get(), "Expect:");
   }
 
   Result<Reply> get(const std::string& path) {
     curl_easy_reset(curl_.get());
-    return perform(path);
+    return perform(path, headers_.get());
   }
 
-  // Streams a file as the body; progress is the share uploaded.
-  Result<Reply> post_file(const std::string& path, const std::filesystem::path& file, Progress& progress) {
+  // Streams the files, one as the body, several as a form; progress is the share uploaded.
+  Result<Reply> post_files(const std::string& path, const std::vector<jobs::ImportFile>& files, Progress& progress) {
     curl_easy_reset(curl_.get());
-    std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
-    if (!in) return fail(400, "File cannot be read", file.string());
-    curl_easy_setopt(curl_.get(), CURLOPT_POST, 1L);
-    curl_easy_setopt(curl_.get(), CURLOPT_READDATA, in.get());
-    curl_easy_setopt(curl_.get(), CURLOPT_POSTFIELDSIZE_LARGE,
-                     static_cast<curl_off_t>(std::filesystem::file_size(file)));
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> in{nullptr, &std::fclose};
+    std::unique_ptr<curl_mime, void (*)(curl_mime*)> form{nullptr, &curl_mime_free};
+    if (files.size() == 1) {
+      in.reset(std::fopen(files[0].path.c_str(), "rb"));
+      if (!in) return fail(400, "File cannot be read", files[0].path.string());
+      curl_easy_setopt(curl_.get(), CURLOPT_POST, 1L);
+      curl_easy_setopt(curl_.get(), CURLOPT_READDATA, in.get());
+      curl_easy_setopt(curl_.get(), CURLOPT_POSTFIELDSIZE_LARGE,
+                       static_cast<curl_off_t>(std::filesystem::file_size(files[0].path)));
+    } else {
+      form.reset(curl_mime_init(curl_.get()));
+      for (const jobs::ImportFile& file : files) {
+        curl_mimepart* part = curl_mime_addpart(form.get());
+        curl_mime_name(part, "files");
+        if (curl_mime_filedata(part, file.path.c_str()) != CURLE_OK)
+          return fail(400, "File cannot be read", file.path.string());
+        curl_mime_filename(part, file.filename.c_str());
+      }
+      curl_easy_setopt(curl_.get(), CURLOPT_MIMEPOST, form.get());
+    }
     curl_easy_setopt(curl_.get(), CURLOPT_NOPROGRESS, 0L);
     curl_easy_setopt(curl_.get(), CURLOPT_XFERINFODATA, &progress);
     curl_easy_setopt(
         curl_.get(), CURLOPT_XFERINFOFUNCTION, +[](void* p, curl_off_t, curl_off_t, curl_off_t total, curl_off_t now) {
           auto& watched = *static_cast<Progress*>(p);
-          if (total > 0) watched.report(double(now) / double(total), "Sending the file");
+          if (total > 0) watched.report(double(now) / double(total), "Sending the files");
           return watched.cancelled() ? 1 : 0;
         });
-    return perform(path);
+    return perform(path, form ? form_headers_.get() : headers_.get());
   }
 
   std::string escape(const std::string& text) {
@@ -91,10 +107,10 @@ class Client {
   }
 
  private:
-  Result<Reply> perform(const std::string& path) {
+  Result<Reply> perform(const std::string& path, curl_slist* headers) {
     Reply reply;
     curl_easy_setopt(curl_.get(), CURLOPT_URL, (base_ + path).c_str());
-    curl_easy_setopt(curl_.get(), CURLOPT_HTTPHEADER, headers_.get());
+    curl_easy_setopt(curl_.get(), CURLOPT_HTTPHEADER, headers);
     curl_easy_setopt(curl_.get(), CURLOPT_WRITEFUNCTION, &collect);
     curl_easy_setopt(curl_.get(), CURLOPT_WRITEDATA, &reply.body);
     const CURLcode code = curl_easy_perform(curl_.get());
@@ -111,6 +127,7 @@ class Client {
   std::string base_;
   std::unique_ptr<CURL, void (*)(CURL*)> curl_{nullptr, &curl_easy_cleanup};
   std::unique_ptr<curl_slist, void (*)(curl_slist*)> headers_{nullptr, &curl_slist_free_all};
+  std::unique_ptr<curl_slist, void (*)(curl_slist*)> form_headers_{nullptr, &curl_slist_free_all};
 };
 
 std::string import_path(Client& client, const jobs::ImportRequest& request) {
@@ -133,7 +150,7 @@ std::string import_path(Client& client, const jobs::ImportRequest& request) {
 Result<std::string> import_remotely(const std::string& server_url, const std::string& token,
                                     const jobs::ImportRequest& request, Progress& progress) {
   Client client(server_url, token);
-  auto posted = client.post_file(import_path(client, request), request.files[0].path, progress);
+  auto posted = client.post_files(import_path(client, request), request.files, progress);
   if (!posted) return tl::unexpected(posted.error());
   const auto accepted = object_in(*posted, {"id"});
   if (!accepted) return tl::unexpected(accepted.error());

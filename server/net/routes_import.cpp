@@ -85,23 +85,30 @@ Result<Response> start_import(const RouteContext& context, JobBook& book, const 
   if (*known) return std::move(job_response(context, **known).with("Idempotency-Replayed", "true"));
   auto asked = import_request(context, request);
   if (!asked) return tl::unexpected(asked.error());
-  auto upload = take_upload(request, context.options.upload_dir);
-  if (!upload) return tl::unexpected(upload.error());
-  auto file = keep_upload(request, upload->file, context.options.upload_dir);
-  if (!file) return tl::unexpected(file.error());
-  if (asked->files[0].filename.empty()) asked->files[0].filename = upload->filename;
+  auto uploads = take_upload(request, context.options.upload_dir);
+  if (!uploads) return tl::unexpected(uploads.error());
+  std::vector<std::shared_ptr<TemporaryFile>> kept;
+  const std::string named = asked->files[0].filename;
+  asked->files.clear();
+  for (const Upload& upload : *uploads) {
+    auto file = keep_upload(request, upload.file, context.options.upload_dir);
+    if (!file) return tl::unexpected(file.error());
+    kept.push_back(std::move(*file));
+    asked->files.push_back({upload.filename, kept.back()->path()});
+  }
+  // One file goes by the name that the query gives it, whatever a form calls it.
+  if (asked->files.size() == 1 && !named.empty()) asked->files[0].filename = named;
   if (auto good = jobs::check(*asked); !good) return tl::unexpected(good.error());
-  asked->files[0].path = (*file)->path();
 
   const store::FirstAnswer<Model> answer{scoped_key(request), [print = fingerprint(request)](const Model& model) {
                                            return nlohmann::json{{"request", print}, {"model", model.id}};
                                          }};
-  auto job = context.jobs.add(
-      [&store = context.store, asked = *asked, file = *file, answer](Progress& progress) -> Result<jobs::JobResult> {
-        auto model = jobs::import_model(store, asked, progress, answer);
-        if (!model) return tl::unexpected(model.error());
-        return model->id;
-      });
+  auto job = context.jobs.add([&store = context.store, asked = *asked, kept = std::move(kept),
+                               answer](Progress& progress) -> Result<jobs::JobResult> {
+    auto model = jobs::import_model(store, asked, progress, answer);
+    if (!model) return tl::unexpected(model.error());
+    return model->id;
+  });
   if (!job) return tl::unexpected(job.error());
   book.started(request, *job);
   return job_response(context, *job);

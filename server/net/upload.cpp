@@ -13,7 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kAccepted =
-    "Send one PLY or OBJ file as the body, or as the only file of a multipart/form-data form.";
+    "Send the scan as the body (PLY, OBJ, STL, glTF, GLB, or a zip of one scan with its textures), or the mesh and its "
+    "material and picture files together in a multipart/form-data form.";
 
 // std::string_view::find is too slow for gigabytes; memmem is vectorised.
 std::size_t find(std::string_view text, std::string_view what, std::size_t from) {
@@ -39,13 +40,32 @@ std::string parameter(std::string_view header, std::string_view name) {
   return {};
 }
 
-bool is_archive(std::string_view start) { return start.starts_with("PK\x03\x04") || start.starts_with("PK\x05\x06"); }
-
-tl::unexpected<Problem> archive_refused() {
-  return fail(415, "Archives are not taken", std::string("Unpack it first. ") + kAccepted, "body");
+// Folders that the sender names are kept: files of one scan call each other by them. Nothing leads out of them.
+std::string relative_filename(std::string_view name) {
+  std::string path;
+  for (std::string part; !name.empty();) {
+    const auto end = std::min(name.find_first_of("/\\"), name.size());
+    part = jobs::base_filename(name.substr(0, end));
+    const bool names_a_folder = !part.empty() && part != "." && part != ".." && !part.ends_with(':');
+    if (names_a_folder) path += (path.empty() ? "" : "/") + part;
+    name.remove_prefix(std::min(end + 1, name.size()));
+  }
+  return path;
 }
 
-Result<Upload> take_part(const Request& request, std::string_view body, const fs::path& folder) {
+Result<Upload> keep_part(std::string_view name, std::string_view content, const fs::path& folder) {
+  Upload upload{folder / (to_string(random_uuid()) + ".part"), relative_filename(name)};
+  std::ofstream out(upload.file, std::ios::binary);
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+  out.close();
+  if (out) return upload;
+  std::error_code ignored;
+  fs::remove(upload.file, ignored);
+  return fail(507, "Disk full", "The upload could not be stored on the server's disk.");
+}
+
+Result<void> take_parts(const Request& request, std::string_view body, const fs::path& folder,
+                        std::vector<Upload>& uploads) {
   auto malformed = [] {
     return fail(400, "Malformed form", "The multipart/form-data body does not follow its boundary.", "body");
   };
@@ -53,10 +73,7 @@ Result<Upload> take_part(const Request& request, std::string_view body, const fs
   if (boundary.size() < 3 || boundary.size() > 74) return malformed();
   const std::string separator = "\r\n" + boundary;
   if (!body.starts_with(boundary)) return malformed();
-  Upload upload;
-  std::string_view content;
   std::size_t at = boundary.size();
-  bool found = false;
   while (!body.substr(at).starts_with("--")) {
     if (body.substr(at, 2) != "\r\n") return malformed();
     const auto headers_end = find(body, "\r\n\r\n", at);
@@ -66,40 +83,48 @@ Result<Upload> take_part(const Request& request, std::string_view body, const fs
     // The search starts at the blank line's own line break: an empty part ends right there.
     const auto content_end = find(body, separator, content_begin - 2);
     if (content_end == std::string_view::npos) return malformed();
-    const std::string name = parameter(headers, "filename");
-    if (!name.empty()) {
-      if (found) return fail(415, "More than one file", kAccepted, "body");
-      found = true;
-      upload.filename = jobs::base_filename(name);
-      content =
-          content_end > content_begin ? body.substr(content_begin, content_end - content_begin) : std::string_view();
-    }
     at = content_end + separator.size();
+    const std::string name = parameter(headers, "filename");
+    if (name.empty()) continue;  // a field of the form
+    if (uploads.size() >= kMostUploadFiles)
+      return fail(413, "Too many files",
+                  "A scan has at most " + std::to_string(kMostUploadFiles) + " files; send it as a zip.", "body");
+    auto upload = keep_part(
+        name,
+        content_end > content_begin ? body.substr(content_begin, content_end - content_begin) : std::string_view(),
+        folder);
+    if (!upload) return tl::unexpected(upload.error());
+    for (const Upload& other : uploads)
+      if (other.filename == upload->filename) {
+        uploads.push_back(std::move(*upload));
+        return fail(422, "File sent twice", "The form holds two files named " + other.filename + ".", "body");
+      }
+    uploads.push_back(std::move(*upload));
   }
-  if (!found) return fail(415, "No file in the form", kAccepted, "body");
-  if (is_archive(content)) return archive_refused();
-  upload.file = folder / (to_string(random_uuid()) + ".part");
-  std::ofstream out(upload.file, std::ios::binary);
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  out.close();
-  if (!out) {
-    std::error_code ignored;
-    fs::remove(upload.file, ignored);
-    return fail(507, "Disk full", "The upload could not be stored on the server's disk.");
-  }
-  return upload;
+  if (uploads.empty()) return fail(415, "No file in the form", kAccepted, "body");
+  return {};
 }
 
 }  // namespace
 
-Result<Upload> take_upload(const Request& request, const fs::path& folder) {
+Result<std::vector<Upload>> take_upload(const Request& request, const fs::path& folder) {
   const auto mapped = MappedFile::open(request.body_file);
   if (!mapped || mapped->view().empty()) return fail(400, "Empty body", kAccepted, "body");
   const std::string type = to_lower(request.header("content-type"));
-  if (type.starts_with("multipart/form-data")) return take_part(request, mapped->view(), folder);
+  std::vector<Upload> uploads;
+  if (type.starts_with("multipart/form-data")) {
+    if (auto taken = take_parts(request, mapped->view(), folder, uploads); !taken) {
+      std::error_code ignored;
+      for (const Upload& upload : uploads) fs::remove(upload.file, ignored);
+      return tl::unexpected(taken.error());
+    }
+    return uploads;
+  }
   if (type.starts_with("multipart/")) return fail(415, "Form not understood", kAccepted, "Content-Type");
-  if (is_archive(mapped->view())) return archive_refused();
-  return Upload{request.body_file, jobs::base_filename(parameter(request.header("content-disposition"), "filename"))};
+  std::string name = jobs::base_filename(parameter(request.header("content-disposition"), "filename"));
+  if (name.empty() && type.starts_with("application/zip")) name = "scan.zip";
+  uploads.push_back({request.body_file, std::move(name)});
+  return uploads;
 }
 
 }  // namespace strata::net

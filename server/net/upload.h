@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "net/http_types.h"
 
@@ -9,11 +10,13 @@ namespace strata::net {
 
 struct Upload {
   std::filesystem::path file;
-  std::string filename;  // as the sender calls it, without folders; empty when it did not say
+  std::string filename;  // as the sender calls it, with the folders it names; empty when it did not say
 };
 
-// The file in a request whose body is in a file: the body itself, or the one file of a multipart/form-data body (cut out into a
-// file of its own in `folder`). Archives and several files are refused with what is accepted.
-Result<Upload> take_upload(const Request& request, const std::filesystem::path& folder);
+constexpr std::size_t kMostUploadFiles = 256;
+
+// The files in a request whose body is in a file: the body itself, or those of a multipart/form-data body, kMostUploadFiles at
+// most (each cut out into a file of its own in `folder`; none is left there after a Problem).
+Result<std::vector<Upload>> take_upload(const Request& request, const std::filesystem::path& folder);
 
 }  // namespace strata::net

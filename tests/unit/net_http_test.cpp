@@ -316,7 +316,8 @@ TEST(Upload, a_raw_body_is_the_file_itself) {
   const auto body = folder.write("1.body", "ply\n");
   const auto upload = take_upload(upload_of(body, "application/octet-stream"), folder.path());
   ASSERT_TRUE(upload);
-  EXPECT_EQ(upload->file, body);
+  ASSERT_EQ(upload->size(), 1u);
+  EXPECT_EQ(upload->front().file, body);
 }
 
 TEST(Upload, the_one_file_of_a_form_is_cut_out_bit_for_bit) {
@@ -329,21 +330,44 @@ TEST(Upload, the_one_file_of_a_form_is_cut_out_bit_for_bit) {
                        content + "\r\n--X--\r\n");
   const auto upload = take_upload(upload_of(body, "multipart/form-data; boundary=X"), folder.path());
   ASSERT_TRUE(upload) << upload.error().detail;
-  EXPECT_EQ(upload->filename, "pot.ply");
-  EXPECT_EQ(text_of(upload->file), content);
+  ASSERT_EQ(upload->size(), 1u);
+  EXPECT_EQ(upload->front().filename, "scans/pot.ply");
+  EXPECT_EQ(text_of(upload->front().file), content);
 }
 
-TEST(Upload, archives_and_several_files_are_refused_with_what_is_taken) {
+TEST(Upload, the_files_of_a_scan_come_together_with_their_folders) {
   const Folder folder;
-  const auto zip = take_upload(upload_of(folder.write("1.body", std::string("PK\x03\x04 rest")), ""), folder.path());
-  ASSERT_FALSE(zip);
-  EXPECT_EQ(zip.error().status, 415);
-  EXPECT_NE(zip.error().detail.find("PLY"), std::string::npos);
-  const std::string part = "--X\r\nContent-Disposition: form-data; name=\"f\"; filename=\"a.obj\"\r\n\r\nv\r\n";
-  const auto two = take_upload(
-      upload_of(folder.write("2.body", part + part + "--X--\r\n"), "multipart/form-data; boundary=X"), folder.path());
-  ASSERT_FALSE(two);
-  EXPECT_EQ(two.error().status, 415);
+  const auto part = [](const std::string& name, const std::string& content) {
+    return "--X\r\nContent-Disposition: form-data; name=\"f\"; filename=\"" + name + "\"\r\n\r\n" + content + "\r\n";
+  };
+  const auto take = [&](const std::string& body) {
+    return take_upload(upload_of(folder.write("1.body", body), "multipart/form-data; boundary=X"), folder.path());
+  };
+  const auto scan =
+      take(part("scan/a.obj", "v 1") + part("scan/../tex/b.jpg", "") + part("../../c.mtl", "x") + "--X--\r\n");
+  ASSERT_TRUE(scan) << scan.error().detail;
+  ASSERT_EQ(scan->size(), 3u);
+  EXPECT_EQ((*scan)[0].filename, "scan/a.obj");
+  EXPECT_EQ((*scan)[1].filename, "scan/tex/b.jpg");
+  EXPECT_EQ(text_of((*scan)[1].file), "");
+  EXPECT_EQ((*scan)[2].filename, "c.mtl") << "nothing leads out of the upload";
+  const auto files_there = [&] {
+    return std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator());
+  };
+  const auto before = files_there();
+  EXPECT_EQ(take(part("a.obj", "1") + part("a.obj", "2") + "--X--\r\n").error().status, 422);
+  std::string many;
+  for (std::size_t i = 0; i <= kMostUploadFiles; ++i) many += part("f" + std::to_string(i), "x");
+  EXPECT_EQ(take(many + "--X--\r\n").error().status, 413);
+  EXPECT_EQ(take("--X\r\nContent-Disposition: form-data; name=\"f\"\r\n\r\nv\r\n--X--\r\n").error().status, 415);
+  EXPECT_EQ(files_there(), before) << "what was refused left nothing behind";
+}
+
+TEST(Upload, a_zip_is_known_by_its_type) {
+  const Folder folder;
+  const auto zip = take_upload(upload_of(folder.write("1.body", "PK"), "application/zip"), folder.path());
+  ASSERT_TRUE(zip);
+  EXPECT_EQ(zip->front().filename, "scan.zip");
 }
 
 TEST(Upload, broken_forms_are_refused) {
