@@ -1,5 +1,6 @@
 #include "gl/texture.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "gl/debug_messages.h"
@@ -18,6 +19,18 @@ std::size_t bytes_per_texel(GLenum format) {
 }
 
 Result<Texture> Texture::create_2d(GLenum format, int width, int height, std::string_view label) {
+  return make_2d(format, width, height, 1, label);
+}
+
+Result<Texture> Texture::create_mipmapped(GLenum format, int width, int height, int levels, std::string_view label) {
+  auto texture = make_2d(format, width, height, levels, label);
+  if (!texture) return texture;
+  glTextureParameteri(texture->id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(texture->id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  return texture;
+}
+
+Result<Texture> Texture::make_2d(GLenum format, int width, int height, int levels, std::string_view label) {
   GLuint id = 0;
   glCreateTextures(GL_TEXTURE_2D, 1, &id);
   Texture texture;
@@ -26,7 +39,8 @@ Result<Texture> Texture::create_2d(GLenum format, int width, int height, std::st
   texture.width_ = width;
   texture.height_ = height;
   texture.layers_ = 1;
-  glTextureStorage2D(id, 1, format, width, height);
+  texture.levels_ = levels;
+  glTextureStorage2D(id, levels, format, width, height);
   return finish(std::move(texture), label);
 }
 
@@ -55,8 +69,12 @@ Result<Texture> Texture::finish(Texture texture, std::string_view label) {
 }
 
 std::size_t Texture::bytes() const {
-  return bytes_per_texel(format_) * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) *
-         static_cast<std::size_t>(layers_);
+  std::size_t texels = 0;
+  for (int level = 0; level < levels_; ++level) {
+    texels += static_cast<std::size_t>(std::max(1, width_ >> level)) *
+              static_cast<std::size_t>(std::max(1, height_ >> level)) * static_cast<std::size_t>(layers_);
+  }
+  return bytes_per_texel(format_) * texels;
 }
 
 void Texture::bind_image(GLuint unit, GLenum access) const {

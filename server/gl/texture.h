@@ -8,12 +8,14 @@
 
 namespace strata::gl {
 
-// Immutable-storage 2D texture or 2D texture array with one level, nearest filter, clamped. Integer formats too.
+// Immutable-storage 2D texture or 2D texture array, clamped: with one level and nearest filter (integer formats, too), or with
+// mipmaps and filtered between texels and levels.
 class Texture {
  public:
   Texture() = default;
   // A Problem 503 when the driver has no memory for it.
   static Result<Texture> create_2d(GLenum format, int width, int height, std::string_view label);
+  static Result<Texture> create_mipmapped(GLenum format, int width, int height, int levels, std::string_view label);
   static Result<Texture> create_array(GLenum format, int width, int height, int layers, std::string_view label);
 
   GLuint id() const { return object_.id(); }
@@ -33,11 +35,12 @@ class Texture {
     static constexpr GLenum kIdentifier = GL_TEXTURE;
     static void destroy(GLuint id) { glDeleteTextures(1, &id); }
   };
+  static Result<Texture> make_2d(GLenum format, int width, int height, int levels, std::string_view label);
   static Result<Texture> finish(Texture texture, std::string_view label);
 
   Object<Traits> object_;
   GLenum format_ = GL_NONE;
-  int width_ = 0, height_ = 0, layers_ = 0;
+  int width_ = 0, height_ = 0, layers_ = 0, levels_ = 1;
 };
 
 // Bytes a texel of the sized formats used here.

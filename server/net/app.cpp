@@ -56,6 +56,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_import_routes(router_, context_);
   add_job_routes(router_, context_);
   add_layer_routes(router_, context_);
+  add_look_routes(router_, context_);
   add_edit_routes(router_, context_);
   add_query_routes(router_, context_);
   add_frame_routes(router_, context_);

@@ -92,6 +92,7 @@ void LiveSession::on(const protocol::Hello& message) {
   const Model model = room_->model();
   welcome.model = to_json(model, project_slug_);
   for (const auto& layer : room_->layers()) welcome.layers.push_back(to_json(layer));
+  for (const auto& look : room_->looks()) welcome.looks.push_back(to_json(look));
   const LiveLimits& limits = shared_->limits;
   welcome.limits.message_bytes = static_cast<int>(limits.message_bytes);
   welcome.limits.path_points = static_cast<int>(StrokeBook::kMaxPath - 1);
@@ -137,7 +138,14 @@ void LiveSession::on(const protocol::LayersUpdate& message) {
     }
     views.push_back(std::move(view));
   }
-  if (auto done = member()->layers(static_cast<std::uint32_t>(message.view_id), std::move(views)); !done)
+  room::ViewSettings settings{std::move(views), std::nullopt, message.light.value_or(Light{})};
+  if (auto lit = validate(settings.light); !lit) return refuse(lit.error(), std::string());
+  if (message.looks) {
+    auto looks = look_views(*room_, *message.looks);
+    if (!looks) return refuse(looks.error(), std::string());
+    settings.looks = std::move(*looks);
+  }
+  if (auto done = member()->show(static_cast<std::uint32_t>(message.view_id), std::move(settings)); !done)
     refuse(done.error(), std::string());
 }
 
@@ -368,6 +376,16 @@ void LiveSession::layer_changed(LayerChange change, const Layer& layer) {
                 : change == LayerChange::changed ? protocol::LayerEventEvent::changed
                                                  : protocol::LayerEventEvent::deleted;
   if (change != LayerChange::deleted) event.layer = to_json(layer);
+  send(event);
+}
+
+void LiveSession::look_changed(LayerChange change, const Look& look) {
+  protocol::LookEvent event;
+  event.look_id = look.id;
+  event.event = change == LayerChange::created   ? protocol::LookEventEvent::created
+                : change == LayerChange::changed ? protocol::LookEventEvent::changed
+                                                 : protocol::LookEventEvent::deleted;
+  if (change != LayerChange::deleted) event.look = to_json(look);
   send(event);
 }
 

@@ -72,6 +72,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void edits_unsaved(const std::vector<Edit>& edits, const Problem& why) override;
   void layer_changed(LayerChange change, const Layer& layer) override;
   void model_changed(const Model& model) override;
+  void look_changed(LayerChange change, const Look& look) override;
   void model_deleted() override;
   void presence_changed() override;
   void view_refused(std::uint32_t view_id, const Problem& why) override;

@@ -39,6 +39,7 @@ void add_model_routes(Router& router, const RouteContext& context);
 void add_import_routes(Router& router, const RouteContext& context);
 void add_job_routes(Router& router, const RouteContext& context);
 void add_layer_routes(Router& router, const RouteContext& context);
+void add_look_routes(Router& router, const RouteContext& context);
 void add_edit_routes(Router& router, const RouteContext& context);
 void add_query_routes(Router& router, const RouteContext& context);
 void add_frame_routes(Router& router, const RouteContext& context);

@@ -1,5 +1,6 @@
 #include "core/picture.h"
 #include "net/routes.h"
+#include "net/wire.h"
 
 namespace strata::net {
 namespace {
@@ -11,9 +12,11 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   if (!asked) return tl::unexpected(asked.error());
   auto room = context.rooms.open(request.param("model"));
   if (!room) return tl::unexpected(room.error());
-  std::optional<std::vector<std::string>> layers;
+  room::PictureRequest wanted;
+  wanted.camera = asked->camera;
+  wanted.at = asked->at;
   if (asked->layers) {
-    layers.emplace();
+    wanted.layers.emplace();
     for (std::size_t i = 0; i < asked->layers->size(); ++i) {
       auto layer = (*room)->layer(protocol::to_ref((*asked->layers)[i]));
       if (!layer) {
@@ -21,13 +24,20 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
         problem.field = "layers[" + std::to_string(i) + "]";
         return tl::unexpected(std::move(problem));
       }
-      layers->push_back(layer->slug);
+      wanted.layers->push_back(layer->slug);
     }
   }
   const auto sequence = (*room)->sequence();
   if (asked->at && *asked->at > sequence)
     return fail(422, "Not yet there", "The newest sequence of this model is " + std::to_string(sequence) + ".", "at");
-  auto picture = (*room)->picture(asked->camera, std::move(layers), asked->at);
+  if (asked->looks) {
+    auto looks = look_views(**room, *asked->looks);
+    if (!looks) return tl::unexpected(looks.error());
+    wanted.looks = std::move(*looks);
+  }
+  if (asked->light) wanted.light = *asked->light;
+  if (auto lit = validate(wanted.light); !lit) return tl::unexpected(lit.error());
+  auto picture = (*room)->picture(wanted);
   if (!picture) return tl::unexpected(picture.error());
   const bool is_png = asked->format == protocol::FrameRequestFormat::png;
   Response response =

@@ -107,6 +107,23 @@ room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, con
   return request;
 }
 
+Result<std::vector<room::LookView>> look_views(const room::Room& room, const std::vector<protocol::LookShown>& asked) {
+  std::vector<room::LookView> views;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const std::string field = "looks[" + std::to_string(i) + "].look";
+    auto look = room.look(protocol::to_ref(asked[i].look));
+    if (!look) {
+      Problem problem = look.error();
+      problem.field = field;
+      return tl::unexpected(std::move(problem));
+    }
+    for (const room::LookView& other : views)
+      if (other.look_id == look->id) return fail(422, "Look given twice", "A view shows each look once.", field);
+    views.push_back({look->id, asked[i].opacity});
+  }
+  return views;
+}
+
 std::optional<glm::dvec2> end_of_path(const nlohmann::json& record) {
   if (!record.is_object()) return std::nullopt;
   const auto path = record.find("path");

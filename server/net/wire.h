@@ -11,7 +11,7 @@
 #include "protocol/parse.h"
 #include "query/statistics.h"
 #include "query/values.h"
-#include "room/edit.h"
+#include "room/room.h"
 #include "store/journal.h"
 
 // Between the protocol's values and the domain's. Values outside a layer's type are refused, not clamped.
@@ -26,6 +26,9 @@ Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& 
 Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer, const Model& model);
 room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n,
                                 const std::string& user);
+
+// The looks that a view asks for; 404 or 422 with the field's name for one that is not there or comes twice.
+Result<std::vector<room::LookView>> look_views(const room::Room& room, const std::vector<protocol::LookShown>& asked);
 
 // Where the path of a stroke's batch ended, from its journal record; nothing when the record is of another kind.
 std::optional<glm::dvec2> end_of_path(const nlohmann::json& record);

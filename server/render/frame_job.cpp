@@ -95,16 +95,31 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
                   "layers");
     }
   }
+  if (auto valid = validate(request.light); !valid) return valid;
+  if (request.looks.size() > kMaxLooksShown)
+    return fail(422, "Too many looks", "A view shows at most " + std::to_string(kMaxLooksShown) + " looks.", "looks");
+  for (const LookStyle& style : request.looks) {
+    auto look = scene.look(style.look);
+    if (!look) return tl::unexpected(look.error());
+    if ((*look)->model != view.model)
+      return fail(422, "Look of another model", "A view shows looks of its own model.", "looks");
+    if (!std::isfinite(style.opacity)) return fail(422, "Opacity not finite", "An opacity is 0 to 1.", "looks");
+  }
   auto key = depth_key(view.model, request.camera, request.width, request.height);
   view.drawing = true;
+  const auto has_gbuffer = [&](const DepthKey& wanted) {
+    return view.gbuffer_complete && view.key == wanted && view.looks == request.looks && view.lighting == request.light;
+  };
   if (request.moving) {
     key.level = view.key.level;  // what there is of this camera serves
-    if (view.gbuffer_complete && view.key == key) return {};
+    if (has_gbuffer(key)) return {};
     auto level = choose_level(scene, view);
     if (!level) return tl::unexpected(level.error());
     key.level = *level;
   }
-  if (view.gbuffer_complete && view.key == key) return {};
+  if (has_gbuffer(key)) return {};
+  view.looks = request.looks;
+  view.lighting = request.light;
   return prepare_gbuffer(view, key, scene.depths(), scene.memory());
 }
 
@@ -125,8 +140,15 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
   if (!model) return tl::unexpected(model.error());
   const MeshBuffers& mesh = *(*model)->levels[static_cast<std::size_t>(view.key.level)];
   if (!progress_.cleared) mesh_begin_ = std::chrono::steady_clock::now();
-  const auto complete = scene.gbuffer_pass().draw_slice(mesh, mesh_view(task_.request.camera, mesh.geometry().origin),
-                                                        view.gbuffer, view.key.width, view.key.height, progress_);
+  auto mesh_look = mesh_view(task_.request.camera, mesh.geometry().origin, view.lighting);
+  for (std::size_t i = 0; i < view.looks.size(); ++i) {
+    auto look = scene.look(view.looks[i].look);
+    if (!look) return tl::unexpected(look.error());
+    mesh_look.looks.push_back(&(*look)->texture->texture());
+    mesh_look.uniforms.look_opacity[static_cast<glm::length_t>(i)] = std::clamp(view.looks[i].opacity, 0.0f, 1.0f);
+  }
+  const auto complete =
+      scene.gbuffer_pass().draw_slice(mesh, mesh_look, view.gbuffer, view.key.width, view.key.height, progress_);
   if (!complete || !*complete) return complete;
   view.gbuffer_complete = view.depth->complete = true;
   // A software renderer works while it is called, a GPU until the picture can be read.

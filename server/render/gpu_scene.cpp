@@ -125,6 +125,12 @@ ModelHandle GpuScene::add(Model model) {
   return handle;
 }
 
+LookHandle GpuScene::add(Look look) {
+  const LookHandle handle = next_handle();
+  looks_.emplace(handle, std::move(look));
+  return handle;
+}
+
 Result<LayerHandle> GpuScene::add_layer(ModelHandle model_handle, ValueType type, int resolution) {
   if (auto found = model(model_handle); !found) return tl::unexpected(found.error());
   if (resolution < kLowestResolution || resolution > kHighestResolution ||
@@ -168,7 +174,14 @@ Result<View*> GpuScene::view(ViewHandle handle) {
   return &found->second;
 }
 
+Result<GpuScene::Look*> GpuScene::look(LookHandle handle) {
+  const auto found = looks_.find(handle);
+  if (found == looks_.end()) return tl::unexpected(unknown("look", handle));
+  return &found->second;
+}
+
 void GpuScene::remove_model(ModelHandle handle) {
+  std::erase_if(looks_, [&](const auto& entry) { return entry.second.model == handle; });
   std::erase_if(layers_, [&](const auto& entry) { return entry.second.model == handle; });
   std::erase_if(views_, [&](const auto& entry) { return entry.second.model == handle; });
   if (depths_) depths_->forget_model(handle);

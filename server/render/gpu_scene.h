@@ -8,6 +8,7 @@
 #include "gl/egl_context.h"
 #include "render/detail_budget.h"
 #include "render/edit_pass.h"
+#include "render/look_texture.h"
 #include "render/shade_pass.h"
 #include "render/tile_reader.h"
 #include "render/view_cache.h"
@@ -26,6 +27,10 @@ class GpuScene {
   struct Layer {
     ModelHandle model = 0;
     std::unique_ptr<LayerTextures> textures;
+  };
+  struct Look {
+    ModelHandle model = 0;
+    std::unique_ptr<LookTexture> texture;
   };
 
   // `generation` goes into handles; `memory` and `messages` must outlive the scene.
@@ -54,13 +59,16 @@ class GpuScene {
   std::uint64_t next_use() { return ++uses_; }
 
   ModelHandle add(Model model);
+  LookHandle add(Look look);
   Result<LayerHandle> add_layer(ModelHandle model, ValueType type, int resolution);
   Result<ViewHandle> add_view(ModelHandle model);
   // A Problem 404 for a handle that is unknown, removed, or of another generation.
   Result<Model*> model(ModelHandle handle);
   Result<Layer*> layer(LayerHandle handle);
   Result<View*> view(ViewHandle handle);
-  void remove_model(ModelHandle handle);  // and its layers and views
+  Result<Look*> look(LookHandle handle);
+  void remove_model(ModelHandle handle);  // and its layers, looks and views
+  void remove_look(LookHandle handle) { looks_.erase(handle); }
   void remove_layer(LayerHandle handle) { layers_.erase(handle); }
   void remove_view(ViewHandle handle) { views_.erase(handle); }
 
@@ -92,6 +100,7 @@ class GpuScene {
   std::unordered_map<ModelHandle, Model> models_;
   std::unordered_map<LayerHandle, Layer> layers_;
   std::unordered_map<ViewHandle, View> views_;
+  std::unordered_map<LookHandle, Look> looks_;
 };
 
 }  // namespace strata::render

@@ -5,6 +5,22 @@
 #include <span>
 
 namespace strata::render {
+namespace {
+
+const char* light_define(LightMode mode) {
+  switch (mode) {
+    case LightMode::museum: return nullptr;
+    case LightMode::headlight: return "HEADLIGHT";
+    case LightMode::raking: return "RAKING_LIGHT";
+    case LightMode::unlit: return "UNLIT";
+  }
+  return nullptr;
+}
+
+// A plane that faces the viewer is shown in middle grey, however low the light stands.
+constexpr double kRakingOnPlane = 0.5, kMostRaking = 3;
+
+}  // namespace
 
 Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader_dir, std::size_t triangles_per_slice) {
   auto uniforms = gl::Buffer::create(sizeof(shader::MeshUniforms), gl::Buffer::Use::fixed, "mesh uniforms");
@@ -19,13 +35,17 @@ Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader
 }
 
 Result<const gl::Program*> MeshPass::program(const MeshView& view) {
-  if (const auto built = programs_.find(view.is_cut); built != programs_.end()) return &built->second;
   std::vector<std::string> defines;
   if (view.is_cut) defines.emplace_back("SECTION");
+  if (kind_ == Kind::gbuffer) {
+    if (const char* light = light_define(view.light)) defines.emplace_back(light);
+    defines.push_back("LOOKS " + std::to_string(view.looks.size()));
+  }
+  if (const auto built = programs_.find(defines); built != programs_.end()) return &built->second;
   auto program = gl::Program::load(
       shader_dir_, {"mesh.vert", kind_ == Kind::depth ? "depth_pass.frag" : "gbuffer_pass.frag"}, defines);
   if (!program) return tl::unexpected(program.error());
-  return &programs_.emplace(view.is_cut, std::move(*program)).first->second;
+  return &programs_.emplace(std::move(defines), std::move(*program)).first->second;
 }
 
 Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view, const gl::Framebuffer& target,
@@ -47,6 +67,7 @@ Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view,
   uniforms_.upload_values(0, std::span(&view.uniforms, 1));
   uniforms_.bind_uniform(0);
   (*built)->use();
+  for (std::size_t i = 0; i < view.looks.size(); ++i) view.looks[i]->bind(static_cast<GLuint>(i));
   mesh.vertex_array().bind();
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.id());
   glViewport(0, 0, width, height);
@@ -73,7 +94,7 @@ Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view,
   return progress.next_cluster == progress.clusters.size();
 }
 
-MeshView mesh_view(const Camera& camera, const glm::dvec3& origin) {
+MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& light) {
   const glm::dmat4 world_from_view = glm::inverse(camera.view);
   const auto direction = [&](const glm::dvec3& in_view) {
     return glm::vec4(glm::normalize(glm::vec3(glm::dmat3(world_from_view) * in_view)), 0);
@@ -84,6 +105,12 @@ MeshView mesh_view(const Camera& camera, const glm::dvec3& origin) {
   uniforms.eye =
       is_orthographic(camera) ? direction({0, 0, 1}) : glm::vec4(glm::vec3(eye_in_world(camera) - origin), 1);
   uniforms.key_light = direction({-0.45, 0.60, 0.75});
+  if (light.mode == LightMode::raking) {
+    const glm::dvec3 towards = glm::normalize(light.direction);
+    uniforms.key_light = direction(towards);
+    uniforms.key_light.w = static_cast<float>(std::min(kRakingOnPlane / std::max(towards.z, 1e-3), kMostRaking));
+  }
+  view.light = light.mode;
   uniforms.fill_light = direction({0.80, 0.05, 0.45});
   uniforms.up = direction({0, 1, 0.15});
   std::ranges::copy(section_in_model(camera, origin), uniforms.section);

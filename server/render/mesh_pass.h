@@ -3,12 +3,15 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "core/camera.h"
+#include "core/light.h"
 #include "gl/buffer.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
+#include "gl/texture.h"
 #include "render/mesh_buffers.h"
 #include "shared/mesh.h"
 
@@ -19,9 +22,12 @@ struct MeshView {
   shader::MeshUniforms uniforms;
   bool is_cut = false;       // by section planes
   bool is_mirrored = false;  // the camera swaps left and right: triangles that face it turn clockwise
+  // For the g-buffer.
+  LightMode light = LightMode::museum;
+  std::vector<const gl::Texture*> looks;  // bottom to top, kMaxLooks at most, with their opacity in the uniforms
 };
-// For a model whose coordinates are relative to `origin`.
-MeshView mesh_view(const Camera& camera, const glm::dvec3& origin);
+// For a model whose coordinates are relative to `origin`; without looks.
+MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& light = {});
 
 // Position in a drawing of a mesh that is done in slices.
 struct MeshProgress {
@@ -50,7 +56,7 @@ class MeshPass {
 
   Kind kind_ = Kind::depth;
   std::filesystem::path shader_dir_;
-  std::map<bool, gl::Program> programs_;  // by is_cut
+  std::map<std::vector<std::string>, gl::Program> programs_;  // by their defines
   gl::Buffer uniforms_;
   std::size_t clusters_per_slice_ = 0;
 };

@@ -155,6 +155,14 @@ void Renderer::remove_model(ModelHandle model) {
   impl_->post_removal([model](GpuScene& scene) { scene.remove_model(model); });
 }
 
+void Renderer::add_look(ModelHandle model, std::shared_ptr<const LookImage> image, Done<LookHandle> done) {
+  impl_->post(Lane::background, std::make_shared<LookUpload>(model, std::move(image), std::move(done)));
+}
+
+void Renderer::remove_look(LookHandle look) {
+  impl_->post_removal([look](GpuScene& scene) { scene.remove_look(look); });
+}
+
 void Renderer::add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map, Done<void> done) {
   impl_->post(Lane::background, std::make_shared<SurfaceMapUpload>(model, std::move(map), std::move(done)));
 }

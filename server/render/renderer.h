@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/camera.h"
+#include "core/light.h"
 #include "core/palette.h"
 #include "core/problem.h"
 #include "core/stroke.h"
@@ -16,6 +17,7 @@
 #include "core/tile_mirror.h"
 #include "mesh/geometry.h"
 #include "mesh/surface_map.h"
+#include "render/look_image.h"
 
 namespace strata::render {
 
@@ -23,6 +25,7 @@ namespace strata::render {
 using ModelHandle = std::uint64_t;
 using LayerHandle = std::uint64_t;
 using ViewHandle = std::uint64_t;
+using LookHandle = std::uint64_t;
 
 // Where strokes are painted: a compute pass, or a kernel on the CPU, which is several times faster where the GPU is a CPU.
 enum class EditPath { automatic, compute, kernel };
@@ -72,6 +75,19 @@ struct LayerStyle {  // one layer in a view, bottom to top
   float opacity = 1;
 };
 
+struct LookStyle {  // one picture of the surface in a view, bottom to top, over the colours of the vertices
+  LookHandle look = 0;
+  float opacity = 1;
+  bool operator==(const LookStyle&) const = default;
+};
+constexpr std::size_t kMaxLooksShown = 4;
+
+struct ViewStyle {  // what a view shows of its model
+  std::vector<LayerStyle> layers;
+  std::vector<LookStyle> looks;  // kMaxLooksShown at most
+  Light light;
+};
+
 struct PixelRect {
   int x = 0, y = 0, width = 0, height = 0;  // origin top left
   bool operator==(const PixelRect&) const = default;
@@ -83,6 +99,8 @@ struct FrameRequest {
   bool moving = false;        // a coarser copy of the model may be shown, so that the picture comes in time
   int width = 0, height = 0;  // pixels of the picture (the camera's window scaled to this size)
   std::vector<LayerStyle> layers;
+  std::vector<LookStyle> looks;  // kMaxLooksShown at most
+  Light light;
   // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's last frame: the
   // rectangle they cover is shaded and returned. A changed camera, size or style shades everything anyway.
   struct Box {
@@ -128,7 +146,9 @@ class Renderer {
   using Done = std::function<void(Result<T>)>;
 
   void add_model(ModelGeometry geometry, Done<ModelHandle> done);
-  void remove_model(ModelHandle model);  // and its layers, surface maps and views
+  void remove_model(ModelHandle model);  // and its layers, looks, surface maps and views
+  void add_look(ModelHandle model, std::shared_ptr<const LookImage> image, Done<LookHandle> done);
+  void remove_look(LookHandle look);
   // Needed before strokes at this resolution; baked by the caller, uploaded in slices.
   void add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map, Done<void> done);
 

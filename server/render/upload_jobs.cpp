@@ -37,6 +37,30 @@ Result<bool> ModelUpload::advance(GpuScene& scene) {
   return false;
 }
 
+Step LookUpload::step(GpuScene& scene) {
+  const auto complete = advance(scene);
+  if (!complete) {
+    abort(complete.error());
+    return Step::done;
+  }
+  if (!*complete) return Step::more;
+  done_(scene.add({model_, std::move(texture_)}));
+  return Step::done;
+}
+
+Result<bool> LookUpload::advance(GpuScene& scene) {
+  if (auto model = scene.model(model_); !model) return tl::unexpected(model.error());
+  if (!texture_) {
+    if (!image_ || image_->levels.empty())
+      return fail(422, "Look is empty", "A look needs a picture that is no larger than the GPU takes.", "look");
+    auto texture = LookTexture::create(std::move(image_), scene.info().software, scene.memory());
+    if (!texture) return tl::unexpected(texture.error());
+    texture_ = std::move(*texture);
+    return false;
+  }
+  return texture_->upload_slice();
+}
+
 Step SurfaceMapUpload::step(GpuScene& scene) {
   auto model = scene.model(model_);
   if (!model) {

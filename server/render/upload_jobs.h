@@ -22,6 +22,22 @@ class ModelUpload {
   GpuScene::Model model_;
 };
 
+class LookUpload {
+ public:
+  LookUpload(ModelHandle model, std::shared_ptr<const LookImage> image, Renderer::Done<LookHandle> done)
+      : model_(model), image_(std::move(image)), done_(std::move(done)) {}
+  Step step(GpuScene& scene);
+  void abort(const Problem& problem) { done_(tl::unexpected(problem)); }
+
+ private:
+  Result<bool> advance(GpuScene& scene);  // true when complete
+
+  const ModelHandle model_;
+  std::shared_ptr<const LookImage> image_;
+  Renderer::Done<LookHandle> done_;
+  std::unique_ptr<LookTexture> texture_;
+};
+
 class SurfaceMapUpload {
  public:
   SurfaceMapUpload(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map, Renderer::Done<void> done)

@@ -15,6 +15,8 @@ struct View {
   std::uint64_t last_used = 0;
 
   DepthKey key;
+  std::vector<LookStyle> looks;  // of the g-buffer, as is the lighting
+  Light lighting;
   bool gbuffer_complete = false;
   std::shared_ptr<DepthBuffer> depth;
   gl::Texture uv, light, picture;

@@ -29,22 +29,24 @@ RoomMember::View* RoomMember::view(std::uint32_t view_id, bool make) {
                                        [listener = listener_, view_id](const Problem& why) {
                                          if (listener) listener->view_refused(view_id, why);
                                        });
-  made.viewer->set_layers(styles(made));
+  made.viewer->set_style(style(made));
   return &made;
 }
 
-std::vector<render::LayerStyle> RoomMember::styles(const View& view) const {
-  std::vector<render::LayerStyle> styles;
+render::ViewStyle RoomMember::style(const View& view) const {
+  render::ViewStyle style;
+  style.looks = room_->look_shelf().styles(view.looks);
+  style.light = view.light;
   for (const auto& state : room_->layer_states()) {
     auto own = view.overrides.find(state.layer.id);
     const LayerView none;
     const LayerView& mine = own == view.overrides.end() ? none : own->second;
     if (!mine.visible.value_or(state.layer.visible)) continue;
     auto palette = view.palettes.find(state.layer.id);
-    styles.push_back({state.handle, palette == view.palettes.end() ? state.palette : palette->second,
-                      static_cast<float>(mine.opacity.value_or(state.layer.opacity))});
+    style.layers.push_back({state.handle, palette == view.palettes.end() ? state.palette : palette->second,
+                            static_cast<float>(mine.opacity.value_or(state.layer.opacity))});
   }
-  return styles;
+  return style;
 }
 
 void RoomMember::camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) {
@@ -52,7 +54,7 @@ void RoomMember::camera(std::uint32_t view_id, std::uint64_t seq, const Camera& 
   if (View* v = view(view_id, true)) v->viewer->set_camera(seq, camera, moving);
 }
 
-Result<void> RoomMember::layers(std::uint32_t view_id, std::vector<LayerView> layers) {
+Result<void> RoomMember::show(std::uint32_t view_id, ViewSettings settings) {
   std::lock_guard lock(mutex_);
   View* v = view(view_id, true);
   if (!v)
@@ -60,11 +62,13 @@ Result<void> RoomMember::layers(std::uint32_t view_id, std::vector<LayerView> la
                 "view_id");
   v->overrides.clear();
   v->palettes.clear();
-  for (auto& own : layers) {
+  v->looks = std::move(settings.looks);
+  v->light = settings.light;
+  for (auto& own : settings.layers) {
     if (own.palette) v->palettes[own.layer_id] = std::make_shared<const Palette>(*own.palette);
     v->overrides[own.layer_id] = std::move(own);
   }
-  v->viewer->set_layers(styles(*v));
+  v->viewer->set_style(style(*v));
   return {};
 }
 
@@ -101,12 +105,12 @@ void RoomMember::content_changed(std::int64_t layer_id, const std::optional<rend
 
 void RoomMember::styles_changed() {
   std::lock_guard lock(mutex_);
-  for (auto& [id, view] : views_) view.viewer->set_layers(styles(view));
+  for (auto& [id, view] : views_) view.viewer->set_style(style(view));
 }
 
 void RoomMember::model_changed(render::ModelHandle model) {
   std::lock_guard lock(mutex_);
-  for (auto& [id, view] : views_) view.viewer->reset_model(model, styles(view));
+  for (auto& [id, view] : views_) view.viewer->reset_model(model, style(view));
 }
 
 }  // namespace strata::room

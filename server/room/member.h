@@ -20,7 +20,7 @@ class RoomMember final : public Member {
 
   Uuid session() const override { return session_; }
   void camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) override;
-  Result<void> layers(std::uint32_t view_id, std::vector<LayerView> layers) override;
+  Result<void> show(std::uint32_t view_id, ViewSettings settings) override;
   void ack(std::uint32_t view_id, std::uint64_t frame) override;
   void pointer(std::optional<glm::dvec3> world) override;
 
@@ -37,9 +37,11 @@ class RoomMember final : public Member {
     std::shared_ptr<stream::Viewer> viewer;
     std::map<std::int64_t, LayerView> overrides;
     std::map<std::int64_t, std::shared_ptr<const Palette>> palettes;  // of overrides
+    std::optional<std::vector<LookView>> looks;
+    Light light;
   };
   View* view(std::uint32_t view_id, bool make);
-  std::vector<render::LayerStyle> styles(const View& view) const;
+  render::ViewStyle style(const View& view) const;
 
   const std::shared_ptr<OpenRoom> room_;
   const Uuid session_ = random_uuid();

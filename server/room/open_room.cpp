@@ -72,6 +72,8 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const s
   room->geometry_share_ = std::move(*share);
   auto journal = read_journal(parts.store, room->model_id_, {});
   if (!journal) return tl::unexpected(journal.error());
+  auto looks = parts.store.looks(room->model_id_);
+  if (!looks) return tl::unexpected(looks.error());
   for (LayerState& state : journal->layers) {
     const std::int64_t id = state.layer.id;
     room->layers_.emplace(id, std::move(state));
@@ -84,6 +86,15 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const s
   for (auto& [id, state] : room->layers_) state.handle = gpu->layers.at(id);
   room->model_handle_ = gpu->model;
   room->maps_->set_model(gpu->model);
+  room->look_shelf_ =
+      std::make_shared<LookShelf>(parts.store, parts.renderer, parts.workers, [weak = std::weak_ptr<OpenRoom>(room)] {
+        auto open = weak.lock();
+        if (!open) return;
+        const Strand strand = open->strand_;  // not on the GPU thread
+        boost::asio::post(strand, [open = std::move(open)] { open->sort_layers_changed(); });
+      });
+  room->look_shelf_->set_model(gpu->model);
+  for (const Look& look : *looks) room->look_shelf_->put(look);
   room->sequence_ = room->durable_ = journal->last_sequence;
   room->pipeline_ =
       std::make_shared<EditPipeline>(EditPipeline::Parts{parts.store, parts.writer, parts.renderer, parts.workers,
@@ -244,6 +255,42 @@ Result<Model> OpenRoom::update_model(Model model, const store::FirstAnswer<Model
   return updated;
 }
 
+Result<Look> OpenRoom::look(const std::string& ref) const {
+  if (auto look = look_shelf_->find(ref)) return *look;
+  return fail(404, "No such look", "This model has no look \"" + ref + "\".", "look");
+}
+
+Result<Look> OpenRoom::create_look(Look look, std::span<const std::uint8_t> picture,
+                                   const store::FirstAnswer<Look>& answer) {
+  look.model_id = model_id_;
+  auto created = parts_.store.create_look(look, picture, answer);
+  if (!created) return created;
+  look_shelf_->put(*created);
+  tell_look(Listener::LayerChange::created, *created);
+  return created;
+}
+
+Result<Look> OpenRoom::update_look(const Look& look, const store::FirstAnswer<Look>& answer) {
+  auto updated = parts_.store.update_look(look, answer);
+  if (!updated) return updated;
+  look_shelf_->put(*updated);
+  tell_look(Listener::LayerChange::changed, *updated);
+  return updated;
+}
+
+Result<void> OpenRoom::delete_look(std::int64_t id, const store::FirstAnswer<>& answer) {
+  const auto known = look_shelf_->find(std::to_string(id));
+  if (auto deleted = parts_.store.delete_look(id, answer); !deleted) return deleted;
+  look_shelf_->drop(id);
+  if (known) tell_look(Listener::LayerChange::deleted, *known);
+  return {};
+}
+
+void OpenRoom::tell_look(Listener::LayerChange change, const Look& look) {
+  on_strand([&] { tell([&](Listener& l) { l.look_changed(change, look); }); });
+  sort_layers_changed();
+}
+
 void OpenRoom::sort_layers_changed() {
   std::lock_guard lock(members_mutex_);
   for (RoomMember* member : members_) member->styles_changed();
@@ -370,6 +417,7 @@ bool OpenRoom::deserted(std::chrono::steady_clock::time_point now) const {
 
 void OpenRoom::shut(const Problem& why) {
   maps_->stop();
+  look_shelf_->stop();
   on_strand([&] {
     recovery_.shut = true;
     recovery_.timer.cancel();

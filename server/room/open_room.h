@@ -8,6 +8,7 @@
 
 #include "room/contents.h"
 #include "room/edit_pipeline.h"
+#include "room/look_shelf.h"
 #include "room/member.h"
 #include "room/room.h"
 
@@ -56,8 +57,13 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   std::shared_ptr<const mesh::Geometry> geometry() const override { return geometry_; }
   std::shared_ptr<const mesh::SearchTree> search_tree() override;
   Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution) override;
-  Result<render::Frame> picture(const Camera& camera, std::optional<std::vector<std::string>> layers,
-                                std::optional<std::int64_t> at) override;
+  Result<render::Frame> picture(const PictureRequest& request) override;
+  std::vector<Look> looks() const override { return look_shelf_->all(); }
+  Result<Look> look(const std::string& ref) const override;
+  Result<Look> create_look(Look look, std::span<const std::uint8_t> picture,
+                           const store::FirstAnswer<Look>& answer) override;
+  Result<Look> update_look(const Look& look, const store::FirstAnswer<Look>& answer) override;
+  Result<void> delete_look(std::int64_t id, const store::FirstAnswer<>& answer) override;
 
   // --- PipelineHost (on the strand)
   LayerState* find_layer(std::int64_t id) override;
@@ -74,6 +80,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   // --- for members
   stream::StreamContext stream_context() const { return parts_.stream; }
   render::ModelHandle model_handle() const;
+  LookShelf& look_shelf() const { return *look_shelf_; }
   std::vector<LayerState> layer_states() const;  // in drawing order
   std::optional<LayerState> layer_state(std::int64_t id) const;
   void leave(RoomMember* member);
@@ -106,6 +113,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void retry_recovery(const Problem& why);
   void sort_layers_changed();
   std::uint64_t mirror_bytes() const;  // with `mutex_` held
+  void tell_look(Listener::LayerChange change, const Look& look);
   Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs) const;
   Result<LayerState> state(const std::string& ref) const;
 
@@ -115,6 +123,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   const std::vector<std::shared_ptr<const mesh::Geometry>> coarser_;  // copies of it, for moving cameras
   const Strand strand_;
   const std::shared_ptr<SurfaceMaps> maps_;
+  std::shared_ptr<LookShelf> look_shelf_;
   std::shared_ptr<EditPipeline> pipeline_;
 
   // Changed on the strand, under `mutex_`; so read on the strand without it, and elsewhere under it.

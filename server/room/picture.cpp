@@ -19,12 +19,11 @@ struct Borrowed {
 
 }  // namespace
 
-Result<render::Frame> OpenRoom::picture(const Camera& camera, std::optional<std::vector<std::string>> layers,
-                                        std::optional<std::int64_t> at) {
+Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
   touch();
   std::vector<LayerState> shown;
-  if (layers) {
-    for (const auto& ref : *layers) {
+  if (asked.layers) {
+    for (const auto& ref : *asked.layers) {
       auto found = state(ref);
       if (!found) return tl::unexpected(found.error());
       shown.push_back(std::move(*found));
@@ -33,7 +32,7 @@ Result<render::Frame> OpenRoom::picture(const Camera& camera, std::optional<std:
     for (auto& candidate : layer_states())
       if (candidate.layer.visible) shown.push_back(std::move(candidate));
   }
-  if (at && *at > durable_)
+  if (asked.at && *asked.at > durable_)
     return fail(422, "Sequence not reached",
                 "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
 
@@ -42,8 +41,8 @@ Result<render::Frame> OpenRoom::picture(const Camera& camera, std::optional<std:
   render::FrameRequest request;
   for (const auto& item : shown) {
     render::LayerHandle handle = item.handle;
-    if (at) {
-      auto past = parts_.store.load_tiles(item.layer, at);
+    if (asked.at) {
+      auto past = parts_.store.load_tiles(item.layer, asked.at);
       if (!past) return tl::unexpected(past.error());
       auto copy = add_layer(parts_.renderer, model, item.layer, past->tiles);
       if (!copy) return tl::unexpected(gpu_problem(copy.error()));
@@ -55,9 +54,13 @@ Result<render::Frame> OpenRoom::picture(const Camera& camera, std::optional<std:
   auto view = await<render::ViewHandle>([&](auto done) { parts_.renderer.add_view(model, std::move(done)); });
   if (!view) return tl::unexpected(gpu_problem(view.error()));
   borrowed.view = request.view = *view;
-  request.camera = camera;
-  request.width = camera.width;
-  request.height = camera.height;
+  request.camera = asked.camera;
+  request.width = asked.camera.width;
+  request.height = asked.camera.height;
+  auto looks = look_shelf_->wait(asked.looks);
+  if (!looks) return tl::unexpected(gpu_problem(looks.error()));
+  request.looks = std::move(*looks);
+  request.light = asked.light;
   auto frame = await<render::Frame>([&](auto done) { parts_.renderer.draw(std::move(request), std::move(done)); });
   if (!frame) return tl::unexpected(gpu_problem(frame.error()));
   return frame;

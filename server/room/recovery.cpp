@@ -112,6 +112,7 @@ void OpenRoom::on_gpu_filled(int losses_before, const Result<GpuContents>& conte
     for (auto& [id, state] : layers_) state.handle = contents->layers.at(id);
   }
   maps_->set_model(contents->model);
+  look_shelf_->set_model(contents->model);
   pipeline_->gpu_filled();
   {
     std::lock_guard lock(members_mutex_);

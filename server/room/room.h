@@ -32,6 +32,7 @@ class Listener {
   virtual void edits_unsaved(const std::vector<Edit>& edits, const Problem& why) = 0;  // rolled back
   enum class LayerChange { created, changed, deleted };
   virtual void layer_changed(LayerChange change, const Layer& layer) = 0;
+  virtual void look_changed(LayerChange change, const Look& look) = 0;
   virtual void model_changed(const Model& model) = 0;
   virtual void model_deleted() = 0;  // nothing else follows
   virtual void presence_changed() = 0;
@@ -45,6 +46,18 @@ struct LayerView {
   std::optional<bool> visible;
   std::optional<double> opacity;
   std::optional<Palette> palette;
+};
+
+struct LookView {
+  std::int64_t look_id = 0;
+  double opacity = 1;
+};
+
+// What one person's view shows.
+struct ViewSettings {
+  std::vector<LayerView> layers;
+  std::optional<std::vector<LookView>> looks;  // bottom to top; nothing: those visible by default
+  Light light;
 };
 
 struct Presence {
@@ -63,9 +76,17 @@ class Member {
   virtual Uuid session() const = 0;
   virtual void camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) = 0;
   // Replaces everything that was set before for this view.
-  virtual Result<void> layers(std::uint32_t view_id, std::vector<LayerView> layers) = 0;
+  virtual Result<void> show(std::uint32_t view_id, ViewSettings settings) = 0;
   virtual void ack(std::uint32_t view_id, std::uint64_t frame) = 0;
   virtual void pointer(std::optional<glm::dvec3> world) = 0;
+};
+
+struct PictureRequest {
+  Camera camera;
+  std::optional<std::vector<std::string>> layers{};  // by slug; nothing: those visible by default
+  std::optional<std::vector<LookView>> looks{};      // the same
+  Light light{};
+  std::optional<std::int64_t> at{};  // layers as they were after that sequence
 };
 
 // One open model. The only place that joins store, renderer, streams and queries: keeps the order of edits, the tile mirrors,
@@ -108,10 +129,16 @@ class Room {
   virtual std::shared_ptr<const mesh::Geometry> geometry() const = 0;
   virtual std::shared_ptr<const mesh::SearchTree> search_tree() = 0;
   virtual Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution) = 0;
-  // One picture, waits for it. RGBA8, top row first. Without `layers`: those visible by default.
-  // `at`: layers as they were after that sequence.
-  virtual Result<render::Frame> picture(const Camera& camera, std::optional<std::vector<std::string>> layers,
-                                        std::optional<std::int64_t> at = {}) = 0;
+  // One picture, waits for it and for the looks it shows. RGBA8, top row first.
+  virtual Result<render::Frame> picture(const PictureRequest& request) = 0;
+
+  // Pictures of the surface. Changes block (database) and are announced to the listeners.
+  virtual std::vector<Look> looks() const = 0;  // by order
+  virtual Result<Look> look(const std::string& ref) const = 0;
+  virtual Result<Look> create_look(Look look, std::span<const std::uint8_t> picture,
+                                   const store::FirstAnswer<Look>& answer = {}) = 0;
+  virtual Result<Look> update_look(const Look& look, const store::FirstAnswer<Look>& answer = {}) = 0;
+  virtual Result<void> delete_look(std::int64_t id, const store::FirstAnswer<>& answer = {}) = 0;
 };
 
 struct RoomOptions {

@@ -56,7 +56,7 @@ struct Viewer::Impl {
 
   mutable std::mutex mutex;
   FlowControl flow;
-  std::vector<render::LayerStyle> layers;
+  render::ViewStyle style;
   render::ModelHandle model = 0;
   render::ViewHandle view = 0;
   std::uint64_t generation = 0;  // of `view`: answers about older ones are void
@@ -215,10 +215,10 @@ void Viewer::wait_for_quiet() {
   });
 }
 
-void Viewer::set_layers(std::vector<render::LayerStyle> layers) {
+void Viewer::set_style(render::ViewStyle style) {
   {
     std::lock_guard lock(impl_->mutex);
-    impl_->layers = std::move(layers);
+    impl_->style = std::move(style);
     impl_->flow.on_style();
   }
   step();
@@ -248,7 +248,7 @@ void Viewer::ack(std::uint64_t frame) {
   step();
 }
 
-void Viewer::reset_model(render::ModelHandle model, std::vector<render::LayerStyle> layers) {
+void Viewer::reset_model(render::ModelHandle model, render::ViewStyle style) {
   {
     std::lock_guard lock(impl_->mutex);
     if (impl_->closed) return;
@@ -256,7 +256,7 @@ void Viewer::reset_model(render::ModelHandle model, std::vector<render::LayerSty
     if (impl_->view != 0) impl_->context.renderer->remove_view(impl_->view);
     impl_->model = model;
     impl_->view = 0;
-    impl_->layers = std::move(layers);
+    impl_->style = std::move(style);
     impl_->retry_in = kFirstRetry;
     impl_->flow.on_reset();
   }
@@ -281,7 +281,9 @@ void Viewer::step() {
     if (!next) return;
     draw = std::move(*next);
     request.view = impl_->view;
-    request.layers = impl_->layers;
+    request.layers = impl_->style.layers;
+    request.looks = impl_->style.looks;
+    request.light = impl_->style.light;
   }
   request.camera = draw.camera;
   request.changed = draw.changed;

@@ -43,13 +43,13 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   ~Viewer();
 
   void set_camera(std::uint64_t camera_seq, const Camera& camera, bool moving);
-  void set_layers(std::vector<render::LayerStyle> layers);
+  void set_style(render::ViewStyle style);
   // Model-space box that an edit changed; `sequence` is what frames drawn after this will show.
   void changed(const render::FrameRequest::Box& box, std::int64_t sequence);
   void changed_everywhere(std::int64_t sequence);
   void ack(std::uint64_t frame);
   // After a lost context: the model has a new handle; everything is drawn anew.
-  void reset_model(render::ModelHandle model, std::vector<render::LayerStyle> layers);
+  void reset_model(render::ModelHandle model, render::ViewStyle style);
   void close();  // neither `send` nor `refused` is called after it returns
 
   struct Stats {

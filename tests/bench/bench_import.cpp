@@ -21,7 +21,7 @@ render::Frame first_frame(Site& site, const std::string& model) {
   box.origin = (info.bounds_min + info.bounds_max) * 0.5;
   box.box_min = glm::vec3(info.bounds_min - box.origin);
   box.box_max = glm::vec3(info.bounds_max - box.origin);
-  return must(room->picture(look_at(box, {0.4, -1, 0.6}, 1280, 720), {}));
+  return must(room->picture({look_at(box, {0.4, -1, 0.6}, 1280, 720)}));
 }
 
 int run(const Options& options) {

@@ -25,6 +25,7 @@ class Ears : public room::Listener {
   void edits_unsaved(const std::vector<Edit>&, const Problem&) override {}
   void layer_changed(LayerChange, const Layer&) override {}
   void model_changed(const Model&) override {}
+  void look_changed(LayerChange, const Look&) override {}
   void model_deleted() override { count(deleted_); }
   void presence_changed() override { count(presence_); }
   void view_refused(std::uint32_t, const Problem&) override {}
@@ -70,7 +71,7 @@ class RoomRecovery : public RoomTest {
   // Leaves the GPU so full that no layer more can be filled, and returns one that was not; painting and viewing still work.
   Layer fill_gpu(const Layer& first) {
     EXPECT_TRUE(send(stroke(first, 5, {{320, 240}}, 20)));
-    EXPECT_TRUE(room()->picture(camera({0.3, -1, 0.4}), {}));
+    EXPECT_TRUE(room()->picture({camera({0.3, -1, 0.4})}));
     restart(renderer_->gpu_bytes_used() + (9u << 20));  // a slice of pages of four bytes takes 20 MiB
     EXPECT_TRUE(room()->statistics(first.slug));
     for (int i = 0; i < 20; ++i) {
@@ -279,13 +280,13 @@ TEST_F(RoomRecovery, an_edit_that_reaches_the_journal_behind_the_room_is_not_pai
 TEST_F(RoomRecovery, a_room_that_cannot_be_read_again_refuses_edits_until_it_can) {
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
-  const auto picture = room()->picture(camera(), {});
+  const auto picture = room()->picture({camera()});
   const auto edit = stroke(layer, 6, {{340, 240}}, 20);
   commit_behind(edit, layer, 2, true);
   const auto refused = send(edit);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, 503);
-  EXPECT_EQ(room()->picture(camera(), {})->pixels, picture->pixels);  // viewing goes on
+  EXPECT_EQ(room()->picture({camera()})->pixels, picture->pixels);  // viewing goes on
 
   execute(
       "update tile_revisions set difference = (select difference from tile_revisions where sequence = 1 limit 1) where sequence = 2");

@@ -21,7 +21,13 @@ using Variants = std::vector<std::vector<std::string>>;
 // Every program the server builds: files and the defines they are built with.
 const std::map<std::vector<std::string>, Variants> kPrograms{
     {{"mesh.vert", "depth_pass.frag"}, {{}, {"SECTION"}}},
-    {{"mesh.vert", "gbuffer_pass.frag"}, {{}, {"SECTION"}}},
+    {{"mesh.vert", "gbuffer_pass.frag"},
+     {{"LOOKS 0"},
+      {"HEADLIGHT", "LOOKS 1"},
+      {"RAKING_LIGHT", "LOOKS 4"},
+      {"UNLIT", "LOOKS 2"},
+      {"SECTION", "LOOKS 0"},
+      {"SECTION", "RAKING_LIGHT", "LOOKS 4"}}},
     {{"depth_grid_pass.comp"}, {{}}},
     {{"depth_gather_pass.comp"}, {{}}},
     {{"edit_pass.comp"}, {{"TEXEL_FORMAT r8ui"}, {"TEXEL_FORMAT r16ui"}, {"TEXEL_FORMAT r32ui"}}},

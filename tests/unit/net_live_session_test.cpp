@@ -36,7 +36,7 @@ class FakeMember final : public room::Member {
   void camera(std::uint32_t view_id, std::uint64_t seq, const Camera&, bool) override {
     cameras.emplace_back(view_id, seq);
   }
-  Result<void> layers(std::uint32_t, std::vector<room::LayerView>) override { return {}; }
+  Result<void> show(std::uint32_t, room::ViewSettings) override { return {}; }
   void ack(std::uint32_t, std::uint64_t) override {}
   void pointer(std::optional<glm::dvec3>) override {}
   std::vector<std::pair<std::uint32_t, std::uint64_t>> cameras;
@@ -97,10 +97,17 @@ class FakeRoom final : public room::Room {
   Result<TileMirror::Snapshot> tiles(const std::string&, std::optional<std::int64_t>) override {
     return TileMirror::Snapshot{};
   }
-  Result<render::Frame> picture(const Camera&, std::optional<std::vector<std::string>>,
-                                std::optional<std::int64_t>) override {
-    return render::Frame{};
+  Result<render::Frame> picture(const room::PictureRequest&) override { return render::Frame{}; }
+  std::vector<Look> looks() const override { return {look_}; }
+  Result<Look> look(const std::string& ref) const override {
+    if (ref == "uv-light" || ref == "9") return look_;
+    return fail(404, "No such look", "There is no look '" + ref + "'.");
   }
+  Result<Look> create_look(Look look, std::span<const std::uint8_t>, const store::FirstAnswer<Look>&) override {
+    return look;
+  }
+  Result<Look> update_look(const Look& look, const store::FirstAnswer<Look>&) override { return look; }
+  Result<void> delete_look(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
 
   struct Held {
     room::EditRequest request;
@@ -113,6 +120,7 @@ class FakeRoom final : public room::Room {
 
  private:
   Layer layer_;
+  const Look look_{9, 1, "UV light", "uv-light", "", "image/png", 16, 8, 100, std::string(64, 'a'), 1, false, 0, 1};
 };
 
 json camera_json() {

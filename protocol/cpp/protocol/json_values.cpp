@@ -1,9 +1,13 @@
 #include "protocol/json_values.h"
 
+#include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 
 namespace strata::protocol {
 namespace {
+
+constexpr std::array<std::string_view, 4> kLightModes{"museum", "headlight", "raking",
+                                                      "unlit"};  // in the order of LightMode
 
 template <int n>
 void read_numbers(const nlohmann::json& json, double* numbers) {
@@ -33,6 +37,15 @@ void read_core(const nlohmann::json& json, strata::Camera& value) {
   json.at("height").get_to(value.height);
   value.section.clear();
   if (const auto section = json.find("section"); section != json.end()) read_value(*section, value.section);
+}
+void read_core(const nlohmann::json& json, strata::LightMode& value) {
+  const auto found = std::ranges::find(kLightModes, json.get_ref<const std::string&>());
+  value = found == kLightModes.end() ? LightMode::museum : static_cast<LightMode>(found - kLightModes.begin());
+}
+void read_core(const nlohmann::json& json, strata::Light& value) {
+  value = {};
+  read_core(json.at("mode"), value.mode);
+  if (const auto direction = json.find("direction"); direction != json.end()) read_core(*direction, value.direction);
 }
 void read_core(const nlohmann::json& json, strata::ToolShape& value) {
   value = json.get_ref<const std::string&>() == "square" ? ToolShape::square : ToolShape::disc;
@@ -65,6 +78,10 @@ nlohmann::json write_core(const strata::Camera& value) {
                       {"height", value.height}};
   if (!value.section.empty()) json["section"] = write_value(value.section);
   return json;
+}
+nlohmann::json write_core(const strata::LightMode& value) { return kLightModes.at(static_cast<std::size_t>(value)); }
+nlohmann::json write_core(const strata::Light& value) {
+  return {{"mode", write_core(value.mode)}, {"direction", write_core(value.direction)}};
 }
 nlohmann::json write_core(const strata::ToolShape& value) { return value == ToolShape::square ? "square" : "disc"; }
 nlohmann::json write_core(const strata::ValueType& value) { return name(value); }

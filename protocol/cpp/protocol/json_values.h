@@ -11,6 +11,7 @@
 
 #include "core/camera.h"
 #include "core/layer.h"
+#include "core/light.h"
 #include "core/model.h"
 #include "core/problem.h"
 #include "core/stroke.h"
@@ -42,6 +43,8 @@ void read_core(const nlohmann::json& json, glm::dvec3& value);
 void read_core(const nlohmann::json& json, glm::dvec4& value);
 void read_core(const nlohmann::json& json, glm::dmat4& value);
 void read_core(const nlohmann::json& json, strata::Camera& value);
+void read_core(const nlohmann::json& json, strata::LightMode& value);
+void read_core(const nlohmann::json& json, strata::Light& value);
 void read_core(const nlohmann::json& json, strata::ToolShape& value);
 void read_core(const nlohmann::json& json, strata::ValueType& value);
 void read_core(const nlohmann::json& json, strata::LayerKind& value);
@@ -53,6 +56,8 @@ nlohmann::json write_core(const glm::dvec3& value);
 nlohmann::json write_core(const glm::dvec4& value);
 nlohmann::json write_core(const glm::dmat4& value);
 nlohmann::json write_core(const strata::Camera& value);
+nlohmann::json write_core(const strata::LightMode& value);
+nlohmann::json write_core(const strata::Light& value);
 nlohmann::json write_core(const strata::ToolShape& value);
 nlohmann::json write_core(const strata::ValueType& value);
 nlohmann::json write_core(const strata::LayerKind& value);

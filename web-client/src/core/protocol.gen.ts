@@ -121,6 +121,42 @@ export interface Layer {
   sequence: number;
 }
 
+/** Picture of a model's surface. On the model's texture coordinates: the colours of the scan, or others such as UV light or infrared. */
+export interface Look {
+  id: number;
+  name: string;
+  slug: string;
+  description: string;
+  media_type: "image/jpeg" | "image/png";
+  width: number;
+  height: number;
+  bytes: number;
+  sha256: string;
+  opacity: number;
+  /** Whether viewers see it at first. */
+  visible: boolean;
+  /** Blended ascending: higher is on top. */
+  order: number;
+}
+
+/** A look in a view. */
+export interface LookShown {
+  /** Id or slug. */
+  look: LayerRef;
+  /** Default: 1. */
+  opacity?: number;
+}
+
+/** Kind of light. */
+export type LightMode = "museum" | "headlight" | "raking" | "unlit";
+
+/** Light of a view. museum: soft, from above. headlight: from the eye. raking: from one side, which shows relief. unlit: the colours as they are. */
+export interface Light {
+  mode: LightMode;
+  /** Of raking light: towards the light, in the eye's axes (x right, y up, z towards the viewer). */
+  direction?: Point3;
+}
+
 /** Unit of length. */
 export type Unit = "mm" | "cm" | "m";
 
@@ -257,12 +293,16 @@ export interface LayerOverride {
   palette?: Palette;
 }
 
-/** Personal layer settings of a view. Replaces all overrides of the view; layers not listed show their defaults. */
+/** What a view shows, for this viewer. Replaces all that was said before of the view; layers not listed show their defaults. */
 export interface LayersUpdate {
   op: "layers";
   /** Default: 0. */
   view_id?: number;
   layers: LayerOverride[];
+  /** Exactly these, bottom to top, over the colours of the vertices; absent: those visible by default. */
+  looks?: LookShown[];
+  /** Absent: museum. */
+  light?: Light;
 }
 
 /** Start of a stroke. Fixes layer, value, camera and brush. Needs a value unless it erases, and one radius. */
@@ -383,6 +423,8 @@ export interface Welcome {
   role: Role;
   model: Model;
   layers: Layer[];
+  /** By order. */
+  looks: Look[];
   limits: Limits;
   /** Of this user, so that the client resends what is not in them. */
   strokes: StrokeProgress[];
@@ -427,6 +469,14 @@ export interface LayerEvent {
   layer?: Layer;
   sequence?: number;
   user?: string;
+}
+
+/** A look was created, changed or deleted. `look` is there for created and changed. */
+export interface LookEvent {
+  op: "look";
+  event: "created" | "changed" | "deleted";
+  look_id: number;
+  look?: Look;
 }
 
 /** The model's description changed, or it was deleted. `model` is there for changed. */
@@ -709,6 +759,21 @@ export interface VertexPropertyList {
   total: number;
 }
 
+/** Looks of a model, by order. */
+export interface LookList {
+  looks: Look[];
+  total: number;
+}
+
+/** Changes to a look's description and defaults. */
+export interface LookPatch {
+  name?: string;
+  description?: string;
+  opacity?: number;
+  visible?: boolean;
+  order?: number;
+}
+
 /** Changes to a layer's description and defaults. */
 export interface LayerPatch {
   name?: string;
@@ -795,6 +860,10 @@ export interface FrameRequest {
   camera: Camera;
   /** Exactly these are drawn, bottom to top; absent: those visible by default. */
   layers?: LayerRef[];
+  /** Exactly these, bottom to top; absent: those visible by default. */
+  looks?: LookShown[];
+  /** Absent: museum. */
+  light?: Light;
   /** As of this sequence; absent: now. */
   at?: number;
   /** Default: "jpeg". */
@@ -857,6 +926,7 @@ export type ServerMessage =
   | Saved
   | Unsaved
   | LayerEvent
+  | LookEvent
   | ModelEvent
   | RecordEvent
   | Presence
@@ -871,6 +941,7 @@ const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([
   "saved",
   "unsaved",
   "layer",
+  "look",
   "model",
   "record",
   "presence",

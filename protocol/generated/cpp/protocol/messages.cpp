@@ -95,6 +95,24 @@ void read(const nlohmann::json& json, LayerEventEvent& value) {
 
 nlohmann::json to_json(const LayerEventEvent& value) { return name(value); }
 
+std::string_view name(LookEventEvent value) {
+  switch (value) {
+    case LookEventEvent::created: return "created";
+    case LookEventEvent::changed: return "changed";
+    case LookEventEvent::deleted: return "deleted";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, LookEventEvent& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "created") value = LookEventEvent::created;
+  if (text == "changed") value = LookEventEvent::changed;
+  if (text == "deleted") value = LookEventEvent::deleted;
+}
+
+nlohmann::json to_json(const LookEventEvent& value) { return name(value); }
+
 std::string_view name(ModelEventEvent value) {
   switch (value) {
     case ModelEventEvent::changed: return "changed";
@@ -311,6 +329,18 @@ nlohmann::json to_json(const PalettePoint& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, LookShown& value) {
+  read_member(json, "look", value.look);
+  read_optional_member(json, "opacity", value.opacity);
+}
+
+nlohmann::json to_json(const LookShown& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "look", value.look);
+  write_member(json, "opacity", value.opacity);
+  return json;
+}
+
 void read(const nlohmann::json& json, Bounds& value) {
   read_member(json, "min", value.min);
   read_member(json, "max", value.max);
@@ -468,6 +498,8 @@ nlohmann::json to_json(const LayerOverride& value) {
 void read(const nlohmann::json& json, LayersUpdate& value) {
   read_optional_member(json, "view_id", value.view_id);
   read_member(json, "layers", value.layers);
+  read_optional_member(json, "looks", value.looks);
+  read_optional_member(json, "light", value.light);
 }
 
 nlohmann::json to_json(const LayersUpdate& value) {
@@ -475,6 +507,8 @@ nlohmann::json to_json(const LayersUpdate& value) {
   json["op"] = "layers";
   write_member(json, "view_id", value.view_id);
   write_member(json, "layers", value.layers);
+  write_optional_member(json, "looks", value.looks);
+  write_optional_member(json, "light", value.light);
   return json;
 }
 
@@ -676,6 +710,7 @@ void read(const nlohmann::json& json, Welcome& value) {
   read_member(json, "role", value.role);
   read_member(json, "model", value.model);
   read_member(json, "layers", value.layers);
+  read_member(json, "looks", value.looks);
   read_member(json, "limits", value.limits);
   read_member(json, "strokes", value.strokes);
 }
@@ -688,6 +723,7 @@ nlohmann::json to_json(const Welcome& value) {
   write_member(json, "role", value.role);
   write_member(json, "model", value.model);
   write_member(json, "layers", value.layers);
+  write_member(json, "looks", value.looks);
   write_member(json, "limits", value.limits);
   write_member(json, "strokes", value.strokes);
   return json;
@@ -764,6 +800,21 @@ nlohmann::json to_json(const LayerEvent& value) {
   write_optional_member(json, "layer", value.layer);
   write_optional_member(json, "sequence", value.sequence);
   write_optional_member(json, "user", value.user);
+  return json;
+}
+
+void read(const nlohmann::json& json, LookEvent& value) {
+  read_member(json, "event", value.event);
+  read_member(json, "look_id", value.look_id);
+  read_optional_member(json, "look", value.look);
+}
+
+nlohmann::json to_json(const LookEvent& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "look";
+  write_member(json, "event", value.event);
+  write_member(json, "look_id", value.look_id);
+  write_optional_member(json, "look", value.look);
   return json;
 }
 
@@ -1138,6 +1189,24 @@ nlohmann::json to_json(const VertexPropertyList& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, LookPatch& value) {
+  read_optional_member(json, "name", value.name);
+  read_optional_member(json, "description", value.description);
+  read_optional_member(json, "opacity", value.opacity);
+  read_optional_member(json, "visible", value.visible);
+  read_optional_member(json, "order", value.order);
+}
+
+nlohmann::json to_json(const LookPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "name", value.name);
+  write_optional_member(json, "description", value.description);
+  write_optional_member(json, "opacity", value.opacity);
+  write_optional_member(json, "visible", value.visible);
+  write_optional_member(json, "order", value.order);
+  return json;
+}
+
 void read(const nlohmann::json& json, LayerPatch& value) {
   read_optional_member(json, "name", value.name);
   read_optional_member(json, "unit", value.unit);
@@ -1298,6 +1367,8 @@ Result<void> check(const PickRequest& value, const std::string& field) {
 void read(const nlohmann::json& json, FrameRequest& value) {
   read_member(json, "camera", value.camera);
   read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "looks", value.looks);
+  read_optional_member(json, "light", value.light);
   read_optional_member(json, "at", value.at);
   read_optional_member(json, "format", value.format);
 }
@@ -1306,6 +1377,8 @@ nlohmann::json to_json(const FrameRequest& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "camera", value.camera);
   write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "looks", value.looks);
+  write_optional_member(json, "light", value.light);
   write_optional_member(json, "at", value.at);
   write_member(json, "format", value.format);
   return json;
@@ -1464,6 +1537,7 @@ std::optional<Schema> server_message_schema(std::string_view op) {
   if (op == Saved::kOp) return Schema::Saved;
   if (op == Unsaved::kOp) return Schema::Unsaved;
   if (op == LayerEvent::kOp) return Schema::LayerEvent;
+  if (op == LookEvent::kOp) return Schema::LookEvent;
   if (op == ModelEvent::kOp) return Schema::ModelEvent;
   if (op == RecordEvent::kOp) return Schema::RecordEvent;
   if (op == Presence::kOp) return Schema::Presence;
@@ -1492,6 +1566,10 @@ void read(const nlohmann::json& json, ServerMessage& value) {
   }
   if (op == LayerEvent::kOp) {
     read(json, value.emplace<LayerEvent>());
+    return;
+  }
+  if (op == LookEvent::kOp) {
+    read(json, value.emplace<LookEvent>());
     return;
   }
   if (op == ModelEvent::kOp) {

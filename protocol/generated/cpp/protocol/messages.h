@@ -13,6 +13,7 @@
 
 #include "core/camera.h"
 #include "core/layer.h"
+#include "core/light.h"
 #include "core/model.h"
 #include "core/problem.h"
 #include "core/stroke.h"
@@ -44,6 +45,10 @@ enum class Schema {
   LayerKind,
   Resolution,
   Layer,
+  Look,
+  LookShown,
+  LightMode,
+  Light,
   Unit,
   Axis,
   Bounds,
@@ -75,6 +80,7 @@ enum class Schema {
   Saved,
   Unsaved,
   LayerEvent,
+  LookEvent,
   ModelEvent,
   RecordEvent,
   PresencePointer,
@@ -102,6 +108,8 @@ enum class Schema {
   Recipe,
   VertexPropertyList,
   VertexPropertyName,
+  LookList,
+  LookPatch,
   LayerPatch,
   EditResult,
   HistoryEntry,
@@ -118,7 +126,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 92;
+constexpr int kSchemaCount = 99;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -197,6 +205,21 @@ inline constexpr Schema kSchemaOf<PalettePoint> = Schema::PalettePoint;
 using ValueType = strata::ValueType;
 
 using LayerKind = strata::LayerKind;
+
+// A look in a view.
+struct LookShown {
+  LayerRef look;  // Id or slug.
+  double opacity = 1;
+  bool operator==(const LookShown&) const = default;
+};
+void read(const nlohmann::json& json, LookShown& value);
+nlohmann::json to_json(const LookShown& value);
+template <>
+inline constexpr Schema kSchemaOf<LookShown> = Schema::LookShown;
+
+using LightMode = strata::LightMode;
+
+using Light = strata::Light;
 
 using Unit = strata::Unit;
 
@@ -341,11 +364,13 @@ nlohmann::json to_json(const LayerOverride& value);
 template <>
 inline constexpr Schema kSchemaOf<LayerOverride> = Schema::LayerOverride;
 
-// Personal layer settings of a view. Replaces all overrides of the view; layers not listed show their defaults.
+// What a view shows, for this viewer. Replaces all that was said before of the view; layers not listed show their defaults.
 struct LayersUpdate {
   static constexpr std::string_view kOp = "layers";
   int view_id = 0;
   std::vector<LayerOverride> layers;
+  std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top, over the colours of the vertices; absent: those visible by default.
+  std::optional<strata::Light> light;  // Absent: museum.
   bool operator==(const LayersUpdate&) const = default;
 };
 void read(const nlohmann::json& json, LayersUpdate& value);
@@ -512,6 +537,7 @@ struct Welcome {
   Role role{};
   nlohmann::json model;
   std::vector<nlohmann::json> layers;
+  std::vector<nlohmann::json> looks;  // By order.
   Limits limits;
   std::vector<StrokeProgress> strokes;  // Of this user, so that the client resends what is not in them.
   bool operator==(const Welcome&) const = default;
@@ -584,6 +610,24 @@ void read(const nlohmann::json& json, LayerEvent& value);
 nlohmann::json to_json(const LayerEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<LayerEvent> = Schema::LayerEvent;
+
+enum class LookEventEvent { created, changed, deleted };
+std::string_view name(LookEventEvent value);
+void read(const nlohmann::json& json, LookEventEvent& value);
+nlohmann::json to_json(const LookEventEvent& value);
+
+// A look was created, changed or deleted. `look` is there for created and changed.
+struct LookEvent {
+  static constexpr std::string_view kOp = "look";
+  LookEventEvent event{};
+  std::int64_t look_id = 0;
+  std::optional<nlohmann::json> look;
+  bool operator==(const LookEvent&) const = default;
+};
+void read(const nlohmann::json& json, LookEvent& value);
+nlohmann::json to_json(const LookEvent& value);
+template <>
+inline constexpr Schema kSchemaOf<LookEvent> = Schema::LookEvent;
 
 enum class ModelEventEvent { changed, deleted };
 std::string_view name(ModelEventEvent value);
@@ -898,6 +942,20 @@ nlohmann::json to_json(const VertexPropertyList& value);
 template <>
 inline constexpr Schema kSchemaOf<VertexPropertyList> = Schema::VertexPropertyList;
 
+// Changes to a look's description and defaults.
+struct LookPatch {
+  std::optional<std::string> name;
+  std::optional<std::string> description;
+  std::optional<double> opacity;
+  std::optional<bool> visible;
+  std::optional<int> order;
+  bool operator==(const LookPatch&) const = default;
+};
+void read(const nlohmann::json& json, LookPatch& value);
+nlohmann::json to_json(const LookPatch& value);
+template <>
+inline constexpr Schema kSchemaOf<LookPatch> = Schema::LookPatch;
+
 // Changes to a layer's description and defaults.
 struct LayerPatch {
   std::optional<std::string> name;
@@ -1039,6 +1097,8 @@ nlohmann::json to_json(const FrameRequestFormat& value);
 struct FrameRequest {
   strata::Camera camera;  // Its width × height is the size of the picture.
   std::optional<std::vector<LayerRef>> layers;  // Exactly these are drawn, bottom to top; absent: those visible by default.
+  std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top; absent: those visible by default.
+  std::optional<strata::Light> light;  // Absent: museum.
   std::optional<std::int64_t> at;  // As of this sequence; absent: now.
   FrameRequestFormat format = FrameRequestFormat::jpeg;
   bool operator==(const FrameRequest&) const = default;
@@ -1110,7 +1170,7 @@ std::optional<Schema> client_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ClientMessage& value);
 nlohmann::json to_json(const ClientMessage& value);
 
-using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, ModelEvent, RecordEvent, Presence, Picked, ProblemMessage>;
+using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ModelEvent, RecordEvent, Presence, Picked, ProblemMessage>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> server_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ServerMessage& value);

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "core/problem.h"
+
+namespace strata {
+
+// museum: a soft key light with fill and sky; headlight: from the eye; raking: from one side, which shows relief; unlit: the
+// colours as they are.
+enum class LightMode { museum, headlight, raking, unlit };
+
+struct Light {
+  LightMode mode = LightMode::museum;
+  // Of raking light: towards the light, in the eye's axes (x right, y up, z towards the viewer).
+  glm::dvec3 direction{-0.85, 0.40, 0.35};
+  bool operator==(const Light&) const = default;
+};
+
+// Refuses a direction that is none.
+Result<void> validate(const Light& light, const std::string& field = "light");
+
+}  // namespace strata

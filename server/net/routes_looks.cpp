@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <array>
+
+#include "core/mapped_file.h"
+#include "core/picture.h"
+#include "net/answer_book.h"
+#include "net/routes.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::uint64_t kLargestLook_bytes = std::uint64_t{256} << 20;
+constexpr int kThumbnailQuality = 85;
+
+Result<Look> stored_look(const RouteContext& context, const Request& request) {
+  auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  return context.store.look(model->id, request.param("look"));
+}
+
+Result<Response> list_looks(const RouteContext& context, const Request& request) {
+  auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  auto looks = context.store.looks(model->id);
+  if (!looks) return tl::unexpected(looks.error());
+  nlohmann::json list = nlohmann::json::array();
+  for (const Look& look : *looks) list.push_back(to_json(look));
+  return json_response({{"looks", list}, {"total", looks->size()}});
+}
+
+// All but the picture, from the query.
+Result<Look> new_look(const Request& request) {
+  Look look;
+  look.name = request.query_or("name", {});
+  if (look.name.empty() || look.name.size() > 200)
+    return fail(422, "Name missing", "A look has a name of 1 to 200 bytes.", "name");
+  look.description = request.query_or("description", {});
+  const std::string visible = request.query_or("visible", "false");
+  if (visible != "true" && visible != "false")
+    return fail(422, "Neither true nor false", "`visible` is true or false.", "visible");
+  look.visible = visible == "true";
+  return look;
+}
+
+Result<Response> create_look(const RouteContext& context, const Request& request) {
+  auto look = new_look(request);
+  if (!look) return tl::unexpected(look.error());
+  const auto body = MappedFile::open(request.body_file);
+  if (!body || body->bytes().empty()) return fail(400, "Empty body", "Send a JPEG or PNG picture as the body.", "body");
+  const auto picture = body->bytes();
+  // Whole, so that what cannot be shown is told now.
+  auto decoded = decode_picture(picture);
+  if (!decoded) return tl::unexpected(decoded.error());
+  look->media_type = media_type(*picture_format(picture));
+  look->width = decoded->width;
+  look->height = decoded->height;
+  decoded->rgba = {};
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  const auto looks = (*room)->looks();
+  look->order = looks.empty() ? 0 : looks.back().order + 1;
+  const auto answer = [model = (*room)->model().slug](const Look& made) {
+    return json_response(to_json(made), 201)
+        .with("Location", "/api/v1/models/" + model + "/looks/" + made.slug)
+        .with("ETag", etag_of(made.version));
+  };
+  auto created = (*room)->create_look(std::move(*look), picture, first_answer<Look>(request, answer));
+  if (!created) return tl::unexpected(created.error());
+  return answer(*created);
+}
+
+Result<Response> change_look(const RouteContext& context, const Request& request) {
+  auto asked = body_of<protocol::LookPatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto look = stored_look(context, request);
+  if (!look) return tl::unexpected(look.error());
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  if (auto fresh = check_if_match(request, look->version); !fresh) return tl::unexpected(fresh.error());
+  if (asked->name) look->name = *asked->name;
+  if (asked->description) look->description = *asked->description;
+  if (asked->opacity) look->opacity = *asked->opacity;
+  if (asked->visible) look->visible = *asked->visible;
+  if (asked->order) look->order = *asked->order;
+  const auto answer = [](const Look& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
+  auto changed = (*room)->update_look(*look, first_answer<Look>(request, answer));
+  if (!changed) return tl::unexpected(changed.error());
+  return answer(*changed);
+}
+
+Result<Response> delete_look(const RouteContext& context, const Request& request) {
+  auto look = stored_look(context, request);
+  if (!look) return tl::unexpected(look.error());
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  if (auto fresh = check_if_match(request, look->version); !fresh) return tl::unexpected(fresh.error());
+  auto gone = (*room)->delete_look(look->id, first_answer<>(request, [] { return empty_response(204); }));
+  if (!gone) return tl::unexpected(gone.error());
+  return empty_response(204);
+}
+
+// Every pixel of the small picture is the mean of those it stands for.
+Picture shrunk(const Picture& picture, int largest_side) {
+  const double scale = std::min(1.0, double(largest_side) / std::max(picture.width, picture.height));
+  Picture small;
+  small.width = std::max(1, static_cast<int>(picture.width * scale));
+  small.height = std::max(1, static_cast<int>(picture.height * scale));
+  small.rgba.reserve(std::size_t{4} * static_cast<std::size_t>(small.width) * static_cast<std::size_t>(small.height));
+  const auto edge = [](int i, int count, int of) { return static_cast<std::size_t>(std::int64_t{i} * of / count); };
+  for (int y = 0; y < small.height; ++y) {
+    for (int x = 0; x < small.width; ++x) {
+      std::array<std::uint64_t, 4> sum{};
+      std::uint64_t count = 0;
+      for (auto row = edge(y, small.height, picture.height); row < edge(y + 1, small.height, picture.height); ++row)
+        for (auto column = edge(x, small.width, picture.width); column < edge(x + 1, small.width, picture.width);
+             ++column) {
+          const std::uint8_t* pixel = &picture.rgba[4 * (row * static_cast<std::size_t>(picture.width) + column)];
+          for (std::size_t c = 0; c < 4; ++c) sum[c] += pixel[c];
+          ++count;
+        }
+      for (std::size_t c = 0; c < 4; ++c) small.rgba.push_back(static_cast<std::uint8_t>(sum[c] / count));
+    }
+  }
+  return small;
+}
+
+Result<Response> look_picture(const RouteContext& context, const Request& request) {
+  auto look = stored_look(context, request);
+  if (!look) return tl::unexpected(look.error());
+  std::optional<int> side;
+  if (const std::string text = request.query_or("thumbnail", {}); !text.empty()) {
+    auto number = parse_integer(text, 16, 1024, "thumbnail");
+    if (!number) return tl::unexpected(number.error());
+    side = static_cast<int>(*number);
+  }
+  auto bytes = context.store.look_picture(look->id);
+  if (!bytes) return tl::unexpected(bytes.error());
+  if (!side) return bytes_response(std::move(*bytes), look->media_type);
+  auto picture = decode_picture(*bytes);
+  if (!picture) return tl::unexpected(picture.error());
+  const Picture small = shrunk(*picture, *side);
+  return bytes_response(encode_jpeg(small.rgba, small.width, small.height, {kThumbnailQuality, false}), "image/jpeg");
+}
+
+}  // namespace
+
+void add_look_routes(Router& router, const RouteContext& context) {
+  const std::string looks = "/api/v1/models/{model}/looks";
+  router.add({.method = Method::get, .pattern = looks, .handler = answering([&context](const Request& request) {
+                                                         return list_looks(context, request);
+                                                       })});
+  router.add({.method = Method::post,
+              .pattern = looks,
+              .handler = answering([&context](const Request& request) { return create_look(context, request); }),
+              .role = Role::curator,
+              .query = {"name", "description", "visible"},
+              .check = [](const Request& request) -> Result<void> {
+                auto look = new_look(request);
+                return look ? Result<void>{} : tl::unexpected(look.error());
+              },
+              .body = BodyKind::file,
+              .max_body = std::min(kLargestLook_bytes, context.options.max_upload_bytes),
+              .keeps_answer = true});
+  router.add({.method = Method::get,
+              .pattern = looks + "/{look}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto look = stored_look(context, request);
+                if (!look) return tl::unexpected(look.error());
+                return with_etag(json_response(to_json(*look)), request, look->version);
+              })});
+  router.add({.method = Method::patch,
+              .pattern = looks + "/{look}",
+              .handler = answering([&context](const Request& request) { return change_look(context, request); }),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true});
+  router.add({.method = Method::remove,
+              .pattern = looks + "/{look}",
+              .handler = answering([&context](const Request& request) { return delete_look(context, request); }),
+              .role = Role::curator,
+              .keeps_answer = true});
+  router.add({.method = Method::get,
+              .pattern = looks + "/{look}/picture",
+              .handler = answering([&context](const Request& request) { return look_picture(context, request); }),
+              .query = {"thumbnail"}});
+}
+
+}  // namespace strata::net

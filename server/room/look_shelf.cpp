@@ -1,0 +1,210 @@
+#include "room/look_shelf.h"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+
+#include "core/log.h"
+#include "core/picture.h"
+#include "core/slug.h"
+#include "room/await.h"
+
+namespace strata::room {
+namespace {
+
+constexpr int kLargestSide = 8192, kSmallestSide = 512;  // texels of a look on the GPU
+
+bool is_memory_used_up(const Problem& problem) { return problem.title == "GPU memory used up"; }
+
+}  // namespace
+
+LookShelf::LookShelf(store::Store& store, render::Renderer& renderer, boost::asio::thread_pool& workers,
+                     std::function<void()> ready)
+    : store_(store), renderer_(renderer), workers_(workers), ready_(std::move(ready)) {}
+
+void LookShelf::put(const Look& look) {
+  std::lock_guard lock(mutex_);
+  slots_[look.id].look = look;
+}
+
+void LookShelf::drop(std::int64_t id) {
+  Slot gone;
+  {
+    std::lock_guard lock(mutex_);
+    const auto found = slots_.find(id);
+    if (found == slots_.end()) return;
+    gone = std::move(found->second);
+    slots_.erase(found);
+  }
+  if (gone.handle) renderer_.remove_look(gone.handle);
+  for (const Loaded& loaded : gone.waiting) loaded(fail(404, "No such look", "The look was deleted."));
+}
+
+std::vector<Look> LookShelf::all() const {
+  std::vector<Look> looks;
+  {
+    std::lock_guard lock(mutex_);
+    for (const auto& [id, slot] : slots_) looks.push_back(slot.look);
+  }
+  std::stable_sort(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.order < b.order; });
+  return looks;
+}
+
+std::optional<Look> LookShelf::find(const std::string& ref) const {
+  std::lock_guard lock(mutex_);
+  for (const auto& [id, slot] : slots_)
+    if (is_all_digits(ref) ? std::to_string(id) == ref : slot.look.slug == ref) return slot.look;
+  return std::nullopt;
+}
+
+void LookShelf::set_model(render::ModelHandle model) {
+  std::lock_guard lock(mutex_);
+  model_ = model;
+  for (auto& [id, slot] : slots_) slot.handle = 0;
+}
+
+void LookShelf::stop() {
+  std::lock_guard lock(mutex_);
+  stopped_ = true;
+}
+
+std::vector<LookView> LookShelf::shown(const std::optional<std::vector<LookView>>& wanted) const {
+  if (wanted) return *wanted;
+  std::vector<const Look*> looks;
+  for (const auto& [id, slot] : slots_)
+    if (slot.look.visible) looks.push_back(&slot.look);
+  std::stable_sort(looks.begin(), looks.end(), [](const Look* a, const Look* b) { return a->order < b->order; });
+  std::vector<LookView> shown;
+  for (std::size_t i = looks.size() - std::min(looks.size(), render::kMaxLooksShown); i < looks.size(); ++i)
+    shown.push_back({looks[i]->id, looks[i]->opacity});
+  return shown;
+}
+
+std::vector<render::LookStyle> LookShelf::styles(const std::optional<std::vector<LookView>>& wanted) {
+  std::vector<render::LookStyle> styles;
+  std::vector<std::int64_t> missing;
+  {
+    std::lock_guard lock(mutex_);
+    for (const LookView& view : shown(wanted)) {
+      const auto slot = slots_.find(view.look_id);
+      if (slot == slots_.end()) continue;
+      if (slot->second.handle)
+        styles.push_back({slot->second.handle, static_cast<float>(view.opacity)});
+      else
+        missing.push_back(view.look_id);
+    }
+  }
+  for (const std::int64_t id : missing) request(id, {});
+  return styles;
+}
+
+Result<std::vector<render::LookStyle>> LookShelf::wait(const std::optional<std::vector<LookView>>& wanted) {
+  std::vector<LookView> views;
+  {
+    std::lock_guard lock(mutex_);
+    views = shown(wanted);
+  }
+  std::vector<render::LookStyle> styles;
+  for (const LookView& view : views) {
+    auto handle = await<render::LookHandle>([&](auto done) { request(view.look_id, std::move(done)); });
+    if (!handle) return tl::unexpected(handle.error());
+    styles.push_back({*handle, static_cast<float>(view.opacity)});
+  }
+  return styles;
+}
+
+void LookShelf::request(std::int64_t id, Loaded loaded) {
+  std::optional<Result<render::LookHandle>> known;
+  {
+    std::lock_guard lock(mutex_);
+    const auto found = slots_.find(id);
+    if (stopped_ || found == slots_.end()) {
+      known = fail(404, "No such look", "This model has no such look.", "looks");
+    } else if (Slot& slot = found->second; slot.handle) {
+      known = slot.handle;
+    } else if (slot.damage) {
+      known = tl::unexpected(*slot.damage);
+    } else {
+      if (loaded) slot.waiting.push_back(std::move(loaded));
+      if (std::exchange(slot.loading, true)) return;
+    }
+  }
+  if (known) {
+    if (loaded) loaded(*known);
+    return;
+  }
+  const int gpu_side = renderer_.info().max_texture_size;
+  load(id, gpu_side > 0 ? std::min(kLargestSide, gpu_side) : kLargestSide);
+}
+
+void LookShelf::load(std::int64_t id, int largest_side) {
+  boost::asio::post(workers_, [self = shared_from_this(), id, largest_side] {
+    self->add(id, largest_side, self->read(id, largest_side));
+  });
+}
+
+Result<std::shared_ptr<const render::LookImage>> LookShelf::read(std::int64_t id, int largest_side) {
+  Bytes encoded;
+  {
+    std::lock_guard lock(mutex_);
+    if (const auto found = slots_.find(id); found != slots_.end()) encoded = found->second.encoded;
+  }
+  if (!encoded) {
+    auto bytes = store_.look_picture(id);
+    if (!bytes) return tl::unexpected(bytes.error());
+    encoded = std::make_shared<const std::vector<std::uint8_t>>(std::move(*bytes));
+    std::lock_guard lock(mutex_);
+    if (const auto found = slots_.find(id); found != slots_.end()) found->second.encoded = encoded;
+  }
+  auto picture = decode_picture(*encoded);
+  if (!picture) return tl::unexpected(picture.error());
+  return std::make_shared<const render::LookImage>(
+      render::make_look_image(std::move(picture->rgba), picture->width, picture->height, largest_side));
+}
+
+void LookShelf::add(std::int64_t id, int largest_side, const Result<std::shared_ptr<const render::LookImage>>& image) {
+  if (!image) return finish(id, tl::unexpected(image.error()));
+  render::ModelHandle model;
+  {
+    std::lock_guard lock(mutex_);
+    if (stopped_) return;
+    model = model_;
+  }
+  renderer_.add_look(model, *image,
+                     [self = shared_from_this(), id, model, largest_side](Result<render::LookHandle> handle) {
+                       self->on_added(id, model, largest_side, handle);
+                     });
+}
+
+void LookShelf::on_added(std::int64_t id, render::ModelHandle model, int largest_side,
+                         const Result<render::LookHandle>& handle) {
+  {
+    std::lock_guard lock(mutex_);
+    if (stopped_) return;
+    if (model != model_ && slots_.contains(id)) return load(id, largest_side);  // made for a context that is lost
+  }
+  if (!handle && is_memory_used_up(handle.error()) && largest_side > kSmallestSide) return load(id, largest_side / 2);
+  finish(id, handle);
+}
+
+void LookShelf::finish(std::int64_t id, const Result<render::LookHandle>& handle) {
+  std::vector<Loaded> waiting;
+  bool kept = false;
+  {
+    std::lock_guard lock(mutex_);
+    if (const auto found = slots_.find(id); found != slots_.end()) {
+      Slot& slot = found->second;
+      slot.loading = false;
+      waiting = std::exchange(slot.waiting, {});
+      if (handle)
+        slot.handle = *handle, kept = true;
+      else if (handle.error().status < 500)
+        slot.damage = handle.error();
+    }
+  }
+  if (handle && !kept) renderer_.remove_look(*handle);  // deleted meanwhile
+  if (!handle) log::warning("look " + std::to_string(id) + " cannot be shown: " + handle.error().detail);
+  for (const Loaded& loaded : waiting) loaded(handle);
+  if (kept && ready_) ready_();
+}
+
+}  // namespace strata::room

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <boost/asio/thread_pool.hpp>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/look.h"
+#include "render/renderer.h"
+#include "room/room.h"
+#include "store/store.h"
+
+namespace strata::room {
+
+// The looks of an open model. A look's texture is made when a view first shows it, on a worker, and kept while the room is open;
+// its encoded bytes are kept with it, so that it comes back after a lost context without the database. Thread-safe.
+class LookShelf : public std::enable_shared_from_this<LookShelf> {
+ public:
+  // `ready` is called, on any thread, whenever a texture that was asked for is there.
+  LookShelf(store::Store& store, render::Renderer& renderer, boost::asio::thread_pool& workers,
+            std::function<void()> ready);
+
+  void put(const Look& look);
+  void drop(std::int64_t id);
+  std::vector<Look> all() const;                           // by order
+  std::optional<Look> find(const std::string& ref) const;  // id or slug
+  // Forgets the textures, which went with the old handle; they are made again when they are asked for.
+  void set_model(render::ModelHandle model);
+  void stop();  // nothing more is loaded, and `ready` not called
+
+  // What a view is to show of `wanted` (nothing: what is visible by default, the topmost where there are too many). Textures
+  // that are not there yet are left out, and on their way.
+  std::vector<render::LookStyle> styles(const std::optional<std::vector<LookView>>& wanted);
+  // The same, once all are there. Blocks.
+  Result<std::vector<render::LookStyle>> wait(const std::optional<std::vector<LookView>>& wanted);
+
+ private:
+  using Bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
+  using Loaded = std::function<void(const Result<render::LookHandle>&)>;
+  struct Slot {
+    Look look;
+    Bytes encoded;
+    render::LookHandle handle = 0;
+    bool loading = false;
+    std::optional<Problem> damage;  // the picture cannot be shown, ever
+    std::vector<Loaded> waiting;
+  };
+  std::vector<LookView> shown(const std::optional<std::vector<LookView>>& wanted) const;  // under the mutex
+  void request(std::int64_t id, Loaded loaded);
+  void load(std::int64_t id, int largest_side);
+  Result<std::shared_ptr<const render::LookImage>> read(std::int64_t id, int largest_side);
+  void add(std::int64_t id, int largest_side, const Result<std::shared_ptr<const render::LookImage>>& image);
+  void on_added(std::int64_t id, render::ModelHandle model, int largest_side, const Result<render::LookHandle>& handle);
+  void finish(std::int64_t id, const Result<render::LookHandle>& handle);
+
+  store::Store& store_;
+  render::Renderer& renderer_;
+  boost::asio::thread_pool& workers_;
+  const std::function<void()> ready_;
+  mutable std::mutex mutex_;
+  std::map<std::int64_t, Slot> slots_;
+  render::ModelHandle model_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace strata::room

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Looks, light, sections and scans of several files, over HTTP and from the command line."""
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+import zlib
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.cameras import camera_from
+from support.meshes import bumpy_ball
+from support.strata_server import LONG_S, StrataServer
+
+M = "/models/ball"
+
+
+def png(width, height, color):
+    """A picture with the colour that `color(x, y)` gives, as (r, g, b)."""
+    rows = b"".join(b"\0" + b"".join(bytes(color(x, y)) for x in range(width)) for y in range(height))
+
+    def part(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + part(b"IHDR", head) + part(b"IDAT", zlib.compress(rows)) + part(b"IEND", b"")
+
+
+def pixels(picture):
+    """Rows of (r, g, b) of a PNG that the server made."""
+    width, height, _, kind = struct.unpack(">IIBB", picture[16:26])
+    channels = {2: 3, 6: 4}[kind]
+    at, data = 8, b""
+    while at < len(picture):
+        size, name = struct.unpack(">I4s", picture[at:at + 8])
+        if name == b"IDAT":
+            data += picture[at + 8:at + 8 + size]
+        at += size + 12
+    raw, rows, before = zlib.decompress(data), [], bytes(width * channels)
+    for y in range(height):
+        start = y * (width * channels + 1)
+        line, out = raw[start + 1:start + 1 + width * channels], bytearray(width * channels)
+        for i, value in enumerate(line):
+            a = out[i - channels] if i >= channels else 0
+            b, c = before[i], before[i - channels] if i >= channels else 0
+            p = a + b - c
+            nearest = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+            out[i] = (value + [0, a, b, (a + b) // 2, nearest][raw[start]]) & 255
+        rows.append([tuple(out[x:x + 3]) for x in range(0, len(out), channels)])
+        before = bytes(out)
+    return rows
+
+
+def frame(server, **request):
+    answer = server.ok("POST", M + "/frame", {"format": "png", **request})
+    return pixels(answer.body)
+
+
+RED = {"Content-Type": "image/png"}
+
+
+def check_looks(server, camera):
+    picture = png(64, 32, lambda x, y: (255, 0, 0))
+    assert server.get(M + "/looks").json() == {"looks": [], "total": 0}
+    made = server.ok("POST", M + "/looks?name=UV+light&description=365+nm", picture, headers={**RED, "Idempotency-Key": "uv"})
+    look = made.json()
+    assert made.status == 201 and made.headers["Location"] == f"/api/v1{M}/looks/uv-light", made
+    assert (look["width"], look["height"], look["media_type"], look["visible"]) == (64, 32, "image/png", False), look
+    again = server.ok("POST", M + "/looks?name=UV+light&description=365+nm", picture, headers={**RED, "Idempotency-Key": "uv"})
+    assert again.json()["id"] == look["id"] and server.get(M + "/looks").json()["total"] == 1
+
+    assert server.ok("GET", M + "/looks/uv-light/picture").body == picture
+    small = server.ok("GET", M + "/looks/uv-light/picture?thumbnail=16")
+    assert small.headers["Content-Type"] == "image/jpeg" and small.body[:2] == b"\xff\xd8"
+
+    center = lambda rows: rows[len(rows) // 2][len(rows[0]) // 2]
+    plain = center(frame(server, camera=camera, light={"mode": "unlit"}))
+    assert max(plain) - min(plain) < 30, "hidden until it is chosen"
+    assert center(frame(server, camera=camera, light={"mode": "unlit"}, looks=[{"look": "uv-light"}])) == (255, 0, 0)
+    half = center(frame(server, camera=camera, light={"mode": "unlit"}, looks=[{"look": look["id"], "opacity": 0.5}]))
+    assert abs(half[1] - plain[1] / 2) < 3, (half, plain)
+
+    changed = server.ok("PATCH", M + "/looks/uv-light", {"visible": True, "name": "Ultraviolet"}, headers={"If-Match": made.headers["ETag"]})
+    assert changed.json()["name"] == "Ultraviolet" and changed.json()["slug"] == "uv-light"
+    assert server.request("PATCH", M + "/looks/uv-light", {"order": 3}, headers={"If-Match": made.headers["ETag"]}).status == 412
+    assert center(frame(server, camera=camera, light={"mode": "unlit"})) == (255, 0, 0), "now everyone sees it"
+    assert center(frame(server, camera=camera, light={"mode": "unlit"}, looks=[])) == plain
+
+    for what, method, path, body, headers, status in [
+        ("no picture", "POST", M + "/looks?name=x", b"hello", RED, 415),
+        ("a picture that ends early", "POST", M + "/looks?name=x", picture[:60], RED, 422),
+        ("nothing", "POST", M + "/looks?name=x", b"", RED, 400),
+        ("no name", "POST", M + "/looks", picture, RED, 422),
+        ("neither true nor false", "POST", M + "/looks?name=x&visible=maybe", picture, RED, 422),
+        ("unknown model", "POST", "/models/none/looks?name=x", picture, RED, 404),
+        ("unknown look", "GET", M + "/looks/none", None, {}, 404),
+        ("unknown look's picture", "GET", M + "/looks/none/picture", None, {}, 404),
+        ("a thumbnail too large", "GET", M + "/looks/uv-light/picture?thumbnail=100000", None, {}, 422),
+        ("an empty change", "PATCH", M + "/looks/uv-light", {}, {}, 422),
+        ("too opaque", "PATCH", M + "/looks/uv-light", {"opacity": 2}, {}, 422),
+        ("an unknown look in a frame", "POST", M + "/frame", {"camera": camera, "looks": [{"look": "none"}]}, {}, 404),
+        ("a look twice in a frame", "POST", M + "/frame", {"camera": camera, "looks": [{"look": "uv-light"}] * 2}, {}, 422),
+        ("five looks in a frame", "POST", M + "/frame", {"camera": camera, "looks": [{"look": 1}] * 5}, {}, 422),
+        ("unknown light", "POST", M + "/frame", {"camera": camera, "light": {"mode": "disco"}}, {}, 422),
+        ("light from nowhere", "POST", M + "/frame", {"camera": camera, "light": {"mode": "raking", "direction": [0, 0, 0]}}, {}, 422),
+        ("seven planes", "POST", M + "/frame", {"camera": {**camera, "section": [[0, 0, 1, 0]] * 7}}, {}, 422),
+        ("a plane without a direction", "POST", M + "/frame", {"camera": {**camera, "section": [[0, 0, 0, 1]]}}, {}, 422),
+    ]:
+        answer = server.request(method, path, body, headers=headers)
+        assert answer.status == status, f"{what}: {answer}"
+
+    assert server.request("DELETE", M + "/looks/uv-light").status == 204
+    assert server.get(M + "/looks/uv-light").status == 404
+    assert center(frame(server, camera=camera, light={"mode": "unlit"})) == plain
+
+
+def check_raking(server, camera):
+    left, right = (frame(server, camera=camera, light={"mode": "raking", "direction": [x, 0, 0.3]}) for x in (-1, 1))
+    row = len(left) // 2
+    at = lambda rows, share: sum(rows[row][int(len(rows[0]) * share)])
+    assert at(left, 0.42) > at(left, 0.58) + 60 and at(right, 0.58) > at(right, 0.42) + 60
+
+
+def check_section(server, camera):
+    """A stroke's record holds its section: what is cut away takes no paint, and the answer is the same after a repeat."""
+    server.ok("POST", M + "/layers", {"name": "Inside", "type": "u8", "resolution": 2048})
+    cut = {**camera, "section": [[0, 1, 0, 0]]}  # keeps y above 0: the half that is away from the eye
+    stroke = {"op": "stroke", "value": 1, "camera": cut, "radius_px": 400, "path": [[320, 240]], "through": True}
+    painted = server.ok("POST", M + "/layers/inside/edits", stroke).json()
+    whole = server.ok("GET", M).json()["area_m2"]
+    assert 0.48 < painted["area_m2"] / whole < 0.52, (painted, whole)
+    seen = {**stroke, "camera": cut, "through": False, "radius_px": 40, "value": 2}
+    assert server.ok("POST", M + "/layers/inside/edits", seen).json()["texels_changed"] == 0, "a solid's inside takes no paint"
+    assert not server.ok("POST", M + "/pick", {"camera": cut, "x": 320, "y": 240}).json()["hit"]
+    hit = server.ok("POST", M + "/pick", {"camera": camera, "x": 320, "y": 240}).json()
+    assert hit["hit"] and hit["position"][1] < 0 and not hit["values"]["inside"]["valid"]
+
+
+OBJ = b"mtllib scan.mtl\nv 0 0 0\nv 90 0 0\nv 0 90 0\nv 0 0 90\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 3/3 2/2\nf 1/1 2/2 4/3\nf 2/1 3/2 4/3\nf 3/1 1/2 4/3\n"
+MTL = b"newmtl a\nmap_Kd color.png\n"
+
+
+def check_several_files(server, folder):
+    texture = png(16, 16, lambda x, y: (0, 200, 0))
+    files = {"scan.obj": OBJ, "scan.mtl": MTL, "color.png": texture}
+    form = b"".join(b'--B\r\nContent-Disposition: form-data; name="files"; filename="%s"\r\n\r\n%s\r\n' % (name.encode(), content)
+                    for name, content in files.items()) + b"--B--\r\n"
+    job = server.ok("POST", "/models?name=Form", form, headers={"Content-Type": "multipart/form-data; boundary=B"}).json()
+    done = server.wait_for_job(job["id"])
+    assert done["state"] == "done", done
+    model = server.ok("GET", "/models/form").json()
+    assert sorted(each["name"] for each in model["source_files"]) == sorted(files), model["source_files"]
+    for name, content in files.items():
+        assert server.ok("GET", f"/models/form/source/{name}").body == content
+        with open(os.path.join(folder, name), "wb") as file:
+            file.write(content)
+    # The command finds what lies beside the mesh by itself, and takes what it is given.
+    for more in ([], ["scan.mtl", "color.png"]):
+        words = [server.binary, "import", "scan.obj", *more, "--name", f"Command {len(more)}", "--server", server.url, "--token", server.token]
+        ran = subprocess.run(words, capture_output=True, text=True, check=False, timeout=LONG_S, cwd=folder)
+        assert ran.returncode == 0, ran.stderr
+        names = [each["name"] for each in server.ok("GET", f"/models/command-{len(more)}").json()["source_files"]]
+        assert sorted(names) == sorted(files), names
+    assert not os.listdir(os.path.join(server.data, "uploads"))
+    two = form.replace(b"scan.mtl", b"other.obj")
+    assert server.post("/models", two, headers={"Content-Type": "multipart/form-data; boundary=B"}).status == 422
+    assert not os.listdir(os.path.join(server.data, "uploads"))
+
+
+def main():
+    with StrataServer() as server, tempfile.TemporaryDirectory() as folder:
+        model = server.import_model(bumpy_ball(), "ball.ply", unit="mm", name="Ball")
+        camera = camera_from(model, (0, -1, 0))
+        check_looks(server, camera)
+        check_raking(server, camera)
+        check_section(server, camera)
+        check_several_files(server, folder)
+        assert server.stop() == 0
+        server.assert_clean_log()
+    print("looks, light, sections and scans of several files: good")
+
+
+if __name__ == "__main__":
+    main()
