@@ -1,6 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { BrushSettings, describe_value, value_problem } from "../src/app/brush-settings";
+import type { DroppedFile } from "../src/app/drop";
 import { choose_scans } from "../src/app/imports";
 import { arrow_step } from "../src/app/keyboard";
 import { layer_changes } from "../src/app/layer-changes";
@@ -100,15 +101,30 @@ describe("addresses", () => {
 });
 
 describe("dropped files", () => {
-  const named = (...names: string[]): File[] => names.map((name) => ({ name }) as File);
-  it("an OBJ is taken without its materials, and the person is told", () => {
-    expect(choose_scans(named("a.mtl", "a.obj", "a.JPG")).map((file) => file.name)).toEqual(["a.obj"]);
-    let told = "";
-    notices.subscribe((shown) => (told = shown.map((notice) => notice.title).join()))();
-    expect(told).toBe(texts.import.companions);
+  const named = (...paths: string[]): DroppedFile[] =>
+    paths.map((path) => ({ path, file: { name: path.split("/").at(-1)! } as File }));
+  const chosen = (...paths: string[]): string[][] => choose_scans(named(...paths)).map((scan) => scan.map(({ path }) => path));
+  const told = (): string => {
+    let titles = "";
+    notices.subscribe((shown) => (titles = shown.map((notice) => notice.title).join()))();
+    return titles;
+  };
+  it("one mesh brings all that may belong to it, under the names it knows", () => {
+    expect(chosen("a.mtl", "a.obj", "tex.JPG")).toEqual([["a.obj", "a.mtl", "tex.JPG"]]);
+    expect(chosen("pot/in/a.gltf", "pot/in/a.bin", "pot/in/tex/c.png", "pot/d.png")).toEqual([
+      ["a.gltf", "a.bin", "tex/c.png", "pot/d.png"],
+    ]);
   });
-  it("a picture alone is not left out silently", () => {
-    expect(choose_scans(named("a.jpg", "b.ply")).length).toBe(2);
+  it("of several meshes each brings what is called like it", () => {
+    expect(chosen("a.obj", "b.obj", "a.mtl", "b_0.png")).toEqual([["a.obj", "a.mtl"], ["b.obj", "b_0.png"]]);
+    expect(chosen("x/a.ply", "y/a.ply", "y/a.png")).toEqual([["a.ply"], ["a.ply", "a.png"]]);
+  });
+  it("what is left over is told", () => {
+    expect(chosen("a.obj", "readme.txt")).toEqual([["a.obj"]]);
+    expect(told()).toContain(texts.import.left_out(1, "readme.txt"));
+  });
+  it("without a mesh each is refused by its own name", () => {
+    expect(chosen("a.jpg", "b.txt")).toEqual([["a.jpg"], ["b.txt"]]);
   });
 });
 

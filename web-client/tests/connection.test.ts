@@ -41,6 +41,7 @@ beforeEach(() => {
     applied: vi.fn(),
     saved: vi.fn(),
     layer: vi.fn(),
+    look: vi.fn(),
     model: vi.fn(),
     record: vi.fn(),
     presence: vi.fn(),
@@ -443,5 +444,17 @@ describe("messages", () => {
     socket().receive_raw("{");
     expect(callbacks.problem).toHaveBeenCalledTimes(3);
     expect(connection.state).toBe("open");
+  });
+
+  it("says all that a view shows at once, and again after it came back", () => {
+    connect();
+    connection.set_appearance(null, { mode: "museum" });
+    expect(socket().of("layers")).toHaveLength(0);
+    connection.set_layer_overrides([{ layer: 3, visible: false }]);
+    connection.set_appearance([{ look: 4, opacity: 0.5 }], { mode: "raking", direction: [1, 0, 1] });
+    const said = socket().of("layers").at(-1)!;
+    expect(said).toMatchObject({ layers: [{ layer: 3 }], looks: [{ look: 4 }], light: { mode: "raking" } });
+    connection.set_appearance(null, { mode: "museum" });
+    expect(socket().of("layers").at(-1)).toEqual({ op: "layers", layers: [{ layer: 3, visible: false }] });
   });
 });

@@ -56,6 +56,7 @@ export function welcome(strokes: Welcome["strokes"] = []): Welcome {
     role: "owner",
     model: {} as Welcome["model"],
     layers: [],
+    looks: [],
     limits: {
       message_bytes: 65536,
       path_points: 4,

@@ -222,6 +222,24 @@ async function compare_seam(server) {
   compare("seam_aside", await frame(server, { camera: pot_camera(960, 720, 0.9), layers: ["seam"], format: "png" }), kPictureLimits);
 }
 
+/** the pot cut open, its inside painted; and its relief in raking light */
+async function compare_cut(server) {
+  const camera = { ...pot_camera(960, 720, 0.3), section: [[0, 1, 0, 0]] }; // the half before the eye is cut away
+  const palette = { mode: "categorical", points: [{ at: 1, color: "#00c8ff" }] };
+  await server.json("POST", "/models/demo-pot/layers", { name: "Inside", type: "u8", resolution: 4096, palette });
+  const stroke = { op: "stroke", value: 1, camera, radius_px: 40, path: [[330, 420], [480, 500], [640, 420]] };
+  const edit = await server.json("POST", "/models/demo-pot/layers/inside/edits", stroke);
+  assert.ok(edit.texels_changed > 10_000, JSON.stringify(edit));
+  compare("cut", await frame(server, { camera, layers: ["inside"], format: "png" }), kPictureLimits);
+  const whole = { ...camera, section: [] };
+  const outside = decode_png(await frame(server, { camera: whole, layers: ["inside"], format: "png" }));
+  let spilled = 0;
+  for (let at = 0; at < outside.data.length; at += 4) if (has_hue(outside.data, at, [0, 200, 255])) ++spilled;
+  if (spilled > 0) failures.push(`cut: ${spilled} pixels are painted on the side that was cut away`);
+  const light = { mode: "raking", direction: [-0.9, 0.3, 0.3] };
+  compare("raking", await frame(server, { camera: whole, layers: [], light, format: "png" }), kPictureLimits);
+}
+
 /** Looks at the pot (105 × 99 × 91 mm, up is z) from a little above, turned by an angle. */
 function pot_camera(width, height, angle = 0) {
   const [distance, elevation, center] = [240, 0.25, [0, 0, 45]];
@@ -242,6 +260,7 @@ try {
   await server.start();
   await compare_page(server);
   await compare_seam(server);
+  await compare_cut(server);
   await wait_for(async () => (await fetch(`${server.url}/readyz`)).ok, "the server to be well");
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();

@@ -81,7 +81,7 @@ export class StrataHomePage extends LitElement {
           <span class="hint grow">${this.models_ ? texts.home.count(this.models_.length) : ""}</span>
           ${this.can_curate
             ? html`<button class="primary" @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
-                <input type="file" accept=".ply,.obj" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
+                <input type="file" accept=".ply,.obj,.stl,.gltf,.glb,.zip,.mtl,.bin,.png,.jpg,.jpeg" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
             : nothing}
         </div>
         ${this.imports.entries.length > 0

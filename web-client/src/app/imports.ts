@@ -3,6 +3,7 @@
 
 import { ApiError, name_of_file, type Api, type Upload } from "../core/api";
 import type { Job, ProblemBody } from "../core/types";
+import type { DroppedFile } from "./drop";
 import { follow_job } from "./follow-job";
 import { notices } from "./notices";
 import { texts } from "./texts";
@@ -19,8 +20,8 @@ export interface ImportEntry {
   model: number | null;
 }
 
-const kFileKinds = /\.(ply|obj)$/i;
-const kCompanions = /\.(mtl|png|jpe?g|tiff?|bmp|tga)$/i; // materials and pictures that lie beside an OBJ
+const kScans = /\.(ply|obj|stl|gltf|glb|zip)$/i;
+const kCompanions = /\.(mtl|bin|png|jpe?g)$/i; // materials, buffers and pictures that a mesh names
 
 /** How an import ended; neither where it was cancelled, or refused before it began. */
 export interface ImportResult {
@@ -28,11 +29,28 @@ export interface ImportResult {
   problem: ProblemBody | null;
 }
 
-/** The scans among dropped files. What belongs to an OBJ is left out, and the person is told. */
-export function choose_scans(files: readonly File[]): File[] {
-  const has_obj = files.some((file) => /\.obj$/i.test(file.name));
-  const scans = files.filter((file) => !has_obj || !kCompanions.test(file.name));
-  if (scans.length < files.length) notices.show("info", texts.import.companions);
+/** A mesh with the files it may need; the mesh comes first. */
+export type Scan = readonly [DroppedFile, ...DroppedFile[]];
+
+const folder_of = (path: string): string => path.slice(0, path.lastIndexOf("/") + 1);
+const stem_of = (path: string): string => path.replace(/\.[^./]*$/, "");
+
+/** The scans among dropped files. All that may belong to a mesh comes with it where it is the only one; where there are
+ *  several, what is called like it does. What is left over is told. */
+export function choose_scans(files: readonly DroppedFile[]): Scan[] {
+  const meshes = files.filter(({ path }) => kScans.test(path));
+  if (meshes.length === 0) return files.map((file): Scan => [file]); // each is refused by its name
+  const companions = files.filter(({ path }) => kCompanions.test(path));
+  const taken = new Set(meshes);
+  const scans = meshes.map((mesh): Scan => {
+    const own = companions.filter(({ path }) => meshes.length === 1 || path.startsWith(stem_of(mesh.path)));
+    for (const file of own) taken.add(file);
+    const folder = folder_of(mesh.path);
+    const beside = own.map(({ file, path }) => ({ file, path: path.startsWith(folder) ? path.slice(folder.length) : path }));
+    return [{ file: mesh.file, path: mesh.path.slice(folder.length) }, ...beside];
+  });
+  const left = files.filter((file) => !taken.has(file));
+  if (left.length > 0) notices.show("info", texts.import.left_out(left.length, left[0]!.path));
   return scans;
 }
 
@@ -50,8 +68,9 @@ export class Imports {
     return () => this.listeners_.delete(listener);
   }
 
-  async start(file: File): Promise<ImportResult> {
-    const refusal = !kFileKinds.test(file.name)
+  async start(scan: Scan): Promise<ImportResult> {
+    const [{ file }] = scan;
+    const refusal = !kScans.test(file.name)
       ? texts.import.wrong_kind(file.name)
       : file.size === 0
         ? texts.import.empty_file(file.name)
@@ -73,7 +92,7 @@ export class Imports {
     this.entries = [...this.entries, entry];
     this.tell();
     try {
-      const upload = this.api_.upload_model(file, (progress) => this.change(key, { progress }));
+      const upload = this.api_.upload_model(scan, (progress) => this.change(key, { progress }));
       this.uploads_.set(key, upload);
       const job = await upload.done;
       this.uploads_.delete(key);

@@ -72,6 +72,14 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
     case "]":
       session.painting.set_brush((brush) => brush.step_width(key === "]" ? 1 : -1));
       return true;
+    case "l":
+    case "L":
+      session.appearance.next_light();
+      return true;
+    case "x":
+    case "X":
+      session.appearance.next_section();
+      return true;
     case "?":
       show_help();
       return true;

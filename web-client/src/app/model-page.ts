@@ -27,6 +27,7 @@ import { texts } from "./texts";
 import "./tool-rail";
 import "./transfer-dialog";
 import "./value-readout";
+import "./view-panel";
 
 type OpenDialog = LayerPanelRequest | { dialog: "scale" | "help" | "about" } | null;
 
@@ -226,6 +227,7 @@ export class StrataModelPage extends LitElement {
             @request=${(event: CustomEvent<LayerPanelRequest>) => (this.dialog_ = event.detail)}
           ></strata-layer-panel>
         </section>
+        <section><strata-view-panel .session=${session}></strata-view-panel></section>
       </div>
     </aside>`;
   }

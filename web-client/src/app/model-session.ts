@@ -1,6 +1,6 @@
 // One open model on this page: its life, and the messages between its parts. `view` is the camera, `layers` what is painted on,
-// `pointer` what lies under the pointer, `painting` the brush and the edits. Elements subscribe and draw themselves from their
-// state; they change it only through their methods.
+// `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits. Elements
+// subscribe and draw themselves from their state; they change it only through their methods.
 
 import { Api, ApiError, type Versioned } from "../core/api";
 import { Connection, type ConnectionState, type SavingState, type SocketLike } from "../core/connection";
@@ -13,6 +13,7 @@ import { OrbitTool, PanTool } from "../tools/navigate";
 import { PickTool } from "../tools/pick";
 import type { ToolName } from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
+import { Appearance } from "./appearance";
 import { LayerJobs } from "./layer-jobs";
 import { LayerList } from "./layer-list";
 import { notices } from "./notices";
@@ -35,6 +36,7 @@ export class ModelSession {
   readonly view: ViewControl;
   readonly layers: LayerList;
   readonly jobs: LayerJobs;
+  readonly appearance: Appearance;
   readonly pointer: PointerWatch;
   readonly painting: Painting;
   readonly tools: ToolManager;
@@ -68,6 +70,12 @@ export class ModelSession {
       changed,
     });
     this.jobs = new LayerJobs(api, model_id, changed);
+    this.appearance = new Appearance(api, model_id, {
+      send: (looks, light) => this.connection_.set_appearance(looks, light),
+      send_section: (planes, moving) => this.view.set_section(planes, moving),
+      bounds: () => this.model?.bounds ?? null,
+      changed,
+    });
     this.pointer = new PointerWatch({
       camera: () => this.view.camera,
       ready: () => this.connection_state === "open",
@@ -114,6 +122,7 @@ export class ModelSession {
         applied: () => this.pointer.ask_again(),
         saved: () => {},
         layer: (event) => this.on_layer(event),
+        look: (event) => this.appearance.on_event(event),
         model: (event) => this.on_model(event),
         record: () => {},
         presence: (message) => {
@@ -312,6 +321,7 @@ export class ModelSession {
     this.session = message.session;
     this.put_model(message.model);
     this.layers.take_all(message.layers.map(complete_layer));
+    this.appearance.take_looks(message.looks);
   }
 
   private on_layer(event: LayerEvent): void {

@@ -8,7 +8,8 @@ import { Api, ApiError, name_of_file } from "../core/api";
 import { may_curate, type Me } from "../core/types";
 import "./home-page";
 import { icon } from "./icons";
-import { choose_scans, Imports } from "./imports";
+import { dropped_files, without_folders, type DroppedFile } from "./drop";
+import { choose_scans, Imports, type Scan } from "./imports";
 import "./model-page";
 import { notices } from "./notices";
 import "./notices-view";
@@ -131,7 +132,7 @@ export class StrataApp extends LitElement {
               .imports=${this.imports_}
               .imported=${this.imported_}
               @signed-out=${signed_out}
-              @import-files=${(event: CustomEvent<File[]>) => void this.import_files(event.detail)}
+              @import-files=${(event: CustomEvent<File[]>) => void this.import_files(without_folders(event.detail))}
             ></strata-home-page>`;
     }
   }
@@ -141,22 +142,22 @@ export class StrataApp extends LitElement {
     return may_curate(this.me_.role) ? null : texts.import.not_allowed;
   }
 
-  private async import_files(dropped: File[]): Promise<void> {
-    const files = choose_scans(dropped);
-    if (this.route_.page !== "home" && files.length > 0) {
+  private async import_files(dropped: readonly DroppedFile[]): Promise<void> {
+    const scans = choose_scans(dropped);
+    if (this.route_.page !== "home" && scans.length > 0) {
       notices.show("info", texts.import.started, "", { href: "/", label: texts.import.watch });
     }
-    await Promise.all(files.map((file) => this.import_file(file, files.length === 1)));
+    await Promise.all(scans.map((scan) => this.import_scan(scan, scans.length === 1)));
   }
 
-  private async import_file(file: File, alone: boolean): Promise<void> {
-    const { model, problem } = await this.imports_.start(file);
+  private async import_scan(scan: Scan, alone: boolean): Promise<void> {
+    const { model, problem } = await this.imports_.start(scan);
     this.imported_ += 1;
     if (problem && this.route_.page !== "home") notices.problem(problem); // the home page lists it
     if (model === null) return;
     const opens = alone && this.route_.page === "home"; // a person at work on another model is not carried off
     const link = { href: path_of_model(model), label: texts.import.open };
-    notices.show("success", texts.import.ready(name_of_file(file.name)), "", opens ? null : link);
+    notices.show("success", texts.import.ready(name_of_file(scan[0].file.name)), "", opens ? null : link);
     if (opens) navigate(link.href);
   }
 
@@ -180,7 +181,7 @@ export class StrataApp extends LitElement {
     event.preventDefault();
     const refusal = this.import_refusal;
     if (refusal) notices.show("problem", refusal);
-    else void this.import_files([...(event.dataTransfer?.files ?? [])]);
+    else if (event.dataTransfer) void dropped_files(event.dataTransfer).then((files) => this.import_files(files));
   };
 }
 

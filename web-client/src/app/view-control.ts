@@ -1,6 +1,7 @@
 // The camera of this page's view: it moves while nothing is painted, and the server hears of every move.
 
 import { OrbitCamera, type StandardView } from "../core/camera";
+import type { Plane } from "../core/protocol.gen";
 import type { Model } from "../core/types";
 
 const kStillAfter_ms = 120; // without input the camera counts as still
@@ -70,6 +71,14 @@ export class ViewControl {
   }
   set_perspective(perspective: boolean): void {
     this.move(() => (this.camera.perspective = perspective), false);
+  }
+
+  /** What the planes cut away is not there: for the picture, the brush and the pointer alike. */
+  set_section(planes: Plane[], moving: boolean): void {
+    this.host_.when_free(() => {
+      this.camera.section = planes;
+      this.moved(moving);
+    });
   }
 
   count_frame(): void {

@@ -37,6 +37,12 @@ export type Fetch = (input: string, init?: RequestInit) => Promise<Response>;
 
 type Id = number | string;
 
+/** A file and what it is called by the others of its scan, with folders. */
+export interface UploadFile {
+  file: File;
+  path: string;
+}
+
 export interface Upload {
   /** Resolves with the job that imports the file. */
   done: Promise<Job>;
@@ -75,13 +81,16 @@ export class Api {
     await this.request("DELETE", `/models/${encodeURIComponent(id)}`, undefined, { "If-Match": etag });
   }
 
-  /** Raw file body with progress (0…1 of the bytes sent). */
-  upload_model(file: File, progress: (share: number) => void): Upload {
+  /** A mesh as the raw body, or with its companions as a form; with progress (0…1 of the bytes sent). */
+  upload_model(files: readonly UploadFile[], progress: (share: number) => void): Upload {
+    const { file } = files[0]!;
+    const form = new FormData();
+    if (files.length > 1) for (const each of files) form.append("files", each.file, each.path);
     const request = this.make_request_();
     const done = new Promise<Job>((resolve, reject) => {
       const query = new URLSearchParams({ name: name_of_file(file.name), filename: file.name });
       request.open("POST", `${kBase}/models?${query}`);
-      request.setRequestHeader("Content-Type", "application/octet-stream");
+      if (files.length === 1) request.setRequestHeader("Content-Type", "application/octet-stream");
       request.setRequestHeader("Idempotency-Key", new_id());
       request.upload.onprogress = (event) => {
         if (event.lengthComputable) progress(event.loaded / event.total);
@@ -99,7 +108,7 @@ export class Api {
       };
       request.onerror = () => reject(unreachable());
       request.onabort = () => reject(new ApiError({ status: 499, title: "Cancelled" }));
-      request.send(file);
+      request.send(files.length === 1 ? file : form);
     });
     return { done, cancel: () => request.abort() };
   }
@@ -143,6 +152,22 @@ export class Api {
     const { etag } = await this.layer(model, layer);
     await this.request("DELETE", layer_path(model, layer), undefined, { "If-Match": etag });
   }
+  /** A picture on the model's texture coordinates, named as its file. */
+  async create_look(model: Id, file: File): Promise<wire.Look> {
+    const query = new URLSearchParams({ name: name_of_file(file.name) });
+    const response = await this.request_raw("POST", `/models/${encodeURIComponent(model)}/looks?${query}`, file, {
+      "Content-Type": file.type || "application/octet-stream",
+    });
+    return this.parsed<wire.Look>(response);
+  }
+  async change_look(model: Id, look: Id, change: wire.LookPatch): Promise<wire.Look> {
+    const path = look_path(model, look);
+    const { etag } = await this.versioned<wire.Look>("GET", path);
+    return (await this.versioned<wire.Look>("PATCH", path, change, etag)).value;
+  }
+  async delete_look(model: Id, look: Id): Promise<void> {
+    await this.request("DELETE", look_path(model, look));
+  }
   async statistics(model: Id, layer: Id): Promise<Statistics> {
     return this.json("GET", `${layer_path(model, layer)}/statistics`);
   }
@@ -158,8 +183,12 @@ export class Api {
 
   private async versioned<T>(method: string, path: string, body?: unknown, etag?: string): Promise<Versioned<T>> {
     const response = await this.request(method, path, body, etag ? { "If-Match": etag } : {});
+    return { value: await this.parsed<T>(response), etag: response.headers.get("ETag") ?? "" };
+  }
+
+  private async parsed<T>(response: Response): Promise<T> {
     try {
-      return { value: (await response.json()) as T, etag: response.headers.get("ETag") ?? "" };
+      return (await response.json()) as T;
     } catch {
       throw new ApiError(problem_of_text(502, ""));
     }
@@ -171,8 +200,17 @@ export class Api {
     body?: unknown,
     headers: Record<string, string> = {},
   ): Promise<Response> {
+    if (body === undefined) return this.request_raw(method, path, null, headers);
+    return this.request_raw(method, path, JSON.stringify(body), { "Content-Type": "application/json", ...headers });
+  }
+
+  private async request_raw(
+    method: string,
+    path: string,
+    body: BodyInit | null,
+    headers: Record<string, string> = {},
+  ): Promise<Response> {
     const all: Record<string, string> = { Accept: "application/json", ...headers };
-    if (body !== undefined) all["Content-Type"] = "application/json";
     if (method === "POST" && path !== "/login") all["Idempotency-Key"] = new_id();
     let response: Response;
     try {
@@ -180,7 +218,7 @@ export class Api {
         method,
         headers: all,
         credentials: "same-origin",
-        ...(body === undefined ? {} : { body: JSON.stringify(body) }),
+        ...(body === null ? {} : { body }),
       });
     } catch {
       throw unreachable();
@@ -192,6 +230,9 @@ export class Api {
 
 const layer_path = (model: Id, layer: Id): string =>
   `/models/${encodeURIComponent(model)}/layers/${encodeURIComponent(layer)}`;
+
+const look_path = (model: Id, look: Id): string =>
+  `/models/${encodeURIComponent(model)}/looks/${encodeURIComponent(look)}`;
 
 const unreachable = (): ApiError =>
   new ApiError({

@@ -1,6 +1,7 @@
 // The viewer's camera: a turntable around the model's up axis. All in world coordinates and double; the server
 // subtracts the model's origin. Pixels are of the window (width × height), origin top left, y down.
 
+import type { Plane } from "./protocol.gen";
 import { add, cross, dot, length, scale, subtract, transform, type Mat4, type Vec3 } from "./vector";
 
 export type UpAxis = "x" | "y" | "z";
@@ -17,6 +18,7 @@ export interface CameraMessage {
   projection: number[];
   width: number;
   height: number;
+  section?: Plane[];
 }
 
 export const kFieldOfView = (35 * Math.PI) / 180; // vertical
@@ -49,6 +51,8 @@ export class OrbitCamera {
   perspective = true;
   width = 1; // window pixels
   height = 1;
+  /** What the planes cut away is not there for this camera. */
+  section: Plane[] = [];
 
   private bounds_: Bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
   private up_: UpAxis = "z";
@@ -205,7 +209,13 @@ export class OrbitCamera {
   }
 
   message(): CameraMessage {
-    return { view: this.view_matrix(), projection: this.projection_matrix(), width: this.width, height: this.height };
+    return {
+      view: this.view_matrix(),
+      projection: this.projection_matrix(),
+      width: this.width,
+      height: this.height,
+      ...(this.section.length > 0 ? { section: this.section } : {}),
+    };
   }
 
   /** Window position of a world point, or null behind the eye. */

@@ -12,6 +12,9 @@ import {
   type ClientMessage,
   type LayerEvent,
   type LayerOverride,
+  type Light,
+  type LookEvent,
+  type LookShown,
   type ModelEvent,
   type Picked,
   type Presence,
@@ -50,6 +53,7 @@ export interface ConnectionCallbacks {
   applied(message: Applied): void;
   saved(message: Saved): void;
   layer(message: LayerEvent): void;
+  look(message: LookEvent): void;
   model(message: ModelEvent): void;
   record(message: RecordEvent): void;
   presence(message: Presence): void;
@@ -109,6 +113,8 @@ export class Connection {
   private camera_seq_ = 0;
   private camera_scheduled_ = false;
   private overrides_: LayerOverride[] = [];
+  private looks_: LookShown[] | null = null; // null: those that everyone sees at first
+  private light_: Light | null = null; // null: the server's own
 
   constructor(
     private readonly options_: ConnectionOptions,
@@ -179,6 +185,7 @@ export class Connection {
   stop_viewing(): void {
     this.camera_ = null;
     this.overrides_ = [];
+    this.looks_ = this.light_ = null;
   }
 
   /** Latest wins: at most one camera per drawn picture leaves, always the newest. */
@@ -189,7 +196,24 @@ export class Connection {
 
   set_layer_overrides(overrides: LayerOverride[]): void {
     this.overrides_ = overrides;
-    if (this.state_ === "open") this.send({ op: "layers", layers: overrides });
+    this.send_settings();
+  }
+
+  set_appearance(looks: LookShown[] | null, light: Light): void {
+    if (!looks && !this.looks_ && light.mode === "museum" && (this.light_?.mode ?? "museum") === "museum") return;
+    this.looks_ = looks;
+    this.light_ = light;
+    this.send_settings();
+  }
+
+  private send_settings(): void {
+    if (this.state_ !== "open") return;
+    this.send({
+      op: "layers",
+      layers: this.overrides_,
+      ...(this.looks_ ? { looks: this.looks_ } : {}),
+      ...(this.light_ && this.light_.mode !== "museum" ? { light: this.light_ } : {}),
+    });
   }
 
   ack(view_id: number, frame: number): void {
@@ -308,6 +332,8 @@ export class Connection {
         return this.on_problem(message);
       case "layer":
         return this.callbacks_.layer(message);
+      case "look":
+        return this.callbacks_.look(message);
       case "model":
         return this.callbacks_.model(message);
       case "record":
@@ -330,9 +356,12 @@ export class Connection {
     this.heard();
     const layers = new Set<number | string>(message.layers.map((layer) => layer.id));
     this.overrides_ = this.overrides_.filter(({ layer }) => layers.has(layer)); // one unknown layer refuses them all
+    const looks = new Set<number | string>(message.looks.map((look) => look.id));
+    this.looks_ = this.looks_?.filter(({ look }) => looks.has(look)) ?? null;
     for (const { stroke, n } of message.strokes) this.outbox_.saved_through(stroke, n);
     this.callbacks_.welcome(message);
-    if (this.overrides_.length > 0) this.send({ op: "layers", layers: this.overrides_ });
+    const has_settings = this.overrides_.length > 0 || this.looks_ || (this.light_ && this.light_.mode !== "museum");
+    if (has_settings) this.send_settings();
     if (this.camera_) this.send_camera();
     this.resend();
     this.report_saving();

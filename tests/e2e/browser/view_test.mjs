@@ -1,0 +1,151 @@
+// The View panel at work: looks, light and section change the picture of this person alone, by mouse and by keys, and a brush
+// paints what the section leaves to be seen.
+import assert from "node:assert/strict";
+import { mkdirSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { Browser } from "../support/browser.mjs";
+import { encode_png } from "../support/png.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const browser = await Browser.open();
+const { page } = browser;
+const server = new StrataServer({ demo: true });
+const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-view";
+mkdirSync(kOutput, { recursive: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+const kCyan = [0, 200, 255]; // nothing on the pot has this hue
+
+const panel = page.locator("strata-view-panel");
+const radio = (name) => panel.getByRole("radio", { name, exact: true });
+const stage = async () => browser.picture(await browser.stage_box());
+const shot = async (name) => writeFileSync(join(kOutput, `view-${name}.png`), await browser.settled());
+const brightness = ({ data, width, height }, from, to) => {
+  let sum = 0;
+  for (let y = Math.round(height * 0.62); y < height * 0.75; ++y)
+    for (let x = Math.round(width * from); x < width * to; ++x) sum += data[(y * width + x) * 4];
+  return sum / ((to - from) * width * 0.13 * height);
+};
+
+try {
+  await server.start();
+  const side = 64;
+  const cyan = { width: side, height: side, data: new Uint8Array(side * side * 4) };
+  for (let at = 0; at < cyan.data.length; at += 4) cyan.data.set([...kCyan, 255], at);
+
+  for (const { id } of (await server.json("GET", "/models/demo-pot/layers")).layers)
+    await server.json("PATCH", `/models/demo-pot/layers/${id}`, { visible: false }); // they would hide what lies below
+
+  await page.goto(server.link);
+  await page.getByRole("link", { name: /Demo pot/ }).click();
+  await browser.drawn();
+
+  say("the panel is closed at first and opens by its heading");
+  const heading = panel.getByRole("button", { name: "View" });
+  assert.equal(await heading.getAttribute("aria-expanded"), "false");
+  await heading.click();
+  await radio("Museum").waitFor();
+
+  say("a picture that is added is shown, and blends by its slider");
+  await panel.locator("input[type=file]").setInputFiles({ name: "UV light.png", mimeType: "image/png", buffer: Buffer.from(encode_png(cyan)) });
+  await panel.getByText("UV light").waitFor();
+  await wait_for(async () => (await browser.count(kCyan)) > 20_000, "the look on the pot", 150);
+  await shot("look");
+  await panel.getByLabel("Opacity of UV light").fill("0");
+  await wait_for(async () => (await browser.count(kCyan)) === 0, "the look to be clear", 150);
+  await panel.getByRole("button", { name: "Hide UV light" }).click();
+
+  say("raking light comes from where the pad is dragged to, and from where the keys move it");
+  await radio("Raking").click();
+  const pad = panel.getByRole("slider", { name: "Direction of the light" });
+  const box = await pad.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 4, box.y + box.height / 2, { steps: 5 });
+  await page.mouse.up();
+  const lit_from = async (side) => {
+    const picture = await stage();
+    const more = brightness(picture, 0.34, 0.44) - brightness(picture, 0.58, 0.68);
+    return side === "left" ? more > 15 : more < -15;
+  };
+  await wait_for(() => lit_from("left"), "light from the left", 150);
+  await shot("raking");
+  const said = await pad.getAttribute("aria-valuetext");
+  await pad.focus();
+  for (let i = 0; i < 22; ++i) await page.keyboard.press("ArrowRight");
+  assert.notEqual(await pad.getAttribute("aria-valuetext"), said);
+  await wait_for(() => lit_from("right"), "light from the right", 150);
+  await radio("Museum").click();
+
+  say("a section opens the pot, and the brush paints what is seen then");
+  await radio("Y").click();
+  await panel.getByLabel("Position of the cut").fill("0");
+  await panel.getByRole("button", { name: "Keep the other side" }).click();
+  const inside = ({ data }) => {
+    let count = 0;
+    for (let at = 0; at < data.length; at += 4)
+      if ([120, 92, 79].every((wanted, c) => Math.abs(data[at + c] - wanted) < 4)) ++count;
+    return count;
+  };
+  const uncut = inside(await stage()); // some of the clay has that colour, too
+  await panel.getByLabel("Position of the cut").fill("500");
+  await wait_for(async () => inside(await stage()) > 3 * uncut + 3000, "the wall to be shown cut", 150);
+  await page.keyboard.press("b");
+  await shot("section");
+  const layer = (await server.json("GET", "/models/demo-pot/layers")).layers.at(-1);
+  const edits = async () => (await server.json("GET", `/models/demo-pot/layers/${layer.id}/edits?limit=1000`)).total;
+  const known = await edits();
+  await browser.drag([[0.46, 0.55], [0.54, 0.6]]);
+  await browser.saved();
+  assert.ok((await edits()) > known);
+  await page.keyboard.press("v");
+
+  say("a box keeps what is inside, and sides do not pass each other");
+  await radio("Box").click();
+  await panel.getByLabel("Box to Z").fill("300");
+  await panel.getByLabel("Box from Z").fill("900");
+  assert.ok(Number(await panel.getByLabel("Box from Z").inputValue()) < 300);
+  await panel.getByLabel("Box from Z").fill("0");
+  await shot("box");
+
+  say("keys step through lights and cuts");
+  await page.mouse.click((await browser.stage_box()).x + 10, (await browser.stage_box()).y + 10);
+  await page.keyboard.press("l");
+  assert.equal(await radio("Headlight").getAttribute("aria-checked"), "true");
+
+  say("reset shows the model as others see it");
+  await page.keyboard.press("Control+z");
+  await browser.saved();
+  await panel.getByRole("button", { name: "Reset" }).click();
+  assert.equal(await radio("Museum").getAttribute("aria-checked"), "true");
+  assert.equal(await radio("Off").getAttribute("aria-checked"), "true");
+  await wait_for(async () => inside(await stage()) < 2 * uncut + 1000, "the whole pot", 150);
+
+  say("on a phone the panel is in the sheet");
+  const phone = await Browser.open({ viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true });
+  try {
+    await phone.sign_in(server, server.token);
+    await phone.page.goto(`${server.url}/models/1`);
+    await phone.drawn();
+    await phone.page.getByRole("button", { name: "Show the panel" }).click();
+    const view = phone.page.locator("strata-view-panel");
+    await view.getByRole("button", { name: "View" }).click();
+    await view.getByRole("radio", { name: "Raking", exact: true }).click();
+    await view.getByRole("slider", { name: "Direction of the light" }).scrollIntoViewIfNeeded();
+    writeFileSync(join(kOutput, "view-phone.png"), await phone.settled());
+    phone.assert_no_complaints();
+  } finally {
+    await phone.close();
+  }
+
+  browser.assert_no_complaints();
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`--- failed at: ${step}\n--- log of the server\n${server.log.slice(-50).join("\n")}`);
+  writeFileSync(join(kOutput, "view-failed.png"), await page.screenshot());
+  throw error;
+} finally {
+  await browser.close();
+  await server.remove();
+}

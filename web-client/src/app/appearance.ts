@@ -1,0 +1,171 @@
+// How this person sees the model: its looks, the light and the section. Nothing of it is kept, and others see it their way.
+
+import type { Api } from "../core/api";
+import type { Bounds } from "../core/camera";
+import type { Light, Look, LookEvent, LookShown, Plane } from "../core/protocol.gen";
+import { no_section, section_planes, type SectionChoice, type SectionMode } from "../core/section";
+import { notices } from "./notices";
+import { texts } from "./texts";
+
+export const kMostLooksShown = 4;
+const kFirstRaking: [number, number, number] = [-0.85, 0.4, 0.35];
+
+export interface AppearanceHost {
+  /** Null: the looks that everyone sees at first. */
+  send(looks: LookShown[] | null, light: Light): void;
+  send_section(planes: Plane[], moving: boolean): void;
+  bounds(): Bounds | null;
+  changed(): void;
+}
+
+const kLightModes: readonly Light["mode"][] = ["museum", "headlight", "raking", "unlit"];
+const kCuts: readonly SectionMode[] = ["off", "x", "y", "z"];
+const after = <T>(all: readonly T[], one: T): T => all[(all.indexOf(one) + 1) % all.length]!;
+
+interface Override {
+  visible?: boolean;
+  opacity?: number;
+}
+
+export class Appearance {
+  looks: Look[] = []; // by order: the last is on top
+  light: Required<Light> = { mode: "museum", direction: kFirstRaking };
+  section: SectionChoice = no_section();
+
+  private readonly overrides_ = new Map<number, Override>();
+
+  constructor(
+    private readonly api_: Api,
+    private readonly model_id_: string,
+    private readonly host_: AppearanceHost,
+  ) {}
+
+  // ── looks ─────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+  visible(look: Look): boolean {
+    return this.overrides_.get(look.id)?.visible ?? look.visible;
+  }
+  opacity(look: Look): number {
+    return this.overrides_.get(look.id)?.opacity ?? look.opacity;
+  }
+
+  set_visible(look: Look, visible: boolean): void {
+    if (visible && this.looks.filter((each) => this.visible(each)).length >= kMostLooksShown) {
+      notices.show("info", texts.view.too_many_looks(kMostLooksShown));
+      return;
+    }
+    this.override(look, { visible });
+  }
+
+  set_opacity(look: Look, opacity: number): void {
+    this.override(look, { opacity });
+  }
+
+  async add(file: File): Promise<void> {
+    const look = await this.api_.create_look(this.model_id_, file);
+    this.put(look);
+    if (!this.visible(look)) this.set_visible(look, true);
+  }
+
+  async rename(look: Look, name: string): Promise<void> {
+    this.put(await this.api_.change_look(this.model_id_, look.id, { name }));
+  }
+
+  async remove(look: Look): Promise<void> {
+    await this.api_.delete_look(this.model_id_, look.id);
+    this.drop(look.id);
+  }
+
+  async save_as_default(): Promise<void> {
+    for (const look of this.looks) {
+      const [visible, opacity] = [this.visible(look), this.opacity(look)];
+      if (visible !== look.visible || opacity !== look.opacity)
+        this.put(await this.api_.change_look(this.model_id_, look.id, { visible, opacity }));
+    }
+    this.overrides_.clear();
+    this.send();
+  }
+
+  get has_look_overrides(): boolean {
+    return this.looks.some((look) => this.visible(look) !== look.visible || Math.abs(this.opacity(look) - look.opacity) > 1e-6);
+  }
+
+  take_looks(looks: Look[]): void {
+    this.put_all(looks);
+    for (const id of this.overrides_.keys()) if (!looks.some((look) => look.id === id)) this.overrides_.delete(id);
+    this.send();
+  }
+
+  on_event(event: LookEvent): void {
+    if (event.event === "deleted") this.drop(event.look_id);
+    else if (event.look) this.put(event.look);
+  }
+
+  // ── light and section ─────────────────────────────────────────────────────────────────────────────────────────────
+
+  set_light(change: Partial<Light>): void {
+    this.light = { ...this.light, ...change };
+    this.send();
+  }
+
+  /** `moving`: more will follow at once. */
+  set_section(change: Partial<SectionChoice>, moving = false): void {
+    this.section = { ...this.section, ...change };
+    this.send_section(moving);
+  }
+
+  next_light(): void {
+    this.set_light({ mode: after(kLightModes, this.light.mode) });
+  }
+  next_section(): void {
+    this.set_section({ mode: after(kCuts, this.section.mode) });
+  }
+
+  /** The model's bounds are known, or others. */
+  send_section(moving = false): void {
+    const bounds = this.host_.bounds();
+    if (bounds) this.host_.send_section(section_planes(this.section, bounds), moving);
+    this.host_.changed();
+  }
+
+  get is_default(): boolean {
+    return this.light.mode === "museum" && this.section.mode === "off" && !this.has_look_overrides;
+  }
+
+  reset(): void {
+    this.overrides_.clear();
+    this.light = { mode: "museum", direction: kFirstRaking };
+    this.section = no_section();
+    this.send();
+    this.send_section();
+  }
+
+  private override(look: Look, change: Override): void {
+    this.overrides_.set(look.id, { ...this.overrides_.get(look.id), ...change });
+    this.send();
+  }
+
+  private send(): void {
+    const shown = this.looks
+      .filter((look) => this.visible(look))
+      .map((look): LookShown => ({ look: look.id, opacity: this.opacity(look) }));
+    this.host_.send(this.has_look_overrides ? shown.slice(-kMostLooksShown) : null, this.light);
+    this.host_.changed();
+  }
+
+  private put(look: Look): void {
+    this.put_all([...this.looks.filter((other) => other.id !== look.id), look]);
+    if (this.overrides_.size > 0) this.send();
+  }
+
+  private put_all(looks: Look[]): void {
+    this.looks = [...looks].sort((a, b) => a.order - b.order || a.id - b.id);
+    this.host_.changed();
+  }
+
+  private drop(id: number): void {
+    this.looks = this.looks.filter((look) => look.id !== id);
+    if (this.overrides_.delete(id)) this.send();
+    this.host_.changed();
+  }
+}
