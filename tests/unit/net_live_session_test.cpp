@@ -97,6 +97,11 @@ class FakeRoom final : public room::Room {
   Result<TileMirror::Snapshot> tiles(const std::string&, std::optional<std::int64_t>) override {
     return TileMirror::Snapshot{};
   }
+  std::shared_ptr<const mesh::Geometry> geometry() const override { return nullptr; }
+  std::shared_ptr<const mesh::SearchTree> search_tree() override { return nullptr; }
+  Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int) override {
+    return std::shared_ptr<const mesh::SurfaceMap>();
+  }
   Result<render::Frame> picture(const room::PictureRequest&) override { return render::Frame{}; }
   std::vector<Look> looks() const override { return {look_}; }
   Result<Look> look(const std::string& ref) const override {
