@@ -102,6 +102,10 @@ Command add_import(CLI::App& app) {
   command->add_option("--crs", options->request.crs, "Coordinate system, EPSG:n");
   command->add_option("--resolution", options->request.resolution, "Default resolution of new layers")
       ->check(CLI::IsMember({2048, 4096, 8192, 16384}));
+  command
+      ->add_option("--weld", options->request.weld_distance,
+                   "Join vertices that lie nearer than this, in the file's units (equal ones always are)")
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--strict", options->request.strict, "Refuse a file that needs repair");
   command->add_option("--server", options->server, "A running server: http://host:port")->envname("STRATA_SERVER");
   command->add_option("--token", options->token, "Token for --server")->envname("STRATA_OWNER_TOKEN");

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
 namespace strata::cli {
@@ -141,6 +142,7 @@ std::string import_path(Client& client, const jobs::ImportRequest& request) {
   add("up", request.up);
   add("crs", request.crs);
   if (request.resolution) add("resolution", std::to_string(request.resolution));
+  if (request.weld_distance > 0) add("weld", (std::ostringstream() << request.weld_distance).str());
   if (request.strict) add("strict", "true");
   return path;
 }

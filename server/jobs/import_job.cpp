@@ -6,8 +6,10 @@
 #include <span>
 #include <utility>
 
+#include "core/picture.h"
 #include "core/slug.h"
 #include "jobs/model_geometry.h"
+#include "mesh/base_color.h"
 #include "mesh/geometry.h"
 #include "mesh/load.h"
 
@@ -21,7 +23,7 @@ constexpr std::size_t kLongestName = 200;
 constexpr std::size_t kLongestFilename = 255;
 
 // Shares of the whole import, as measured on scans of 100 000 to 1 000 000 triangles.
-constexpr double kRead = 0.15, kUnfolded = 0.75, kBuilt = 0.85;
+constexpr double kRead = 0.15, kUnfolded = 0.7, kPainted = 0.77, kBuilt = 0.85;
 
 std::string stem(const std::string& filename) {
   const std::string base = base_filename(filename);
@@ -54,10 +56,12 @@ std::vector<store::Store::NewModel::Source> sources_of(std::span<const ImportFil
   return sources;
 }
 
-Result<void> refuse_repairs(const std::vector<Repair>& repairs) {
+Result<void> refuse_faults(const std::vector<Repair>& repairs) {
   std::string list;
   for (const auto& repair : repairs)
-    list += (list.empty() ? "" : ", ") + repair.what + " (" + std::to_string(repair.count) + ")";
+    if (mesh::is_fault(repair))
+      list += (list.empty() ? "" : ", ") + repair.what + " (" + std::to_string(repair.count) + ")";
+  if (list.empty()) return {};
   return fail(422, "File needs repair",
               "It would be imported only after this: " + list + ". Mend the file, or import it without `strict`.",
               "strict");
@@ -95,6 +99,8 @@ Result<void> check(const ImportRequest& request) {
   if (!request.crs.empty() && !is_crs(request.crs))
     return fail(422, "Unknown coordinate system", "A coordinate system is given as EPSG:n, for example EPSG:25830.",
                 "crs");
+  if (!(request.weld_distance >= 0 && request.weld_distance < 1e15))
+    return fail(422, "Distance not usable", "The distance to weld within is a number of 0 or more.", "weld");
   const int resolution = request.resolution;
   if (resolution != 0 &&
       (resolution < kLowestResolution || resolution > kHighestResolution || !std::has_single_bit(unsigned(resolution))))
@@ -112,23 +118,30 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
 
   progress.begin_stage(0, kRead);
   progress.report(0, "Reading the file");
-  auto loaded = mesh::load_mesh(request.files, progress);
+  auto loaded = mesh::load_mesh(request.files, progress, {request.weld_distance});
   if (!loaded) return tl::unexpected(loaded.error());
-  if (request.strict && !loaded->repairs.empty())
-    if (auto refused = refuse_repairs(loaded->repairs); !refused) return tl::unexpected(refused.error());
+  if (request.strict)
+    if (auto good = refuse_faults(loaded->repairs); !good) return tl::unexpected(good.error());
 
   progress.begin_stage(kRead, kUnfolded);
   auto atlas = atlas_for(loaded->mesh, loaded->repairs, progress);
   if (!atlas) return tl::unexpected(atlas.error());
 
-  progress.begin_stage(kUnfolded, kBuilt);
+  progress.begin_stage(kUnfolded, kPainted);
+  store::Store::NewModel fresh;
+  auto base_color = mesh::bake_base_color(loaded->mesh, *atlas, loaded->repairs, progress);
+  if (!base_color) return tl::unexpected(base_color.error());
+  if (auto& color = *base_color)
+    fresh.looks.push_back(
+        {"Base colour", std::string(media_type(color->format)), std::move(color->bytes), color->width, color->height});
+
+  progress.begin_stage(kPainted, kBuilt);
   progress.report(0, "Building the model");
   if (progress.cancelled()) return cancelled_problem();
   const mesh::Geometry geometry = mesh::build_geometry(loaded->mesh, *atlas);
   loaded->mesh = {};  // it is in the geometry now; large scans need the memory
   atlas->corner_uvs = {};
 
-  store::Store::NewModel fresh;
   Model& model = fresh.model;
   model.project_id = project->id;
   model.name = request.name.empty() ? stem(scan.filename) : request.name;

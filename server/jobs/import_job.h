@@ -21,8 +21,9 @@ struct ImportRequest {
   std::optional<Unit> unit;  // empty: metres, `unit_assumed`
   std::string up;            // "", "x", "y", "z"
   std::string crs;
-  int resolution = 0;   // default of new layers; 0: 2048
-  bool strict = false;  // refuse a file that needs repair
+  int resolution = 0;        // default of new layers; 0: 2048
+  double weld_distance = 0;  // vertices that lie nearer than this are joined; in the file's units
+  bool strict = false;       // refuse a file that needs repair
 };
 
 // Whether everything but the files' content can be used, before they travel: 422 or 415, with the field's name. Only the

@@ -196,7 +196,7 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
     if (auto packed = pack_again(lowest_resolution, progress, *best); !packed) return tl::unexpected(packed.error());
   }
   progress.report(0.95, "Measuring the unfolded surface");
-  TexelOwners owners;
+  TexelCounts owners;
   AtlasMeasure measure;
   parallel_for(kThreads, 2, [&](int i) {
     if (i == 0)

@@ -95,8 +95,8 @@ double largest_texel_area(const TriangleMesh& mesh, std::span<const glm::vec2> u
   return double{*std::max_element(texel_areas.begin(), texel_areas.end())} / scale;
 }
 
-TexelOwners count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> uvs, int resolution) {
-  TexelOwners result;
+TexelCounts count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> uvs, int resolution) {
+  TexelCounts result;
   const auto side = static_cast<std::size_t>(resolution);
   std::vector<std::uint8_t> owners(side * side, 0);  // 2: two or more
   for (std::size_t f = 0; f < mesh.triangle_count(); ++f) {
@@ -122,7 +122,7 @@ TexelOwners count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> uv
 }
 
 AtlasReport make_report(const TriangleMesh& mesh, std::span<const glm::vec2> uvs, int lowest_resolution,
-                        const TexelOwners& owners, const AtlasMeasure& measure) {
+                        const TexelCounts& owners, const AtlasMeasure& measure) {
   AtlasReport report;
   report.lowest_resolution = lowest_resolution;
   const auto covered = static_cast<double>(owners.covered);

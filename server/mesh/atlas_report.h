@@ -9,7 +9,7 @@
 namespace strata::mesh {
 
 // Whom the texels of an atlas belong to at one resolution, found by rasterising it as OpenGL does.
-struct TexelOwners {
+struct TexelCounts {
   std::uint64_t covered = 0;
   std::uint64_t shared = 0;              // covered by more than one triangle
   std::vector<std::uint32_t> shared_by;  // triangles that cover a texel which one before them covers
@@ -24,7 +24,7 @@ struct AtlasMeasure {
 };
 
 // `corner_uvs` must lie in [0,1]², everywhere here.
-TexelOwners count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution);
+TexelCounts count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution);
 AtlasMeasure measure_areas(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs);
 
 // The surface that lies in the texel that holds most, unit²: triangles are clipped against the texels.
@@ -33,6 +33,6 @@ double largest_texel_area(const TriangleMesh& mesh, std::span<const glm::vec2> c
 // All of the report but `source` and `charts`, from what was found at `lowest_resolution`; texel sizes are measured there and at
 // twice and four times that, on two threads.
 AtlasReport make_report(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int lowest_resolution,
-                        const TexelOwners& owners, const AtlasMeasure& measure);
+                        const TexelCounts& owners, const AtlasMeasure& measure);
 
 }  // namespace strata::mesh

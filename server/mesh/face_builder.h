@@ -11,7 +11,8 @@
 
 namespace strata::mesh {
 
-// Collects polygons as triangles: shared by the formats. Texture coordinates are kept for all corners or for none.
+// Collects polygons as triangles: shared by the formats. Texture coordinates are kept for all corners or for none; triangles
+// without them have no textured material.
 class FaceBuilder {
  public:
   FaceBuilder(TriangleMesh& mesh, std::size_t max_triangles) : mesh_(mesh), max_triangles_(max_triangles) {}
@@ -29,6 +30,9 @@ class FaceBuilder {
     return refuse_file("The face at " + place + " has more than " + std::to_string(kMaxPolygonCorners) +
                        " corners. Triangulate the mesh before importing it.");
   }
+
+  // Of the triangles that follow; the mesh's materials and their textures are known by then.
+  void use_material(std::uint16_t material) { material_ = material; }
 
   // At most kMaxPolygonCorners. Refuses more triangles than may be.
   Result<void> add(const std::vector<Corner>& corners, bool has_uv) {
@@ -56,6 +60,10 @@ class FaceBuilder {
     }
     mesh_.triangles.insert(mesh_.triangles.end(), {a.position, b.position, c.position});
     const bool finite = has_uv && finite_uv(a) && finite_uv(b) && finite_uv(c);
+    if (!mesh_.materials.empty()) {
+      const bool usable = material_ < mesh_.materials.size() && (finite || mesh_.materials[material_].texture < 0);
+      mesh_.triangle_materials.push_back(usable ? material_ : kNoMaterial);
+    }
     if (!finite) {
       ++without_uv_;
       if (!mesh_.corner_uvs.empty()) mesh_.corner_uvs.insert(mesh_.corner_uvs.end(), 3, glm::vec2(0));
@@ -83,6 +91,7 @@ class FaceBuilder {
   const std::size_t max_triangles_;
   std::vector<glm::dvec3> points_;
   std::vector<std::uint32_t> split_;
+  std::uint16_t material_ = kNoMaterial;
   std::uint64_t polygons_ = 0;
   std::uint64_t too_few_corners_ = 0;
   std::uint64_t without_uv_ = 0;

@@ -1,9 +1,12 @@
 #include "mesh/input_files.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "mesh/load_formats.h"
+#include "mesh/unpack.h"
 
 namespace strata::mesh {
 namespace {
@@ -38,6 +41,18 @@ int common_parts(std::string_view a, std::string_view b) {
     b.remove_suffix(std::min(b.size(), y.size() + 1));
   }
   return parts;
+}
+
+std::vector<std::string> names_of(std::span<const InputFiles::Entry> entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+// Uploads lie where there is room for them; a person's folder may be read-only.
+std::filesystem::path scratch_beside(const std::filesystem::path& file) {
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  return ::access(folder.c_str(), W_OK) == 0 ? folder : std::filesystem::temp_directory_path();
 }
 
 std::string listed(std::span<const std::string> filenames, std::span<const std::size_t> which) {
@@ -88,7 +103,7 @@ Result<std::size_t> pick_scan(std::span<const std::string> filenames) {
               "filename");
 }
 
-Result<InputFiles> InputFiles::open(std::span<const InputFile> files) {
+Result<InputFiles> InputFiles::open(std::span<const InputFile> files, Progress& progress) {
   std::vector<Entry> entries;
   entries.reserve(files.size());
   for (const InputFile& file : files) {
@@ -97,14 +112,23 @@ Result<InputFiles> InputFiles::open(std::span<const InputFile> files) {
     const auto bytes = mapped->bytes();
     entries.push_back({file.filename, bytes, std::move(*mapped)});
   }
-  return of(std::move(entries));
+  return of(std::move(entries), files.empty() ? std::filesystem::path() : scratch_beside(files[0].path), progress);
 }
 
-Result<InputFiles> InputFiles::of(std::vector<Entry> entries) {
-  std::vector<std::string> names;
-  for (const Entry& entry : entries) names.push_back(entry.name);
-  const auto scan = pick_scan(names);
+Result<InputFiles> InputFiles::of(std::vector<Entry> entries, const std::filesystem::path& scratch,
+                                  Progress& progress) {
+  auto scan = pick_scan(names_of(entries));
   if (!scan) return tl::unexpected(scan.error());
+  if (input_kind(entries[*scan].name) == InputKind::zip) {
+    if (entries[*scan].bytes.empty()) return refuse_file("The file is empty.");
+    auto unpacked = unpack_archive(entries[*scan].bytes, scratch, progress);
+    if (!unpacked) return tl::unexpected(unpacked.error());
+    entries = std::move(*unpacked);
+    scan = pick_scan(names_of(entries));
+    if (!scan) return refuse_file("In the zip: " + scan.error().detail);
+    if (input_kind(entries[*scan].name) == InputKind::zip)
+      return refuse_file("The zip holds another zip and no mesh. Unpack the outer one.");
+  }
   InputFiles files;
   files.entries_ = std::move(entries);
   files.scan_ = *scan;

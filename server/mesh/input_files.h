@@ -10,6 +10,7 @@
 
 #include "core/mapped_file.h"
 #include "core/problem.h"
+#include "core/progress.h"
 
 namespace strata::mesh {
 
@@ -38,10 +39,11 @@ class InputFiles {
     std::optional<MappedFile> mapping;  // holds `bytes`, where they are of a file
   };
 
-  // Maps the files into memory. Refused as by pick_scan, and where a file cannot be read.
-  static Result<InputFiles> open(std::span<const InputFile> files);
-  // Of bytes that outlive this.
-  static Result<InputFiles> of(std::vector<Entry> entries);
+  // Maps the files into memory; a zip is unpacked beside itself, or where temporary files go, and what is in it takes its
+  // place. Refused as by pick_scan, where a file cannot be read, and as by unpack_archive.
+  static Result<InputFiles> open(std::span<const InputFile> files, Progress& progress);
+  // Of bytes that outlive this; a zip is unpacked into `scratch`.
+  static Result<InputFiles> of(std::vector<Entry> entries, const std::filesystem::path& scratch, Progress& progress);
 
   const Entry& scan() const { return entries_[scan_]; }
   std::span<const Entry> all() const { return entries_; }

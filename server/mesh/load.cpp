@@ -1,6 +1,7 @@
 #include "mesh/load.h"
 
 #include "mesh/load_formats.h"
+#include "mesh/texture_shelf.h"
 
 namespace strata::mesh {
 namespace {
@@ -10,12 +11,14 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
   if (bytes.empty()) return refuse_file("The file is empty.");
   auto loaded = [&]() -> Result<LoadedMesh> {
     switch (input_kind(files.scan().name)) {
-      case InputKind::ply: return parse_ply(bytes, progress);
-      case InputKind::obj: return parse_obj(bytes, progress);
-      default: return fail(415, "Format not taken", "PLY and OBJ files are read.", "filename");
+      case InputKind::ply: return parse_ply(files, progress);
+      case InputKind::obj: return parse_obj(files, progress);
+      case InputKind::stl: return parse_stl(files, progress);
+      default: return parse_gltf(files, progress);
     }
   }();
   if (!loaded) return loaded;
+  adopt_lone_picture(files, loaded->mesh, loaded->repairs);
   if (loaded->mesh.triangles.empty()) {
     return refuse_file(
         loaded->mesh.positions.empty()
@@ -26,22 +29,23 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
   return loaded;
 }
 
+}  // namespace
+
 // Takes the files, so that they are unmapped before `repair` needs the memory.
-Result<LoadedMesh> load(Result<InputFiles> files, Progress& progress) {
-  if (!files) return tl::unexpected(files.error());
+Result<LoadedMesh> load_mesh(InputFiles files, Progress& progress, const LoadOptions& options) {
   auto loaded = [&] {
-    const InputFiles opened = std::move(*files);
+    const InputFiles opened = std::move(files);
     return parse(opened, progress);
   }();
   if (!loaded) return loaded;
-  if (auto repaired = repair(*loaded, progress); !repaired) return tl::unexpected(repaired.error());
+  if (auto repaired = repair(*loaded, progress, options); !repaired) return tl::unexpected(repaired.error());
   return loaded;
 }
 
-}  // namespace
-
-Result<LoadedMesh> load_mesh(std::span<const InputFile> files, Progress& progress) {
-  return load(InputFiles::open(files), progress);
+Result<LoadedMesh> load_mesh(std::span<const InputFile> files, Progress& progress, const LoadOptions& options) {
+  auto opened = InputFiles::open(files, progress);
+  if (!opened) return tl::unexpected(opened.error());
+  return load_mesh(std::move(*opened), progress, options);
 }
 
 Result<LoadedMesh> load_mesh(const std::filesystem::path& file, const std::string& filename, Progress& progress) {
@@ -53,7 +57,9 @@ Result<LoadedMesh> load_mesh_bytes(std::span<const std::uint8_t> bytes, const st
                                    Progress& progress) {
   std::vector<InputFiles::Entry> entries;
   entries.push_back({filename, bytes, std::nullopt});
-  return load(InputFiles::of(std::move(entries)), progress);
+  auto opened = InputFiles::of(std::move(entries), std::filesystem::temp_directory_path(), progress);
+  if (!opened) return tl::unexpected(opened.error());
+  return load_mesh(std::move(*opened), progress);
 }
 
 }  // namespace strata::mesh

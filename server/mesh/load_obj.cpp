@@ -1,9 +1,11 @@
+#include <map>
 #include <optional>
-#include <set>
 
 #include "mesh/face_builder.h"
 #include "mesh/load_formats.h"
+#include "mesh/mtl.h"
 #include "mesh/obj_lines.h"
+#include "mesh/texture_shelf.h"
 #include "mesh/vertex_color.h"
 
 namespace strata::mesh {
@@ -11,21 +13,29 @@ namespace {
 
 constexpr std::uint64_t kLinesBetweenReports = 65536;
 constexpr std::size_t kMaxNumbers = 8;
+constexpr std::size_t kMostLibraries = 100, kMostNames = 10000;
+constexpr int kTextureToFind = 0;  // of a UDIM material until its tiles are known
 
-// Two passes: points first, then faces, so that a face may name points that follow it and polygons can be split at
+// Three passes: what there is, points, then faces, so that a face may name points that follow it and polygons can be split at
 // once.
 class ObjReader {
  public:
-  ObjReader(std::span<const std::uint8_t> bytes, Progress& progress, std::size_t max_triangles)
-      : bytes_(bytes), progress_(progress), faces_(loaded_.mesh, max_triangles) {}
+  ObjReader(const InputFiles& files, Progress& progress, std::size_t max_triangles)
+      : files_(files),
+        bytes_(files.scan().bytes),
+        progress_(progress),
+        faces_(loaded_.mesh, max_triangles),
+        shelf_(files, loaded_.mesh, loaded_.repairs) {}
 
   Result<LoadedMesh> read() {
     if (auto counted = count_lines(); !counted) return tl::unexpected(counted.error());
+    read_materials();
     if (auto points = read_points(); !points) return tl::unexpected(points.error());
     if (auto faces = read_faces(); !faces) return tl::unexpected(faces.error());
     if (colored_ > 0) note(loaded_.repairs, "vertices without colour", loaded_.mesh.positions.size() - colored_);
     faces_.report(loaded_.repairs);
-    note(loaded_.repairs, "ignored materials", materials_.size());
+    note(loaded_.repairs, "materials without a definition", undefined_.size());
+    UdimTiles::resolve(shelf_, references_, loaded_.mesh);
     note(loaded_.repairs, "ignored lines, points, curves and free-form surfaces", ignored_);
     return std::move(loaded_);
   }
@@ -42,6 +52,7 @@ class ObjReader {
       positions += keyword == "v";
       uvs += keyword == "vt";
       faces += keyword == "f";
+      if (keyword == "mtllib" && libraries_.size() < kMostLibraries) libraries_.emplace_back(rest_of(line));
     }
     if (positions >= 0xffffffffu || uvs >= 0xffffffffu)
       return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
@@ -53,6 +64,61 @@ class ObjReader {
     uvs_.reserve(std::min<std::uint64_t>(uvs, bytes_.size() / 5 + 1));
     faces_.reserve(std::min<std::uint64_t>(faces, bytes_.size() / 8 + 1));
     return {};
+  }
+
+  static std::string_view rest_of(std::string_view line) {
+    while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
+    while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
+    return line;
+  }
+
+  // A library's name may hold blanks, or several may stand in one line. Where none is named, the only .mtl that was sent along
+  // is meant.
+  std::vector<const InputFiles::Entry*> find_libraries() {
+    std::vector<const InputFiles::Entry*> found;
+    for (const std::string& library : libraries_) {
+      if (const auto* whole = files_.find(library)) {
+        found.push_back(whole);
+        continue;
+      }
+      std::string_view words = library;
+      for (std::string_view word = next_word(words); !word.empty(); word = next_word(words)) {
+        if (const auto* entry = files_.find(word))
+          found.push_back(entry);
+        else
+          note(loaded_.repairs, "materials not among the files: " + printable(word), 1);
+      }
+    }
+    if (!libraries_.empty()) return found;
+    for (const auto& entry : files_.all())
+      if (entry.name.ends_with(".mtl") || entry.name.ends_with(".MTL")) found.push_back(&entry);
+    if (found.size() > 1) found.clear();
+    return found;
+  }
+
+  void read_materials() {
+    for (const InputFiles::Entry* library : find_libraries()) {
+      for (MtlMaterial& mtl : parse_mtl(library->bytes, kNoMaterial - loaded_.mesh.materials.size())) {
+        const auto index = static_cast<std::uint16_t>(loaded_.mesh.materials.size());
+        if (!material_of_name_.emplace(mtl.name, index).second) continue;
+        Material material{.name = printable(mtl.name), .color = mtl.color};
+        if (mtl.clamp) material.wrap_u = material.wrap_v = Wrap::clamp;
+        if (!mtl.texture.empty()) {
+          material.color = glm::vec4(1);  // writers leave anything in Kd beside a picture
+          material.texture = UdimTiles::is_pattern(mtl.texture) ? kTextureToFind : shelf_.of_file(mtl.texture);
+        }
+        loaded_.mesh.materials.push_back(std::move(material));
+        references_.push_back(mtl.texture);
+        uv_transforms_.push_back({mtl.uv_scale, mtl.uv_offset});
+      }
+    }
+  }
+
+  void use_material(std::string_view name) {
+    const auto found = material_of_name_.find(name);
+    uv_transform_ = found == material_of_name_.end() ? UvTransform{} : uv_transforms_[found->second];
+    faces_.use_material(found == material_of_name_.end() ? kNoMaterial : found->second);
+    if (found == material_of_name_.end() && undefined_.size() < kMostNames) undefined_.emplace(name, 0);
   }
 
   Result<void> read_points() {
@@ -119,7 +185,7 @@ class ObjReader {
         }
         if (auto added = faces_.add(corners, has_uv); !added) return added;
       } else if (keyword == "usemtl") {
-        if (materials_.size() < 10000) materials_.emplace(next_word(line));
+        use_material(rest_of(line));
       } else if (keyword == "l" || keyword == "p" || keyword == "curv" || keyword == "curv2" || keyword == "surf") {
         ++ignored_;
       }
@@ -156,7 +222,7 @@ class ObjReader {
       return fault(lines, "the face names texture coordinate " + std::to_string(index) + ", but the file has " +
                               std::to_string(uvs_.size()));
     }
-    corner.uv = uvs_[*uv];
+    corner.uv = uvs_[*uv] * uv_transform_.scale + uv_transform_.offset;
     return corner;
   }
 
@@ -178,7 +244,7 @@ class ObjReader {
 
   static std::string printable(std::string_view word) {
     std::string result;
-    for (char c : word.substr(0, 40)) result += c >= ' ' && c < 127 ? c : '?';
+    for (char c : word.substr(0, 100)) result += c >= ' ' && c < 127 ? c : '?';
     return result;
   }
   static tl::unexpected<Problem> fault(const ObjLines& lines, const std::string& what) {
@@ -190,6 +256,7 @@ class ObjReader {
     return !progress_.cancelled();
   }
 
+  const InputFiles& files_;
   std::span<const std::uint8_t> bytes_;
   Progress& progress_;
   LoadedMesh loaded_;
@@ -202,13 +269,22 @@ class ObjReader {
   std::uint64_t uvs_so_far_ = 0;
   std::uint64_t colored_ = 0;
   std::uint64_t ignored_ = 0;
-  std::set<std::string, std::less<>> materials_;
+
+  struct UvTransform {
+    glm::vec2 scale{1}, offset{0};
+  };
+  TextureShelf shelf_;
+  std::vector<std::string> libraries_;
+  std::map<std::string, std::uint16_t, std::less<>> material_of_name_, undefined_;
+  std::vector<std::string> references_;  // a material's picture as the MTL names it
+  std::vector<UvTransform> uv_transforms_;
+  UvTransform uv_transform_;
 };
 
 }  // namespace
 
-Result<LoadedMesh> parse_obj(std::span<const std::uint8_t> bytes, Progress& progress, std::size_t max_triangles) {
-  return ObjReader(bytes, progress, max_triangles).read();
+Result<LoadedMesh> parse_obj(const InputFiles& files, Progress& progress, std::size_t max_triangles) {
+  return ObjReader(files, progress, max_triangles).read();
 }
 
 }  // namespace strata::mesh

@@ -1,67 +1,60 @@
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "mesh/face_builder.h"
 #include "mesh/load_formats.h"
+#include "mesh/ply_colors.h"
 #include "mesh/ply_source.h"
-#include "mesh/vertex_color.h"
+#include "mesh/texture_shelf.h"
 
 namespace strata::mesh {
 namespace {
 
 constexpr std::uint64_t kElementsBetweenReports = 65536;
 
-// Where the properties of an element go; -1: the file does not have it.
-struct ColorProperties {
-  std::array<int, 4> rgba{-1, -1, -1, -1};
-  bool present() const { return rgba[0] >= 0; }
-  bool alpha() const { return rgba[3] >= 0; }
-};
-
-ColorProperties find_colors(const PlyElement& element) {
-  const auto red = element.find({"red", "diffuse_red", "r"}), green = element.find({"green", "diffuse_green", "g"}),
-             blue = element.find({"blue", "diffuse_blue", "b"}), alpha = element.find({"alpha", "a"});
-  ColorProperties colors;
-  if (!red || !green || !blue) return colors;
-  colors.rgba = {*red, *green, *blue, alpha.value_or(-1)};
-  for (int at : colors.rgba) {
-    if (at >= 0 && element.properties[at].count_type) return {};
-  }
-  return colors;
-}
-
-// Whole-number colours as 0…255; real ones stay as they are.
-double to_byte_scale(PlyType type, double value) { return type == PlyType::u16 ? value / 257.0 : value; }
-bool is_real(PlyType type) { return type == PlyType::f32 || type == PlyType::f64; }
-
 template <class Source>
 class PlyReader {
  public:
-  PlyReader(Source source, const PlyHeader& header, std::size_t file_bytes, Progress& progress,
+  PlyReader(Source source, const PlyHeader& header, const InputFiles& files, Progress& progress,
             std::size_t max_triangles)
       : source_(source),
         header_(header),
-        file_bytes_(file_bytes),
+        file_bytes_(files.scan().bytes.size()),
         progress_(progress),
-        faces_(loaded_.mesh, max_triangles) {}
+        faces_(loaded_.mesh, max_triangles) {
+    TextureShelf shelf(files, loaded_.mesh, loaded_.repairs);
+    for (const std::string& file : header.texture_files)
+      loaded_.mesh.materials.push_back({.name = file, .texture = shelf.of_file(file)});
+    faces_.use_material(0);
+  }
 
   Result<LoadedMesh> read() {
     for (const PlyElement& element : header_.elements) {
-      const Result<void> done = element.name == "vertex"      ? read_vertices(element)
-                                : element.name == "face"      ? read_faces(element)
-                                : element.name == "tristrips" ? read_strips(element)
-                                                              : skip_element(element);
+      // Triangles are made when their vertices are known, wherever those stand in the file.
+      const bool of_triangles = element.name == "face" || element.name == "tristrips";
+      if (of_triangles && !has_vertices_) put_off_.push_back({&element, source_});
+      const Result<void> done = element.name == "vertex"        ? read_vertices(element)
+                                : of_triangles && has_vertices_ ? read_triangles(element)
+                                                                : skip_element(element);
       if (!done) return tl::unexpected(done.error());
     }
     if (!has_vertices_) return refuse_file("The PLY has no element \"vertex\".");
-    spread_face_colors();
-    faces_.report(loaded_.repairs);
-    note(loaded_.repairs, "ignored texture images", header_.texture_files);
     note(loaded_.repairs, "ignored bytes after the last element", source_.bytes_left_over());
+    for (auto& [element, begin] : put_off_) {
+      source_ = begin;
+      if (auto done = read_triangles(*element); !done) return tl::unexpected(done.error());
+    }
+    face_colors_.spread(loaded_);
+    faces_.report(loaded_.repairs);
     return std::move(loaded_);
   }
 
  private:
+  Result<void> read_triangles(const PlyElement& element) {
+    return element.name == "face" ? read_faces(element) : read_strips(element);
+  }
+
   Result<void> read_vertices(const PlyElement& element) {
     const auto x = element.find({"x"}), y = element.find({"y"}), z = element.find({"z"});
     if (!x || !y || !z || element.properties[*x].count_type || element.properties[*y].count_type ||
@@ -69,7 +62,7 @@ class PlyReader {
       return refuse_file("The element \"vertex\" has no properties x, y and z.");
     }
     if (element.count >= 0xffffffffu) return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
-    const ColorProperties colors = find_colors(element);
+    const PlyColorProperties colors = find_ply_colors(element);
     const PlyType color_type = colors.present() ? element.properties[colors.rgba[0]].type : PlyType::u8;
     const auto [u, v] = find_uv(element);
     has_vertices_ = true;
@@ -113,16 +106,15 @@ class PlyReader {
       if (element.count == 0) return {};
       return refuse_file("The element \"face\" has no list \"vertex_indices\".");
     }
-    if (!has_vertices_)
-      return refuse_file("The element \"face\" comes before the element \"vertex\"; write vertices first.");
     const PlyProperty& index_list = element.properties[*indices];
     // No triangle takes fewer bytes than its list of three.
     const std::uint64_t least =
         source_.rest() / (1 + 3 * (header_.encoding == PlyEncoding::ascii ? 2 : bytes_of(index_list.type)));
     faces_.reserve(std::min(element.count, least));
     const auto texcoords = element.find({"texcoord", "texcoords"});
-    const ColorProperties colors = loaded_.mesh.vertex_colors.empty() ? find_colors(element) : ColorProperties{};
-    if (colors.present()) face_colors_.resize(loaded_.mesh.positions.size());
+    const auto texnumber = element.find({"texnumber"});
+    const auto colors = loaded_.mesh.vertex_colors.empty() ? find_ply_colors(element) : PlyColorProperties{};
+    if (colors.present()) face_colors_.begin(loaded_.mesh.positions.size());
 
     std::vector<FaceBuilder::Corner> corners;
     std::vector<double> values(element.properties.size());
@@ -144,10 +136,15 @@ class PlyReader {
         has_uv = true;
         for (std::size_t k = 0; k < corners.size(); ++k) corners[k].uv = {uv_list_[2 * k], uv_list_[2 * k + 1]};
       }
-      if (colors.present()) collect_face_color(element, colors, values, corners);
+      if (colors.present()) face_colors_.add(element, colors, values, corners);
+      if (texnumber && !element.properties[*texnumber].count_type) faces_.use_material(material_of(values[*texnumber]));
       if (auto added = faces_.add(corners, has_uv); !added) return added;
     }
     return {};
+  }
+
+  static std::uint16_t material_of(double texnumber) {
+    return texnumber >= 0 && texnumber < kNoMaterial ? static_cast<std::uint16_t>(texnumber) : kNoMaterial;
   }
 
   Result<void> read_indices(const PlyProperty& list, std::uint64_t face, std::uint64_t faces,
@@ -190,8 +187,6 @@ class PlyReader {
     if (!indices || !element.properties[*indices].count_type) {
       return refuse_file("The element \"tristrips\" has no list \"vertex_indices\".");
     }
-    if (!has_vertices_)
-      return refuse_file("The element \"tristrips\" comes before the element \"vertex\"; write vertices first.");
     for (std::uint64_t i = 0; i < element.count; ++i) {
       for (std::size_t k = 0; k < element.properties.size(); ++k) {
         const PlyProperty& property = element.properties[k];
@@ -258,37 +253,6 @@ class PlyReader {
     return read_count(list, count) && source_.skip(list.type, static_cast<std::uint64_t>(count));
   }
 
-  // A vertex without colours of its own shows the mean of the faces around it.
-  struct ColorSum {
-    std::array<float, 4> rgba{};
-    float faces = 0;
-  };
-
-  void collect_face_color(const PlyElement& element, const ColorProperties& colors, const std::vector<double>& values,
-                          const std::vector<FaceBuilder::Corner>& corners) {
-    const PlyType type = element.properties[colors.rgba[0]].type;
-    const double scale = is_real(type) ? 255.0 : 1.0;
-    for (const FaceBuilder::Corner& corner : corners) {
-      ColorSum& sum = face_colors_[corner.position];
-      for (int k = 0; k < 4; ++k) {
-        const double value = k == 3 && !colors.alpha() ? 255.0 : to_byte_scale(type, values[colors.rgba[k]]) * scale;
-        sum.rgba[k] += static_cast<float>(std::clamp(std::isfinite(value) ? value : 0.0, 0.0, 255.0));
-      }
-      sum.faces += 1;
-    }
-  }
-
-  void spread_face_colors() {
-    if (face_colors_.empty()) return;
-    for (const ColorSum& sum : face_colors_) {
-      const float share = sum.faces > 0 ? 1 / sum.faces : 0;
-      loaded_.mesh.vertex_colors.push_back(
-          pack_color(sum.rgba[0] * share, sum.rgba[1] * share, sum.rgba[2] * share, sum.rgba[3] * share));
-    }
-    note(loaded_.repairs, "face colours spread to vertices", face_colors_.size());
-    face_colors_ = {};
-  }
-
   Result<void> check_index(const std::string& what, std::int64_t index) const {
     const std::size_t vertices = loaded_.mesh.positions.size();
     if (index >= 0 && static_cast<std::uint64_t>(index) < vertices) return {};
@@ -323,19 +287,21 @@ class PlyReader {
   bool list_too_long_ = false;
   std::vector<glm::vec2> vertex_uvs_;
   std::vector<float> uv_list_;
-  std::vector<ColorSum> face_colors_;
+  PlyFaceColors face_colors_;
+  std::vector<std::pair<const PlyElement*, Source>> put_off_;  // and where its data begin
 };
 
 }  // namespace
 
-Result<LoadedMesh> parse_ply(std::span<const std::uint8_t> bytes, Progress& progress, std::size_t max_triangles) {
+Result<LoadedMesh> parse_ply(const InputFiles& files, Progress& progress, std::size_t max_triangles) {
+  const auto bytes = files.scan().bytes;
   const Result<PlyHeader> header = parse_ply_header(bytes);
   if (!header) return tl::unexpected(header.error());
   if (header->encoding == PlyEncoding::ascii) {
-    return PlyReader(PlyAsciiSource(bytes, header->data_offset), *header, bytes.size(), progress, max_triangles).read();
+    return PlyReader(PlyAsciiSource(bytes, header->data_offset), *header, files, progress, max_triangles).read();
   }
   const PlyBinarySource source(bytes, header->data_offset, header->encoding == PlyEncoding::big_endian);
-  return PlyReader(source, *header, bytes.size(), progress, max_triangles).read();
+  return PlyReader(source, *header, files, progress, max_triangles).read();
 }
 
 }  // namespace strata::mesh

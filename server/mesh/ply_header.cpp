@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kMaxHeaderLine = 4096;
 constexpr std::size_t kMaxHeaderLines = 10000;
 constexpr std::size_t kMaxProperties = 1000;
+constexpr std::size_t kMaxTextureFiles = 4096;
 
 std::optional<PlyType> parse_type(std::string_view name) {
   struct Entry {
@@ -94,7 +95,8 @@ class HeaderReader {
 
   Result<void> read_line(const std::vector<std::string_view>& words) {
     if (words[0] == "comment" || words[0] == "obj_info") {
-      if (words.size() > 2 && words[1] == "TextureFile") ++header_.texture_files;
+      if (words.size() > 2 && words[1] == "TextureFile" && header_.texture_files.size() < kMaxTextureFiles)
+        header_.texture_files.emplace_back(words[2].data(), words.back().data() + words.back().size());
       return {};
     }
     if (words[0] == "format") return read_format(words);

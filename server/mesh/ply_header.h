@@ -35,8 +35,8 @@ enum class PlyEncoding { ascii, little_endian, big_endian };
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::ascii;
   std::vector<PlyElement> elements;
-  std::uint64_t texture_files = 0;  // images named in comments
-  std::size_t data_offset = 0;      // first byte after the header
+  std::vector<std::string> texture_files;  // pictures named in comments, by texnumber
+  std::size_t data_offset = 0;             // first byte after the header
 };
 
 // Refuses what is no PLY, and counts that the rest of the file cannot hold. Line ends are LF, CRLF or CR.

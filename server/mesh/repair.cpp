@@ -1,41 +1,23 @@
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
+#include <cstdio>
+#include <string_view>
 
+#include "mesh/index_table.h"
+#include "mesh/keep_triangles.h"
 #include "mesh/load_formats.h"
+#include "mesh/manifold.h"
+#include "mesh/weld.h"
 
 namespace strata::mesh {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr double kLargestCoordinate = 1e15;  // beyond it squares and cubes of lengths leave the range of float
+constexpr std::string_view kWelded = "welded vertices";
+constexpr double kFarAway = 1e5;  // in sizes of the mesh
 constexpr double kSmallestExtent = 1e-12;
-
-std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
-  hash = (hash ^ value) * 0x9e3779b97f4a7c15ULL;
-  return hash ^ (hash >> 29);
-}
-
-// Open addressing over indices into arrays that live elsewhere: 4 bytes a slot, at most 3/4 full.
-class IndexTable {
- public:
-  explicit IndexTable(std::size_t expected)
-      : slots_(std::bit_ceil(std::max<std::size_t>(16, expected + expected / 3 + 1)), kNone) {}
-
-  // The index that is `equal` to `index` and was put in earlier, or `index` itself, put in now.
-  template <class Equal>
-  std::uint32_t find_or_insert(std::uint64_t hash, std::uint32_t index, Equal equal) {
-    const std::size_t mask = slots_.size() - 1;
-    for (std::size_t slot = hash & mask;; slot = (slot + 1) & mask) {
-      if (slots_[slot] == kNone) return slots_[slot] = index;
-      if (equal(slots_[slot])) return slots_[slot];
-    }
-  }
-
- private:
-  std::vector<std::uint32_t> slots_;
-};
 
 std::vector<bool> used_vertices(const TriangleMesh& mesh) {
   std::vector<bool> used(mesh.positions.size(), false);
@@ -68,26 +50,6 @@ Result<void> check_coordinates(const TriangleMesh& mesh, const std::vector<bool>
   return {};
 }
 
-// Points every corner at the first vertex with the same position. Returns the number of vertices that were merged.
-std::uint64_t weld(TriangleMesh& mesh, const std::vector<bool>& used) {
-  std::vector<std::uint32_t> representative(mesh.positions.size());
-  const auto count = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
-  IndexTable table(count);
-  std::uint64_t merged = 0;
-  for (std::uint32_t i = 0; i < representative.size(); ++i) {
-    if (!used[i]) continue;
-    glm::dvec3& p = mesh.positions[i];
-    p += 0.0;  // -0 is 0
-    std::uint64_t hash = mix(0, std::bit_cast<std::uint64_t>(p.x));
-    hash = mix(mix(hash, std::bit_cast<std::uint64_t>(p.y)), std::bit_cast<std::uint64_t>(p.z));
-    hash ^= hash >> 32;
-    representative[i] = table.find_or_insert(hash, i, [&](std::uint32_t other) { return mesh.positions[other] == p; });
-    merged += representative[i] != i;
-  }
-  for (std::uint32_t& index : mesh.triangles) index = representative[index];
-  return merged;
-}
-
 bool has_no_area(const TriangleMesh& mesh, const std::uint32_t* t) {
   const glm::dvec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
   return glm::cross(b - a, c - a) == glm::dvec3(0);
@@ -101,9 +63,27 @@ std::array<std::uint32_t, 3> sorted_corners(const std::uint32_t* t) {
   return key;
 }
 
+// Where most triangles shrank to nothing because single precision is too coarse there, what is left is no picture of the thing
+// that was scanned.
+Result<void> refuse_collapsed(const TriangleMesh& mesh, std::uint64_t without_area, std::uint64_t triangles) {
+  if (without_area * 2 <= triangles) return {};
+  glm::dvec3 low(INFINITY), high(-INFINITY);
+  for (const std::uint32_t index : mesh.triangles) {
+    low = glm::min(low, mesh.positions[index]);
+    high = glm::max(high, mesh.positions[index]);
+  }
+  const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high)), extent = high - low;
+  if (std::max({far.x, far.y, far.z}) < kFarAway * std::max({extent.x, extent.y, extent.z})) return {};
+  return refuse_file(
+      std::to_string(without_area) + " of " + std::to_string(triangles) +
+      " triangles have no area: the mesh lies so far from the origin that its coordinates were rounded away. "
+      "Export it with double precision, or near the origin.");
+}
+
 // Keeps triangles that have area and are the first with their three corners, whichever way round.
-void drop_triangles(LoadedMesh& loaded) {
+Result<void> drop_triangles(LoadedMesh& loaded) {
   TriangleMesh& mesh = loaded.mesh;
+  const std::size_t triangles = mesh.triangle_count();
   IndexTable table(mesh.triangle_count());
   std::uint64_t degenerate = 0, no_area = 0, duplicate = 0;
   std::uint32_t kept = 0;
@@ -118,8 +98,7 @@ void drop_triangles(LoadedMesh& loaded) {
       continue;
     }
     const auto key = sorted_corners(t);
-    std::uint64_t hash = mix(mix(mix(0, key[0]), key[1]), key[2]);
-    hash ^= hash >> 32;
+    const std::uint64_t hash = mix_hash(mix_hash(mix_hash(0, key[0]), key[1]), key[2]);
     // The slot that is written first is where the triangle goes if it stays, so that the table can compare with it.
     std::copy(t, t + 3, mesh.triangles.begin() + 3 * std::ptrdiff_t{kept});
     const std::uint32_t found = table.find_or_insert(hash, kept, [&](std::uint32_t other) {
@@ -129,16 +108,27 @@ void drop_triangles(LoadedMesh& loaded) {
       ++duplicate;
       continue;
     }
-    if (!mesh.corner_uvs.empty()) {
-      for (std::size_t k = 0; k < 3; ++k) mesh.corner_uvs[3 * std::size_t{kept} + k] = mesh.corner_uvs[3 * i + k];
-    }
-    ++kept;
+    move_triangle(mesh, i, kept++);
   }
-  mesh.triangles.resize(3 * std::size_t{kept});
-  if (!mesh.corner_uvs.empty()) mesh.corner_uvs.resize(3 * std::size_t{kept});
+  resize_triangles(mesh, kept);
+  if (kept == 0) return refuse_file("No triangle of the file has an area.");
+  if (auto good = refuse_collapsed(mesh, degenerate + no_area, triangles); !good) return good;
   note(loaded.repairs, "dropped degenerate triangles", degenerate);
   note(loaded.repairs, "dropped triangles without area", no_area);
   note(loaded.repairs, "dropped duplicate triangles", duplicate);
+  return {};
+}
+
+std::uint64_t count_not_finite(const TriangleMesh& mesh) {
+  std::uint64_t count = 0;
+  for (const glm::dvec3& p : mesh.positions) count += !(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+  return count;
+}
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
 }
 
 // Moves the used vertices together, in their order.
@@ -159,27 +149,36 @@ void drop_unused(TriangleMesh& mesh) {
 
 }  // namespace
 
-Result<void> repair(LoadedMesh& loaded, Progress& progress) {
+bool is_fault(const Repair& repair) { return !repair.what.starts_with(kWelded); }
+
+Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& options) {
   TriangleMesh& mesh = loaded.mesh;
-  const std::size_t vertices_of_file = mesh.positions.size();
   progress.report(kParsedShare, "Checking coordinates");
   std::uint64_t merged = 0;
   {
-    const std::vector<bool> used = used_vertices(mesh);
+    std::vector<bool> used = used_vertices(mesh);
     if (auto checked = check_coordinates(mesh, used); !checked) return checked;
     if (progress.cancelled()) return cancelled_problem();
-    progress.report(0.7, "Joining equal vertices");
-    merged = weld(mesh, used);
+    progress.report(0.65, "Joining equal vertices");
+    merged = weld_equal(mesh, used);
+    note(loaded.repairs, std::string(kWelded) + " at equal positions", merged);
+    if (progress.cancelled()) return cancelled_problem();
+    if (options.weld_distance > 0) {
+      used = used_vertices(mesh);
+      const std::uint64_t near = weld_near(mesh, used, options.weld_distance);
+      note(loaded.repairs, std::string(kWelded) + " within " + short_number(options.weld_distance), near);
+      merged += near;
+    }
   }
-  note(loaded.repairs, "welded vertices at equal positions", merged);
   if (progress.cancelled()) return cancelled_problem();
-  progress.report(0.8, "Dropping degenerate and duplicate triangles");
-  drop_triangles(loaded);
-  if (mesh.triangles.empty()) return refuse_file("No triangle of the file has an area.");
-  if (progress.cancelled()) return cancelled_problem();
+  progress.report(0.7, "Dropping degenerate and duplicate triangles");
+  if (auto dropped = drop_triangles(loaded); !dropped) return dropped;
+  if (auto made = make_manifold(loaded, progress, 0.75, 0.95); !made) return made;
   progress.report(0.95, "Dropping unused vertices");
+  const std::uint64_t not_finite = count_not_finite(mesh), before = mesh.positions.size();  // none of them is used
   drop_unused(mesh);
-  note(loaded.repairs, "dropped unused vertices", vertices_of_file - merged - mesh.positions.size());
+  note(loaded.repairs, "dropped unused vertices", before - mesh.positions.size() - merged - not_finite);
+  note(loaded.repairs, "dropped unused vertices with coordinates that are no finite numbers", not_finite);
 
   glm::dvec3 low = mesh.positions[0], high = low;
   for (const glm::dvec3& p : mesh.positions) {

@@ -19,7 +19,7 @@ struct Texture {
 };
 
 struct Material {
-  std::string name;
+  std::string name = {};
   glm::vec4 color{1};  // sRGB, 0…1; where there is a texture its texels are multiplied by it, in linear light
   int texture = -1;    // of TriangleMesh::textures; -1: the colour alone
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
@@ -37,7 +37,7 @@ struct TriangleMesh {
   std::vector<std::uint16_t> triangle_materials;  // empty, or one a triangle: of `materials`, or kNoMaterial
   std::vector<Material> materials;
   std::vector<Texture> textures;
-  bool colors_tint_textures = false;  // vertex colours multiply textures (glTF); otherwise a texture hides them
+  bool colors_tint_materials = false;  // vertex colours multiply materials (glTF); otherwise a texture hides them
 
   std::size_t triangle_count() const { return triangles.size() / 3; }
 };

@@ -15,6 +15,16 @@ inline std::uint32_t pack_color(double red, double green, double blue, double al
   return channel_byte(red) | channel_byte(green) << 8 | channel_byte(blue) << 16 | channel_byte(alpha) << 24;
 }
 
+// One channel, 0…1, from light to what pictures store (IEC 61966-2-1), and back. What is outside, and NaN, is clamped.
+inline double srgb_of_linear(double value) {
+  value = value >= 0 ? std::min(value, 1.0) : 0.0;
+  return value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
+}
+inline double linear_of_srgb(double value) {
+  value = value >= 0 ? std::min(value, 1.0) : 0.0;
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
 // Colours given as real numbers are 0…1 in some files and 0…255 in others, and no header says which. They are taken as
 // 0…1 until a channel exceeds 1; then those stored so far are rescaled (each was 0 or about 1 of 255).
 class RealColorScale {

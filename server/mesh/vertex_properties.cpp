@@ -119,7 +119,11 @@ Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan, const
   const InputKind kind = input_kind(filename);
   if (kind != InputKind::ply && kind != InputKind::obj)
     return fail(422, "Order not known", "Vertices have an order of their own in PLY and OBJ files only.", "source");
-  auto mesh = kind == InputKind::ply ? parse_ply(scan, progress) : parse_obj(scan, progress);
+  std::vector<InputFiles::Entry> entries;
+  entries.push_back({filename, scan, std::nullopt});
+  const auto files = InputFiles::of(std::move(entries), {}, progress);
+  if (!files) return tl::unexpected(files.error());
+  auto mesh = kind == InputKind::ply ? parse_ply(*files, progress) : parse_obj(*files, progress);
   if (!mesh) return tl::unexpected(mesh.error());
   VertexProperty property{std::move(mesh->mesh.positions), {}};
   property.values.reserve(property.positions.size());

@@ -1,3 +1,4 @@
+#include <charconv>
 #include <memory>
 
 #include "core/log.h"
@@ -51,6 +52,11 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
     auto resolution = parse_integer(text, 1, INT32_MAX, "resolution");
     if (!resolution) return tl::unexpected(resolution.error());
     asked.resolution = static_cast<int>(*resolution);
+  }
+  if (auto text = request.query_or("weld", {}); !text.empty()) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), asked.weld_distance);
+    if (error != std::errc() || end != text.data() + text.size())
+      return fail(422, "Not a number", "`weld` is a distance in the file's units, such as 0.05.", "weld");
   }
   const std::string strict = request.query_or("strict", "false");
   if (strict != "true" && strict != "false")
@@ -133,7 +139,7 @@ void add_import_routes(Router& router, const RouteContext& context) {
        .pattern = "/api/v1/models",
        .handler = answering([&context, book](const Request& request) { return start_import(context, *book, request); }),
        .role = Role::curator,
-       .query = {"name", "project", "unit", "up", "crs", "resolution", "filename", "strict"},
+       .query = {"name", "project", "unit", "up", "crs", "resolution", "filename", "weld", "strict"},
        .check = [&context](const Request& request) { return check_import(context, request); },
        .body = BodyKind::file,
        .max_body = context.options.max_upload_bytes,

@@ -6,12 +6,14 @@
 #include <fstream>
 #include <thread>
 
+#include "core/picture.h"
 #include "jobs/import_job.h"
 #include "mesh/load.h"
 #include "mesh/surface_map.h"
 #include "store/hash.h"
 #include "store/pg.h"
 #include "support/test_cluster.h"
+#include "support/zip_files.h"
 
 namespace strata::jobs {
 namespace {
@@ -120,6 +122,56 @@ TEST_F(Import, texture_coordinates_that_overlap_are_replaced_and_the_report_says
   ASSERT_EQ(model->repairs.size(), 1u);
   EXPECT_THAT(model->repairs[0].what, ::testing::StartsWith("texture coordinates not kept: "));
   EXPECT_EQ(model->repairs[0].count, 4u);
+}
+
+TEST_F(Import, a_textured_scan_keeps_its_files_and_its_picture_becomes_the_first_look) {
+  auto asked = request("pot.obj", "mtllib pot.mtl\nusemtl skin\n" + obj_with_uvs(kApart));
+  const std::vector<std::uint8_t> rgba(64 * 64 * 4, 200);
+  const auto png = encode_png(rgba, 64, 64);
+  const auto add = [&](const std::string& name, const std::string& content) {
+    const auto path = folder_.path() / std::filesystem::path(name).filename();
+    std::ofstream(path, std::ios::binary) << content;
+    asked.files.push_back({name, path});
+  };
+  add("pot.mtl", "newmtl skin\nmap_Kd a\\skin.png\n");
+  add("a/skin.png", {png.begin(), png.end()});
+  asked.strict = true;
+  const auto model = import_model(*store_, asked, progress_);
+  ASSERT_TRUE(model) << model.error().detail;
+  EXPECT_EQ(model->name, "pot");
+  ASSERT_EQ(model->source_files.size(), 3u);
+  EXPECT_EQ(model->source_files[2].name, "skin.png");
+  EXPECT_EQ(model->source_files[2].sha256, store::to_hex(store::sha256(png)));
+  const auto looks = store_->looks(model->id);
+  ASSERT_TRUE(looks);
+  ASSERT_EQ(looks->size(), 1u);
+  EXPECT_EQ((*looks)[0].name, "Base colour");
+  EXPECT_EQ((*looks)[0].media_type, "image/png");
+  EXPECT_EQ((*looks)[0].width, 64);
+  EXPECT_EQ((*looks)[0].sha256, store::to_hex(store::sha256(png))) << "byte for byte";
+}
+
+TEST_F(Import, a_zip_is_kept_as_it_is_and_what_is_in_it_is_imported) {
+  const std::string zip =
+      test::zip_of({{"scan/pot.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}, {"readme.txt", "hello"}});
+  const auto model = import_model(*store_, request("excavation.zip", zip), progress_);
+  ASSERT_TRUE(model) << model.error().detail;
+  EXPECT_EQ(model->name, "excavation");
+  ASSERT_EQ(model->source_files.size(), 1u);
+  EXPECT_EQ(model->source_files[0].name, "excavation.zip");
+  EXPECT_EQ(model->source_files[0].bytes, zip.size());
+  EXPECT_FALSE(import_model(*store_, request("empty.zip", test::zip_of({{"readme.txt", "hello"}})), progress_));
+}
+
+TEST_F(Import, vertices_within_the_weld_distance_are_joined) {
+  auto asked = request("gap.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.01 0 0\nv 1 1 0\nv 0 1.01 0\nf 1 2 3\nf 4 5 6\n");
+  asked.weld_distance = 0.05;
+  asked.strict = true;  // to weld is no fault
+  const auto model = import_model(*store_, asked, progress_);
+  ASSERT_TRUE(model) << model.error().detail;
+  EXPECT_EQ(model->vertices, 4u);
+  asked.weld_distance = -1;
+  EXPECT_EQ(import_model(*store_, asked, progress_).error().field, "weld");
 }
 
 TEST_F(Import, a_bad_file_is_refused_and_leaves_nothing_behind) {

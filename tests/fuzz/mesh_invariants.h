@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "mesh/load.h"
+#include "support/manifold_check.h"
 
 namespace strata::test {
 
@@ -19,6 +20,14 @@ inline void check_loaded(const mesh::LoadedMesh& loaded) {
   for (std::uint32_t index : mesh.triangles) demand(index < mesh.positions.size());
   for (const glm::dvec3& p : mesh.positions) demand(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
   for (const glm::vec2& uv : mesh.corner_uvs) demand(std::isfinite(uv.x) && std::isfinite(uv.y));
+  demand(mesh.triangle_materials.empty() ? mesh.materials.empty()
+                                         : mesh.triangle_materials.size() == mesh.triangle_count());
+  for (std::uint16_t material : mesh.triangle_materials)
+    demand(material == mesh::kNoMaterial || material < mesh.materials.size());
+  for (const mesh::Material& material : mesh.materials)
+    demand(material.texture == -1 || static_cast<std::size_t>(material.texture) < mesh.textures.size());
+  const ManifoldFaults faults = manifold_faults(mesh);
+  demand(faults.crowded_edges == 0 && faults.disagreements == 0 && faults.vertices_of_fans == 0);
 }
 
 }  // namespace strata::test

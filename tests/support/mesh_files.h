@@ -3,9 +3,11 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <span>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh/load.h"
@@ -54,6 +56,23 @@ class PlyWriter {
 inline Result<mesh::LoadedMesh> load_text(const std::string& bytes, const std::string& filename) {
   Progress progress;
   return mesh::load_mesh_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, filename, progress);
+}
+
+// Files by name, in memory; `texts` must live on.
+inline Result<mesh::InputFiles> files_of(const std::vector<std::pair<std::string, std::string>>& texts) {
+  std::vector<mesh::InputFiles::Entry> entries;
+  for (const auto& [name, text] : texts)
+    entries.push_back({name, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, std::nullopt});
+  Progress progress;
+  return mesh::InputFiles::of(std::move(entries), std::filesystem::temp_directory_path(), progress);
+}
+
+inline Result<mesh::LoadedMesh> load_texts(const std::vector<std::pair<std::string, std::string>>& texts,
+                                           const mesh::LoadOptions& options = {}) {
+  auto files = files_of(texts);
+  if (!files) return tl::unexpected(files.error());
+  Progress progress;
+  return mesh::load_mesh(std::move(*files), progress, options);
 }
 
 inline std::uint64_t count_of(const std::vector<Repair>& repairs, const std::string& what) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/load_formats.h"
 #include "mesh/polygon.h"
 #include "support/mesh_files.h"
 
@@ -12,19 +13,23 @@ using test::load_text;
 using testing::HasSubstr;
 
 TEST(MeshObj, all_corner_forms_negative_indices_continuations_and_crlf_are_read) {
-  const auto loaded = load_text(
-      "# comment\r\nmtllib none.mtl\r\no first\r\nv 0 0 0\r\nv 1 0 0 1.0\r\nv 0 1 0\r\nvt 0 0\r\nvt 1 0 0\r\nvt "
-      ".5\r\nvn 0 0 1\r\n"
-      "usemtl stone\r\nf 1/1 2/2 3/3 # trailing\r\no second\r\ng a b\r\nv 0 0 2\r\nv 1 0 2\r\nv 0 1 2\r\n"
-      "f -3/-3/1 \\\r\n  -2/-2/1 \\\r\n -1/-1/-1\r\nf 1//1 2//1 6//1\r\nf 4 5 2\r\n",
-      "a.OBJ");
+  Progress progress;
+  const std::vector<std::pair<std::string, std::string>> texts{
+      {"a.OBJ",
+       "# comment\r\nmtllib none.mtl\r\no first\r\nv 0 0 0\r\nv 1 0 0 1.0\r\nv 0 1 0\r\nvt 0 0\r\nvt 1 0 0\r\nvt "
+       ".5\r\nvn 0 0 1\r\n"
+       "usemtl stone\r\nf 1/1 2/2 3/3 # trailing\r\no second\r\ng a b\r\nv 0 0 2\r\nv 1 0 2\r\nv 0 1 2\r\n"
+       "f -3/-3/1 \\\r\n  -2/-2/1 \\\r\n -1/-1/-1\r\nf 1//1 2//1 6//1\r\nf 4 5 2\r\n"}};
+  const auto files = test::files_of(texts);
+  const auto loaded = mesh::parse_obj(*files, progress);
   ASSERT_TRUE(loaded) << loaded.error().detail;
   EXPECT_EQ(loaded->mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 0, 1, 5, 3, 4, 1}));
   EXPECT_EQ(loaded->mesh.corner_uvs[2], glm::vec2(0.5f, 0));
   EXPECT_EQ(loaded->mesh.corner_uvs[4], glm::vec2(1, 0));
   EXPECT_EQ(loaded->mesh.corner_uvs[6], glm::vec2(0, 0));
   EXPECT_EQ(count_of(loaded->repairs, "triangles without texture coordinates"), 2u);
-  EXPECT_EQ(count_of(loaded->repairs, "ignored materials"), 1u);
+  EXPECT_EQ(count_of(loaded->repairs, "materials without a definition"), 1u);
+  EXPECT_EQ(count_of(loaded->repairs, "materials not among the files: none.mtl"), 1u);
 }
 
 TEST(MeshObj, a_face_may_name_vertices_that_follow_it) {

@@ -165,10 +165,6 @@ TEST(MeshPly, faces_without_texture_coordinates_get_none_and_are_counted) {
   EXPECT_TRUE(loaded->mesh.corner_uvs.empty());
 }
 
-std::span<const std::uint8_t> bytes_of(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
 TEST(MeshPly, a_face_of_more_corners_than_are_taken_is_refused_before_they_are_read) {
   PlyWriter file(PlyWriter::Encoding::little, kSquare + "element face 1\nproperty list int uchar vertex_indices\n");
   for (int i = 0; i < 4; ++i) file.put(1.0f * (i & 1)).put(1.0f * (i >> 1)).put(0.25f);
@@ -182,6 +178,12 @@ TEST(MeshPly, a_face_of_more_corners_than_are_taken_is_refused_before_they_are_r
   EXPECT_THAT(loaded.error().detail, HasSubstr("more than 4096 corners"));
 }
 
+TEST(MeshPly, faces_may_stand_before_their_vertices) {
+  const auto loaded = load_text(ascii(kFace + kSquare, "3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n"), "a.ply");
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  EXPECT_EQ(loaded->mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2}));
+}
+
 TEST(MeshPly, more_triangles_than_are_taken_are_refused_whatever_makes_them) {
   const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
   const std::string strip = "element tristrips 1\nproperty list int int vertex_indices\n";
@@ -189,10 +191,10 @@ TEST(MeshPly, more_triangles_than_are_taken_are_refused_whatever_makes_them) {
                                   ascii(kSquare + "element face 2\nproperty list int int vertex_indices\n",
                                         vertices + "5 0 1 2 3 1\n5 0 1 2 3 1\n")}) {
     Progress progress;
-    const auto most = mesh::parse_ply(bytes_of(text), progress, 6);
+    const auto most = mesh::parse_ply(*test::files_of({{"a.ply", text}}), progress, 6);
     ASSERT_TRUE(most) << most.error().detail;
     EXPECT_EQ(most->mesh.triangle_count(), 6u);
-    const auto more = mesh::parse_ply(bytes_of(text), progress, 5);
+    const auto more = mesh::parse_ply(*test::files_of({{"a.ply", text}}), progress, 5);
     ASSERT_FALSE(more);
     EXPECT_EQ(more.error().status, 422);
     EXPECT_THAT(more.error().detail, HasSubstr("more than 5 triangles"));
@@ -244,7 +246,7 @@ INSTANTIATE_TEST_SUITE_P(
                "vertex 1 of 4 (line 11)"},
         BadPly{"negative_index", ascii(kSquare + kFace, kFour + "3 0 -1 2\n"), "names vertex -1, but the file has 4"},
         BadPly{"large_index", ascii(kSquare + kFace, kFour + "3 0 1 4\n"), "Face 0 (line 14) names vertex 4"},
-        BadPly{"faces_first", ascii(kFace + kSquare, "3 0 1 2\n" + kFour), "comes before"},
+        BadPly{"faces_first_that_lie", ascii(kFace + kSquare, "3 0 1 4\n" + kFour), "names vertex 4"},
         BadPly{"no_indices", ascii(kSquare + "element face 1\nproperty int x\n", kFour + "1\n"), "vertex_indices"},
         BadPly{"points_only", ascii(kSquare + "element face 0\nproperty list uchar int vertex_indices\n", kFour),
                "4 vertices but no triangle"},

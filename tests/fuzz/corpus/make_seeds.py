@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
 """Writes the seeds of the mesh fuzzers beside itself: one small file per feature of the formats."""
+import io
+import json
 import pathlib
 import struct
+import zipfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -72,3 +75,84 @@ for axis in range(2):
 content += planes([0xFFCFD3D6] * 4, 4) + planes([0, 1, 2, 3], 4) + planes([0, 1, 2, 0, 2, 3], 4)
 (HERE / "geometry").mkdir(exist_ok=True)
 (HERE / "geometry" / "square").write_bytes(content)
+
+facet = struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
+STL = {
+    "binary.stl": b"solid binary".ljust(80) + struct.pack("<I", 2) + 2 * facet,
+    "text.stl": b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1e0 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n",
+}
+
+
+def gltf(name, change, binary, glb=True):
+    """A square of two triangles; `change` edits the JSON."""
+    document = {
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "translation": [1, 2, 3]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                      {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+        "buffers": [{"byteLength": len(binary)}],
+    }
+    change(document)
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    if glb:
+        text = (b"glTF" + struct.pack("<2I", 2, 28 + len(text) + len(binary)) + struct.pack("<I", len(text)) + b"JSON" + text
+                + struct.pack("<I", len(binary)) + b"BIN\0" + binary)
+    GLTF[name] = text
+
+
+GLTF = {}
+square = b"".join(struct.pack("<3f", *p) for p in SQUARE) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+uvs = struct.pack("<8H", 0, 0, 65535, 0, 65535, 65535, 0, 65535)
+
+
+def rich(d):
+    d["bufferViews"] += [{"buffer": 0, "byteOffset": 60, "byteLength": 16, "byteStride": 4}]
+    d["accessors"] += [{"bufferView": 2, "componentType": 5123, "normalized": True, "count": 4, "type": "VEC2"}]
+    d["meshes"][0]["primitives"][0] |= {"material": 0, "attributes": {"POSITION": 0, "TEXCOORD_1": 2, "COLOR_0": 0}}
+    d["materials"] = [{"pbrMetallicRoughness": {"baseColorFactor": [1, .5, 0, 1], "baseColorTexture": {
+        "index": 0, "texCoord": 1, "extensions": {"KHR_texture_transform": {"offset": [0, .5], "scale": [2, 2], "rotation": 1}}}}}]
+    d["textures"] = [{"source": 0, "sampler": 0}]
+    d["samplers"] = [{"wrapS": 33071, "wrapT": 33648}]
+    d["images"] = [{"uri": "data:image/png;base64,iVBORw0KGgo="}]
+    d["nodes"] = [{"mesh": 0, "scale": [-1, 1, 1], "children": [1]}, {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 5, 5, 1]}]
+    d["accessors"][0]["sparse"] = {"count": 1, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}
+
+
+def compressed(d):
+    d["bufferViews"][1]["extensions"] = {"EXT_meshopt_compression": {
+        "buffer": 0, "byteOffset": 60, "byteLength": 24, "byteStride": 2, "count": 6, "mode": "TRIANGLES"}}
+    d["extensionsRequired"] = ["EXT_meshopt_compression"]
+
+
+def draco(d):
+    d["meshes"][0]["primitives"][0]["extensions"] = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}}
+
+
+def beside(d):
+    d["buffers"][0]["uri"] = "a.bin"
+    d["meshes"][0]["primitives"][0]["mode"] = 5
+
+
+gltf("plain.glb", lambda d: None, square)
+gltf("rich.glb", rich, square + uvs)
+gltf("meshopt.glb", compressed, square + b"\xe1\xf0\x10\xfe\x10" + bytes(16) + b"\x00\x76\x87")
+gltf("draco.glb", draco, b"DRACO\x02\x02\x01\x01\x00\x00" + square[11:])
+gltf("beside.gltf", beside, square, glb=False)
+MTL = {
+    "options.mtl": b"newmtl m\r\nKd .5 .25 0\nmap_Kd -s 2 2 1 -o .5 -clamp on a.png\nnewmtl n o\nd .5\nmap_Kd -mm 0 1 \\\n skin.<UDIM>.jpg\n",
+    "plain.mtl": b"newmtl m\nKd 1 0 0\nTr 0.5\nmap_Kd a.png\n",
+    "picture.jpg": b"\xff\xd8\xff\xe0\x00\x10JFIF\x00\x01",
+}
+ZIP = {}
+for method, tag in ((zipfile.ZIP_STORED, "stored"), (zipfile.ZIP_DEFLATED, "deflated")):
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", method) as archive:
+        for name, content in (("../a/pot.obj", OBJ["uv.obj"]), ("a/a.mtl", MTL["plain.mtl"]), ("readme.txt", b"text")):
+            archive.writestr(zipfile.ZipInfo(name), content, method)
+    ZIP[tag + ".zip"] = packed.getvalue()
+for folder, seeds in (("stl", STL), ("gltf", GLTF), ("mtl", MTL), ("zip", ZIP)):
+    (HERE / folder).mkdir(exist_ok=True)
+    for name, content in seeds.items():
+        (HERE / folder / name).write_bytes(content)

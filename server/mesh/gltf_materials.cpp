@@ -1,0 +1,142 @@
+#include "mesh/gltf_materials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "mesh/load_formats.h"
+#include "mesh/texture_shelf.h"
+#include "mesh/vertex_color.h"
+
+namespace strata::mesh {
+namespace {
+
+using nlohmann::json;
+
+Wrap wrap_of(std::uint64_t mode) {
+  if (mode == 33071) return Wrap::clamp;
+  return mode == 33648 ? Wrap::mirror : Wrap::repeat;
+}
+
+class MaterialReader {
+ public:
+  MaterialReader(GltfDocument& document, const InputFiles& files, LoadedMesh& loaded)
+      : document_(document), mesh_(loaded.mesh), shelf_(files, loaded.mesh, loaded.repairs) {}
+
+  Result<std::vector<GltfMaterial>> read() {
+    std::vector<GltfMaterial> materials;
+    const auto list = document_.root().find("materials");
+    if (list == document_.root().end()) return materials;
+    if (!list->is_array() || list->size() >= kNoMaterial)
+      return refuse_file("In the glTF, \"materials\" is not a list of fewer than 65535.");
+    for (const json& source : *list) {
+      if (!source.is_object()) return refuse_file("A material of the glTF is not an object.");
+      auto material = read_material(source);
+      if (!material) return tl::unexpected(material.error());
+      material->material = static_cast<std::uint16_t>(materials.size());
+      materials.push_back(*material);
+    }
+    return materials;
+  }
+
+ private:
+  Result<GltfMaterial> read_material(const json& source) {
+    const json& glossy = object_in(object_in(source, "extensions"), "KHR_materials_pbrSpecularGlossiness");
+    const json& metallic = object_in(source, "pbrMetallicRoughness");
+    const bool is_glossy = metallic.empty() && !glossy.empty();
+    const auto factor =
+        real_numbers(is_glossy ? glossy : metallic, is_glossy ? "diffuseFactor" : "baseColorFactor", {1, 1, 1, 1});
+    if (!factor) return tl::unexpected(factor.error());
+    Material material;
+    material.name = text_of(source, "name").substr(0, 200);
+    for (int k = 0; k < 3; ++k) material.color[k] = static_cast<float>(srgb_of_linear((*factor)[k]));
+    material.color.a = static_cast<float>(std::clamp((*factor)[3], 0.0, 1.0));
+    GltfMaterial result;
+    const json& texture = object_in(is_glossy ? glossy : metallic, is_glossy ? "diffuseTexture" : "baseColorTexture");
+    if (!texture.empty())
+      if (auto done = read_texture(texture, material, result); !done) return tl::unexpected(done.error());
+    mesh_.materials.push_back(std::move(material));
+    return result;
+  }
+
+  Result<void> read_texture(const json& reference, Material& material, GltfMaterial& result) {
+    const json& transform = object_in(object_in(reference, "extensions"), "KHR_texture_transform");
+    const auto index = whole_number(reference, "index"), texcoord = whole_number(reference, "texCoord", 0);
+    if (!index) return tl::unexpected(index.error());
+    if (!texcoord) return tl::unexpected(texcoord.error());
+    const auto set = whole_number(transform, "texCoord", *texcoord);
+    if (!set) return tl::unexpected(set.error());
+    result.texcoord = static_cast<int>(std::min<std::uint64_t>(*set, 1000));
+    if (auto done = read_transform(transform, result); !done) return done;
+
+    const auto texture = document_.element("textures", *index);
+    if (!texture) return tl::unexpected(texture.error());
+    if ((*texture)->contains("sampler")) {
+      const auto number = whole_number(**texture, "sampler");
+      if (!number) return tl::unexpected(number.error());
+      const auto sampler = document_.element("samplers", *number);
+      if (!sampler) return tl::unexpected(sampler.error());
+      const auto s = whole_number(**sampler, "wrapS", 10497), t = whole_number(**sampler, "wrapT", 10497);
+      if (!s) return tl::unexpected(s.error());
+      if (!t) return tl::unexpected(t.error());
+      material.wrap_u = wrap_of(*s);
+      material.wrap_v = wrap_of(*t);
+    }
+    const auto image = image_of(**texture);
+    if (!image) return tl::unexpected(image.error());
+    if (image_textures_.contains(*image)) {
+      material.texture = image_textures_[*image];
+      return {};
+    }
+    auto found = document_.image(*image);
+    if (!found) return tl::unexpected(found.error());
+    const std::string name = found->name.empty() ? "image " + std::to_string(*image) : found->name;
+    if (found->missing)
+      shelf_.missing(name);
+    else
+      material.texture = shelf_.of_bytes(name, std::move(found->bytes));
+    image_textures_[*image] = material.texture;
+    return {};
+  }
+
+  // The plain picture where there is one; otherwise the one of an extension, which will be noted as not read.
+  static Result<std::uint64_t> image_of(const json& texture) {
+    if (texture.contains("source")) return whole_number(texture, "source");
+    for (const char* extension : {"EXT_texture_webp", "KHR_texture_basisu"}) {
+      const json& found = object_in(object_in(texture, "extensions"), extension);
+      if (found.contains("source")) return whole_number(found, "source");
+    }
+    return refuse_file("A texture of the glTF has no picture.");
+  }
+
+  // Rotation turns counter-clockwise where v points down (KHR_texture_transform).
+  static Result<void> read_transform(const json& transform, GltfMaterial& result) {
+    const auto offset = real_numbers(transform, "offset", {0, 0}), scale = real_numbers(transform, "scale", {1, 1});
+    if (!offset) return tl::unexpected(offset.error());
+    if (!scale) return tl::unexpected(scale.error());
+    double turn = 0;
+    if (const auto rotation = transform.find("rotation"); rotation != transform.end()) {
+      if (!rotation->is_number() || !std::isfinite(rotation->get<double>()))
+        return refuse_file("In the glTF, \"rotation\" of a texture is not a number.");
+      turn = rotation->get<double>();
+    }
+    const double c = std::cos(turn), s = std::sin(turn);
+    result.uv_matrix = glm::dmat2(glm::dvec2(c, -s) * (*scale)[0], glm::dvec2(s, c) * (*scale)[1]);
+    result.uv_offset = {(*offset)[0], (*offset)[1]};
+    return {};
+  }
+
+  GltfDocument& document_;
+  TriangleMesh& mesh_;
+  TextureShelf shelf_;
+  std::map<std::uint64_t, int> image_textures_;
+};
+
+}  // namespace
+
+Result<std::vector<GltfMaterial>> read_gltf_materials(GltfDocument& document, const InputFiles& files,
+                                                      LoadedMesh& loaded) {
+  return MaterialReader(document, files, loaded).read();
+}
+
+}  // namespace strata::mesh

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace strata::mesh {
+
+// URIs as glTF has them: `data:…;base64,…`, or a relative path in percent encoding.
+inline bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
+// Nothing: it is not base64.
+std::optional<std::vector<std::uint8_t>> decode_data_uri(std::string_view uri);
+std::string decode_percent(std::string_view uri);
+
+}  // namespace strata::mesh

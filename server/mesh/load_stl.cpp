@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <optional>
+
+#include "mesh/face_builder.h"
+#include "mesh/load_formats.h"
+#include "mesh/text_number.h"
+
+namespace strata::mesh {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 80, kTriangleBytes = 50;
+constexpr std::uint64_t kTrianglesBetweenReports = 65536;
+
+// Every triangle brings its own three points; `repair` joins those that are equal.
+class StlReader {
+ public:
+  StlReader(std::span<const std::uint8_t> bytes, Progress& progress, std::size_t max_triangles)
+      : bytes_(bytes), progress_(progress), faces_(loaded_.mesh, max_triangles) {}
+
+  // Many binary files begin with "solid", as text does: the count decides where it fits the file.
+  Result<LoadedMesh> read() {
+    const auto count = binary_count();
+    const std::uint64_t room = count ? (bytes_.size() - kHeaderBytes - 4) / kTriangleBytes : 0;
+    const bool fits = count && *count <= room && *count > 0;
+    const bool text = starts_like_text();
+    const bool exact = fits && bytes_.size() == kHeaderBytes + 4 + *count * kTriangleBytes;
+    const Result<void> done = text && !exact ? read_text() : read_binary(count, room);
+    if (!done) return tl::unexpected(done.error());
+    faces_.report(loaded_.repairs);
+    return std::move(loaded_);
+  }
+
+ private:
+  std::optional<std::uint64_t> binary_count() const {
+    if (bytes_.size() < kHeaderBytes + 4) return std::nullopt;
+    std::uint32_t count;
+    std::memcpy(&count, bytes_.data() + kHeaderBytes, sizeof count);
+    return count;
+  }
+
+  bool starts_like_text() {
+    std::string_view line = text_;
+    line = line.substr(0, 1024);
+    if (next_word(line) != "solid") return false;
+    return line.find("facet") != std::string_view::npos || line.find("endsolid") != std::string_view::npos;
+  }
+
+  Result<void> read_binary(std::optional<std::uint64_t> count, std::uint64_t room) {
+    if (!count) return refuse_file("This is not an STL file: it is shorter than the header of one.");
+    if (*count > room)
+      return refuse_file("The STL announces " + std::to_string(*count) + " triangles, but has bytes for " +
+                         std::to_string(room) + ": it is cut short, or not an STL.");
+    loaded_.mesh.positions.reserve(3 * *count);
+    faces_.reserve(*count);
+    const std::uint8_t* at = bytes_.data() + kHeaderBytes + 4;
+    for (std::uint64_t i = 0; i < *count; ++i, at += kTriangleBytes) {
+      if (i % kTrianglesBetweenReports == 0 && !report(double(i) / double(*count))) return cancelled_problem();
+      std::array<float, 9> p;
+      std::memcpy(p.data(), at + 12, sizeof p);
+      if (auto added = add({glm::dvec3(p[0], p[1], p[2]), glm::dvec3(p[3], p[4], p[5]), glm::dvec3(p[6], p[7], p[8])});
+          !added)
+        return added;
+    }
+    note(loaded_.repairs, "ignored bytes after the last element",
+         bytes_.size() - kHeaderBytes - 4 - *count * kTriangleBytes);
+    return {};
+  }
+
+  // solid NAME { facet normal x y z  outer loop  vertex x y z ×3  endloop  endfacet } endsolid: only the vertices count.
+  Result<void> read_text() {
+    std::vector<glm::dvec3> loop;
+    std::string_view rest = text_;
+    for (std::uint64_t n = 0;; ++n) {
+      if (n % kTrianglesBetweenReports == 0 && !report(1 - double(rest.size()) / double(text_.size())))
+        return cancelled_problem();
+      const std::string_view word = next_word(rest);
+      if (word.empty()) break;
+      if (word == "solid" || word == "endsolid") {  // their names may hold anything
+        rest.remove_prefix(std::min(rest.find('\n'), rest.size()));
+      } else if (word == "vertex") {
+        glm::dvec3 point(0);
+        for (int k = 0; k < 3; ++k)
+          if (!parse_number(next_word(rest), point[k]))
+            return fault(rest, "a vertex without three numbers; the file is damaged or cut short");
+        if (loop.size() == kMaxPolygonCorners) return FaceBuilder::too_many_corners(place(rest));
+        loop.push_back(point);
+      } else if (word == "endfacet" || word == "endloop") {
+        if (auto added = add(loop); !added) return added;
+        loop.clear();
+      } else if (word == "facet" && !loop.empty()) {
+        return fault(rest, "a facet that does not end");
+      }
+    }
+    if (!loop.empty()) return refuse_file("The STL ends within a facet: it is cut short. Export or upload it again.");
+    return {};
+  }
+
+  Result<void> add(std::span<const glm::dvec3> loop) {
+    if (loop.empty()) return {};
+    if (loaded_.mesh.positions.size() + loop.size() >= 0xffffffffu)
+      return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
+    corners_.clear();
+    for (const glm::dvec3& point : loop) {
+      corners_.push_back({static_cast<std::uint32_t>(loaded_.mesh.positions.size())});
+      loaded_.mesh.positions.push_back(point);
+    }
+    return faces_.add(corners_, false);
+  }
+  Result<void> add(std::initializer_list<glm::dvec3> loop) { return add(std::span(loop.begin(), loop.size())); }
+
+  static std::string_view next_word(std::string_view& rest) {
+    std::size_t start = 0;
+    while (start < rest.size() && is_blank(rest[start])) ++start;
+    std::size_t end = start;
+    while (end < rest.size() && !is_blank(rest[end])) ++end;
+    const std::string_view word = rest.substr(start, end - start);
+    rest.remove_prefix(end);
+    return word;
+  }
+
+  std::string place(std::string_view rest) const {
+    const auto read = text_.substr(0, text_.size() - rest.size());
+    return "line " + std::to_string(1 + std::count(read.begin(), read.end(), '\n'));
+  }
+  tl::unexpected<Problem> fault(std::string_view rest, const std::string& what) const {
+    return refuse_file("In the STL, at " + place(rest) + ", stands " + what + ".");
+  }
+
+  bool report(double share) {
+    progress_.report(kParsedShare * share, "Reading triangles");
+    return !progress_.cancelled();
+  }
+
+  std::span<const std::uint8_t> bytes_;
+  std::string_view text_{reinterpret_cast<const char*>(bytes_.data()), bytes_.size()};
+  Progress& progress_;
+  LoadedMesh loaded_;
+  FaceBuilder faces_;
+  std::vector<FaceBuilder::Corner> corners_;
+};
+
+}  // namespace
+
+Result<LoadedMesh> parse_stl(const InputFiles& files, Progress& progress, std::size_t max_triangles) {
+  return StlReader(files.scan().bytes, progress, max_triangles).read();
+}
+
+}  // namespace strata::mesh

@@ -1,0 +1,13 @@
+#include "fuzz/mesh_invariants.h"
+
+// A GLB or glTF, which finds its own bytes again as the buffer beside it.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  strata::Progress progress;
+  std::vector<strata::mesh::InputFiles::Entry> entries;
+  entries.push_back({"fuzz.gltf", {data, size}, std::nullopt});
+  entries.push_back({"a.bin", {data, size}, std::nullopt});
+  auto files = strata::mesh::InputFiles::of(std::move(entries), "/tmp", progress);
+  if (!files) std::abort();
+  if (const auto loaded = strata::mesh::load_mesh(std::move(*files), progress)) strata::test::check_loaded(*loaded);
+  return 0;
+}
