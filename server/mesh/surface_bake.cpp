@@ -8,30 +8,15 @@
 #include <optional>
 #include <thread>
 
+#include "mesh/gutter_ring.h"
 #include "mesh/parallel.h"
 
 namespace strata::mesh {
 namespace {
 
 constexpr int kMostBands = 32;
-constexpr int kRing = 2;  // texels of gutter
 
 double inside_unit(float value) { return value >= 0 ? std::min(double{value}, 1.0) : 0.0; }  // also for NaN
-
-struct Offset {
-  int x, y;
-};
-// The 24 neighbours within the ring, nearest first; among equals the lower, then the left one.
-constexpr std::array<Offset, 24> ring_offsets() {
-  std::array<Offset, 24> offsets{};
-  int count = 0;
-  for (const int squared : {1, 2, 4, 5, 8})
-    for (int y = -kRing; y <= kRing; ++y)
-      for (int x = -kRing; x <= kRing; ++x)
-        if (x * x + y * y == squared) offsets[count++] = {x, y};
-  return offsets;
-}
-constexpr auto kRingOffsets = ring_offsets();
 
 }  // namespace
 
@@ -323,7 +308,7 @@ void SurfaceBake::place_gutter(int band) {
       std::uint64_t rest = gutter_of_block_[static_cast<std::size_t>(by) * blocks + bx];
       for (; rest != 0; rest &= rest - 1) {
         const int i = std::countr_zero(rest), x = bx * 8 + i % 8, y = by * 8 + i / 8;
-        for (const Offset o : kRingOffsets) {
+        for (const TexelOffset o : kGutterRingOffsets) {
           if (!is_surface(x + o.x, y + o.y)) continue;
           const Borrowed borrowed{texel_index(x, y), texel_index(x + o.x, y + o.y)};
           position_[borrowed.gutter] = position_[borrowed.owner];
@@ -335,7 +320,7 @@ void SurfaceBake::place_gutter(int band) {
 }
 
 bool SurfaceBake::nearest_surface(int x, int y, std::uint32_t island, glm::ivec2& found) const {
-  for (const Offset o : kRingOffsets) {
+  for (const TexelOffset o : kGutterRingOffsets) {
     const auto t = owner(x + o.x, y + o.y);
     if (t == kNobody || islands_.of_triangle[t] != island) continue;
     found = {x + o.x, y + o.y};

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "query/expression_parser.h"
+
 namespace strata::net {
 namespace {
 
@@ -34,6 +36,34 @@ Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Mod
   batch.erase = stroke.erase;
   batch.value_bits = *bits;
   return batch;
+}
+
+Result<room::FillEdit> fill_of(const protocol::EditFill& asked, const Layer& layer) {
+  using Mode = protocol::EditFillMode;
+  auto bits = value_bits(layer, asked.value, asked.erase);
+  if (!bits) return tl::unexpected(bits.error());
+  room::FillEdit fill;
+  fill.erase = asked.erase;
+  fill.value_bits = *bits;
+  if (asked.mode == Mode::where) {
+    if (!asked.where) return fail(422, "Member missing", "Mode `where` needs a condition, not a place.", "where");
+    auto condition = query::parse_condition(*asked.where, "where");
+    if (!condition) return tl::unexpected(condition.error());
+    if (condition->op != Expression::Op::truth || condition->number == 0)
+      fill.region = room::FillEdit::Where{std::move(*condition)};
+    return fill;
+  }
+  if (!asked.at) return fail(422, "Member missing", "This mode needs a place where it begins.", "at");
+  room::Place place;
+  if (asked.at->point)
+    place = *asked.at->point;
+  else
+    place = room::PixelPlace{*asked.at->camera, *asked.at->x, *asked.at->y};
+  if (asked.mode == Mode::island)
+    fill.region = room::FillEdit::Island{std::move(place)};
+  else
+    fill.region = room::FillEdit::Connected{std::move(place)};
+  return fill;
 }
 
 std::string number(double value) {
@@ -72,10 +102,15 @@ Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& 
     request.edit = room::StrokeEdit{std::move(*batch), id, 0};
     return request;
   }
-  const auto& fill = std::get<protocol::EditFill>(edit);
-  auto bits = value_bits(layer, fill.value, fill.erase);
-  if (!bits) return tl::unexpected(bits.error());
-  request.edit = room::FillEdit{fill.erase, *bits};
+  if (const auto* polygon = std::get_if<protocol::EditPolygon>(&edit)) {
+    auto bits = value_bits(layer, polygon->value, polygon->erase);
+    if (!bits) return tl::unexpected(bits.error());
+    request.edit = room::PolygonEdit{polygon->erase, *bits, polygon->camera, polygon->path, polygon->through};
+    return request;
+  }
+  auto fill = fill_of(std::get<protocol::EditFill>(edit), layer);
+  if (!fill) return tl::unexpected(fill.error());
+  request.edit = std::move(*fill);
   return request;
 }
 

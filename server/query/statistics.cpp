@@ -7,31 +7,14 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "query/tile_table.h"
+
 namespace strata::query {
 namespace {
 
 constexpr int kBins = 64;
 constexpr std::size_t kMaxKeys = 4096;
 constexpr int kBlocksPerTile = kTileSize / kBlockSize;
-
-// The layer's tiles as a dense table: one lookup a block.
-class TileTable {
- public:
-  TileTable(const LayerView& view, int blocks_per_side)
-      : tiles_per_side_((blocks_per_side + kBlocksPerTile - 1) / kBlocksPerTile) {
-    tiles_.resize(std::size_t(tiles_per_side_) * tiles_per_side_);
-    for (const auto& [address, tile] : view.snapshot.tiles)
-      if (address.x < tiles_per_side_ && address.y < tiles_per_side_)
-        tiles_[std::size_t(address.y) * tiles_per_side_ + address.x] = tile.get();
-  }
-  const TileData* of_block(int bx, int by) const {
-    return tiles_[std::size_t(by / kBlocksPerTile) * tiles_per_side_ + bx / kBlocksPerTile];
-  }
-
- private:
-  int tiles_per_side_;
-  std::vector<const TileData*> tiles_;
-};
 
 // Calls `visit(slot, texel in the block, bits)` for every valid surface texel, in the order of slots.
 template <class Visit>
@@ -125,7 +108,7 @@ Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const 
     throw std::invalid_argument("The surface map is of another resolution than the layer.");
   const ValueType type = view.layer.type;
   const double m2_per_unit2 = metres_per_unit * metres_per_unit;
-  const TileTable tiles(view, map.blocks_per_side);
+  const TileTable tiles(view.snapshot.tiles, map.resolution);
 
   Statistics out;
   KeySums keys(type, map);

@@ -5,6 +5,7 @@
 #include <string>
 #include <variant>
 
+#include "core/expression.h"
 #include "core/stroke.h"
 #include "core/tile_mirror.h"
 #include "core/uuid.h"
@@ -17,12 +18,37 @@ struct StrokeEdit {
   Uuid stroke;
   int n = 0;  // number of the batch in its stroke
 };
-struct FillEdit {  // everywhere on the surface
+struct PixelPlace {  // what the camera shows there
+  Camera camera;
+  double x = 0, y = 0;
+};
+using Place = std::variant<PixelPlace, glm::dvec3>;  // or the surface point nearest to a point of the world
+struct FillEdit {
   bool erase = false;
   std::uint32_t value_bits = 0;
+  struct Everywhere {};
+  struct Where {  // of the model's layers as they are when the edit's turn comes
+    Expression condition;
+  };
+  struct Island {  // the connected piece of the surface, across the seams of its atlas
+    Place at;
+  };
+  struct
+      Connected {  // what holds the same as the place, or like it nothing, and is connected with it across the surface
+    Place at;
+  };
+  std::variant<Everywhere, Where, Island, Connected> region = Everywhere{};
 };
-struct ImportEdit {  // replaces the whole layer's content
+struct PolygonEdit {  // inside an outline in the camera's window (even-odd rule)
+  bool erase = false;
+  std::uint32_t value_bits = 0;
+  Camera camera;
+  std::vector<glm::dvec2> path;  // window pixels, origin top left; 3…4096 points
+  bool through = false;          // paint what is hidden, too
+};
+struct ImportEdit {
   TileMap tiles;
+  bool over = false;  // what is valid in the tiles is painted over the layer; otherwise they replace its whole content
 };
 struct UndoEdit {};  // the author's newest stroke in force on the layer
 struct RedoEdit {};
@@ -34,7 +60,7 @@ struct EditRequest {
   Uuid id;  // of the message: a repeat gets the first answer and paints nothing
   std::string user;
   std::int64_t layer_id = 0;
-  std::variant<StrokeEdit, FillEdit, ImportEdit, UndoEdit, RedoEdit, RestoreEdit> edit;
+  std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, UndoEdit, RedoEdit, RestoreEdit> edit;
   nlohmann::json record;  // the edit as asked, for the journal
 };
 

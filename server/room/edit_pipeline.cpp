@@ -13,9 +13,8 @@
 namespace strata::room {
 namespace {
 
-constexpr int kStrokesInFlight = 8;   // keeps the GPU fed; more would only lengthen a rollback
-constexpr int kKeyTileEvery = 64;     // revisions of a tile between two whole copies
-constexpr int kRevisionsAtOnce = 32;  // of a tile's history: undo holds no more in memory
+constexpr int kStrokesInFlight = 8;  // keeps the GPU fed; more would only lengthen a rollback
+constexpr int kKeyTileEvery = 64;    // revisions of a tile between two whole copies
 constexpr auto kRepairPause = std::chrono::milliseconds(500);
 
 template <class... Visitors>
@@ -27,8 +26,9 @@ Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 const char* op_name(const EditRequest& request) {
   return std::visit(Overloaded{[](const StrokeEdit&) { return "stroke"; }, [](const FillEdit&) { return "fill"; },
-                               [](const ImportEdit&) { return "import"; }, [](const UndoEdit&) { return "undo"; },
-                               [](const RedoEdit&) { return "redo"; }, [](const RestoreEdit&) { return "restore"; }},
+                               [](const PolygonEdit&) { return "polygon"; }, [](const ImportEdit&) { return "import"; },
+                               [](const UndoEdit&) { return "undo"; }, [](const RedoEdit&) { return "redo"; },
+                               [](const RestoreEdit&) { return "restore"; }},
                     request.edit);
 }
 
@@ -36,6 +36,12 @@ const char* op_name(const EditRequest& request) {
 bool reads_journal(const EditRequest& request) {
   return std::holds_alternative<UndoEdit>(request.edit) || std::holds_alternative<RedoEdit>(request.edit) ||
          std::holds_alternative<RestoreEdit>(request.edit);
+}
+
+// What its content is computed from besides its own layer.
+bool reads_layers(const EditRequest& request) {
+  const auto* fill = std::get_if<FillEdit>(&request.edit);
+  return fill && std::holds_alternative<FillEdit::Where>(fill->region);
 }
 
 // The part of the surface that changed tiles lie on.
@@ -249,7 +255,7 @@ void EditPipeline::stroke_done(Waiting& item, Result<render::StrokeOutcome> outc
   if (closed_) return refuse(item, *closed_);
   LayerState* layer = host_->find_layer(item.request.layer_id);
   if (!layer) return refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
-  Computed computed;
+  ComputedEdit computed;
   for (const auto& tile : outcome->tiles) {
     auto before = layer->mirror->tile(tile.address);
     if (!before) before = std::make_shared<const TileData>(layer->layer.type);
@@ -263,86 +269,28 @@ void EditPipeline::stroke_done(Waiting& item, Result<render::StrokeOutcome> outc
 void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
   busy_ = true;
   auto item = std::make_shared<Waiting>(std::move(taken));
-  auto done = then([this, item](Result<Computed> computed) { upload_computed(item, std::move(computed)); });
+  auto done = then([this, item](Result<ComputedEdit> computed) { upload_computed(item, std::move(computed)); });
+  std::vector<query::LayerView> layers;
+  if (reads_layers(item->request)) layers = host_->layer_snapshots();
   boost::asio::post(parts_.workers, [this, self = shared_from_this(), item, meta = layer.layer,
-                                     tiles = layer.mirror->snapshot().tiles, done = std::move(done)]() mutable {
+                                     tiles = layer.mirror->snapshot().tiles, layers = std::move(layers),
+                                     model = host_->model_handle(), done = std::move(done)]() mutable {
+    const auto map = parts_.maps->get(meta.resolution);
+    if (!map)
+      return done(
+          Result<ComputedEdit>(fail(503, "GPU lost", "The graphics context is being restored; send the edit again.")));
     try {
-      done(compute(item->request, meta, tiles));
+      done(compute_edit(item->request, meta, parts_.store,
+                        {*map, tiles, layers, *parts_.surface, parts_.renderer, model}));
     } catch (const std::bad_alloc&) {
-      done(Result<Computed>(
+      done(Result<ComputedEdit>(
           fail(503, "Out of memory", "The server lacks the memory for this edit at the moment; try again later.")));
     }
   });
 }
 
-Result<EditPipeline::Computed> EditPipeline::compute(const EditRequest& request, const Layer& layer,
-                                                     const TileMap& tiles) const {
-  const auto map = parts_.maps->get(layer.resolution);
-  if (!map) return fail(503, "GPU lost", "The graphics context is being restored; send the edit again.");
-  return std::visit(
-      Overloaded{
-          [&](const FillEdit& fill) -> Result<Computed> {
-            return Computed{fill_everywhere(tiles, layer.type, *map, fill.erase, fill.value_bits), {}, {}};
-          },
-          [&](const ImportEdit& import) -> Result<Computed> {
-            return Computed{replace_content(tiles, import.tiles, layer.type, *map), {}, {}};
-          },
-          [&](const RestoreEdit& restore) -> Result<Computed> {
-            auto past = parts_.store.load_tiles(layer, restore.sequence);
-            if (!past) return tl::unexpected(past.error());
-            return Computed{replace_content(tiles, past->tiles, layer.type, *map), {}, {}};
-          },
-          [&](const UndoEdit&) { return compute_undo(request, layer, tiles, false); },
-          [&](const RedoEdit&) { return compute_undo(request, layer, tiles, true); },
-          [&](const StrokeEdit&) -> Result<Computed> {
-            return fail(500, "Internal error", "A stroke is painted, not computed.");
-          },
-      },
-      request.edit);
-}
-
-Result<EditPipeline::Computed> EditPipeline::compute_undo(const EditRequest& request, const Layer& layer,
-                                                          const TileMap& tiles, bool redo) const {
-  auto sequences = redo ? parts_.store.redoable(layer.id, request.user) : parts_.store.undoable(layer.id, request.user);
-  if (!sequences) return tl::unexpected(sequences.error());
-  if (sequences->empty())
-    return redo ? fail(409, "Nothing to redo", "You have no undone stroke on this layer that could come back.")
-                : fail(409, "Nothing to undo", "You have no stroke in force on this layer.");
-  auto written = parts_.store.written_by(layer, *sequences);
-  if (!written) return tl::unexpected(written.error());
-
-  Computed computed;
-  for (const auto& tile : *written) {
-    auto change = undo_in_tile(tile, *sequences, redo, layer, tiles);
-    if (!change) return tl::unexpected(change.error());
-    computed.changes.push_back(std::move(*change));
-  }
-  (redo ? computed.enable : computed.disable) = std::move(*sequences);
-  return computed;
-}
-
-// Walks back through the tile's history only until every texel has found its author.
-Result<TileChange> EditPipeline::undo_in_tile(const store::Store::WrittenTiles& written,
-                                              const std::vector<std::int64_t>& sequences, bool redo, const Layer& layer,
-                                              const TileMap& tiles) const {
-  auto before = tile_or_empty(tiles, written.tile, layer.type);
-  TileResolver resolver(*before, written.written);
-  for (std::int64_t newest = std::numeric_limits<std::int64_t>::max(); resolver.is_open();) {
-    auto revisions = parts_.store.tile_history(layer, written.tile, newest, kRevisionsAtOnce);
-    if (!revisions) return tl::unexpected(revisions.error());
-    if (revisions->empty()) break;
-    for (auto& revision : *revisions) {
-      if (std::binary_search(sequences.begin(), sequences.end(), revision.sequence)) revision.in_force = redo;
-      resolver.add(revision);
-    }
-    newest = revisions->back().sequence;
-  }
-  auto after = std::make_shared<const TileData>(std::move(resolver).finish());
-  return TileChange{written.tile, std::move(before), std::move(after), written.written};
-}
-
 // Applied only once the GPU has it: a stroke that comes next is painted over what the mirror holds.
-void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item, Result<Computed> computed) {
+void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item, Result<ComputedEdit> computed) {
   busy_ = false;
   if (!computed) return refuse(*item, computed.error());
   if (closed_) return refuse(*item, *closed_);
@@ -358,7 +306,7 @@ void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item, Result<
                               }));
 }
 
-void EditPipeline::computed_uploaded(Waiting& item, Computed computed, const Result<void>& uploaded) {
+void EditPipeline::computed_uploaded(Waiting& item, ComputedEdit computed, const Result<void>& uploaded) {
   if (closed_) return refuse(item, *closed_);
   LayerState* layer = host_->find_layer(item.request.layer_id);
   if (!layer) return refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
@@ -373,7 +321,7 @@ void EditPipeline::computed_uploaded(Waiting& item, Computed computed, const Res
 
 // ------------------------------------------------------------------------------------ making durable, or taking back
 
-void EditPipeline::commit(Waiting& item, LayerState& layer, Computed computed,
+void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit computed,
                           const std::optional<render::FrameRequest::Box>& box) {
   const auto map = parts_.maps->get(layer.layer.resolution);
   const Model& model = host_->pipeline_model();

@@ -12,6 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "room/computed_edit.h"
 #include "room/layer_state.h"
 #include "room/room.h"
 #include "room/surface_maps.h"
@@ -27,7 +28,9 @@ class PipelineHost {
  public:
   virtual ~PipelineHost() = default;
   virtual LayerState* find_layer(std::int64_t id) = 0;
+  virtual std::vector<query::LayerView> layer_snapshots() = 0;  // of all layers, as their mirrors are now
   virtual const Model& pipeline_model() const = 0;
+  virtual render::ModelHandle model_handle() const = 0;
   virtual void set_sequence(LayerState& layer, std::int64_t sequence) = 0;  // other threads may be reading it
   virtual void content_changed(const LayerState& layer, const std::optional<render::FrameRequest::Box>& box,
                                std::int64_t sequence) = 0;  // no box: everywhere
@@ -39,8 +42,8 @@ class PipelineHost {
 };
 
 // The order of edits of one room. An edit is first looked up in the journal, which may hold it from an earlier connection. Then
-// strokes go to the GPU several at a time, in sequence order; edits that are computed from the tile mirror (fill, import, undo,
-// restore) wait until the strokes before them are read back, and are applied once the GPU has them. What was read back
+// strokes go to the GPU several at a time, in sequence order; edits that are computed from the tile mirror (fill, polygon, import,
+// undo, restore) wait until the strokes before them are read back, and are applied once the GPU has them. What was read back
 // is compared with the mirror once: that difference becomes the journal's revision, the counts and the change on screen.
 //
 // The mirrors are right at every moment: they hold what the journal has and what is on its way there. The GPU may fall
@@ -58,6 +61,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     boost::asio::thread_pool& readers;
     Strand strand;
     std::shared_ptr<SurfaceMaps> maps;
+    std::shared_ptr<SurfaceLookup> surface;
     const MemoryLedger& memory;
   };
   EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_sequence);
@@ -99,10 +103,6 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     Room::Saved saved;
     bool answered = false;
   };
-  struct Computed {
-    std::vector<TileChange> changes;
-    std::vector<std::int64_t> disable, enable;
-  };
 
   // Looking up
   void ask_journal();
@@ -116,14 +116,11 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void start_stroke(Waiting item, const LayerState& layer);
   void stroke_done(Waiting& item, Result<render::StrokeOutcome> outcome);
   void start_computed(Waiting item, const LayerState& layer);
-  Result<Computed> compute(const EditRequest& request, const Layer& layer, const TileMap& tiles) const;
-  Result<Computed> compute_undo(const EditRequest& request, const Layer& layer, const TileMap& tiles, bool redo) const;
-  Result<TileChange> undo_in_tile(const store::Store::WrittenTiles& written, const std::vector<std::int64_t>& sequences,
-                                  bool redo, const Layer& layer, const TileMap& tiles) const;
-  void upload_computed(const std::shared_ptr<Waiting>& item, Result<Computed> computed);
-  void computed_uploaded(Waiting& item, Computed computed, const Result<void>& uploaded);
+  void upload_computed(const std::shared_ptr<Waiting>& item, Result<ComputedEdit> computed);
+  void computed_uploaded(Waiting& item, ComputedEdit computed, const Result<void>& uploaded);
   // Making durable, or taking back
-  void commit(Waiting& item, LayerState& layer, Computed computed, const std::optional<render::FrameRequest::Box>& box);
+  void commit(Waiting& item, LayerState& layer, ComputedEdit computed,
+              const std::optional<render::FrameRequest::Box>& box);
   void on_saved(std::int64_t sequence, const Result<void>& result);
   void roll_back_when_answered();
   bool repair();  // false: the GPU has all

@@ -53,6 +53,7 @@ OpenRoom::OpenRoom(const RoomParts& parts, Model model, render::ModelGeometry ge
       coarser_(std::move(geometry.coarser)),
       strand_(parts.strands.get_executor()),
       maps_(std::make_shared<SurfaceMaps>(geometry_, parts.renderer, parts.memory, parts.workers)),
+      surface_(std::make_shared<SurfaceLookup>(geometry_)),
       model_(std::move(model)),
       last_used_(std::chrono::steady_clock::now()),
       recovery_(strand_) {}
@@ -96,10 +97,10 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const s
   room->look_shelf_->set_model(gpu->model);
   for (const Look& look : *looks) room->look_shelf_->put(look);
   room->sequence_ = room->durable_ = journal->last_sequence;
-  room->pipeline_ =
-      std::make_shared<EditPipeline>(EditPipeline::Parts{parts.store, parts.writer, parts.renderer, parts.workers,
-                                                         parts.readers, room->strand_, room->maps_, parts.memory},
-                                     *room, journal->last_sequence);
+  room->pipeline_ = std::make_shared<EditPipeline>(
+      EditPipeline::Parts{parts.store, parts.writer, parts.renderer, parts.workers, parts.readers, room->strand_,
+                          room->maps_, room->surface_, parts.memory},
+      *room, journal->last_sequence);
   // Painting needs the maps of the layers there are; bake them while people look around.
   for (const auto& state : room->layer_states()) room->maps_->request(state.layer.resolution, [](auto) {});
   return room;
@@ -324,6 +325,12 @@ LayerState* OpenRoom::find_layer(std::int64_t id) {
   return found == layers_.end() ? nullptr : &found->second;
 }
 
+std::vector<query::LayerView> OpenRoom::layer_snapshots() {
+  std::vector<query::LayerView> views;
+  for (const auto& [id, state] : layers_) views.push_back({state.layer, state.mirror->snapshot()});
+  return views;
+}
+
 void OpenRoom::set_sequence(LayerState& layer, std::int64_t sequence) {
   std::lock_guard lock(mutex_);
   layer.layer.sequence = sequence;
@@ -418,6 +425,7 @@ bool OpenRoom::deserted(std::chrono::steady_clock::time_point now) const {
 void OpenRoom::shut(const Problem& why) {
   maps_->stop();
   look_shelf_->stop();
+  surface_->stop();
   on_strand([&] {
     recovery_.shut = true;
     recovery_.timer.cancel();
@@ -432,11 +440,6 @@ void OpenRoom::shut_deleted() {
 }
 
 // ----------------------------------------------------------------------------------------------------- queries
-
-std::shared_ptr<const mesh::SearchTree> OpenRoom::search_tree() {
-  std::call_once(tree_once_, [&] { tree_ = std::make_shared<const mesh::SearchTree>(geometry_); });
-  return tree_;
-}
 
 Result<std::shared_ptr<const mesh::SurfaceMap>> OpenRoom::surface_map(int resolution) {
   touch();
@@ -459,7 +462,7 @@ Result<query::SurfacePoint> OpenRoom::position(const glm::dvec3& world, const st
   touch();
   auto views = layer_views(layers);
   if (!views) return tl::unexpected(views.error());
-  return query::nearest_point(*search_tree(), geometry_->origin, world, *views);
+  return query::nearest_point(*surface_->tree(), geometry_->origin, world, *views);
 }
 
 Result<std::vector<query::SurfacePoint>> OpenRoom::positions(const std::vector<glm::dvec3>& world,
@@ -467,7 +470,7 @@ Result<std::vector<query::SurfacePoint>> OpenRoom::positions(const std::vector<g
   touch();
   auto views = layer_views(layers);
   if (!views) return tl::unexpected(views.error());
-  const auto tree = search_tree();
+  const auto tree = surface_->tree();
   std::vector<query::SurfacePoint> points;
   points.reserve(world.size());
   for (const auto& point : world) points.push_back(query::nearest_point(*tree, geometry_->origin, point, *views));
@@ -479,7 +482,7 @@ Result<query::SurfacePoint> OpenRoom::pick(const Camera& camera, double x, doubl
   touch();
   auto views = layer_views(layers);
   if (!views) return tl::unexpected(views.error());
-  return query::pick(*search_tree(), geometry_->origin, camera, x, y, *views);
+  return query::pick(*surface_->tree(), geometry_->origin, camera, x, y, *views);
 }
 
 Result<query::Statistics> OpenRoom::statistics(const std::string& layer) {

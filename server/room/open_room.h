@@ -52,10 +52,13 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
                                                      const std::vector<std::string>& layers) override;
   Result<query::SurfacePoint> pick(const Camera& camera, double x, double y,
                                    const std::vector<std::string>& layers) override;
+  Result<TileMap> dabs(const Layer& layer, const std::vector<PlacedValue>& values, double radius,
+                       double tolerance) override;
+  Result<TileMap> project(const Layer& layer, const glm::dvec3& direction, const ValueAt& value_at) override;
   Result<query::Statistics> statistics(const std::string& layer) override;
   Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) override;
   std::shared_ptr<const mesh::Geometry> geometry() const override { return geometry_; }
-  std::shared_ptr<const mesh::SearchTree> search_tree() override;
+  std::shared_ptr<const mesh::SearchTree> search_tree() override { return surface_->tree(); }
   Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution) override;
   Result<render::Frame> picture(const PictureRequest& request) override;
   std::vector<Look> looks() const override { return look_shelf_->all(); }
@@ -67,6 +70,8 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
 
   // --- PipelineHost (on the strand)
   LayerState* find_layer(std::int64_t id) override;
+  std::vector<query::LayerView> layer_snapshots() override;
+  render::ModelHandle model_handle() const override;  // also for members
   const Model& pipeline_model() const override { return model_; }
   void set_sequence(LayerState& layer, std::int64_t sequence) override;
   void content_changed(const LayerState& layer, const std::optional<render::FrameRequest::Box>& box,
@@ -79,7 +84,6 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
 
   // --- for members
   stream::StreamContext stream_context() const { return parts_.stream; }
-  render::ModelHandle model_handle() const;
   LookShelf& look_shelf() const { return *look_shelf_; }
   std::vector<LayerState> layer_states() const;  // in drawing order
   std::optional<LayerState> layer_state(std::int64_t id) const;
@@ -124,6 +128,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   const Strand strand_;
   const std::shared_ptr<SurfaceMaps> maps_;
   std::shared_ptr<LookShelf> look_shelf_;
+  const std::shared_ptr<SurfaceLookup> surface_;
   std::shared_ptr<EditPipeline> pipeline_;
 
   // Changed on the strand, under `mutex_`; so read on the strand without it, and elsewhere under it.
@@ -134,8 +139,6 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   render::ModelHandle model_handle_ = 0;
   std::chrono::steady_clock::time_point last_used_;  // under `mutex_` everywhere
 
-  std::once_flag tree_once_;
-  std::shared_ptr<const mesh::SearchTree> tree_;
   std::atomic<std::int64_t> sequence_{0}, durable_{0};
   std::atomic<std::size_t> unanswered_{0};  // edits, and changes of layers that wait for them
   std::atomic<bool> takes_edits_{true};

@@ -123,6 +123,18 @@ class Room {
                                                              const std::vector<std::string>& layers) = 0;
   virtual Result<query::SurfacePoint> pick(const Camera& camera, double x, double y,
                                            const std::vector<std::string>& layers) = 0;
+  // What maps and measurements paint (query/flat_map, query/dabs), for an ImportEdit `over` the layer. Values are bits of its type.
+  struct PlacedValue {
+    glm::dvec3 world{0};
+    std::uint32_t bits = 0;
+    int line = 0;  // of the text that they came from
+  };
+  // Around the surface point nearest to each place, which may lie `tolerance` from it (model units): refused otherwise (422).
+  virtual Result<TileMap> dabs(const Layer& layer, const std::vector<PlacedValue>& values, double radius,
+                               double tolerance) = 0;
+  // The surface that is seen first along a direction, without perspective, by a function of its place in the world.
+  using ValueAt = std::function<std::optional<std::uint32_t>(const glm::dvec3& world)>;
+  virtual Result<TileMap> project(const Layer& layer, const glm::dvec3& direction, const ValueAt& value_at) = 0;
   virtual Result<query::Statistics> statistics(const std::string& layer) = 0;
   virtual Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) = 0;
   // What the model is, for work that computes on the whole surface. The tree is built and the map baked when first asked for.

@@ -1,17 +1,13 @@
 #include "room/tile_changes.h"
 
-#include <bit>
 #include <cstring>
 #include <set>
 
+#include "core/mask_texels.h"
+#include "mesh/slot_bits.h"
+
 namespace strata::room {
 namespace {
-
-template <class Visit>
-void for_each_texel(const TileMask& mask, Visit visit) {
-  for (int w = 0; w < kMaskWords; ++w)
-    for (std::uint64_t left = mask.words[w]; left; left &= left - 1) visit(w * 64 + std::countr_zero(left));
-}
 
 // Texels whose value or validity differs.
 TileMask differing(const TileData& a, const TileData& b) {
@@ -23,6 +19,26 @@ TileMask differing(const TileData& a, const TileData& b) {
     if (std::memcmp(&a.values[std::size_t(texel) * width], &b.values[std::size_t(texel) * width], width) != 0)
       mask.set(texel);
   return mask;
+}
+
+// Writes the texels that `mask_of(address)` tells.
+template <class MaskOf>
+std::vector<TileChange> fill(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map, WrittenValue value,
+                             MaskOf mask_of) {
+  std::vector<TileChange> changes;
+  const int tiles_per_side = map.resolution / kTileSize;
+  for (int y = 0; y < tiles_per_side; ++y)
+    for (int x = 0; x < tiles_per_side; ++x) {
+      const TileAddress address{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+      const TileMask mask = mask_of(address);
+      if (!mask.any()) continue;
+      auto before = tile_or_empty(tiles, address, type);
+      if (!value && !before->valid.any()) continue;
+      auto after = std::make_shared<TileData>(*before);
+      for_each_texel(mask, [&](int texel) { value ? after->write(texel, *value) : after->clear(texel); });
+      changes.push_back({address, std::move(before), std::move(after), mask});
+    }
+  return changes;
 }
 
 }  // namespace
@@ -46,22 +62,25 @@ ChangeCount count_changes(const TileChange& change, const mesh::SurfaceMap& map)
   return count;
 }
 
-std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map, bool erase,
-                                        std::uint32_t bits) {
-  std::vector<TileChange> changes;
-  const int tiles_per_side = map.resolution / kTileSize;
-  for (int y = 0; y < tiles_per_side; ++y)
-    for (int x = 0; x < tiles_per_side; ++x) {
-      const TileAddress address{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
-      const TileMask owned = map.owned_in_tile(address);
-      if (!owned.any()) continue;
-      auto before = tile_or_empty(tiles, address, type);
-      if (erase && !before->valid.any()) continue;
-      auto after = std::make_shared<TileData>(*before);
-      for_each_texel(owned, [&](int texel) { erase ? after->clear(texel) : after->write(texel, bits); });
-      changes.push_back({address, std::move(before), std::move(after), owned});
-    }
-  return changes;
+std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
+                                        WrittenValue value) {
+  return fill(tiles, type, map, value, [&](TileAddress address) { return map.owned_in_tile(address); });
+}
+
+std::vector<TileChange> fill_selected(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
+                                      query::TexelSelection selection, WrittenValue value) {
+  mesh::spread_to_gutter(map, selection);
+  return fill(tiles, type, map, value, [&](TileAddress address) {
+    return mesh::gather_tile_bits(map, address, [&](std::uint32_t slot) { return selection[slot]; });
+  });
+}
+
+std::vector<TileChange> fill_masks(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
+                                   const std::map<TileAddress, TileMask>& masks, WrittenValue value) {
+  return fill(tiles, type, map, value, [&](TileAddress address) {
+    const auto found = masks.find(address);
+    return found == masks.end() ? TileMask{} : found->second;
+  });
 }
 
 std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& wished, ValueType type,
@@ -79,6 +98,22 @@ std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& wis
     for_each_texel(foreign, [&](int texel) { after->clear(texel); });
     const TileMask written = differing(*before, *after);
     if (written.any()) changes.push_back({address, std::move(before), std::move(after), written});
+  }
+  return changes;
+}
+
+std::vector<TileChange> paint_over(const TileMap& tiles, const TileMap& written, ValueType type,
+                                   const mesh::SurfaceMap& map) {
+  std::vector<TileChange> changes;
+  for (const auto& [address, data] : written) {
+    const TileMask owned = map.owned_in_tile(address);
+    TileMask mask;
+    for (int w = 0; w < kMaskWords; ++w) mask.words[w] = data->valid.words[w] & owned.words[w];
+    if (!mask.any()) continue;
+    auto before = tile_or_empty(tiles, address, type);
+    auto after = std::make_shared<TileData>(*before);
+    copy_texels(*data, mask, *after);
+    changes.push_back({address, std::move(before), std::move(after), mask});
   }
   return changes;
 }

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/tile_mirror.h"
 #include "mesh/surface_map.h"
+#include "query/texel_selection.h"
 
 namespace strata::room {
 
@@ -25,13 +28,26 @@ struct ChangeCount {
 };
 ChangeCount count_changes(const TileChange& change, const mesh::SurfaceMap& map);
 
+// What is written: a value's bits, or nothing, which erases.
+using WrittenValue = std::optional<std::uint32_t>;
+
 // Every texel of the surface gets the value, or loses what it has.
-std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map, bool erase,
-                                        std::uint32_t bits);
+std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
+                                        WrittenValue value);
+// The selected surface texels do, and the gutter texels that follow them.
+std::vector<TileChange> fill_selected(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
+                                      query::TexelSelection selection, WrittenValue value);
+// The texels of the masks, which belong to the surface or its gutter.
+std::vector<TileChange> fill_masks(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
+                                   const std::map<TileAddress, TileMask>& masks, WrittenValue value);
 
 // The layer's content becomes `wished`, on the texels that belong to the surface. Written is what differs.
 std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& wished, ValueType type,
                                         const mesh::SurfaceMap& map);
+
+// What is valid in `written` is painted over what is there; texels that do not belong to the surface are passed over.
+std::vector<TileChange> paint_over(const TileMap& tiles, const TileMap& written, ValueType type,
+                                   const mesh::SurfaceMap& map);
 
 // What a stroke did to a tile: the texels it wrote become what the GPU holds there, and nothing else changes, whatever the GPU
 // holds in the rest of the tile.

@@ -10,7 +10,9 @@
 #include <numeric>
 #include <set>
 
+#include "mesh/gutter_ring.h"
 #include "mesh/load.h"
+#include "mesh/slot_bits.h"
 #include "mesh/uv_islands.h"
 #include "support/meshes.h"
 #include "support/scan_atlas.h"
@@ -348,6 +350,39 @@ TEST_P(EveryGeometry, tiles_show_what_the_slots_hold) {
       ASSERT_EQ(surface.test(texel), is_surface(map, x, y));
       const auto [slot, index] = texel_at(map, x, y);
       ASSERT_EQ(map.area_of(tile, texel), slot == kNoSlot ? 0 : map.area[std::size_t{slot} * 64 + index]);
+    }
+}
+
+TEST_P(EveryGeometry, gutter_texels_get_the_bits_of_the_surface_texels_that_they_follow) {
+  const SurfaceMap map = bake(geometry());
+  std::vector<std::uint64_t> given, bits;
+  std::uint64_t seed = 88172645463325252u;
+  for (std::size_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
+    seed ^= seed << 13, seed ^= seed >> 7, seed ^= seed << 17;
+    given.push_back(seed);
+  }
+  bits = given;
+  spread_to_gutter(map, bits);
+  for (int y = 0; y < kResolution; ++y)
+    for (int x = 0; x < kResolution; ++x) {
+      const auto [slot, index] = texel_at(map, x, y);
+      if (slot == kNoSlot) continue;
+      bool expected = false;
+      if (is_surface(map, x, y)) {
+        expected = (given[slot] >> index) & 1u;
+      } else if (packed_at(map, x, y) != kNoPosition) {
+        // Ties are the bake's business: any of the nearest has the position that the gutter texel shows.
+        const auto position = map.position(slot, index);
+        for (const TexelOffset o : kGutterRingOffsets) {
+          const int ox = x + o.x, oy = y + o.y;
+          if (!Oracle::inside(ox, oy) || !is_surface(map, ox, oy)) continue;
+          const auto [owner_slot, owner] = texel_at(map, ox, oy);
+          if (map.position(owner_slot, owner) != position) continue;
+          expected = (given[owner_slot] >> owner) & 1u;
+          break;
+        }
+      }
+      ASSERT_EQ((bits[slot] >> index) & 1u, expected) << x << "," << y;
     }
 }
 

@@ -83,6 +83,8 @@ class FakeRoom final : public room::Room {
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
   Result<void> delete_layer(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
   Result<Model> update_model(Model model, const store::FirstAnswer<Model>&) override { return model; }
+  Result<TileMap> dabs(const Layer&, const std::vector<PlacedValue>&, double, double) override { return TileMap{}; }
+  Result<TileMap> project(const Layer&, const glm::dvec3&, const ValueAt&) override { return TileMap{}; }
   Result<query::SurfacePoint> position(const glm::dvec3&, const std::vector<std::string>&) override {
     return query::SurfacePoint{};
   }

@@ -92,6 +92,69 @@ TEST(Wire, a_fill_carries_the_bits_of_its_value) {
   EXPECT_EQ(request->record["op"], "fill");
 }
 
+Result<room::EditRequest> request_of(const protocol::Edit& edit) {
+  return edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), "anna");
+}
+
+TEST(Wire, a_fill_is_of_the_region_that_its_mode_tells) {
+  using room::FillEdit;
+  protocol::EditFill fill;
+  fill.where = "true";
+  EXPECT_TRUE(std::holds_alternative<FillEdit::Everywhere>(std::get<FillEdit>(request_of(fill)->edit).region));
+  fill.where = "wet > 3";
+  const auto where = request_of(fill);
+  ASSERT_TRUE(where);
+  const auto& condition = std::get<FillEdit::Where>(std::get<FillEdit>(where->edit).region).condition;
+  EXPECT_EQ(condition.op, Expression::Op::greater);
+  EXPECT_EQ(where->record["where"], "wet > 3");
+  fill.where.reset();
+  fill.at.emplace();
+  fill.at->point = glm::dvec3(1, 2, 3);
+  fill.mode = protocol::EditFillMode::island;
+  const auto island = request_of(fill);
+  EXPECT_EQ(std::get<glm::dvec3>(std::get<FillEdit::Island>(std::get<FillEdit>(island->edit).region).at),
+            glm::dvec3(1, 2, 3));
+  fill.at->point.reset();
+  fill.at->camera = camera();
+  fill.at->x = 4;
+  fill.at->y = 5;
+  fill.mode = protocol::EditFillMode::connected;
+  const auto connected = request_of(fill);
+  const auto& at = std::get<FillEdit::Connected>(std::get<FillEdit>(connected->edit).region).at;
+  EXPECT_EQ(std::get<room::PixelPlace>(at).camera, camera());
+  EXPECT_EQ(std::get<room::PixelPlace>(at).y, 5);
+}
+
+TEST(Wire, a_fill_that_lacks_what_its_mode_needs_is_refused) {
+  protocol::EditFill fill;
+  fill.where = "wet >";
+  EXPECT_EQ(request_of(fill).error().field, "where");
+  fill.mode = protocol::EditFillMode::island;
+  EXPECT_EQ(request_of(fill).error().field, "at");
+  fill.where.reset();
+  fill.at.emplace();
+  fill.at->point = glm::dvec3(1, 2, 3);
+  fill.mode = protocol::EditFillMode::where;
+  EXPECT_EQ(request_of(fill).error().field, "where");
+}
+
+TEST(Wire, a_polygon_becomes_an_edit) {
+  protocol::EditPolygon polygon;
+  polygon.value = 300;
+  polygon.camera = camera();
+  polygon.path = {{1, 2}, {3, 4}, {5, 0}};
+  polygon.through = true;
+  EXPECT_EQ(request_of(polygon).error().field, "value");
+  polygon.value = 200;
+  const auto request = request_of(polygon);
+  ASSERT_TRUE(request);
+  const auto& edit = std::get<room::PolygonEdit>(request->edit);
+  EXPECT_EQ(edit.value_bits, 200u);
+  EXPECT_EQ(edit.path.size(), 3u);
+  EXPECT_TRUE(edit.through);
+  EXPECT_EQ(request->record["op"], "polygon");
+}
+
 TEST(Wire, a_batch_keeps_in_the_journal_all_that_made_it) {
   protocol::StrokeBegin begin;
   begin.id = random_uuid();

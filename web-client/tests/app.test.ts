@@ -50,9 +50,9 @@ describe("the brush's value", () => {
   it("a width stays within its limits, and each step of the keys changes it", () => {
     const brush = new BrushSettings();
     brush.set_width("px", 1e9);
-    expect(brush.width.px).toBe(400);
+    expect(brush.width.px).toBe(2000);
     brush.set_width("px", Number.NaN);
-    expect(brush.width.px).toBe(400);
+    expect(brush.width.px).toBe(2000);
     brush.set_width("px", 2);
     brush.step_width(1);
     expect(brush.width.px).toBeGreaterThan(2);

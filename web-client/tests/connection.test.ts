@@ -13,6 +13,7 @@ const stroke_options: StrokeOptions = {
   camera,
   radius: { px: 12 },
   shape: "disc",
+  through: false,
 };
 
 let sockets: FakeSocket[];

@@ -170,6 +170,66 @@ describe("the camera in mid-stroke", () => {
   });
 });
 
+describe("edits of whole areas", () => {
+  const edits = () => socket().of("edit").map(({ edit }) => edit); // prettier-ignore
+
+  it("a polygon is sent with the camera that it was drawn in, which stays meanwhile", async () => {
+    await open();
+    session.choose_tool("polygon");
+    const camera = session.view.camera.message();
+    for (const [x, y] of [[5, 5], [200, 5], [200, 200]] as const) { // prettier-ignore
+      session.gestures.tool_down({ x, y });
+      session.gestures.tool_up();
+      session.gestures.zoom(0.5, 9, 9);
+    }
+    session.tools.key("Enter");
+    expect(edits()).toEqual([{ op: "polygon", value: 1, camera, path: [[5, 5], [200, 5], [200, 200]], through: false }]); // prettier-ignore
+    session.gestures.zoom(0.5, 9, 9);
+    expect(session.view.camera.message()).not.toEqual(camera);
+  });
+
+  it("the bucket fills what its panel says, or erases it", async () => {
+    await open();
+    session.choose_tool("bucket");
+    const at = { camera: session.view.camera.message(), x: 40, y: 50 };
+    const press = (): void => {
+      session.gestures.tool_down({ x: 40, y: 50 });
+      session.gestures.tool_up();
+    };
+    press();
+    session.painting.set_brush((brush) => (brush.areas = { erases: true, reach: "island" }));
+    press();
+    expect(edits()).toEqual([
+      { op: "fill", value: 1, mode: "connected", at },
+      { op: "fill", erase: true, mode: "island", at },
+    ]);
+  });
+
+  it("the person is told how much changed", async () => {
+    await open();
+    session.painting.fill(session.layers.all[0]!);
+    const { id } = socket().of("edit").at(-1)!;
+    const { stroke } = ((): { stroke: string } => {
+      paint();
+      return socket().of("stroke.begin").at(-1)!;
+    })();
+    socket().receive({ op: "applied", stroke, n: 0, sequence: 1, texels_changed: 5, area_m2: 1 } as never);
+    expect(told).toEqual([]);
+    socket().receive({ op: "applied", id, sequence: 2, texels_changed: 500, area_m2: 0.00023 } as never);
+    expect(told).toEqual([texts.areas.changed("2.3 cm²")]);
+    socket().receive({ op: "applied", id, sequence: 2, texels_changed: 500, area_m2: 0.00023 } as never);
+    expect(told.length).toBe(1);
+  });
+
+  it("a viewer is refused before anything is drawn", async () => {
+    await open("viewer");
+    session.choose_tool("lasso");
+    session.gestures.tool_down({ x: 5, y: 5 });
+    expect(session.tools.outline).toBe(null);
+    expect(told).toEqual([texts.brush.viewer_only]);
+  });
+});
+
 describe("what this person shows and hides", () => {
   it("of a deleted layer is forgotten at once", async () => {
     await open();

@@ -3,7 +3,9 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import { StrokeHandle } from "../src/core/connection";
 import type { ChangeMessage } from "../src/core/outbox";
 import { BrushTool, type BrushHost } from "../src/tools/brush";
+import { BucketTool } from "../src/tools/bucket";
 import { OrbitTool, PanTool } from "../src/tools/navigate";
+import { kMostPoints, LassoTool, PolygonTool, type OutlineHost } from "../src/tools/outline";
 import { PickTool } from "../src/tools/pick";
 import type { Tool } from "../src/tools/tool";
 import { ToolManager } from "../src/tools/tool-manager";
@@ -153,5 +155,147 @@ describe("navigation and pick", () => {
     tool.down({ x: 1, y: 2 });
     tool.move([{ x: 3, y: 4 }, { x: 5, y: 6 }]); // prettier-ignore
     expect(picked.mock.calls).toEqual([[{ x: 1, y: 2 }], [{ x: 5, y: 6 }]]);
+  });
+});
+
+describe("outlines", () => {
+  let outlines: [number, number][][];
+  let outline_host: OutlineHost & { open: number; refuse: boolean };
+  beforeEach(() => {
+    outlines = [];
+    outline_host = {
+      open: 0,
+      refuse: false,
+      begin_outline() {
+        if (!this.refuse) this.open += 1;
+        return !this.refuse;
+      },
+      finish_outline: (path) => void outlines.push(path),
+      outline_ended() {
+        this.open -= 1;
+      },
+      scale: () => 2,
+      outline_changed: () => {},
+    };
+  });
+  const press = (tool: Tool, ...points: [number, number][]): void => {
+    for (const [x, y] of points) {
+      tool.down({ x, y });
+      tool.up();
+    }
+  };
+
+  it.each<[string, (tool: PolygonTool) => unknown]>([
+    ["the first corner", (tool) => press(tool, [12, 10])],
+    ["the last corner again", (tool) => press(tool, [101, 99])],
+    ["Enter", (tool) => tool.key("Enter")],
+  ])("a polygon is closed by %s", (_, close) => {
+    const polygon = new PolygonTool(outline_host);
+    press(polygon, [10, 10], [100, 10], [100, 100]);
+    expect(outlines).toEqual([]);
+    expect(outline_host.open).toBe(1);
+    close(polygon);
+    expect(outlines).toEqual([[[10, 10], [100, 10], [100, 100]]]); // prettier-ignore
+    expect([outline_host.open, polygon.outline]).toEqual([0, null]);
+  });
+
+  it("a polygon of two corners is not closed", () => {
+    const polygon = new PolygonTool(outline_host);
+    press(polygon, [10, 10], [100, 10], [10, 10]);
+    polygon.key("Enter");
+    expect(outlines).toEqual([]);
+    expect(polygon.outline?.points.length).toBe(2);
+  });
+
+  it("Backspace takes corners back, Escape all of them; without any, keys mean nothing to it", () => {
+    const polygon = new PolygonTool(outline_host);
+    for (const key of ["Escape", "Backspace", "Enter"]) expect(polygon.key(key)).toBe(false);
+    press(polygon, [10, 10], [100, 10], [100, 100]);
+    expect(polygon.key("b")).toBe(false);
+    expect(polygon.key("Backspace")).toBe(true);
+    expect(polygon.outline?.points).toEqual([[10, 10], [100, 10]]); // prettier-ignore
+    expect(polygon.key("Escape")).toBe(true);
+    expect([outline_host.open, polygon.outline, outlines.length]).toEqual([0, null, 0]);
+    press(polygon, [10, 10]);
+    polygon.key("Backspace");
+    expect(outline_host.open).toBe(0);
+  });
+
+  it("a line leads to the pointer, and the first corner says when it closes", () => {
+    const polygon = new PolygonTool(outline_host);
+    press(polygon, [10, 10], [100, 10]);
+    polygon.hover({ x: 50, y: 60 });
+    expect(polygon.outline).toMatchObject({ pointer: [50, 60], closable: false });
+    press(polygon, [100, 100]);
+    polygon.hover(null);
+    expect(polygon.outline).toMatchObject({ pointer: null, closable: true });
+  });
+
+  it("a second finger takes back the corner of the first", () => {
+    const polygon = new PolygonTool(outline_host);
+    press(polygon, [10, 10], [100, 10]);
+    polygon.down({ x: 300, y: 300 });
+    polygon.cancel();
+    expect(polygon.outline?.points.length).toBe(2);
+  });
+
+  it("a lasso is what the drag went round; a click is none", () => {
+    const lasso = new LassoTool(outline_host);
+    lasso.down({ x: 0, y: 0 });
+    lasso.move([{ x: 1, y: 0 }, { x: 50, y: 0 }, { x: 50, y: 50 }]); // prettier-ignore
+    lasso.move([{ x: 0, y: 50 }]);
+    lasso.up();
+    expect(outlines).toEqual([[[0, 0], [50, 0], [50, 50], [0, 50]]]); // prettier-ignore
+    press(lasso, [5, 5]);
+    expect([outlines.length, outline_host.open]).toEqual([1, 0]);
+  });
+
+  it("a lasso that is given up paints nothing", () => {
+    const lasso = new LassoTool(outline_host);
+    for (const end of [() => lasso.cancel(), () => lasso.key("Escape"), () => lasso.deactivate()]) {
+      lasso.down({ x: 0, y: 0 });
+      lasso.move([{ x: 50, y: 0 }, { x: 50, y: 50 }]); // prettier-ignore
+      end();
+    }
+    expect([outlines.length, outline_host.open]).toEqual([0, 0]);
+  });
+
+  it("a very long lasso keeps its shape in as many points as an edit may have", () => {
+    const lasso = new LassoTool(outline_host);
+    lasso.down({ x: 1000, y: 0 });
+    for (let i = 1; i <= 20_000; ++i) lasso.move([{ x: 1000 * Math.cos(i / 50), y: 1000 * Math.sin(i / 50) }]);
+    lasso.up();
+    expect(outlines[0]!.length).toBeGreaterThan(1000);
+    expect(outlines[0]!.length).toBeLessThanOrEqual(kMostPoints);
+  });
+
+  it("where nothing can be painted no outline begins", () => {
+    outline_host.refuse = true;
+    const [lasso, polygon] = [new LassoTool(outline_host), new PolygonTool(outline_host)];
+    press(lasso, [1, 1]);
+    press(polygon, [1, 1]);
+    polygon.key("Enter");
+    expect([lasso.outline, polygon.outline, outline_host.open]).toEqual([null, null, 0]);
+  });
+
+  it("choosing another tool gives the outline up", () => {
+    const polygon = new PolygonTool(outline_host);
+    const manager = new ToolManager([polygon, new PickTool(() => {})], "polygon");
+    press(polygon, [10, 10], [100, 10], [100, 100]);
+    expect(manager.outline?.points.length).toBe(3);
+    manager.choose("pick");
+    expect([manager.outline, outline_host.open, outlines.length]).toEqual([null, 0, 0]);
+    expect(manager.key("Enter")).toBe(false);
+  });
+});
+
+describe("bucket", () => {
+  it("fills where it is pressed, once", () => {
+    const places: number[] = [];
+    const bucket = new BucketTool(({ x }) => places.push(x));
+    bucket.down({ x: 7, y: 8 });
+    bucket.move();
+    bucket.up();
+    expect(places).toEqual([7]);
   });
 });

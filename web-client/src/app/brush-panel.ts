@@ -1,29 +1,31 @@
-// <strata-brush-panel>: what the brush paints in the selected layer, and how wide.
+// <strata-brush-panel>: what the chosen painting tool paints in the selected layer, how wide, and what it reaches.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
-import { customElement, property, state } from "lit/decorators.js";
+import { customElement, property } from "lit/decorators.js";
 import { format_length, format_number } from "../core/measure";
-import { css_color, purpose_of } from "../core/palette";
 import type { Layer } from "../core/types";
-import { describe_value, kWidths, value_problem, type WidthUnit } from "./brush-settings";
+import { describe_value, kWidths, type WidthUnit } from "./brush-settings";
 import { ask } from "./dialog";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
 import { radio_group } from "./radio-group";
-import { styled } from "./styled";
-import { shared_styles } from "./styles";
+import { number_field_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
+import "./value-picker";
 
 const kSliderSteps = 1000;
+
+/** Asks for the dialog of a fill by a condition. */
+export type WhereRequest = { dialog: "where"; layer: Layer };
 
 @customElement("strata-brush-panel")
 export class StrataBrushPanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private wrong_value_ = "";
   private unsubscribe_: (() => void) | null = null;
 
   static override styles = [
     shared_styles,
+    number_field_styles,
     css`
       :host {
         display: grid;
@@ -38,22 +40,6 @@ export class StrataBrushPanel extends LitElement {
         align-items: center;
         gap: 8px 12px;
       }
-      .number {
-        position: relative;
-      }
-      .number input {
-        padding-right: 34px;
-        text-align: right;
-      }
-      .number span {
-        position: absolute;
-        right: 10px;
-        top: 50%;
-        transform: translateY(-50%);
-        color: var(--ink-soft);
-        font-size: 0.85rem;
-        pointer-events: none;
-      }
       .pair {
         display: flex;
         flex-wrap: wrap;
@@ -61,35 +47,6 @@ export class StrataBrushPanel extends LitElement {
       }
       .pair .segments {
         flex: 1 1 auto;
-      }
-      .classes {
-        display: grid;
-        grid-template-columns: repeat(auto-fit, minmax(118px, 1fr));
-        gap: 6px;
-        max-height: 208px;
-        overflow: auto;
-        padding: 2px;
-        margin: -2px;
-      }
-      .classes button {
-        justify-content: flex-start;
-        min-width: 0;
-        padding: 0 10px;
-      }
-      .classes button[aria-checked="true"] {
-        border-color: var(--accent);
-        box-shadow: inset 0 0 0 1px var(--accent);
-        font-weight: 600;
-      }
-      .line {
-        display: flex;
-        align-items: center;
-        gap: 9px;
-        min-width: 0;
-      }
-      .value {
-        display: grid;
-        gap: 6px;
       }
     `,
   ];
@@ -107,66 +64,80 @@ export class StrataBrushPanel extends LitElement {
   override render(): TemplateResult {
     const { session } = this;
     const layer = session.layers.selected;
-    const erases = session.tools.active === "eraser";
     if (!layer) return html`<p class="hint">${texts.brush.no_layer}</p>`;
+    const tool = session.tools.active;
+    if (tool === "brush" || tool === "eraser") return this.strokes(layer, tool === "eraser");
+    return this.areas(layer, tool === "bucket" ? "bucket" : tool === "lasso" ? "lasso" : "polygon");
+  }
+
+  private strokes(layer: Layer, erases: boolean): TemplateResult {
     return html`<h2>${erases ? texts.brush.eraser_title : texts.brush.title}</h2>
       ${erases ? html`<p class="hint">${texts.brush.erases(layer.name)}</p>` : this.value(layer)} ${this.width()}
-      ${erases
-        ? nothing
-        : html`<button class="quiet" @click=${() => void this.fill(layer)}>${icon("drop")}${texts.brush.fill}</button>`}`;
+      ${this.through()} ${erases ? nothing : this.whole(layer)}`;
+  }
+
+  private areas(layer: Layer, tool: "bucket" | "lasso" | "polygon"): TemplateResult {
+    const { painting } = this.session;
+    const { erases, reach } = painting.brush.areas;
+    const words = texts.areas;
+    return html`<h2>${texts.tools[tool]}</h2>
+      <p class="hint">${words.how[tool]}</p>
+      ${radio_group<boolean>({
+        label: words.does,
+        class: "segments",
+        choices: [
+          { value: false, content: words.paints },
+          { value: true, content: words.erases },
+        ],
+        chosen: erases,
+        choose: (chosen) => painting.set_brush((brush) => (brush.areas.erases = chosen)),
+      })}
+      ${erases ? html`<p class="hint">${texts.brush.erases(layer.name)}</p>` : this.value(layer)}
+      ${tool === "bucket"
+        ? radio_group<typeof reach>({
+            label: words.reach,
+            class: "segments",
+            choices: [
+              { value: "connected", content: words.connected, title: words.connected_hint },
+              { value: "island", content: words.island, title: words.island_hint },
+            ],
+            chosen: reach,
+            choose: (chosen) => painting.set_brush((brush) => (brush.areas.reach = chosen)),
+          })
+        : this.through()}
+      ${this.whole(layer)}`;
   }
 
   private value(layer: Layer): TemplateResult {
-    const value = this.session.painting.brush.value_of(layer);
-    const purpose = purpose_of(layer);
-    const { points } = layer.palette;
-    if (purpose === "presence") {
-      return html`<div class="line">
-        <span class="swatch" ${styled({ background: css_color(points[0]!.color) })}></span>
-        <span class="ellipsis">${texts.brush.paints(describe_value(layer, value))}</span>
-      </div>`;
-    }
-    if (purpose === "classes" && points.length > 0) {
-      return radio_group({
-        label: texts.brush.class,
-        class: "classes",
-        choices: points.map(({ at, color }) => ({
-          value: at,
-          content: html`<span class="swatch" ${styled({ background: css_color(color) })}></span>
-            <span class="ellipsis">${describe_value(layer, at)}</span>`,
-          title: describe_value(layer, at),
-        })),
-        chosen: value,
-        choose: (at) => this.set_value(layer, at),
-      });
-    }
-    const steps = layer.type.startsWith("f") ? "any" : "1";
-    return html`<div class="value">
-      <label class="field">
-        <span>${purpose === "records" ? texts.brush.record : texts.brush.value}</span>
-        <span class="number">
-          <input
-            type="number"
-            step=${steps}
-            .value=${String(value)}
-            aria-invalid=${this.wrong_value_ ? "true" : "false"}
-            @change=${(event: Event) => this.on_value(layer, event)}
-          />
-          <span>${layer.unit}</span>
-        </span>
-      </label>
-      ${purpose === "measurement"
-        ? html`<input
-            type="range"
-            min=${layer.palette.min}
-            max=${layer.palette.max}
-            step=${steps === "any" ? (layer.palette.max - layer.palette.min) / 200 : 1}
-            .value=${String(value)}
-            aria-label=${texts.brush.value}
-            @input=${(event: Event) => this.on_value(layer, event)}
-          />`
-        : nothing}
-      ${this.wrong_value_ ? html`<p class="error" role="alert">${this.wrong_value_}</p>` : nothing}
+    return html`<strata-value-picker
+      .session=${this.session}
+      .layer=${layer}
+      .value=${this.session.painting.brush.value_of(layer)}
+    ></strata-value-picker>`;
+  }
+
+  private through(): TemplateResult {
+    const { painting } = this.session;
+    return html`<label class="check">
+      <input
+        type="checkbox"
+        .checked=${painting.brush.through}
+        @change=${(event: Event) => {
+          const { checked } = event.target as HTMLInputElement;
+          painting.set_brush((brush) => (brush.through = checked));
+        }}
+      />
+      <span>${texts.areas.through}</span>
+    </label>`;
+  }
+
+  /** What needs no pointer. */
+  private whole(layer: Layer): TemplateResult {
+    const detail: WhereRequest = { dialog: "where", layer };
+    const ask_where = (): void => void this.dispatchEvent(new CustomEvent<WhereRequest>("request", { detail }));
+    return html`<div class="pair">
+      <button class="quiet" @click=${() => void this.fill(layer)}>${icon("drop")}${texts.brush.fill}</button>
+      <button class="quiet" @click=${ask_where}>${icon("formula")}${texts.areas.where}</button>
     </div>`;
   }
 
@@ -254,18 +225,6 @@ export class StrataBrushPanel extends LitElement {
 
   private set_width(unit: WidthUnit, width: number): void {
     this.session.painting.set_brush((brush) => brush.set_width(unit, width));
-  }
-
-  private set_value(layer: Layer, value: number): void {
-    this.session.painting.set_brush((brush) => brush.set_value(layer, value));
-  }
-
-  private on_value(layer: Layer, event: Event): void {
-    const typed = (event.target as HTMLInputElement).value.trim();
-    const number = typed === "" ? Number.NaN : Number(typed);
-    const value = layer.type.startsWith("f") ? Number(number.toPrecision(6)) : number;
-    this.wrong_value_ = value_problem(layer, value) ?? "";
-    if (!this.wrong_value_) this.set_value(layer, value);
   }
 
   private async fill(layer: Layer): Promise<void> {

@@ -1,4 +1,4 @@
-// What the brush paints with: width, shape, and one value per layer.
+// What is painted with: width, shape, reach, and one value per layer.
 
 import { purpose_of } from "../core/palette";
 import { holds_fractions, value_range, type Layer } from "../core/types";
@@ -7,12 +7,15 @@ import { texts } from "./texts";
 
 export type WidthUnit = "px" | "mm";
 
-export const kWidths = { px: { min: 2, max: 400 }, mm: { min: 0.05, max: 5000 } } as const;
+export const kWidths = { px: { min: 1, max: 2000 }, mm: { min: 0.05, max: 5000 } } as const;
 
 export class BrushSettings {
   unit: WidthUnit = "px";
   width: Record<WidthUnit, number> = { px: 40, mm: 5 }; // diameters; px are CSS pixels
   shape: "disc" | "square" = "disc";
+  through = false; // what is hidden, too
+  /** Of polygon, lasso and bucket. */
+  areas: { erases: boolean; reach: "connected" | "island" } = { erases: false, reach: "connected" };
   private readonly values_ = new Map<number, number>();
 
   set_width(unit: WidthUnit, width: number): void {

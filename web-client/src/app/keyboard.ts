@@ -5,7 +5,16 @@ import type { ToolName } from "../tools/tool";
 import type { ModelSession } from "./model-session";
 
 const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
-const kTools: Record<string, ToolName> = { b: "brush", e: "eraser", i: "pick", v: "orbit", h: "pan" };
+const kTools: Record<string, ToolName> = {
+  b: "brush",
+  e: "eraser",
+  a: "polygon",
+  l: "lasso",
+  g: "bucket",
+  i: "pick",
+  v: "orbit",
+  h: "pan",
+};
 const kArrows: Record<string, [number, number]> = {
   ArrowLeft: [1, 0],
   ArrowRight: [-1, 0],
@@ -35,6 +44,7 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
     return true;
   }
   if (event.altKey) return false;
+  if (session.tools.key(key)) return true;
   const tool = kTools[key.toLowerCase()];
   if (tool) {
     session.choose_tool(tool);

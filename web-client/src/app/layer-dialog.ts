@@ -132,11 +132,6 @@ export class StrataLayerDialog extends LitElement {
         padding-bottom: 9px;
         color: var(--ink-soft);
       }
-      .check {
-        display: flex;
-        align-items: center;
-        gap: 9px;
-      }
       .details {
         display: grid;
         gap: 5px;

@@ -12,9 +12,12 @@ import "./menu";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { shared_styles } from "./styles";
+import { choose_raster, formats_of, save_raster } from "./raster-files";
 import { texts } from "./texts";
 
-export type LayerPanelRequest = { dialog: "create" | "transfer" } | { dialog: "edit" | "statistics"; layer: Layer };
+export type LayerPanelRequest =
+  | { dialog: "create" | "transfer" }
+  | { dialog: "edit" | "statistics" | "map"; layer: Layer };
 
 @customElement("strata-layer-panel")
 export class StrataLayerPanel extends LitElement {
@@ -256,6 +259,22 @@ export class StrataLayerPanel extends LitElement {
           <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "statistics", layer })}>
             ${icon("chart")}${words.statistics}
           </button>
+          <hr />
+          ${formats_of(layer).map(
+            (format) =>
+              html`<button class="quiet" role="menuitem" @click=${() => save_raster(session, layer, format)}>
+                ${icon("import")}${texts.rasters.save[format]}
+              </button>`,
+          )}
+          ${session.can_paint
+            ? html`<button class="quiet" role="menuitem" @click=${() => choose_raster(session, layer)}>
+                  ${icon("upload")}${texts.rasters.import}
+                </button>
+                <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "map", layer })}>
+                  ${icon("upload")}${texts.maps.menu}
+                </button>`
+            : nothing}
+          ${session.can_curate ? html`<hr />` : nothing}
           ${session.can_curate
             ? html`<button
                   class="quiet"

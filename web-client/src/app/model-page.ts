@@ -5,7 +5,9 @@ import { html, LitElement, nothing, type PropertyValues, type TemplateResult } f
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError, type Api } from "../core/api";
 import type { Layer } from "../core/types";
+import { kPaintingTools } from "../tools/tool";
 import "./blank";
+import type { WhereRequest } from "./brush-panel";
 import "./brush-panel";
 import { modal_is_open } from "./dialog";
 import { icon, logo } from "./icons";
@@ -13,6 +15,7 @@ import { handle_key, is_for_field } from "./keyboard";
 import "./layer-dialog";
 import type { LayerPanelRequest } from "./layer-panel";
 import "./layer-panel";
+import "./map-dialog";
 import { model_styles } from "./model-styles";
 import { ModelSession } from "./model-session";
 import { follow } from "./routes";
@@ -28,8 +31,9 @@ import "./tool-rail";
 import "./transfer-dialog";
 import "./value-readout";
 import "./view-panel";
+import "./where-dialog";
 
-type OpenDialog = LayerPanelRequest | { dialog: "scale" | "help" | "about" } | null;
+type OpenDialog = LayerPanelRequest | WhereRequest | { dialog: "scale" | "help" | "about" } | null;
 
 const kPanelWidth = { least: 270, first: 330, most: 620 };
 const kPanelKey = "strata.panel_width";
@@ -205,7 +209,10 @@ export class StrataModelPage extends LitElement {
   }
 
   private panel(session: ModelSession): TemplateResult {
-    const paints = session.tools.active === "brush" || session.tools.active === "eraser";
+    const paints = kPaintingTools.includes(session.tools.active);
+    const request = (event: CustomEvent<LayerPanelRequest | WhereRequest>): void => {
+      this.dialog_ = event.detail;
+    };
     return html`<aside aria-label=${texts.model.panel}>
       <div
         class="splitter"
@@ -220,11 +227,11 @@ export class StrataModelPage extends LitElement {
         @keydown=${this.on_splitter_key}
       ></div>
       <div class="scroll">
-        ${paints ? html`<section><strata-brush-panel .session=${session}></strata-brush-panel></section>` : nothing}
+        ${paints ? html`<section><strata-brush-panel .session=${session} @request=${request}></strata-brush-panel></section>` : nothing}
         <section>
           <strata-layer-panel
             .session=${session}
-            @request=${(event: CustomEvent<LayerPanelRequest>) => (this.dialog_ = event.detail)}
+            @request=${request}
           ></strata-layer-panel>
         </section>
         <section><strata-view-panel .session=${session}></strata-view-panel></section>
@@ -252,6 +259,18 @@ export class StrataModelPage extends LitElement {
           .layer=${newest(session, dialog.layer)}
           @closed=${closed}
         ></strata-statistics-dialog>`;
+      case "where":
+        return html`<strata-where-dialog
+          .session=${session}
+          .layer=${newest(session, dialog.layer)}
+          @closed=${closed}
+        ></strata-where-dialog>`;
+      case "map":
+        return html`<strata-map-dialog
+          .session=${session}
+          .layer=${newest(session, dialog.layer)}
+          @closed=${closed}
+        ></strata-map-dialog>`;
       case "scale":
         return html`<strata-scale-dialog .session=${session} @closed=${closed}></strata-scale-dialog>`;
       case "help":

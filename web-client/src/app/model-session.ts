@@ -3,13 +3,15 @@
 // subscribe and draw themselves from their state; they change it only through their methods.
 
 import { Api, ApiError, type Versioned } from "../core/api";
-import { Connection, type ConnectionState, type SavingState, type SocketLike } from "../core/connection";
+import { Connection, type ConnectionState, type Point, type SavingState, type SocketLike } from "../core/connection";
 import type { FrameMessage } from "../core/frame-header";
 import type { GestureHandler } from "../core/input";
 import type { LayerEvent, ModelEvent, PresenceUser, ProblemMessage, Welcome } from "../core/protocol.gen";
 import { complete_layer, may_curate, may_paint, type Layer, type Model, type ModelPatch, type Role } from "../core/types";
 import { BrushTool } from "../tools/brush";
+import { BucketTool } from "../tools/bucket";
 import { OrbitTool, PanTool } from "../tools/navigate";
+import { LassoTool, PolygonTool } from "../tools/outline";
 import { PickTool } from "../tools/pick";
 import type { ToolName } from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
@@ -105,7 +107,10 @@ export class ModelSession {
     pan: (dx, dy) => this.view.pan_pixels(dx, dy),
     zoom: (factor, x, y) => this.view.zoom_at(factor, x, y),
     twist: (angle) => this.view.twist(angle),
-    hover: (sample) => this.pointer.hover(sample),
+    hover: (sample) => {
+      this.tools.hover(sample);
+      this.pointer.hover(sample);
+    },
   };
 
   private make_connection(make_socket?: (url: string, protocol: string) => SocketLike): Connection {
@@ -119,7 +124,10 @@ export class ModelSession {
         welcome: (message) => this.on_welcome(message),
         frame: (part) => this.on_frame(part),
         saving: (state) => this.on_saving(state),
-        applied: () => this.pointer.ask_again(),
+        applied: (message) => {
+          this.painting.on_applied(message);
+          this.pointer.ask_again();
+        },
         saved: () => {},
         layer: (event) => this.on_layer(event),
         look: (event) => this.appearance.on_event(event),
@@ -142,12 +150,22 @@ export class ModelSession {
       radius_px: () => this.painting.radius_window_px(),
       next_frame: (callback: () => void) => void requestAnimationFrame(callback),
     };
+    const outline_host = {
+      begin_outline: () => this.painting.begin_outline(),
+      finish_outline: (path: Point[]) => this.painting.finish_outline(path),
+      outline_ended: () => this.painting.stroke_ended(),
+      scale: () => this.view.scale,
+      outline_changed: () => this.changed(),
+    };
     return new ToolManager(
       [
         new OrbitTool(this.gestures),
         new PanTool(this.gestures),
         new BrushTool("brush", brush_host),
         new BrushTool("eraser", brush_host),
+        new PolygonTool(outline_host),
+        new LassoTool(outline_host),
+        new BucketTool((sample) => this.painting.fill_at(sample)),
         new PickTool((sample) => this.pointer.take(sample)),
       ],
       "orbit",
@@ -173,7 +191,7 @@ export class ModelSession {
   /** Its page is gone. What was painted still goes to the server: the connection lingers until all of it is saved. */
   close(): void {
     this.closed_ = true;
-    this.tools.cancel();
+    this.tools.stop();
     this.view.stop();
     this.pointer.stop();
     this.listeners_.clear();

@@ -1,9 +1,10 @@
 // What this person paints with, and the edits that come of it.
 
 import { new_id } from "../core/api";
-import type { Connection, StrokeHandle } from "../core/connection";
-import { metres_per } from "../core/measure";
-import type { Picked } from "../core/protocol.gen";
+import type { Connection, Point, StrokeHandle } from "../core/connection";
+import type { PointerSample } from "../core/input";
+import { format_area, metres_per } from "../core/measure";
+import type { Applied, Edit, Picked } from "../core/protocol.gen";
 import type { Layer, Model } from "../core/types";
 import { BrushSettings, describe_value, value_problem } from "./brush-settings";
 import type { LayerList } from "./layer-list";
@@ -24,9 +25,10 @@ export interface PaintingHost {
 
 export class Painting {
   readonly brush = new BrushSettings();
-  stroking = false;
+  stroking = false; // or an outline is being drawn
 
   private after_stroke_: (() => void)[] = [];
+  private readonly whole_edits_ = new Set<string>(); // sent and not answered
 
   constructor(private readonly host_: PaintingHost) {}
 
@@ -68,6 +70,7 @@ export class Painting {
       value,
       erase,
       camera: view.camera.message(),
+      through: this.brush.through,
       radius: unit === "px" ? { px: (width.px / 2) * view.scale } : { mm: width.mm / 2 },
       shape,
     });
@@ -101,9 +104,49 @@ export class Painting {
   }
 
   fill(layer: Layer): void {
-    const value = this.brush.value_of(layer);
-    const edit = { op: "fill", value, mode: "where", where: "true" } as const;
-    this.report_unsent(this.host_.connection.send_change({ op: "edit", id: new_id(), layer: layer.id, edit }));
+    this.send_edit(layer, { op: "fill", value: this.brush.value_of(layer), mode: "where", where: "true" });
+  }
+
+  /** Fills what is connected with the place under the pointer. */
+  fill_at({ x, y }: PointerSample): void {
+    const target = this.area_target();
+    if (!target) return;
+    const at = { camera: this.host_.view.camera.message(), x, y };
+    this.send_edit(target.layer, { op: "fill", ...target.paint, mode: this.brush.areas.reach, at });
+  }
+
+  begin_outline(): boolean {
+    if (!this.area_target()) return false;
+    this.stroking = true;
+    return true;
+  }
+
+  finish_outline(path: Point[]): void {
+    const target = this.area_target();
+    if (!target) return;
+    const camera = this.host_.view.camera.message();
+    this.send_edit(target.layer, { op: "polygon", ...target.paint, camera, path, through: this.brush.through });
+  }
+
+  /** The server's answer to a whole edit that was sent from here: how much it changed. */
+  on_applied({ id, texels_changed, area_m2 }: Applied): void {
+    if (id === undefined || !this.whole_edits_.delete(id)) return;
+    if (texels_changed === 0) notices.show("info", texts.areas.nothing_changed);
+    else notices.show("success", texts.areas.changed(format_area(area_m2 ?? 0)));
+  }
+
+  private area_target(): { layer: Layer; paint: { value: number } | { erase: true } } | null {
+    const layer = this.layer_to_paint();
+    if (!layer) return null;
+    if (this.brush.areas.erases) return { layer, paint: { erase: true } };
+    const value = this.value_for(layer, false);
+    return value === null ? null : { layer, paint: { value } };
+  }
+
+  private send_edit(layer: Layer, edit: Edit): void {
+    const id = this.host_.connection.send_change({ op: "edit", id: new_id(), layer: layer.id, edit });
+    this.report_unsent(id);
+    if (id !== null) this.whole_edits_.add(id);
   }
 
   /** The selected layer's value goes onto the brush. */

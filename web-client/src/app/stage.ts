@@ -10,6 +10,7 @@ import { metres_per, scale_bar } from "../core/measure";
 import { color_of, css_color } from "../core/palette";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { outline_overlay } from "./outline-overlay";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -58,7 +59,7 @@ export class StrataStage extends LitElement {
       .surface.pan {
         cursor: move;
       }
-      .surface.pick {
+      .surface.aim {
         cursor: crosshair;
       }
       canvas,
@@ -185,14 +186,16 @@ export class StrataStage extends LitElement {
     const { session } = this;
     const tool = session.tools.active;
     const paints = tool === "brush" || tool === "eraser";
+    const aims = tool === "polygon" || tool === "lasso" || tool === "bucket" || tool === "pick";
     return html`<div
-        class="surface ${paints ? "paint" : tool}"
+        class="surface ${paints ? "paint" : aims ? "aim" : tool}"
         tabindex="0"
         role="application"
         aria-label=${texts.model.stage}
       >
         <canvas width="2" height="2"></canvas>
         ${paints ? this.brush_cursor() : nothing}
+        ${session.tools.outline ? outline_overlay(session, session.tools.outline) : nothing}
       </div>
       ${this.people()} ${this.scale_bar()}
       ${session.view.frames_drawn === 0

@@ -247,4 +247,29 @@ export const shared_styles = css`
       width: 44px;
     }
   }
+  label.check {
+    display: flex;
+    align-items: center;
+    gap: 9px;
+  }
+`;
+
+/** A number with its unit inside the field. */
+export const number_field_styles = css`
+  .number {
+    position: relative;
+  }
+  .number input {
+    padding-right: 34px;
+    text-align: right;
+  }
+  .number span {
+    position: absolute;
+    right: 10px;
+    top: 50%;
+    transform: translateY(-50%);
+    color: var(--ink-soft);
+    font-size: 0.85rem;
+    pointer-events: none;
+  }
 `;

@@ -3,7 +3,7 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import type { StandardView } from "../core/camera";
-import type { ToolName } from "../tools/tool";
+import { kPaintingTools, type ToolName } from "../tools/tool";
 import { icon } from "./icons";
 import "./menu";
 import type { ModelSession } from "./model-session";
@@ -15,6 +15,9 @@ const kTools: [ToolName, string][] = [
   ["pan", "H"],
   ["brush", "B"],
   ["eraser", "E"],
+  ["polygon", "A"],
+  ["lasso", "L"],
+  ["bucket", "G"],
   ["pick", "I"],
 ];
 const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
@@ -104,7 +107,7 @@ export class StrataToolRail extends LitElement {
   override render(): TemplateResult {
     const { session } = this;
     const words = texts.model;
-    const shown = session.can_paint ? kTools : kTools.filter(([name]) => name !== "brush" && name !== "eraser");
+    const shown = session.can_paint ? kTools : kTools.filter(([name]) => !kPaintingTools.includes(name));
     return html`${shown.map(
         ([name, key]) =>
           html`<button

@@ -172,6 +172,28 @@ export class Api {
     return this.json("GET", `${layer_path(model, layer)}/statistics`);
   }
 
+  /** Answered once it is durable. */
+  async edit(model: Id, layer: Id, edit: wire.Edit): Promise<wire.EditResult> {
+    return this.json("POST", `${layer_path(model, layer)}/edits`, edit);
+  }
+
+  /** Where a layer's texels are had as a file. */
+  texels_url(model: Id, layer: Id, format: string): string {
+    return `${kBase}${layer_path(model, layer)}/texels.${format}`;
+  }
+  /** The layer then holds what the file does. Answered once it is durable. */
+  async put_texels(model: Id, layer: Id, format: string, file: Blob): Promise<wire.EditResult> {
+    const path = `${layer_path(model, layer)}/texels.${format}`;
+    const response = await this.request_raw("PUT", path, file, { ...kFile, "Idempotency-Key": new_id() });
+    return (await response.json()) as wire.EditResult;
+  }
+
+  /** Paints a file over the layer: "readings", "polygons" or "picture". Answered once it is durable. */
+  async paint_map(model: Id, layer: Id, kind: string, query: Record<string, string>, file: Blob): Promise<wire.EditResult> {
+    const response = await this.request_raw("POST", `${layer_path(model, layer)}/${kind}?${new URLSearchParams(query)}`, file, kFile);
+    return (await response.json()) as wire.EditResult;
+  }
+
   async frame(model: Id, camera: CameraMessage): Promise<Blob> {
     const response = await this.request("POST", `/models/${encodeURIComponent(model)}/frame`, { camera, format: "jpeg" });
     return response.blob();
@@ -227,6 +249,8 @@ export class Api {
     return response;
   }
 }
+
+const kFile = { "Content-Type": "application/octet-stream" };
 
 const layer_path = (model: Id, layer: Id): string =>
   `/models/${encodeURIComponent(model)}/layers/${encodeURIComponent(layer)}`;

@@ -79,6 +79,7 @@ export interface StrokeOptions {
   camera: CameraMessage;
   radius: { px: number } | { mm: number };
   shape: "disc" | "square";
+  through: boolean;
 }
 
 export type Point = [number, number];
@@ -241,6 +242,7 @@ export class Connection {
       camera: options.camera,
       ...("px" in options.radius ? { radius_px: options.radius.px } : { radius_mm: options.radius.mm }),
       shape: options.shape,
+      ...(options.through ? { through: true } : {}),
     };
     this.change(begin);
     return new StrokeHandle(begin.stroke, this.path_points_, (message) => {

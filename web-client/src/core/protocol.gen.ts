@@ -57,19 +57,46 @@ export interface EditStroke {
   through?: boolean;
 }
 
-/** Fill. Gives a value to every texel where an expression holds; `true` is everywhere. */
+/** Place on the surface. What a pixel of a view shows, or the surface point nearest to a point in space. */
+export interface SurfacePlace {
+  point?: Point3;
+  camera?: Camera;
+  x?: number;
+  y?: number;
+}
+
+/** Fill. Gives a value to a part of the surface. `where`: every texel where the expression holds; `true` is everywhere. `island`: the connected piece of the model's surface at a place, across all seams of its atlas. `connected`: what holds the same value as that place, or like it none, and is connected with it across the surface. */
 export interface EditFill {
   op: "fill";
   /** In the layer's type; ignored when erasing. Default: 0. */
   value?: number;
   /** Default: false. */
   erase?: boolean;
-  mode: "where";
-  where: "true";
+  mode: "where" | "island" | "connected";
+  /** With mode `where`: a condition over the model's layers, such as `moisture > 0.3 and not valid(cracks)`. */
+  where?: string;
+  /** With the other modes: where the fill begins. */
+  at?: SurfacePlace;
+}
+
+/** Outline of an area. Pixels of the camera's window; the last point is joined to the first. Where the outline crosses itself, what it goes round twice is outside. */
+export type Outline = Point2[];
+
+/** Polygon or lasso. Paints what lies inside an outline seen through a camera. Needs a value unless it erases. */
+export interface EditPolygon {
+  op: "polygon";
+  /** In the layer's type; ignored when erasing. Default: 0. */
+  value?: number;
+  /** Default: false. */
+  erase?: boolean;
+  camera: Camera;
+  path: Outline;
+  /** Paint hidden surface, too. Default: false. */
+  through?: boolean;
 }
 
 /** Edit. The same object over HTTP and the WebSocket. */
-export type Edit = EditStroke | EditFill;
+export type Edit = EditStroke | EditFill | EditPolygon;
 
 /** Control point of a palette. */
 export interface PalettePoint {

@@ -1,6 +1,7 @@
 // Keeps one tool active, and sends it the stage's drags.
 
 import type { PointerSample } from "../core/input";
+import type { Outline } from "./outline";
 import type { Tool, ToolName } from "./tool";
 
 export class ToolManager {
@@ -30,6 +31,24 @@ export class ToolManager {
     this.active_ = tool;
     tool.activate();
     this.changed_(name);
+  }
+
+  get outline(): Outline | null {
+    return this.active_.outline ?? null;
+  }
+
+  hover(sample: PointerSample | null): void {
+    if (!this.dragging_) this.active_.hover?.(sample);
+  }
+
+  key(key: string): boolean {
+    return this.active_.key?.(key) ?? false;
+  }
+
+  /** Nobody uses the tools any more. */
+  stop(): void {
+    this.cancel();
+    this.active_.deactivate();
   }
 
   down(sample: PointerSample): void {

@@ -1,8 +1,12 @@
 // A tool is what the left button, the pen or one finger does on the stage.
 
 import type { PointerSample } from "../core/input";
+import type { Outline } from "./outline";
 
-export type ToolName = "orbit" | "pan" | "brush" | "eraser" | "pick";
+export type ToolName = "orbit" | "pan" | "brush" | "eraser" | "polygon" | "lasso" | "bucket" | "pick";
+
+/** Those that change a layer. */
+export const kPaintingTools: readonly ToolName[] = ["brush", "eraser", "polygon", "lasso", "bucket"];
 
 export interface Tool {
   readonly name: ToolName;
@@ -13,4 +17,10 @@ export interface Tool {
   up(): void;
   /** Ends what `down` began without finishing it. */
   cancel(): void;
+  /** The pointer moves with nothing pressed; null: it left. */
+  hover?(sample: PointerSample | null): void;
+  /** False when the key means nothing to it now. */
+  key?(key: string): boolean;
+  /** What it has drawn so far. */
+  readonly outline?: Outline | null;
 }

@@ -5,19 +5,23 @@
 
 namespace strata::protocol {
 
-std::string_view name(EditFillWhere value) {
+std::string_view name(EditFillMode value) {
   switch (value) {
-    case EditFillWhere::true_: return "true";
+    case EditFillMode::where: return "where";
+    case EditFillMode::island: return "island";
+    case EditFillMode::connected: return "connected";
   }
   return {};
 }
 
-void read(const nlohmann::json& json, EditFillWhere& value) {
+void read(const nlohmann::json& json, EditFillMode& value) {
   const auto& text = json.get_ref<const std::string&>();
-  if (text == "true") value = EditFillWhere::true_;
+  if (text == "where") value = EditFillMode::where;
+  if (text == "island") value = EditFillMode::island;
+  if (text == "connected") value = EditFillMode::connected;
 }
 
-nlohmann::json to_json(const EditFillWhere& value) { return name(value); }
+nlohmann::json to_json(const EditFillMode& value) { return name(value); }
 
 std::string_view name(Axis value) {
   switch (value) {
@@ -275,10 +279,33 @@ Result<void> check(const EditStroke& value, const std::string& field) {
   return {};
 }
 
+void read(const nlohmann::json& json, SurfacePlace& value) {
+  read_optional_member(json, "point", value.point);
+  read_optional_member(json, "camera", value.camera);
+  read_optional_member(json, "x", value.x);
+  read_optional_member(json, "y", value.y);
+}
+
+nlohmann::json to_json(const SurfacePlace& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "point", value.point);
+  write_optional_member(json, "camera", value.camera);
+  write_optional_member(json, "x", value.x);
+  write_optional_member(json, "y", value.y);
+  return json;
+}
+
+Result<void> check(const SurfacePlace& value, const std::string& field) {
+  if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
+  return {};
+}
+
 void read(const nlohmann::json& json, EditFill& value) {
   read_optional_member(json, "value", value.value);
   read_optional_member(json, "erase", value.erase);
-  read_member(json, "where", value.where);
+  read_member(json, "mode", value.mode);
+  read_optional_member(json, "where", value.where);
+  read_optional_member(json, "at", value.at);
 }
 
 nlohmann::json to_json(const EditFill& value) {
@@ -286,12 +313,38 @@ nlohmann::json to_json(const EditFill& value) {
   json["op"] = "fill";
   write_member(json, "value", value.value);
   write_member(json, "erase", value.erase);
-  json["mode"] = "where";
-  write_member(json, "where", value.where);
+  write_member(json, "mode", value.mode);
+  write_optional_member(json, "where", value.where);
+  write_optional_member(json, "at", value.at);
   return json;
 }
 
-Result<void> check([[maybe_unused]] const EditFill& value, [[maybe_unused]] const std::string& field) {
+Result<void> check(const EditFill& value, const std::string& field) {
+  if (auto ok = value.at ? check(*value.at, join_field(field, "at")) : Result<void>{}; !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, EditPolygon& value) {
+  read_optional_member(json, "value", value.value);
+  read_optional_member(json, "erase", value.erase);
+  read_member(json, "camera", value.camera);
+  read_member(json, "path", value.path);
+  read_optional_member(json, "through", value.through);
+}
+
+nlohmann::json to_json(const EditPolygon& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "polygon";
+  write_member(json, "value", value.value);
+  write_member(json, "erase", value.erase);
+  write_member(json, "camera", value.camera);
+  write_member(json, "path", value.path);
+  write_member(json, "through", value.through);
+  return json;
+}
+
+Result<void> check(const EditPolygon& value, const std::string& field) {
+  if (auto ok = strata::validate(value.camera, join_field(field, "camera")); !ok) return ok;
   return {};
 }
 
@@ -303,6 +356,10 @@ void read(const nlohmann::json& json, Edit& value) {
   }
   if (op == EditFill::kOp) {
     read(json, value.emplace<EditFill>());
+    return;
+  }
+  if (op == EditPolygon::kOp) {
+    read(json, value.emplace<EditPolygon>());
     return;
   }
 }

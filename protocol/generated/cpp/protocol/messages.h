@@ -37,7 +37,10 @@ enum class Schema {
   Camera,
   ToolShape,
   EditStroke,
+  SurfacePlace,
   EditFill,
+  Outline,
+  EditPolygon,
   Edit,
   PalettePoint,
   Palette,
@@ -126,7 +129,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 99;
+constexpr int kSchemaCount = 102;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -163,17 +166,33 @@ Result<void> check(const EditStroke& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<EditStroke> = Schema::EditStroke;
 
-enum class EditFillWhere { true_ };
-std::string_view name(EditFillWhere value);
-void read(const nlohmann::json& json, EditFillWhere& value);
-nlohmann::json to_json(const EditFillWhere& value);
+// Place on the surface. What a pixel of a view shows, or the surface point nearest to a point in space.
+struct SurfacePlace {
+  std::optional<glm::dvec3> point;
+  std::optional<strata::Camera> camera;
+  std::optional<double> x;
+  std::optional<double> y;
+  bool operator==(const SurfacePlace&) const = default;
+};
+void read(const nlohmann::json& json, SurfacePlace& value);
+nlohmann::json to_json(const SurfacePlace& value);
+Result<void> check(const SurfacePlace& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<SurfacePlace> = Schema::SurfacePlace;
 
-// Fill. Gives a value to every texel where an expression holds; `true` is everywhere.
+enum class EditFillMode { where, island, connected };
+std::string_view name(EditFillMode value);
+void read(const nlohmann::json& json, EditFillMode& value);
+nlohmann::json to_json(const EditFillMode& value);
+
+// Fill. Gives a value to a part of the surface. `where`: every texel where the expression holds; `true` is everywhere. `island`: the connected piece of the model's surface at a place, across all seams of its atlas. `connected`: what holds the same value as that place, or like it none, and is connected with it across the surface.
 struct EditFill {
   static constexpr std::string_view kOp = "fill";
   double value = 0;  // In the layer's type; ignored when erasing.
   bool erase = false;
-  EditFillWhere where{};
+  EditFillMode mode{};
+  std::optional<std::string> where;  // With mode `where`: a condition over the model's layers, such as `moisture > 0.3 and not valid(cracks)`.
+  std::optional<SurfacePlace> at;  // With the other modes: where the fill begins.
   bool operator==(const EditFill&) const = default;
 };
 void read(const nlohmann::json& json, EditFill& value);
@@ -182,8 +201,27 @@ Result<void> check(const EditFill& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<EditFill> = Schema::EditFill;
 
+// Outline of an area. Pixels of the camera's window; the last point is joined to the first. Where the outline crosses itself, what it goes round twice is outside.
+using Outline = std::vector<glm::dvec2>;
+
+// Polygon or lasso. Paints what lies inside an outline seen through a camera. Needs a value unless it erases.
+struct EditPolygon {
+  static constexpr std::string_view kOp = "polygon";
+  double value = 0;  // In the layer's type; ignored when erasing.
+  bool erase = false;
+  strata::Camera camera;
+  Outline path;
+  bool through = false;  // Paint hidden surface, too.
+  bool operator==(const EditPolygon&) const = default;
+};
+void read(const nlohmann::json& json, EditPolygon& value);
+nlohmann::json to_json(const EditPolygon& value);
+Result<void> check(const EditPolygon& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<EditPolygon> = Schema::EditPolygon;
+
 // Edit. The same object over HTTP and the WebSocket.
-using Edit = std::variant<EditStroke, EditFill>;
+using Edit = std::variant<EditStroke, EditFill, EditPolygon>;
 void read(const nlohmann::json& json, Edit& value);
 nlohmann::json to_json(const Edit& value);
 Result<void> check(const Edit& value, const std::string& field);

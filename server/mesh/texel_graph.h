@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/progress.h"
+#include "mesh/geometry.h"
+#include "mesh/surface_map.h"
+
+namespace strata::mesh {
+
+// Which surface texels of a map touch each other on the surface: the four neighbours of a texel in the atlas where they
+// belong to the same island, and links where the atlas does not show it. Links are made along the mesh's edges: across seams,
+// from one side's texels to the other's; and within an island where it is thinner than a texel. Texels are numbered as in the
+// arrays of the map: 64 * slot + y * 8 + x.
+//
+// A gap within an island that is narrower than a texel does not part its sides; an island without a texel of its own joins nothing.
+struct TexelGraph {
+  std::vector<std::uint64_t> to_right,
+      to_upper;                          // a slot: bits of the texels that are joined to their right, upper neighbour
+  std::vector<std::uint64_t> has_links;  // a slot: bits of the texels that begin a link
+  using Link = std::pair<std::uint32_t, std::uint32_t>;
+  std::vector<Link> links;  // ascending; each stands here in both directions
+
+  std::span<const Link> links_of(std::uint32_t texel) const;
+  std::size_t bytes() const;
+};
+
+// `map` is of this geometry. Refused when cancelled.
+Result<TexelGraph> build_texel_graph(const Geometry& geometry, const SurfaceMap& map, Progress& progress,
+                                     int threads = 2);
+
+// The surface texel at a texture coordinate, or the one that the gutter there follows; nothing where the atlas is empty.
+std::optional<std::uint32_t> surface_texel_at(const SurfaceMap& map, glm::vec2 uv);
+
+// Calls visit(neighbour) for each texel that `texel` is joined to.
+template <class Visit>
+void for_each_neighbour(const SurfaceMap& map, const TexelGraph& graph, std::uint32_t texel, Visit&& visit) {
+  const std::uint32_t slot = texel / 64, i = texel % 64;
+  const std::uint32_t block = map.block_of_slot[slot];
+  const auto has = [](std::uint64_t bits, std::uint32_t index) { return ((bits >> index) & 1u) != 0; };
+  const auto right_of = [&](std::uint32_t s, std::uint32_t index) {
+    return index % 8 < 7 ? s * 64 + index + 1 : map.slot_of_block[map.block_of_slot[s] + 1] * 64 + index - 7;
+  };
+  const auto above = [&](std::uint32_t s, std::uint32_t index) {
+    return index < 56 ? s * 64 + index + 8
+                      : map.slot_of_block[map.block_of_slot[s] + map.blocks_per_side] * 64 + index - 56;
+  };
+  if (has(graph.to_right[slot], i)) visit(right_of(slot, i));
+  if (has(graph.to_upper[slot], i)) visit(above(slot, i));
+  if (i % 8 > 0) {
+    if (has(graph.to_right[slot], i - 1)) visit(texel - 1);
+  } else if (block % map.blocks_per_side > 0) {
+    const std::uint32_t left = map.slot_of_block[block - 1];
+    if (left != kNoSlot && has(graph.to_right[left], i + 7)) visit(left * 64 + i + 7);
+  }
+  if (i >= 8) {
+    if (has(graph.to_upper[slot], i - 8)) visit(texel - 8);
+  } else if (block >= static_cast<std::uint32_t>(map.blocks_per_side)) {
+    const std::uint32_t lower = map.slot_of_block[block - map.blocks_per_side];
+    if (lower != kNoSlot && has(graph.to_upper[lower], i + 56)) visit(lower * 64 + i + 56);
+  }
+  if (has(graph.has_links[slot], i))
+    for (const TexelGraph::Link& link : graph.links_of(texel)) visit(link.second);
+}
+
+}  // namespace strata::mesh

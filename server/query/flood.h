@@ -1,0 +1,18 @@
+#pragma once
+
+#include "core/tile_mirror.h"
+#include "mesh/texel_graph.h"
+#include "query/texel_selection.h"
+
+namespace strata::query {
+
+// What is connected across the surface with a surface texel (numbered as in TexelGraph), gutter texels left out.
+
+// The whole piece of the surface.
+TexelSelection select_piece(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph, std::uint32_t start);
+
+// What holds the same value as it, or like it none. `tiles` are a layer's of the map's resolution.
+TexelSelection select_connected(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph, const TileMap& tiles,
+                                std::uint32_t start);
+
+}  // namespace strata::query

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "core/tile_mirror.h"
+
+namespace strata::query {
+
+// A layer's tiles as a dense table: one lookup a block or texel. Keeps no tile alive.
+class TileTable {
+ public:
+  TileTable(const TileMap& tiles, int resolution) : tiles_per_side_(resolution / kTileSize) {
+    tiles_.resize(std::size_t(tiles_per_side_) * tiles_per_side_);
+    for (const auto& [address, tile] : tiles)
+      if (address.x < tiles_per_side_ && address.y < tiles_per_side_)
+        tiles_[std::size_t(address.y) * tiles_per_side_ + address.x] = tile.get();
+  }
+
+  // Null where nothing is valid.
+  const TileData* of_texel(int x, int y) const {
+    return tiles_[std::size_t(y / kTileSize) * tiles_per_side_ + x / kTileSize];
+  }
+  const TileData* of_block(int bx, int by) const { return of_texel(bx * kBlockSize, by * kBlockSize); }
+
+ private:
+  int tiles_per_side_;
+  std::vector<const TileData*> tiles_;
+};
+
+}  // namespace strata::query

@@ -1,0 +1,96 @@
+#include "room/region.h"
+
+#include "core/mask_texels.h"
+#include "core/polygon_area.h"
+#include "mesh/slot_bits.h"
+#include "query/expression_evaluator.h"
+#include "query/flood.h"
+#include "room/gpu_problem.h"
+
+namespace strata::room {
+namespace {
+
+template <class... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+template <class... Visitors>
+Overloaded(Visitors...) -> Overloaded<Visitors...>;
+
+WrittenValue written_value(bool erase, std::uint32_t bits) { return erase ? WrittenValue() : WrittenValue(bits); }
+
+glm::vec3 position_at(const mesh::SurfaceMap& map, TileAddress tile, int texel) {
+  const auto place = mesh::slot_texel(map, tile, texel);
+  return map.position(place.slot, place.texel);
+}
+
+// The surface texel at a place; 64 * slot + texel.
+Result<std::uint32_t> texel_at(const Place& place, const RegionContext& context) {
+  const auto tree = context.surface.tree();
+  const glm::dvec3 origin = context.surface.geometry().origin;
+  const query::SurfacePoint point = std::visit(
+      Overloaded{
+          [&](const PixelPlace& pixel) { return query::pick(*tree, origin, pixel.camera, pixel.x, pixel.y, {}); },
+          [&](const glm::dvec3& world) { return query::nearest_point(*tree, origin, world, {}); }},
+      place);
+  if (!point.hit)
+    return fail(422, "Not on the model", "There is no surface at this place; give one that is on the model.", "at");
+  if (const auto texel = mesh::surface_texel_at(context.map, point.uv)) return *texel;
+  return fail(422, "No texel there", "The surface at this place is too small to hold a texel of this layer.", "at");
+}
+
+}  // namespace
+
+Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType type, const RegionContext& context) {
+  using Changes = Result<std::vector<TileChange>>;
+  const WrittenValue value = written_value(fill.erase, fill.value_bits);
+  const auto selected = [&](Result<query::TexelSelection> selection) -> Changes {
+    if (!selection) return tl::unexpected(selection.error());
+    return fill_selected(context.tiles, type, context.map, std::move(*selection), value);
+  };
+  const auto flooded = [&](const Place& at, auto flood) -> Changes {
+    const auto start = texel_at(at, context);
+    if (!start) return tl::unexpected(start.error());
+    const auto graph = context.surface.graph(context.map);
+    if (!graph) return tl::unexpected(graph.error());
+    return selected(flood(**graph, *start));
+  };
+  return std::visit(Overloaded{
+                        [&](const FillEdit::Everywhere&) -> Changes {
+                          return fill_everywhere(context.tiles, type, context.map, value);
+                        },
+                        [&](const FillEdit::Where& where) {
+                          return selected(query::select_where(where.condition, context.layers, context.map, "where"));
+                        },
+                        [&](const FillEdit::Island& island) {
+                          return flooded(island.at, [&](const mesh::TexelGraph& graph, std::uint32_t start) {
+                            return query::select_piece(context.map, graph, start);
+                          });
+                        },
+                        [&](const FillEdit::Connected& connected) {
+                          return flooded(connected.at, [&](const mesh::TexelGraph& graph, std::uint32_t start) {
+                            return query::select_connected(context.map, graph, context.tiles, start);
+                          });
+                        },
+                    },
+                    fill.region);
+}
+
+Result<std::vector<TileChange>> polygon_changes(const PolygonEdit& polygon, ValueType type,
+                                                const RegionContext& context) {
+  const PolygonArea area({polygon.path});
+  auto seen = seen_texels(context.renderer, context.model, context.map.resolution, polygon.camera, area.low(),
+                          area.high(), polygon.through);
+  if (!seen) return tl::unexpected(gpu_problem(seen.error()));
+  const WindowProjection window_of(polygon.camera, context.surface.geometry().origin);
+  for (auto& [address, mask] : *seen) {
+    TileMask inside;
+    for_each_texel(mask, [&](int texel) {
+      if (area.contains(window_of(position_at(context.map, address, texel)))) inside.set(texel);
+    });
+    mask = inside;
+  }
+  return fill_masks(context.tiles, type, context.map, *seen, written_value(polygon.erase, polygon.value_bits));
+}
+
+}  // namespace strata::room

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "query/values.h"
+#include "room/edit.h"
+#include "room/seen_texels.h"
+#include "room/surface_lookup.h"
+#include "room/tile_changes.h"
+
+namespace strata::room {
+
+// What the texels of an edit are found in. All of it is constant while one edit is computed.
+struct RegionContext {
+  const mesh::SurfaceMap& map;                  // of the edited layer's resolution
+  const TileMap& tiles;                         // of the edited layer
+  const std::vector<query::LayerView>& layers;  // of the model
+  SurfaceLookup& surface;
+  render::Renderer& renderer;
+  render::ModelHandle model = 0;
+};
+
+// What a fill or a polygon changes. Blocks: for worker threads. Refused: an expression over layers that are not there
+// (422), a place that is not on the model (422), what the GPU refuses.
+Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType type, const RegionContext& context);
+Result<std::vector<TileChange>> polygon_changes(const PolygonEdit& polygon, ValueType type,
+                                                const RegionContext& context);
+
+}  // namespace strata::room

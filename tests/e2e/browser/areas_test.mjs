@@ -1,0 +1,172 @@
+// Whole areas: polygon, lasso, fill of what is connected, fill where a condition holds. What the page shows while they are drawn,
+// what they paint, and that they are taken back.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser, rgb } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
+
+const browser = await Browser.open();
+const { page } = browser;
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const base = "/models/demo-pot";
+const edits = async () => (await server.json("GET", `${base}/layers/test/edits?limit=1000`)).total;
+const statistics = (layer) => server.json("GET", `${base}/layers/${layer}/statistics`);
+const button = (name) => page.getByRole("button", { name, exact: true });
+const radio = (name) => page.getByRole("radio", { name, exact: true });
+const magenta = () => browser.count(rgb(kMagenta));
+const shot = async (name) => {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+};
+
+/** Points in shares of the stage, in pixels of the page. */
+async function pixels(points) {
+  const box = await browser.stage_box();
+  return points.map(([x, y]) => [box.x + x * box.width, box.y + y * box.height]);
+}
+async function click(...points) {
+  for (const [x, y] of await pixels(points)) await page.mouse.click(x, y);
+}
+async function area_px(points) {
+  const corners = await pixels(points);
+  const twice = corners.reduce((sum, [x, y], i) => {
+    const [next_x, next_y] = corners[(i + 1) % corners.length];
+    return sum + x * next_y - next_x * y;
+  }, 0);
+  return Math.abs(twice) / 2;
+}
+async function away() {
+  await browser.point(0.99, 0.01);
+}
+async function painted(expected_px, what) {
+  await browser.saved();
+  await away();
+  await wait_for(async () => (await magenta()) > expected_px * 0.5, what, 150);
+  const pixels_painted = await magenta();
+  console.log(`  ${what}: ${pixels_painted} pixels of ${Math.round(expected_px)}`);
+  assert.ok(Math.abs(pixels_painted / expected_px - 1) < 0.1, `${what}: ${pixels_painted} pixels instead of ${expected_px}`);
+}
+async function taken_back(what) {
+  await page.keyboard.press("Control+z");
+  await browser.saved();
+  await wait_for(async () => (await magenta()) === 0, `${what} to be taken back`, 150);
+}
+
+try {
+  await server.start();
+  const palette = { mode: "categorical", points: [{ at: 1, color: kMagenta, label: "Test" }] };
+  await server.json("POST", `${base}/layers`, { name: "Test", type: "u8", resolution: 4096, palette });
+  for (const { id, slug } of (await server.json("GET", `${base}/layers`)).layers) {
+    await server.json("PATCH", `${base}/layers/${id}`, { visible: slug === "test" });
+  }
+  await page.goto(server.link);
+  await page.getByRole("link", { name: /Demo pot/ }).click();
+  await browser.drawn();
+  const later = page.getByRole("button", { name: "Decide later" });
+  if (await later.isVisible()) await later.click();
+  await button("Paint on Test").click();
+
+  say("a polygon is closed with Enter, and its inside is painted");
+  const corners = [[0.44, 0.5], [0.56, 0.52], [0.54, 0.68], [0.46, 0.62]]; // prettier-ignore
+  await page.keyboard.press("a");
+  await click(...corners);
+  await browser.point(0.5, 0.6);
+  await page.locator("strata-stage svg.over polygon").waitFor();
+  await shot("polygon");
+  const canvas = page.locator("strata-stage canvas").first();
+  const camera = () => canvas.evaluate((each) => Number(each.dataset.cameraSeq));
+  const held = await camera();
+  await page.keyboard.press("Home");
+  assert.equal(await edits(), 0, "painted before it was closed");
+  await page.keyboard.press("Enter");
+  await page.getByText(/m² changed\./).first().waitFor();
+  await painted(await area_px(corners), "the polygon");
+  assert.equal(await camera(), held, "the camera moved while the outline was drawn");
+  await taken_back("the polygon");
+
+  say("a click on the first corner closes it; Backspace takes a corner back, Escape all");
+  await click(...corners, [0.1, 0.1]);
+  await page.keyboard.press("Backspace");
+  await click(corners[0]);
+  await painted(await area_px(corners), "the polygon again");
+  await taken_back("the polygon");
+  const known = await edits();
+  await click(...corners);
+  await page.keyboard.press("Escape");
+  await browser.saved();
+  assert.equal(await page.locator("strata-stage svg.over polygon").count(), 0);
+  assert.equal(await edits(), known, "an outline that was given up painted");
+
+  say("a lasso paints what the drag went round");
+  await page.keyboard.press("l");
+  const round = Array.from({ length: 25 }, (_, i) => [0.5 + 0.06 * Math.cos(i / 4), 0.58 + 0.09 * Math.sin(i / 4)]);
+  await browser.drag(round);
+  await painted(await area_px(round.slice(0, 25)), "the lasso");
+  await shot("lasso");
+
+  say("what is connected is erased by one click, and what is not stays");
+  await page.keyboard.press("b");
+  await browser.drag([[0.35, 0.6], [0.37, 0.6]]);
+  await browser.saved();
+  await away();
+  const both = (await statistics("test")).area_m2;
+  await page.keyboard.press("g");
+  await radio("Erase").click();
+  await shot("bucket");
+  await click([0.5, 0.58]);
+  await browser.saved();
+  const left = (await statistics("test")).area_m2;
+  assert.ok(left > 0 && left < both * 0.5, `${left} m² of ${both} are left`);
+  await page.keyboard.press("Control+z");
+  await browser.saved();
+  assert.equal((await statistics("test")).area_m2, both);
+  await click([0.02, 0.02]);
+  await page.getByText("There is no surface at this place").waitFor();
+  await page.keyboard.press("b");
+
+  say("a condition over other layers; a wrong one says where it is wrong");
+  await button("Fill where…").click();
+  const condition = page.getByLabel("Condition");
+  await condition.fill("cracks >");
+  await page.keyboard.press("Enter");
+  await page.getByRole("alert").getByText(/at character 9/).waitFor();
+  await shot("where");
+  await condition.fill("not ");
+  await condition.press("End");
+  await button("cracks").click();
+  assert.equal(await condition.inputValue(), "not cracks");
+  await condition.fill("valid(cracks)");
+  await button("Fill").click();
+  await page.getByRole("heading", { name: /where…/ }).waitFor({ state: "hidden" }); // closed once it is durable
+  const cracks = (await statistics("cracks")).area_m2;
+  const now = (await statistics("test")).area_m2;
+  assert.ok(now > cracks * 0.9, `${now} m² for cracks of ${cracks} m²`);
+
+  say("the whole piece under a point is the whole pot, and that is one step back");
+  await page.keyboard.press("g");
+  await radio("Paint").click();
+  await radio("Whole piece").click();
+  await click([0.5, 0.58]);
+  await browser.saved();
+  const whole = (await server.json("GET", base)).area_m2;
+  await wait_for(async () => (await statistics("test")).area_m2 > whole * 0.999, "the whole pot");
+  await page.keyboard.press("Control+z");
+  await browser.saved();
+  assert.ok(Math.abs((await statistics("test")).area_m2 / now - 1) < 1e-9);
+
+  say("the end");
+  browser.assert_no_complaints(["422"]);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
+  await shot("areas");
+  throw error;
+} finally {
+  await browser.close();
+  await server.remove();
+}

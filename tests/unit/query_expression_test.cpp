@@ -1,0 +1,238 @@
+// The language of formulas over layers, and what they hold for.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "query/expression_evaluator.h"
+#include "query/expression_parser.h"
+
+namespace strata::query {
+namespace {
+
+constexpr int kSide = 256;
+
+// Every texel but one in five is surface; the others are gutter.
+mesh::SurfaceMap full_map() {
+  mesh::SurfaceMap map;
+  map.resolution = kSide;
+  map.blocks_per_side = kSide / kBlockSize;
+  const auto blocks = static_cast<std::uint32_t>(map.blocks_per_side * map.blocks_per_side);
+  for (std::uint32_t block = 0; block < blocks; ++block) {
+    map.slot_of_block.push_back(block);
+    map.block_of_slot.push_back(block);
+    std::uint64_t surface = 0;
+    for (int i = 0; i < 64; ++i)
+      if ((block + static_cast<unsigned>(i)) % 5 != 0) surface |= std::uint64_t{1} << i;
+    map.surface_mask.push_back(surface);
+  }
+  return map;
+}
+
+using Value = std::optional<double>;
+
+struct TestLayer {
+  LayerView view;
+  std::function<Value(int x, int y)> at;
+};
+
+TestLayer layer(const std::string& slug, ValueType type, int resolution, std::function<Value(int, int)> at) {
+  TestLayer made;
+  made.at = std::move(at);
+  made.view.layer.slug = slug;
+  made.view.layer.type = type;
+  made.view.layer.resolution = resolution;
+  for (int ty = 0; ty < resolution / kTileSize; ++ty)
+    for (int tx = 0; tx < resolution / kTileSize; ++tx) {
+      auto tile = std::make_shared<TileData>(type);
+      for (int i = 0; i < kTexelsPerTile; ++i)
+        if (const Value value = made.at(tx * kTileSize + i % kTileSize, ty * kTileSize + i / kTileSize)) {
+          const float number = static_cast<float>(*value);
+          tile->write(i, type == ValueType::f32 ? std::bit_cast<std::uint32_t>(number) : *encode_value(type, *value));
+        }
+      made.view.snapshot.tiles[{static_cast<std::uint16_t>(tx), static_cast<std::uint16_t>(ty)}] = tile;
+    }
+  return made;
+}
+
+const TestLayer& wet() {  // a value in two of three texels
+  static const TestLayer made = layer("wet", ValueType::f32, kSide, [](int x, int y) -> Value {
+    if ((x + y) % 3 == 0) return {};
+    return x % 16 == 7 ? std::numeric_limits<float>::infinity() : (x - y) / 16.0;
+  });
+  return made;
+}
+const TestLayer& crack() {
+  static const TestLayer made = layer("roof-crack", ValueType::i8, kSide, [](int x, int y) -> Value {
+    return x * y % 2 == 0 ? Value(y % 7 - 3) : Value();
+  });
+  return made;
+}
+const TestLayer& coarse() {
+  static const TestLayer made = layer("3d", ValueType::u8, kSide / 2, [](int x, int y) -> Value {
+    return x % 4 == 0 ? Value() : Value((x + 2 * y) % 9);
+  });
+  return made;
+}
+const TestLayer& fine() {
+  static const TestLayer made =
+      layer("fine", ValueType::u16, kSide * 2, [](int x, int y) -> Value { return Value((3 * x + y) % 1000); });
+  return made;
+}
+
+std::vector<LayerView> views() { return {wet().view, crack().view, coarse().view, fine().view}; }
+
+// What the layers hold at a texel; nothing where they have no finite value.
+struct At {
+  Value wet, crack, coarse;
+  double fine;
+};
+At at(int x, int y) {
+  Value w = wet().at(x, y);
+  if (w && !std::isfinite(*w)) w.reset();
+  return {w, crack().at(x, y), coarse().at(x / 2, y / 2), *fine().at(2 * x + 1, 2 * y + 1)};
+}
+
+void expect_selected(const std::string& text, const std::function<bool(int x, int y, const At&)>& expected) {
+  SCOPED_TRACE(text);
+  const mesh::SurfaceMap map = full_map();
+  const auto condition = parse_condition(text, "where");
+  ASSERT_TRUE(condition) << condition.error().detail;
+  for (const int threads : {1, 3}) {
+    const auto selection = select_where(*condition, views(), map, "where", threads);
+    ASSERT_TRUE(selection) << selection.error().detail;
+    int selected = 0, wrong = 0;
+    for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot)
+      for (int i = 0; i < 64; ++i) {
+        const int x = static_cast<int>(slot) % map.blocks_per_side * 8 + i % 8,
+                  y = static_cast<int>(slot) / map.blocks_per_side * 8 + i / 8;
+        const bool surface = (map.surface_mask[slot] >> i) & 1u, is = ((*selection)[slot] >> i) & 1u;
+        selected += is;
+        wrong += is != (surface && expected(x, y, at(x, y)));
+      }
+    EXPECT_EQ(wrong, 0);
+    if (text != "false") {
+      EXPECT_GT(selected, 0);
+    }
+  }
+}
+
+TEST(Expression, a_condition_selects_the_surface_texels_where_it_holds) {
+  using Case = std::pair<const char*, std::function<bool(int, int, const At&)>>;
+  const std::vector<Case> cases{
+      {"true", [](int, int, const At&) { return true; }},
+      {"false", [](int, int, const At&) { return false; }},
+      {"wet > 0.25", [](int, int, const At& a) { return a.wet && *a.wet > 0.25; }},
+      {"WET >= -2e-1 AND wet<=1", [](int, int, const At& a) { return a.wet && *a.wet >= -0.2 && *a.wet <= 1; }},
+      {"roof-crack = 2 or roof-crack == -1",
+       [](int, int, const At& a) { return a.crack && (*a.crack == 2 || *a.crack == -1); }},
+      {"roof-crack <> 2 and roof-crack != 1",
+       [](int, int, const At& a) { return a.crack && *a.crack != 2 && *a.crack != 1; }},
+      {"valid(wet)", [](int x, int y, const At&) { return wet().at(x, y).has_value(); }},
+      {"not valid(roof-crack)", [](int, int, const At& a) { return !a.crack; }},
+      {"wet - roof-crack < 1", [](int, int, const At& a) { return a.wet && a.crack && *a.wet - *a.crack < 1; }},
+      {"1 + 2 * wet - wet / 2 - 1 > 3",
+       [](int, int, const At& a) { return a.wet && 1 + 2 * *a.wet - *a.wet / 2 - 1 > 3; }},
+      {"-(wet) > 1", [](int, int, const At& a) { return a.wet && -*a.wet > 1; }},
+      {"2 - -wet > 3", [](int, int, const At& a) { return a.wet && 2 + *a.wet > 3; }},
+      {"\"3d\" >= 5", [](int, int, const At& a) { return a.coarse && *a.coarse >= 5; }},
+      {"fine < 500", [](int, int, const At& a) { return a.fine < 500; }},
+      {"abs(wet) < 1 and max(fine, \"3d\", 4) > 100 and min(fine, 5) = 5",
+       [](int, int, const At& a) { return a.wet && std::abs(*a.wet) < 1 && a.coarse && a.fine > 100; }},
+      {"if(valid(roof-crack), roof-crack, 9) > 2", [](int, int, const At& a) { return !a.crack || *a.crack > 2; }},
+  };
+  for (const auto& [text, expected] : cases) expect_selected(text, expected);
+}
+
+TEST(Expression, what_is_not_known_is_not_selected_nor_is_its_contrary) {
+  expect_selected("not wet > 0.25", [](int, int, const At& a) { return a.wet && !(*a.wet > 0.25); });
+  expect_selected("wet > 0 or roof-crack > 0",
+                  [](int, int, const At& a) { return (a.wet && *a.wet > 0) || (a.crack && *a.crack > 0); });
+  expect_selected("not (wet > 0 and roof-crack > 0)",
+                  [](int, int, const At& a) { return (a.wet && !(*a.wet > 0)) || (a.crack && !(*a.crack > 0)); });
+  expect_selected("not (wet > 0 or roof-crack > 0)",
+                  [](int, int, const At& a) { return a.wet && !(*a.wet > 0) && a.crack && !(*a.crack > 0); });
+  expect_selected("1 / roof-crack > 0 or 1 / roof-crack <= 0",
+                  [](int, int, const At& a) { return a.crack && *a.crack != 0; });
+  expect_selected("if(wet > 0, 1, 2) > 0", [](int, int, const At& a) { return a.wet.has_value(); });
+  expect_selected("if(true, fine, wet) >= 0", [](int, int, const At&) { return true; });
+}
+
+TEST(Expression, or_binds_loosest_and_a_sign_most_tightly) {
+  EXPECT_EQ(*parse_condition("a > 1 or b > 2 and not c > 3", ""),
+            *parse_condition("(a > 1) or ((b > 2) and (not (c > 3)))", ""));
+  EXPECT_EQ(*parse_number("a + b * -c - d / e", ""), *parse_number("(a + (b * (-c))) - (d / e)", ""));
+  EXPECT_EQ(parse_number("a-b", "")->layer, "a-b");
+  EXPECT_EQ(parse_number("a -b", "")->op, Expression::Op::subtract);
+  EXPECT_THAT(layers_of(*parse_condition("b > a or valid(c) and b = 1", "")), testing::ElementsAre("b", "a", "c"));
+}
+
+TEST(Expression, a_long_row_of_alternatives_is_not_deep) {
+  std::string text = "a = 0";
+  for (int i = 1; i < 200; ++i) text += " or a = " + std::to_string(i);
+  const auto parsed = parse_condition(text, "where");
+  ASSERT_TRUE(parsed) << parsed.error().detail;
+  EXPECT_EQ(parsed->parts.size(), 200u);
+}
+
+struct Bad {
+  std::string text, says;
+};
+
+class BadExpression : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadExpression, is_refused_with_the_reason_and_the_place) {
+  const auto parsed = parse_condition(GetParam().text, "edit.where");
+  ASSERT_FALSE(parsed);
+  EXPECT_EQ(parsed.error().status, 422);
+  EXPECT_EQ(parsed.error().field, "edit.where");
+  EXPECT_THAT(parsed.error().detail, testing::HasSubstr(GetParam().says));
+}
+
+std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadExpression,
+    testing::Values(Bad{"", "the end"}, Bad{"   ", "the end"}, Bad{"wet", "condition is wanted"},
+                    Bad{"1 + 2", "condition is wanted"}, Bad{"wet >", "instead of 'the end' (at character 6)"},
+                    Bad{"wet > 1 wet", "'wet' was not expected here (at character 9)"}, Bad{"(wet > 1", "Expected ')'"},
+                    Bad{"wet > 1)", "')' was not expected"}, Bad{"wet > (1 > 2)", "number is wanted"},
+                    Bad{"true > 1", "number is wanted"}, Bad{"not wet", "condition is wanted"},
+                    Bad{"wet and true", "condition is wanted"}, Bad{"1 < wet < 2", "two numbers"},
+                    Bad{"sqrt(wet) > 1", "no function 'sqrt'"}, Bad{"valid(1)", "name of a layer"},
+                    Bad{"valid(wet", "Expected ')'"}, Bad{"valid wet", "Expected '('"},
+                    Bad{"min(1) > 0", "At least two"}, Bad{"if(wet > 1, 2) > 0", "Expected ','"},
+                    Bad{"if(wet, 1, 2) > 0", "condition is wanted"}, Bad{"and > 1", "instead of 'and'"},
+                    Bad{"valid(and)", "double quotes"}, Bad{"wet > 1 ; drop", "no meaning"},
+                    Bad{"wet > '1'", "no meaning"}, Bad{"wet > 1.2.3", "A number ends here"},
+                    Bad{"3d > 1", "double quotes"}, Bad{"wet > 1e999", "too large"}, Bad{"\"wet > 1", "never closed"},
+                    Bad{"\"\" > 1", "name is missing"}, Bad{"wet > 1 or", "the end"}, Bad{"wet ! 1", "no meaning"},
+                    Bad{"w\xc3\xa4nde > 1", "no meaning"}, Bad{repeated("(", 2000) + "true", "nested too deeply"},
+                    Bad{repeated("not ", 1000) + "true", "nested too deeply"},
+                    Bad{repeated("-", 4000) + "1 > 0", "nested too deeply"},
+                    Bad{"0 < 1" + repeated("+1", 100), "nested too deeply"},
+                    Bad{"wet > 1" + repeated(" ", 5000), "at most 4096"}));
+
+TEST(Expression, a_layer_that_is_not_there_is_named) {
+  const auto condition = parse_condition("wet > 0 and salt > 1", "where");
+  ASSERT_TRUE(condition);
+  const auto selection = select_where(*condition, views(), full_map(), "where");
+  ASSERT_FALSE(selection);
+  EXPECT_EQ(selection.error().status, 422);
+  EXPECT_THAT(selection.error().detail, testing::HasSubstr("'salt'"));
+}
+
+TEST(Expression, a_number_is_wanted_where_a_layer_is_computed) {
+  EXPECT_TRUE(parse_number("if(wet > 0.3 and valid(cracks), 1, 0)", ""));
+  EXPECT_FALSE(parse_number("wet > 0.3", ""));
+}
+
+}  // namespace
+}  // namespace strata::query

@@ -1,0 +1,239 @@
+// Connectivity across the surface, seams of the atlas included.
+#include "query/flood.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include "mesh/adjacency.h"
+#include "mesh/atlas.h"
+#include "mesh/demo_pot.h"
+#include "mesh/texel_owners.h"
+#include "mesh/uv_islands.h"
+#include "support/meshes.h"
+
+namespace strata::query {
+namespace {
+
+constexpr int kResolution = 512;
+
+struct Surface {
+  std::string name;
+  mesh::Geometry geometry;
+  mesh::SurfaceMap map;
+  mesh::TexelGraph graph;
+};
+
+Surface surface_of(std::string name, const mesh::TriangleMesh& mesh, int resolution) {
+  Progress progress;
+  Surface surface;
+  surface.name = std::move(name);
+  surface.geometry = mesh::build_geometry(mesh, *mesh::make_atlas(mesh, resolution, progress));
+  surface.map = *mesh::bake_surface_map(surface.geometry, resolution, progress);
+  surface.graph = *mesh::build_texel_graph(surface.geometry, surface.map, progress);
+  return surface;
+}
+
+std::uint64_t count(const TexelSelection& selection) {
+  std::uint64_t texels = 0;
+  for (const std::uint64_t word : selection) texels += std::popcount(word);
+  return texels;
+}
+
+template <class Visit>
+void for_each_surface_texel(const mesh::SurfaceMap& map, Visit visit) {
+  for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot)
+    for (std::uint64_t left = map.surface_mask[slot]; left != 0; left &= left - 1)
+      visit(slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left)));
+}
+
+bool is_in(const TexelSelection& selection, std::uint32_t texel) {
+  return (selection[texel / 64] >> (texel % 64)) & 1u;
+}
+
+// Pieces of the mesh: triangles that share an edge, or an island of the atlas.
+std::vector<std::uint32_t> pieces_of_triangles(const mesh::Geometry& geometry) {
+  std::vector<std::uint32_t> parent(geometry.triangle_count());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t t) {
+    while (parent[t] != t) t = parent[t] = parent[parent[t]];
+    return t;
+  };
+  std::vector<std::uint32_t> positions;
+  for (const std::uint32_t v : geometry.indices) positions.push_back(geometry.vertices[v].position_index);
+  const auto neighbours = mesh::edge_neighbours(positions, geometry.positions.size());
+  for (std::size_t c = 0; c < neighbours.size(); ++c)
+    if (neighbours[c] != mesh::kNoTriangle) parent[root(static_cast<std::uint32_t>(c / 3))] = root(neighbours[c]);
+  const auto islands = mesh::find_islands(geometry.indices, geometry.vertices.size());
+  std::map<std::uint32_t, std::uint32_t> first;
+  for (std::uint32_t t = 0; t < parent.size(); ++t) {
+    const auto [found, fresh] = first.try_emplace(islands.of_triangle[t], t);
+    if (!fresh) parent[root(t)] = root(found->second);
+  }
+  std::vector<std::uint32_t> pieces;
+  for (std::uint32_t t = 0; t < parent.size(); ++t) pieces.push_back(root(t));
+  return pieces;
+}
+
+TEST(Flood, the_pieces_of_the_texels_are_the_pieces_of_the_mesh) {
+  for (const auto& [name, mesh] : test::mesh_classes()) {
+    SCOPED_TRACE(name);
+    const Surface surface = surface_of(name, mesh, kResolution);
+    Progress progress;
+    const auto owners = mesh::bake_texel_owners(surface.geometry, kResolution, progress);
+    const auto pieces = pieces_of_triangles(surface.geometry);
+    std::map<std::uint32_t, std::uint64_t> texels;       // of each piece of the mesh
+    std::map<std::uint32_t, std::uint32_t> first_texel;  // its first texel
+    for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+      const std::uint32_t piece = pieces[owners->triangle[texel]];
+      ++texels[piece];
+      first_texel.try_emplace(piece, texel);
+    });
+    std::uint64_t wrong = 0;
+    int floods = 0;
+    for (const auto& [piece, start] : first_texel) {
+      if (++floods > 40) break;  // there are meshes of separate triangles only
+      const auto selection = select_piece(surface.map, surface.graph, start);
+      for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+        wrong += is_in(selection, texel) != (pieces[owners->triangle[texel]] == piece);
+      });
+    }
+    EXPECT_EQ(wrong, 0u);
+  }
+}
+
+TEST(Flood, neighbours_are_mutual) {
+  const Surface surface = surface_of("torus", test::torus(24), kResolution);
+  ASSERT_FALSE(surface.graph.links.empty());
+  for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+    mesh::for_each_neighbour(surface.map, surface.graph, texel, [&](std::uint32_t neighbour) {
+      bool back = false;
+      mesh::for_each_neighbour(surface.map, surface.graph, neighbour,
+                               [&](std::uint32_t each) { back = back || each == texel; });
+      ASSERT_TRUE(back) << texel << " " << neighbour;
+    });
+  });
+}
+
+TEST(Flood, neighbours_are_near_each_other_on_the_surface) {
+  const Surface surface = surface_of("sphere", test::sphere(48), kResolution);
+  float farthest = 0;
+  const auto place = [&](std::uint32_t texel) {
+    return surface.map.position(texel / 64, static_cast<int>(texel % 64));
+  };
+  for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
+    mesh::for_each_neighbour(surface.map, surface.graph, texel, [&](std::uint32_t neighbour) {
+      farthest = std::max(farthest, glm::distance(place(texel), place(neighbour)));
+    });
+  });
+  const double texel_size = std::sqrt(surface.map.area_total / static_cast<double>(surface.map.surface_texels));
+  EXPECT_LT(farthest, 5 * texel_size);
+}
+
+// A layer that holds what `value_at` gives for each texel's position; gutter follows.
+TileMap layer_of(const mesh::SurfaceMap& map, const std::function<int(glm::vec3)>& value_at) {
+  TileMap tiles;
+  for (int y = 0; y < map.resolution / kTileSize; ++y)
+    for (int x = 0; x < map.resolution / kTileSize; ++x) {
+      auto tile = std::make_shared<TileData>(ValueType::u8);
+      for (int i = 0; i < kTexelsPerTile; ++i) {
+        const int tx = x * kTileSize + i % kTileSize, ty = y * kTileSize + i / kTileSize;
+        const auto slot = map.slot_of_block[std::size_t(ty / 8) * map.blocks_per_side + tx / 8];
+        const int texel = ty % 8 * 8 + tx % 8;
+        if (slot == mesh::kNoSlot || map.packed_position[std::size_t{slot} * 64 + texel] == mesh::kNoPosition) continue;
+        if (const int value = value_at(map.position(slot, texel))) tile->write(i, static_cast<std::uint32_t>(value));
+      }
+      if (tile->valid.any()) tiles[{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}] = tile;
+    }
+  return tiles;
+}
+
+void expect_connected(const Surface& surface, const std::function<int(glm::vec3)>& value_at,
+                      const std::function<bool(glm::vec3)>& expected) {
+  SCOPED_TRACE(surface.name);
+  const mesh::SurfaceMap& map = surface.map;
+  const TileMap tiles = layer_of(map, value_at);
+  const auto islands = mesh::find_islands(surface.geometry.indices, surface.geometry.vertices.size());
+  Progress progress;
+  const auto owners = mesh::bake_texel_owners(surface.geometry, map.resolution, progress);
+  std::set<std::uint32_t> crossed;
+  std::optional<std::uint32_t> start;
+  std::uint64_t wanted = 0;
+  for_each_surface_texel(map, [&](std::uint32_t texel) {
+    if (!expected(map.position(texel / 64, static_cast<int>(texel % 64)))) return;
+    if (wanted++ % 997 == 500) start = texel;
+    crossed.insert(islands.of_triangle[owners->triangle[texel]]);
+  });
+  ASSERT_TRUE(start);
+  ASSERT_GT(crossed.size(), 1u) << "the region crosses no seam";
+  const auto selection = select_connected(map, surface.graph, tiles, *start);
+  std::uint64_t outside = 0, inside = 0;
+  for_each_surface_texel(map, [&](std::uint32_t texel) {
+    if (!is_in(selection, texel)) return;
+    ++(expected(map.position(texel / 64, static_cast<int>(texel % 64))) ? inside : outside);
+  });
+  EXPECT_EQ(outside, 0u);
+  // A texel at the region's border may hang on it by a corner only.
+  EXPECT_GE(inside, wanted - wanted / 1000);
+}
+
+TEST(Flood, the_same_value_is_followed_across_seams_and_not_across_other_values) {
+  const auto caps = [](glm::vec3 p) { return p.z > 0.4f || p.z < -0.4f ? 7 : 3; };
+  const Surface sphere = surface_of("sphere", test::sphere(64), 1024);
+  expect_connected(sphere, caps, [](glm::vec3 p) { return p.z > 0.4f; });
+  expect_connected(sphere, caps, [](glm::vec3 p) { return std::abs(p.z) <= 0.4f; });
+}
+
+TEST(Flood, from_where_nothing_is_what_holds_nothing_is_connected) {
+  const Surface torus = surface_of("torus", test::torus(40), 1024);
+  // A ring of the torus is painted at x = 0 on both sides: what is bare falls into two halves.
+  const auto rings = [](glm::vec3 p) { return std::abs(p.x) < 0.06f ? 1 : 0; };
+  expect_connected(torus, rings, [](glm::vec3 p) { return p.x >= 0.06f; });
+}
+
+TEST(Flood, a_pot_is_one_piece_though_its_atlas_has_many) {
+  const Surface pot = surface_of("pot", mesh::make_demo_pot(0.5), 2048);
+  std::uint32_t start = 0;
+  for_each_surface_texel(pot.map, [&](std::uint32_t texel) { start = texel; });
+  EXPECT_EQ(count(select_piece(pot.map, pot.graph, start)), pot.map.surface_texels);
+  // What it costs beside the map.
+  EXPECT_LT(pot.graph.bytes(), pot.map.bytes() / 8);
+}
+
+TEST(Flood, is_the_same_on_any_number_of_threads_and_stops_when_cancelled) {
+  const Surface surface = surface_of("sphere", test::sphere(32), kResolution);
+  Progress progress;
+  const auto again = mesh::build_texel_graph(surface.geometry, surface.map, progress, 5);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->links, surface.graph.links);
+  EXPECT_EQ(again->to_right, surface.graph.to_right);
+  EXPECT_EQ(again->to_upper, surface.graph.to_upper);
+  progress.cancel();
+  EXPECT_EQ(mesh::build_texel_graph(surface.geometry, surface.map, progress).error().status, 499);
+}
+
+TEST(Flood, a_texture_coordinate_finds_its_texel_also_from_the_gutter) {
+  const Surface surface = surface_of("sphere", test::sphere(32), kResolution);
+  const mesh::SurfaceMap& map = surface.map;
+  for_each_surface_texel(map, [&](std::uint32_t texel) {
+    const auto block = static_cast<int>(map.block_of_slot[texel / 64]), i = static_cast<int>(texel % 64);
+    const glm::vec2 centre(block % map.blocks_per_side * 8 + i % 8 + 0.5f,
+                           block / map.blocks_per_side * 8 + i / 8 + 0.5f);
+    ASSERT_EQ(mesh::surface_texel_at(map, centre / float(map.resolution)), texel);
+  });
+  for (const auto& vertex : surface.geometry.vertices) EXPECT_TRUE(mesh::surface_texel_at(map, vertex.uv));
+  const auto empty = std::find(map.slot_of_block.begin(), map.slot_of_block.end(), mesh::kNoSlot);
+  ASSERT_NE(empty, map.slot_of_block.end());
+  const auto block = static_cast<int>(empty - map.slot_of_block.begin());
+  const glm::vec2 middle(block % map.blocks_per_side * 8 + 4, block / map.blocks_per_side * 8 + 4);
+  EXPECT_FALSE(mesh::surface_texel_at(map, middle / float(map.resolution)));
+}
+
+}  // namespace
+}  // namespace strata::query

@@ -1,0 +1,129 @@
+// <strata-value-picker>: which value is painted in the selected layer: a class, a number, or the only one there is.
+
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { css_color, purpose_of } from "../core/palette";
+import type { Layer } from "../core/types";
+import { describe_value, value_problem } from "./brush-settings";
+import type { ModelSession } from "./model-session";
+import { radio_group } from "./radio-group";
+import { styled } from "./styled";
+import { number_field_styles, shared_styles } from "./styles";
+import { texts } from "./texts";
+
+@customElement("strata-value-picker")
+export class StrataValuePicker extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) layer!: Layer;
+  @property({ attribute: false }) value = 0;
+  @state() private wrong_value_ = "";
+
+  static override styles = [
+    shared_styles,
+    number_field_styles,
+    css`
+      :host {
+        display: block;
+      }
+      .classes {
+        display: grid;
+        grid-template-columns: repeat(auto-fit, minmax(118px, 1fr));
+        gap: 6px;
+        max-height: 208px;
+        overflow: auto;
+        padding: 2px;
+        margin: -2px;
+      }
+      .classes button {
+        justify-content: flex-start;
+        min-width: 0;
+        padding: 0 10px;
+      }
+      .classes button[aria-checked="true"] {
+        border-color: var(--accent);
+        box-shadow: inset 0 0 0 1px var(--accent);
+        font-weight: 600;
+      }
+      .line {
+        display: flex;
+        align-items: center;
+        gap: 9px;
+        min-width: 0;
+      }
+      .value {
+        display: grid;
+        gap: 6px;
+      }
+    `,
+  ];
+
+  override willUpdate(changed: PropertyValues<this>): void {
+    if (changed.has("layer") && changed.get("layer")?.id !== this.layer.id) this.wrong_value_ = "";
+  }
+
+  override render(): TemplateResult {
+    const { layer, value } = this;
+    const purpose = purpose_of(layer);
+    const { points } = layer.palette;
+    if (purpose === "presence") {
+      return html`<div class="line">
+        <span class="swatch" ${styled({ background: css_color(points[0]!.color) })}></span>
+        <span class="ellipsis">${texts.brush.paints(describe_value(layer, value))}</span>
+      </div>`;
+    }
+    if (purpose === "classes" && points.length > 0) {
+      return radio_group({
+        label: texts.brush.class,
+        class: "classes",
+        choices: points.map(({ at, color }) => ({
+          value: at,
+          content: html`<span class="swatch" ${styled({ background: css_color(color) })}></span>
+            <span class="ellipsis">${describe_value(layer, at)}</span>`,
+          title: describe_value(layer, at),
+        })),
+        chosen: value,
+        choose: (at) => this.set_value(layer, at),
+      });
+    }
+    const steps = layer.type.startsWith("f") ? "any" : "1";
+    return html`<div class="value">
+      <label class="field">
+        <span>${purpose === "records" ? texts.brush.record : texts.brush.value}</span>
+        <span class="number">
+          <input
+            type="number"
+            step=${steps}
+            .value=${String(value)}
+            aria-invalid=${this.wrong_value_ ? "true" : "false"}
+            @change=${(event: Event) => this.on_value(layer, event)}
+          />
+          <span>${layer.unit}</span>
+        </span>
+      </label>
+      ${purpose === "measurement"
+        ? html`<input
+            type="range"
+            min=${layer.palette.min}
+            max=${layer.palette.max}
+            step=${steps === "any" ? (layer.palette.max - layer.palette.min) / 200 : 1}
+            .value=${String(value)}
+            aria-label=${texts.brush.value}
+            @input=${(event: Event) => this.on_value(layer, event)}
+          />`
+        : nothing}
+      ${this.wrong_value_ ? html`<p class="error" role="alert">${this.wrong_value_}</p>` : nothing}
+    </div>`;
+  }
+
+  private set_value(layer: Layer, value: number): void {
+    this.session.painting.set_brush((brush) => brush.set_value(layer, value));
+  }
+
+  private on_value(layer: Layer, event: Event): void {
+    const typed = (event.target as HTMLInputElement).value.trim();
+    const number = typed === "" ? Number.NaN : Number(typed);
+    const value = layer.type.startsWith("f") ? Number(number.toPrecision(6)) : number;
+    this.wrong_value_ = value_problem(layer, value) ?? "";
+    if (!this.wrong_value_) this.set_value(layer, value);
+  }
+}

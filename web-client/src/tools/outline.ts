@@ -1,0 +1,172 @@
+// Polygon and lasso: an outline in the picture, whose inside is painted. While one is drawn the camera stays, because its
+// points are pixels of the camera that it began with.
+
+import type { Point } from "../core/connection";
+import type { PointerSample } from "../core/input";
+import type { Tool } from "./tool";
+
+export interface OutlineHost {
+  /** False when there is nothing to paint on; the host has then told the person why. */
+  begin_outline(): boolean;
+  /** At least three points, at most kMostPoints. */
+  finish_outline(path: Point[]): void;
+  /** After `begin_outline` returned true, finished or given up. */
+  outline_ended(): void;
+  /** Window pixels per CSS pixel. */
+  scale(): number;
+  outline_changed(): void;
+}
+
+/** What is drawn over the picture. */
+export interface Outline {
+  points: readonly Point[];
+  /** Where the pointer is, if a line leads there. */
+  pointer: Point | null;
+  /** The next press at the first point closes it. */
+  closable: boolean;
+}
+
+export const kMostPoints = 4096;
+export const kSnap_px = 11; // CSS pixels: so near a press counts as on a point
+const kLassoSpacing_px = 2; // CSS pixels
+
+abstract class OutlineTool {
+  protected points: Point[] = [];
+
+  constructor(protected readonly host: OutlineHost) {}
+
+  get outline(): Outline | null {
+    return this.points.length > 0 ? { points: this.points, pointer: null, closable: false } : null;
+  }
+
+  activate(): void {}
+  deactivate(): void {
+    this.give_up();
+  }
+
+  protected begin(at: PointerSample): boolean {
+    if (!this.host.begin_outline()) return false;
+    this.points = [[at.x, at.y]];
+    this.host.outline_changed();
+    return true;
+  }
+
+  protected finish(): void {
+    const path = this.points;
+    this.give_up();
+    if (path.length >= 3) this.host.finish_outline(path);
+  }
+
+  protected give_up(): void {
+    if (this.points.length === 0) return;
+    this.points = [];
+    this.host.outline_ended();
+    this.host.outline_changed();
+  }
+}
+
+/** A drag goes round what is to be painted. */
+export class LassoTool extends OutlineTool implements Tool {
+  readonly name = "lasso";
+  private spacing_ = kLassoSpacing_px;
+
+  down(sample: PointerSample): void {
+    this.spacing_ = kLassoSpacing_px;
+    this.begin(sample);
+  }
+
+  move(samples: PointerSample[]): void {
+    if (this.points.length === 0) return;
+    for (const { x, y } of samples) {
+      const [last_x, last_y] = this.points[this.points.length - 1]!;
+      if (Math.hypot(x - last_x, y - last_y) < this.spacing_ * this.host.scale()) continue;
+      this.points.push([x, y]);
+      if (this.points.length < kMostPoints) continue;
+      this.points = this.points.filter((_, index) => index % 2 === 0);
+      this.spacing_ *= 2;
+    }
+    this.host.outline_changed();
+  }
+
+  up(): void {
+    this.finish();
+  }
+  cancel(): void {
+    this.give_up();
+  }
+  key(key: string): boolean {
+    if (key !== "Escape" || this.points.length === 0) return false;
+    this.give_up();
+    return true;
+  }
+}
+
+/** A press sets a corner; one on the first corner, a second one on the last, or Enter closes. */
+export class PolygonTool extends OutlineTool implements Tool {
+  readonly name = "polygon";
+  private pointer_: Point | null = null;
+  private added_ = false; // by the press that is under way
+
+  override get outline(): Outline | null {
+    if (this.points.length === 0) return null;
+    return { points: this.points, pointer: this.pointer_, closable: this.points.length >= 3 };
+  }
+
+  down(sample: PointerSample): void {
+    this.added_ = false;
+    this.pointer_ = [sample.x, sample.y];
+    if (this.points.length === 0) {
+      this.added_ = this.begin(sample);
+      return;
+    }
+    const closes = this.is_at(sample, this.points[0]!) || this.is_at(sample, this.points[this.points.length - 1]!);
+    if (closes) {
+      if (this.points.length >= 3) this.finish();
+      return;
+    }
+    if (this.points.length === kMostPoints) return;
+    this.points.push([sample.x, sample.y]);
+    this.added_ = true;
+    this.host.outline_changed();
+  }
+
+  move(samples: PointerSample[]): void {
+    const last = samples[samples.length - 1];
+    if (last) this.hover(last);
+  }
+  up(): void {}
+
+  /** A second finger came: its first one's press was none. */
+  cancel(): void {
+    if (this.added_) this.take_back();
+    this.added_ = false;
+  }
+
+  hover(sample: PointerSample | null): void {
+    this.pointer_ = sample ? [sample.x, sample.y] : null;
+    if (this.points.length > 0) this.host.outline_changed();
+  }
+
+  key(key: string): boolean {
+    if (this.points.length === 0) return false;
+    if (key === "Escape") this.give_up();
+    else if (key === "Backspace" || key === "Delete") this.take_back();
+    else if (key === "Enter") {
+      if (this.points.length >= 3) this.finish();
+    } else return false;
+    return true;
+  }
+
+  private take_back(): void {
+    if (this.points.length <= 1) {
+      this.give_up();
+      return;
+    }
+    this.points.pop();
+    this.host.outline_changed();
+  }
+
+  private is_at(sample: PointerSample, [x, y]: Point): boolean {
+    return Math.hypot(sample.x - x, sample.y - y) <= kSnap_px * this.host.scale();
+  }
+}
