@@ -24,7 +24,8 @@ struct Stretch {
 
 // Stretch beyond this factor of the mean counts as this factor: a sliver's ratio says nothing about the atlas.
 constexpr double kLargestStretch = 50;
-constexpr int kLargestMeasured = 8192;  // where a float for each texel takes 256 MiB
+constexpr int kLargestMeasured = 8192;                     // finer grids would take seconds
+constexpr std::size_t kBandTexels = std::size_t{1} << 22;  // measured at a time
 
 void sum_stretch(std::vector<Stretch> faces, double area, double uv_area, AtlasMeasure& measure) {
   if (area <= 0 || uv_area <= 0) return;
@@ -72,27 +73,40 @@ AtlasMeasure measure_areas(const TriangleMesh& mesh, std::span<const glm::vec2> 
 
 double largest_texel_area(const TriangleMesh& mesh, std::span<const glm::vec2> uvs, int resolution) {
   const auto side = static_cast<std::size_t>(resolution);
-  std::vector<float> texel_areas(side * side, 0.f);
-  const auto texel = [&](double x, double y) -> float& {
-    const auto column = std::min<std::size_t>(static_cast<std::size_t>(x), side - 1);
-    return texel_areas[std::min<std::size_t>(static_cast<std::size_t>(y), side - 1) * side + column];
-  };
   const double scale = scale_of(mesh, surface_area(mesh));
+  // Band by band: the whole atlas at 8192² would take 268 MB.
+  const int rows = static_cast<int>(std::max<std::size_t>(1, kBandTexels / side));
+  std::vector<float> texel_areas(side * static_cast<std::size_t>(rows));
+  float largest = 0;
   TexelPieces pieces;
-  for (std::size_t f = 0; f < mesh.triangle_count(); ++f) {
-    const double area = area_of(mesh, f) * scale;
-    if (area == 0) continue;
-    pieces.set(glm::dvec2(uvs[3 * f]) * double(resolution), glm::dvec2(uvs[3 * f + 1]) * double(resolution),
-               glm::dvec2(uvs[3 * f + 2]) * double(resolution));
-    if (pieces.is_line()) {
-      texel(pieces.centroid().x, pieces.centroid().y) += static_cast<float>(area);
-    } else {
-      const double area_per_texel = area / pieces.area();
-      pieces.for_each(0, resolution,
-                      [&](int x, int y, double piece) { texel(x, y) += static_cast<float>(piece * area_per_texel); });
+  for (int row_begin = 0; row_begin < resolution; row_begin += rows) {
+    const int row_end = std::min(resolution, row_begin + rows);
+    std::fill(texel_areas.begin(), texel_areas.end(), 0.f);
+    const auto texel = [&](int x, int y) -> float& {
+      const std::size_t column = std::min(static_cast<std::size_t>(x), side - 1);
+      return texel_areas[static_cast<std::size_t>(y - row_begin) * side + column];
+    };
+    for (std::size_t f = 0; f < mesh.triangle_count(); ++f) {
+      const glm::dvec2 a = glm::dvec2(uvs[3 * f]) * double(resolution),
+                       b = glm::dvec2(uvs[3 * f + 1]) * double(resolution),
+                       c = glm::dvec2(uvs[3 * f + 2]) * double(resolution);
+      if (std::max({a.y, b.y, c.y}) < row_begin || std::min({a.y, b.y, c.y}) > row_end) continue;
+      const double area = area_of(mesh, f) * scale;
+      if (area == 0) continue;
+      pieces.set(a, b, c);
+      if (pieces.is_line()) {
+        const int row = std::min(static_cast<int>(pieces.centroid().y), resolution - 1);
+        if (row >= row_begin && row < row_end)
+          texel(static_cast<int>(pieces.centroid().x), row) += static_cast<float>(area);
+      } else {
+        const double area_per_texel = area / pieces.area();
+        pieces.for_each(row_begin, row_end,
+                        [&](int x, int y, double piece) { texel(x, y) += static_cast<float>(piece * area_per_texel); });
+      }
     }
+    largest = std::max(largest, *std::max_element(texel_areas.begin(), texel_areas.end()));
   }
-  return double{*std::max_element(texel_areas.begin(), texel_areas.end())} / scale;
+  return double{largest} / scale;
 }
 
 TexelCounts count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> uvs, int resolution) {
