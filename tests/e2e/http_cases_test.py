@@ -132,7 +132,7 @@ def table(camera):
         ("an edit too large", "POST", L + "/edits", b" " * (1 << 20) + b"{}", json_type, 413, "body"),
         ("a key too long", "POST", L + "/edits", FILL, {"Idempotency-Key": "k" * 256}, 400, "Idempotency-Key"),
 
-        ("a scan of another format", "POST", "/models?filename=scan.stl", b"solid", {}, 415, "filename"),
+        ("a scan of another format", "POST", "/models?filename=scan.fbx", b"Kaydara", {}, 415, "filename"),
         ("a scan without a file name", "POST", "/models", b"ply\n", {}, 422, "filename"),
         ("a scan in an unknown unit", "POST", "/models?filename=a.ply&unit=inch", b"ply\n", {}, 422, "unit"),
         ("a scan for an unknown project", "POST", "/models?filename=a.ply&project=nothing", b"ply\n", {}, 404, "project"),

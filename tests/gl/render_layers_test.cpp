@@ -205,7 +205,8 @@ TEST(Layers, painting_beyond_the_memory_budget_is_refused_and_changes_nothing) {
       [&](auto done) { renderer->paint(layer, dab(camera, 100, 100, 40), std::move(done)); });
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, 503);
-  EXPECT_NE(refused.error().detail.find("budget of 12 MiB is used up"), std::string::npos) << refused.error().detail;
+  EXPECT_NE(refused.error().detail.find("budget of 12 MiB of GPU memory is used up"), std::string::npos)
+      << refused.error().detail;
   EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
   const auto tile = await<void>([&](auto done) {
     renderer->write_tiles(layer, {{{0, 0}, random_tile(ValueType::u32, 1)}}, std::move(done));

@@ -86,6 +86,7 @@ TEST(Wire, millimetres_become_the_models_unit) {
 TEST(Wire, a_fill_carries_the_bits_of_its_value) {
   protocol::EditFill fill;
   fill.value = -1;
+  fill.where = "true";
   const auto request = edit_request(fill, layer_of(ValueType::i8), model_in(Unit::m), random_uuid(), "anna");
   ASSERT_TRUE(request);
   EXPECT_EQ(std::get<room::FillEdit>(request->edit).value_bits, 0xffu);

@@ -1,5 +1,6 @@
 #include "protocol/validate.h"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <mutex>
@@ -110,6 +111,18 @@ std::string member_named(const std::string& description, std::string_view before
   return member;
 }
 
+// The first member that a `oneOf` of an object demands beside one that is given; empty where no choice was begun.
+std::string missing_companion(const json& schema, const json& value) {
+  for (const auto& choice : resolve(schema).value("oneOf", json::array())) {
+    const auto names = choice.value("required", std::vector<std::string>());
+    if (names.empty() || !value.contains(names.front())) continue;
+    const auto missing =
+        std::find_if(names.begin(), names.end(), [&](const auto& name) { return !value.contains(name); });
+    if (missing != names.end()) return *missing;
+  }
+  return {};
+}
+
 // Names of the members of which a `oneOf` of an object demands exactly one.
 std::vector<std::string> exclusive_members(const json* schema) {
   std::vector<std::string> names;
@@ -147,7 +160,9 @@ tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::str
 
   const std::string& said = error.description;
   if (said.starts_with("Missing required")) {
-    const std::string member = member_named(said, "property '");
+    std::string member = member_named(said, "property '");
+    if (rule != nullptr && value != nullptr)
+      if (const std::string companion = missing_companion(*rule, *value); !companion.empty()) member = companion;
     const auto exclusive = exclusive_members(rule);
     if (!exclusive.empty() && member == exclusive.front()) {
       enter(member);

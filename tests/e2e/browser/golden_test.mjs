@@ -158,7 +158,7 @@ async function write_readme_picture(browser) {
   const box = await browser.stage_box();
   await page.mouse.click(box.x + 20, box.y + 20); // away from the button that opened the dialog
   await page.keyboard.press("+");
-  await browser.point(0.6265, 0.597); // a wide crack
+  await browser.point(0.4193, 0.5737); // a wide crack
   await page.locator("strata-value-readout").getByText("Open crack").waitFor();
   mkdirSync(join(kRoot, "docs"), { recursive: true });
   const picture = decode_png(await browser.settled());

@@ -110,7 +110,7 @@ try {
 
   say("keys step through lights and cuts");
   await page.mouse.click((await browser.stage_box()).x + 10, (await browser.stage_box()).y + 10);
-  await page.keyboard.press("l");
+  await page.keyboard.press("k");
   assert.equal(await radio("Headlight").getAttribute("aria-checked"), "true");
 
   say("reset shows the model as others see it");

@@ -82,8 +82,8 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
     case "]":
       session.painting.set_brush((brush) => brush.step_width(key === "]" ? 1 : -1));
       return true;
-    case "l":
-    case "L":
+    case "k":
+    case "K":
       session.appearance.next_light();
       return true;
     case "x":

@@ -481,7 +481,7 @@ export const texts = {
       ["Home", "whole model"],
       ["1 – 6", "front, back, left, right, top, bottom"],
       ["P · O", "perspective · parallel"],
-      ["L", "next kind of light"],
+      ["K", "next kind of light"],
       ["X", "cut open, next axis, whole again"],
       ["?", "this sheet"],
     ],
