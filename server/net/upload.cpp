@@ -1,5 +1,6 @@
 #include "net/upload.h"
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 
@@ -94,12 +95,11 @@ Result<void> take_parts(const Request& request, std::string_view body, const fs:
         content_end > content_begin ? body.substr(content_begin, content_end - content_begin) : std::string_view(),
         folder);
     if (!upload) return tl::unexpected(upload.error());
-    for (const Upload& other : uploads)
-      if (other.filename == upload->filename) {
-        uploads.push_back(std::move(*upload));
-        return fail(422, "File sent twice", "The form holds two files named " + other.filename + ".", "body");
-      }
-    uploads.push_back(std::move(*upload));
+    uploads.push_back(std::move(*upload));  // also one that is refused now: the caller removes what there is
+    const Upload& last = uploads.back();
+    const auto has_its_name = [&](const Upload& other) { return other.filename == last.filename; };
+    if (std::any_of(uploads.begin(), uploads.end() - 1, has_its_name))
+      return fail(422, "File sent twice", "The form holds two files named " + last.filename + ".", "body");
   }
   if (uploads.empty()) return fail(415, "No file in the form", kAccepted, "body");
   return {};
