@@ -306,6 +306,17 @@ Message edit_message(const Uuid& id, bool is_batch, const Uuid& stroke, int n, c
   return message;
 }
 
+// A change under the name that an event of the protocol has for it.
+template <class Name>
+Name named(room::Listener::LayerChange change) {
+  switch (change) {
+    case room::Listener::LayerChange::created: return Name::created;
+    case room::Listener::LayerChange::changed: return Name::changed;
+    case room::Listener::LayerChange::deleted: break;
+  }
+  return Name::deleted;
+}
+
 }  // namespace
 
 void LiveSession::on_applied(const Uuid& id, const std::optional<BatchName>& batch, const room::EditAnswer& answer) {
@@ -372,9 +383,7 @@ void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Problem&) 
 void LiveSession::layer_changed(LayerChange change, const Layer& layer) {
   protocol::LayerEvent event;
   event.layer_id = layer.id;
-  event.event = change == LayerChange::created   ? protocol::LayerEventEvent::created
-                : change == LayerChange::changed ? protocol::LayerEventEvent::changed
-                                                 : protocol::LayerEventEvent::deleted;
+  event.event = named<protocol::LayerEventEvent>(change);
   if (change != LayerChange::deleted) event.layer = to_json(layer);
   send(event);
 }
@@ -382,9 +391,7 @@ void LiveSession::layer_changed(LayerChange change, const Layer& layer) {
 void LiveSession::look_changed(LayerChange change, const Look& look) {
   protocol::LookEvent event;
   event.look_id = look.id;
-  event.event = change == LayerChange::created   ? protocol::LookEventEvent::created
-                : change == LayerChange::changed ? protocol::LookEventEvent::changed
-                                                 : protocol::LookEventEvent::deleted;
+  event.event = named<protocol::LookEventEvent>(change);
   if (change != LayerChange::deleted) event.look = to_json(look);
   send(event);
 }
