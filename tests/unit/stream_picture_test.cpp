@@ -8,22 +8,12 @@
 
 #include "stream/jpeg_pool.h"
 #include "stream/timer_thread.h"
+#include "support/gradient.h"
 
 namespace strata::stream {
 namespace {
 
-std::vector<std::uint8_t> gradient(int width, int height) {
-  std::vector<std::uint8_t> rgba(std::size_t(width) * height * 4);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      auto* p = &rgba[(std::size_t(y) * width + x) * 4];
-      p[0] = static_cast<std::uint8_t>(x * 255 / width);
-      p[1] = static_cast<std::uint8_t>(y * 255 / height);
-      p[2] = 90;
-      p[3] = 255;
-    }
-  return rgba;
-}
+using test::gradient;
 
 struct Decoded {
   int width = 0, height = 0, sampling = 0;
