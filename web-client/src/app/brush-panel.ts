@@ -1,11 +1,12 @@
 // <strata-brush-panel>: what the chosen painting tool paints in the selected layer, how wide, and what it reaches.
 
-import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { format_length, format_number } from "../core/measure";
 import type { Layer } from "../core/types";
 import { describe_value, kWidths, type WidthUnit } from "./brush-settings";
 import { ask } from "./dialog";
+import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
 import { radio_group } from "./radio-group";
@@ -21,7 +22,11 @@ export type WhereRequest = { dialog: "where"; layer: Layer };
 @customElement("strata-brush-panel")
 export class StrataBrushPanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  private unsubscribe_: (() => void) | null = null;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
 
   static override styles = [
     shared_styles,
@@ -50,16 +55,6 @@ export class StrataBrushPanel extends LitElement {
       }
     `,
   ];
-
-  override willUpdate(changed: PropertyValues<this>): void {
-    if (!changed.has("session")) return;
-    this.unsubscribe_?.();
-    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
-  }
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    this.unsubscribe_?.();
-  }
 
   override render(): TemplateResult {
     const { session } = this;

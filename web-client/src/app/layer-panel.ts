@@ -1,10 +1,11 @@
 // <strata-layer-panel>: the layers from top to bottom, as this person sees them. The selected one is painted on.
 
-import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import type { Layer } from "../core/types";
 import { ask } from "./dialog";
+import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import { layer_job_row, layer_job_styles } from "./layer-job-row";
 import { layer_chip, legend, legend_styles } from "./legend";
@@ -24,7 +25,11 @@ export class StrataLayerPanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @state() private dragged_: number | null = null;
   @state() private drop_before_: number | null = null; // index in the shown list
-  private unsubscribe_: (() => void) | null = null;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
 
   static override styles = [
     shared_styles,
@@ -154,16 +159,6 @@ export class StrataLayerPanel extends LitElement {
       }
     `,
   ];
-
-  override willUpdate(changed: PropertyValues<this>): void {
-    if (!changed.has("session")) return;
-    this.unsubscribe_?.();
-    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
-  }
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    this.unsubscribe_?.();
-  }
 
   /** Top to bottom. */
   private get shown(): Layer[] {

@@ -6,6 +6,7 @@ import { ApiError } from "../core/api";
 import { format_area } from "../core/measure";
 import type { Layer } from "../core/types";
 import "./dialog";
+import { follow_session } from "./follow-session";
 import { kAlong, map_kind, number_attributes, world_numbers, type Along, type MapKind } from "./map-file";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
@@ -27,7 +28,11 @@ export class StrataMapDialog extends LitElement {
   private tolerance_mm_ = 5;
   private along_: Along = "-z";
   private world_ = "";
-  private unsubscribe_: (() => void) | null = null;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
 
   static override styles = [
     shared_styles,
@@ -47,15 +52,6 @@ export class StrataMapDialog extends LitElement {
       }
     `,
   ];
-
-  override connectedCallback(): void {
-    super.connectedCallback();
-    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
-  }
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    this.unsubscribe_?.();
-  }
 
   override render(): TemplateResult {
     const words = texts.maps;

@@ -1,13 +1,14 @@
 // <strata-stage>: the streamed picture, the pointer's gestures, and what is drawn over it: brush footprint, other
 // people's pointers, scale bar.
 
-import { css, html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
 import { FrameCanvas } from "../core/frame-canvas";
 import type { FrameMessage } from "../core/frame-header";
 import { StageInput } from "../core/input";
 import { metres_per, scale_bar } from "../core/measure";
 import { color_of, css_color } from "../core/palette";
+import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { outline_overlay } from "./outline-overlay";
@@ -28,7 +29,11 @@ export class StrataStage extends LitElement {
   private input_: StageInput | null = null;
   private frames_: FrameCanvas | null = null;
   private observer_: ResizeObserver | null = null;
-  private unsubscribe_: (() => void) | null = null;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
 
   static override styles = [
     shared_styles,
@@ -148,15 +153,8 @@ export class StrataStage extends LitElement {
     this.measure();
   }
 
-  override willUpdate(changed: PropertyValues<this>): void {
-    if (!changed.has("session")) return;
-    this.unsubscribe_?.();
-    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
-  }
-
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.unsubscribe_?.();
     this.observer_?.disconnect();
     this.input_?.detach();
   }

@@ -1,9 +1,10 @@
 // <strata-tool-rail>: tools, views, undo and redo.
 
-import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import type { StandardView } from "../core/camera";
 import { kPaintingTools, type ToolName } from "../tools/tool";
+import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import "./menu";
 import type { ModelSession } from "./model-session";
@@ -25,7 +26,11 @@ const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom
 @customElement("strata-tool-rail")
 export class StrataToolRail extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  private unsubscribe_: (() => void) | null = null;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
 
   static override styles = [
     shared_styles,
@@ -93,16 +98,6 @@ export class StrataToolRail extends LitElement {
       }
     `,
   ];
-
-  override willUpdate(changed: PropertyValues<this>): void {
-    if (!changed.has("session")) return;
-    this.unsubscribe_?.();
-    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
-  }
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    this.unsubscribe_?.();
-  }
 
   override render(): TemplateResult {
     const { session } = this;

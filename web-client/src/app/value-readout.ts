@@ -1,10 +1,11 @@
 // <strata-value-readout>: position and the layers' values under the pointer.
 
-import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { color_of, css_color } from "../core/palette";
 import type { Layer } from "../core/types";
 import { describe_value } from "./brush-settings";
+import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
@@ -13,7 +14,11 @@ import { texts } from "./texts";
 @customElement("strata-value-readout")
 export class StrataValueReadout extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  private unsubscribe_: (() => void) | null = null;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
 
   static override styles = [
     shared_styles,
@@ -57,16 +62,6 @@ export class StrataValueReadout extends LitElement {
       }
     `,
   ];
-
-  override willUpdate(changed: PropertyValues<this>): void {
-    if (!changed.has("session")) return;
-    this.unsubscribe_?.();
-    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
-  }
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    this.unsubscribe_?.();
-  }
 
   override render(): TemplateResult {
     const { session } = this;

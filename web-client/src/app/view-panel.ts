@@ -1,11 +1,12 @@
 // <strata-view-panel>: how this person sees the model: looks, light, section.
 
-import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { format_length, metres_per } from "../core/measure";
 import type { LightMode, Look, Point3 } from "../core/protocol.gen";
 import { kAxes, with_box_side, world_position, type SectionMode } from "../core/section";
 import { ask } from "./dialog";
+import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import "./light-pad";
 import "./menu";
@@ -26,7 +27,11 @@ export class StrataViewPanel extends LitElement {
   @state() private open_ = localStorage.getItem(kOpenKey) === "true";
   @state() private adding_ = false;
   @query("input[type=file]") private file_input_!: HTMLInputElement;
-  private unsubscribe_: (() => void) | null = null;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
 
   static override styles = [
     shared_styles,
@@ -149,16 +154,6 @@ export class StrataViewPanel extends LitElement {
       }
     `,
   ];
-
-  override willUpdate(changed: PropertyValues<this>): void {
-    if (!changed.has("session")) return;
-    this.unsubscribe_?.();
-    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
-  }
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    this.unsubscribe_?.();
-  }
 
   override render(): TemplateResult {
     const { appearance } = this.session;

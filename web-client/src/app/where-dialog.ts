@@ -6,6 +6,7 @@ import { ApiError } from "../core/api";
 import { format_area } from "../core/measure";
 import type { Layer } from "../core/types";
 import "./dialog";
+import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { radio_group } from "./radio-group";
@@ -21,7 +22,11 @@ export class StrataWhereDialog extends LitElement {
   @state() private problem_ = "";
   @state() private working_ = false;
   @query("textarea") private condition_!: HTMLTextAreaElement;
-  private unsubscribe_: (() => void) | null = null;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
 
   static override styles = [
     shared_styles,
@@ -60,15 +65,6 @@ export class StrataWhereDialog extends LitElement {
       }
     `,
   ];
-
-  override connectedCallback(): void {
-    super.connectedCallback();
-    this.unsubscribe_ = this.session.subscribe(() => this.requestUpdate());
-  }
-  override disconnectedCallback(): void {
-    super.disconnectedCallback();
-    this.unsubscribe_?.();
-  }
 
   override render(): TemplateResult {
     const words = texts.areas;
