@@ -126,12 +126,11 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
 Result<int> FrameJob::choose_level(GpuScene& scene, const View& view) const {
   auto model = scene.model(view.model);
   if (!model) return tl::unexpected(model.error());
+  if ((*model)->levels.size() == 1) return 0;
+  // All levels have the origin of the full mesh.
+  const glm::mat4 clip = clip_from_model(task_.request.camera, (*model)->mesh().geometry().origin);
   std::vector<std::size_t> triangles;
-  for (const auto& mesh : (*model)->levels) {
-    const auto uniforms = mesh_view(task_.request.camera, mesh->geometry().origin).uniforms;
-    triangles.push_back(mesh->visible_clusters(uniforms.clip_from_model, uniforms.eye).size() *
-                        mesh::Geometry::kTrianglesPerCluster);
-  }
+  for (const auto& mesh : (*model)->levels) triangles.push_back(mesh->visible_triangles(clip));
   return scene.detail_budget().choose(triangles);
 }
 

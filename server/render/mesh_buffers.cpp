@@ -55,6 +55,12 @@ Result<std::unique_ptr<MeshBuffers>> MeshBuffers::create(std::shared_ptr<const m
   return mesh;
 }
 
+std::size_t MeshBuffers::visible_triangles(const glm::mat4& clip_from_model) const {
+  const auto clusters = std::count_if(geometry_->clusters.begin(), geometry_->clusters.end(),
+                                      [&](const mesh::ClusterBox& box) { return !outside(box, clip_from_model); });
+  return static_cast<std::size_t>(clusters) * mesh::Geometry::kTrianglesPerCluster;
+}
+
 std::vector<std::uint32_t> MeshBuffers::visible_clusters(const glm::mat4& clip_from_model, const glm::vec4& eye) const {
   std::vector<std::pair<float, std::uint32_t>> by_distance;
   for (std::size_t i = 0; i < geometry_->clusters.size(); ++i) {

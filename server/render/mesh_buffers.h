@@ -24,6 +24,8 @@ class MeshBuffers {
   const gl::VertexArray& vertex_array() const { return vertex_array_; }
   std::size_t triangle_count() const { return geometry_->triangle_count(); }
 
+  // Of the clusters that reach into the window, whole ones counted.
+  std::size_t visible_triangles(const glm::mat4& clip_from_model) const;
   // Numbers of the geometry's clusters that reach into the window, nearest first as seen from `eye` (a point where w is 1, a
   // direction towards the eye where it is 0; model space).
   std::vector<std::uint32_t> visible_clusters(const glm::mat4& clip_from_model, const glm::vec4& eye) const;
