@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/camera.h"
@@ -20,6 +21,9 @@ struct StrokeBatch {
   double radius_world = 0;  // radius in model units around the surface point under each path point, measured
                             // in the plane facing the camera at that point's depth
   bool through = false;     // paint what is hidden, too: no depth test
+  // How much nearer than the depth buffer a texel counts as, in window depth (0…1), as the paper has it. Absent: the bias follows
+  // the model's size and the slope of what is seen, so that it does not depend on the camera's planes.
+  std::optional<double> fixed_depth_bias;
   bool erase = false;
   std::uint32_t value_bits = 0;  // of the layer's type; ignored when erasing
 };

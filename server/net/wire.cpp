@@ -33,6 +33,7 @@ Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Mod
   else if (stroke.radius_mm)
     batch.radius_world = in_model_units(*stroke.radius_mm, model.unit);
   batch.through = stroke.through;
+  batch.fixed_depth_bias = stroke.depth_bias;
   batch.erase = stroke.erase;
   batch.value_bits = *bits;
   return batch;

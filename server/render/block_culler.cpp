@@ -216,7 +216,7 @@ bool BlockCuller::keep_covering(const WindowBox& window, std::vector<std::uint32
 
 bool BlockCuller::is_hidden(const WindowBox& window) const {
   if (!grid_.cells || window.w0 <= 0) return false;
-  const double bias = bias_.is_fixed ? bias_.fixed : bias_.scale / (window.w0 * window.w0) * (1 + bias_.slope_limit);
+  const double bias = bias_.fixed ? *bias_.fixed : bias_.scale / (window.w0 * window.w0) * (1 + bias_.slope_limit);
   const double nearest = window.z0 - bias - kMarginDepth;
   const auto cell = [](double pixel, int count) {
     return static_cast<int>(std::clamp(std::floor(pixel / shader::kDepthCell), 0.0, count - 1.0));

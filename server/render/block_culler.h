@@ -18,8 +18,8 @@ struct DepthGrid {
 
 // How much nearer than the depth buffer a texel counts as: `fixed`, or (1 + slope_limit) · scale / w² at most.
 struct DepthBias {
-  bool is_fixed = false;
-  double fixed = 0, scale = 0, slope_factor = 0, slope_limit = 0;
+  std::optional<double> fixed;
+  double scale = 0, slope_factor = 0, slope_limit = 0;
 };
 
 struct CandidateBlock {

@@ -139,8 +139,8 @@ STRATA_LANES void test_tool(const BlockTest& test, std::span<const std::uint32_t
 
 STRATA_LANES void test_depth(const BlockTest& test, Lanes& lanes) {
   const float* const depth = test.depth->depth.data();
-  if (test.bias.is_fixed) {
-    const auto fixed = static_cast<float>(test.bias.fixed);
+  if (test.bias.fixed) {
+    const auto fixed = static_cast<float>(*test.bias.fixed);
     for (int i = 0; i < kLanes; ++i) lanes.live[i] &= std::int32_t{lanes.depth[i] - fixed <= depth[lanes.pixel[i]]};
     return;
   }

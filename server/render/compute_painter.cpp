@@ -70,7 +70,7 @@ Result<void> ComputePainter::dispatch(GpuScene& scene, const PaintTarget& target
   };
   const Camera& camera = stroke_.camera;
   const mesh::Geometry& geometry = target.mesh.geometry();
-  const DepthBias bias = depth_bias(scene.options(), geometry);
+  const DepthBias bias = depth_bias(geometry);
   DepthGrid grid;
   if (!stroke_.through) grid = {depth_->grid.data(), depth_->grid_width, depth_->grid_height};
   auto candidates =

@@ -16,11 +16,11 @@ shader::EditUniforms make_uniforms(const StrokeBatch& stroke, const glm::dvec3& 
   shader::EditUniforms uniforms{};
   uniforms.clip_from_model = clip_from_model(stroke.camera, origin);
   uniforms.window = glm::vec4(stroke.camera.width, stroke.camera.height, 0, 0);
-  uniforms.bias = glm::vec4(bias.fixed, bias.scale, bias.slope_factor, bias.slope_limit);
+  uniforms.bias = glm::vec4(bias.fixed.value_or(0), bias.scale, bias.slope_factor, bias.slope_limit);
   uniforms.value = stroke.value_bits;
   uniforms.flags = (stroke.erase ? shader::kEditErase : 0u) | (stroke.through ? shader::kEditThrough : 0u) |
                    (stroke.shape == ToolShape::square ? shader::kEditSquare : 0u) |
-                   (bias.is_fixed ? shader::kEditFixedBias : 0u);
+                   (bias.fixed ? shader::kEditFixedBias : 0u);
   uniforms.section_count = static_cast<std::uint32_t>(stroke.camera.section.size());
   std::ranges::copy(section_in_model(stroke.camera, origin), uniforms.section);
   return uniforms;
@@ -30,11 +30,12 @@ shader::EditUniforms make_uniforms(const StrokeBatch& stroke, const glm::dvec3& 
 
 // Window depth changes with the distance t along the axis by |P22 P33 - P32 P23| / (2 w²) per unit; a view matrix that
 // scales makes its units of model units.
-DepthBias slope_aware_bias(const Camera& camera, double model_diagonal) {
-  const auto& p = camera.projection;
-  const double depth_per_unit = 0.5 * std::abs(p[2][2] * p[3][3] - p[3][2] * p[2][3]);
+DepthBias depth_bias_of(const StrokeBatch& stroke, double model_diagonal) {
   DepthBias bias;
-  bias.scale = kDepthBiasOfDiagonal * model_diagonal * view_scale(camera) * depth_per_unit;
+  bias.fixed = stroke.fixed_depth_bias;
+  const auto& p = stroke.camera.projection;
+  const double depth_per_unit = 0.5 * std::abs(p[2][2] * p[3][3] - p[3][2] * p[2][3]);
+  bias.scale = kDepthBiasOfDiagonal * model_diagonal * view_scale(stroke.camera) * depth_per_unit;
   bias.slope_factor = kDepthBiasSlopeFactor;
   bias.slope_limit = kDepthBiasSlopeLimit;
   return bias;

@@ -19,10 +19,9 @@ namespace strata::render {
 constexpr double kDepthBiasOfDiagonal = 1.5e-4;
 constexpr double kDepthBiasSlopeFactor = 1.5;
 constexpr double kDepthBiasSlopeLimit = 64.0;
-// The paper's "small bias", in window depth; used where the options ask for it.
-constexpr double kPaperDepthBias = 2e-4;
 
-DepthBias slope_aware_bias(const Camera& camera, double model_diagonal);
+// The stroke's fixed bias where it has one, else the slope-aware one.
+DepthBias depth_bias_of(const StrokeBatch& stroke, double model_diagonal);
 
 // Dispatched and not read back yet. `blocks` are in the order of the rows.
 struct DispatchedEdit {

@@ -64,7 +64,7 @@ KernelResult KernelPainter::find_written(GpuScene& scene, const PaintTarget& tar
   test.width = stroke_.camera.width;
   test.height = stroke_.camera.height;
   test.square = stroke_.shape == ToolShape::square;
-  test.bias = depth_bias(scene.options(), geometry);
+  test.bias = depth_bias(geometry);
   const SectionPlanes section = section_in_model(stroke_.camera, geometry.origin);
   test.section = std::span(section).first(stroke_.camera.section.size());
   const BlockCuller culler(target.map.map(), clip_from_model(geometry), test.width, test.height, path, test.bias,

@@ -29,6 +29,12 @@ Result<void> validate(const StrokeBatch& stroke) {
   if (!std::isfinite(radius) || radius <= 0) {
     return fail(422, "Radius out of range", "Give radius_px or radius_world as a number above 0.", "radius");
   }
+  if (const auto bias = stroke.fixed_depth_bias; bias && !(*bias >= 0 && *bias <= 1)) {
+    return fail(
+        422, "Depth bias out of range",
+        "A fixed depth bias is a share of the window's depth, 0 to 1. Leave it out to let it follow the surface.",
+        "depth_bias");
+  }
   return {};
 }
 

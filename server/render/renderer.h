@@ -35,7 +35,6 @@ struct RendererOptions {
   std::uint64_t gpu_memory_bytes = 0;  // budget; 0: 70 % of what the driver reports, or 4 GiB
   bool debug = false;                  // KHR_debug context; errors are counted (see `debug_errors`)
   std::size_t queue_capacity = 4096;
-  bool paper_depth_bias = false;  // the paper's fixed depth bias instead of the slope-aware one
   EditPath edit_path = EditPath::automatic;
 };
 

@@ -27,12 +27,8 @@ ToolPath StrokePainter::make_path(const mesh::Geometry& geometry, const PathPixe
   return make_tool_path(stroke_, radii_from_depths(stroke_, of_points, center_w > 0 ? center_w : 1.0));
 }
 
-DepthBias StrokePainter::depth_bias(const RendererOptions& options, const mesh::Geometry& geometry) const {
-  DepthBias bias =
-      slope_aware_bias(stroke_.camera, glm::length(glm::dvec3(geometry.box_max) - glm::dvec3(geometry.box_min)));
-  bias.is_fixed = options.paper_depth_bias;
-  bias.fixed = kPaperDepthBias;
-  return bias;
+DepthBias StrokePainter::depth_bias(const mesh::Geometry& geometry) const {
+  return depth_bias_of(stroke_, glm::length(glm::dvec3(geometry.box_max) - glm::dvec3(geometry.box_min)));
 }
 
 glm::dmat4 StrokePainter::clip_from_model(const mesh::Geometry& geometry) const {

@@ -36,7 +36,7 @@ class StrokePainter {
   PathPixels path_pixels() const;
   // `depths` is one a pixel of `at`.
   ToolPath make_path(const mesh::Geometry& geometry, const PathPixels& at, std::span<const float> depths) const;
-  DepthBias depth_bias(const RendererOptions& options, const mesh::Geometry& geometry) const;
+  DepthBias depth_bias(const mesh::Geometry& geometry) const;
   glm::dmat4 clip_from_model(const mesh::Geometry& geometry) const;
 
   const StrokeBatch& stroke_;

@@ -175,7 +175,6 @@ int run(Options options) {
   }
   render::RendererOptions renderer_options;
   renderer_options.shader_dir = test::shader_dir().string();
-  renderer_options.paper_depth_bias = true;  // so that both paint the same
   renderer_options.edit_path = options.edit_path == "kernel"    ? render::EditPath::kernel
                                : options.edit_path == "compute" ? render::EditPath::compute
                                                                 : render::EditPath::automatic;

@@ -31,6 +31,7 @@ StrokeBatch dab(const EditScene& scene, glm::dvec2 center, double radius_px) {
   stroke.camera = scene.camera;
   stroke.path = {center};
   stroke.radius_px = radius_px;
+  stroke.fixed_depth_bias = kPaperDepthBias;  // so that both paint the same
   stroke.value_bits = kValue;
   return stroke;
 }
@@ -51,7 +52,7 @@ Decision decide(const EditScene& scene, const render::DepthCopy& depth, glm::dve
   const double inside = radius_px - glm::length(window - glm::dvec2(center.x, camera.height - center.y));
   const double here = depth.depth[static_cast<std::size_t>(window.y) * static_cast<std::size_t>(camera.width) +
                                   static_cast<std::size_t>(window.x)];
-  const double before = here - (ndc.z * 0.5 + 0.5 - render::kPaperDepthBias);
+  const double before = here - (ndc.z * 0.5 + 0.5 - kPaperDepthBias);
   const glm::dvec2 to_border = glm::abs(window - glm::round(window));
   return {inside > 0 && before >= 0,
           std::abs(inside) < 2e-3 || std::min(to_border.x, to_border.y) < 1e-3 || std::abs(before) < 1e-6};

@@ -83,6 +83,7 @@ def table(camera):
         ("a matrix of fifteen", "POST", L + "/edits", {**stroke, "camera": {**camera, "view": camera["view"][:15]}}, {}, 422, "camera.view"),
         ("a singular matrix", "POST", L + "/edits", {**stroke, "camera": singular}, {}, 422, "camera.view"),
         ("a window of no width", "POST", L + "/edits", {**stroke, "camera": {**camera, "width": 0}}, {}, 422, "camera.width"),
+        ("a negative bias", "POST", L + "/edits", {**stroke, "depth_bias": -0.1}, {}, 422, "depth_bias"),
         ("unknown shape", "POST", L + "/edits", {**stroke, "shape": "star"}, {}, 422, "shape"),
         ("pick without y", "POST", M + "/pick", without(pick, "y"), {}, 422, "y"),
         ("pick through a singular matrix", "POST", M + "/pick", {**pick, "camera": singular}, {}, 422, "camera.view"),

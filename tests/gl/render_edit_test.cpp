@@ -79,6 +79,34 @@ TEST(Edit, a_path_of_4096_points_writes_the_texels_that_the_oracle_says) {
   EXPECT_GT(expected.count, 5000);
 }
 
+TEST(Edit, a_fixed_depth_bias_writes_the_texels_that_the_oracle_says) {
+  TestRenderer renderer;
+  const auto scene = make_scene(bumpy_sphere(60), kResolution);
+  for (const double bias : {5e-5, 2e-4, 5e-3}) {
+    auto stroke = dab(perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 1280, 720), 640, 360, 200);
+    stroke.fixed_depth_bias = bias;
+    expect_as_oracle(renderer, scene, stroke, 500);
+  }
+}
+
+TEST(Edit, a_fixed_depth_bias_reaches_what_lies_so_much_behind) {
+  TestRenderer renderer;
+  const auto scene = make_scene(folded_sheets(0.02), 512);
+  const auto model = renderer.add(scene);
+  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 400, 400, 0.5);
+  const double gap = 0.02 * std::abs(camera.projection[2][2]) / 2;  // in window depth
+  const auto hidden = [&](double bias) {
+    auto stroke = dab(camera, 200, 200, 100);
+    stroke.fixed_depth_bias = bias;
+    int count = 0;
+    for (const auto& tile : renderer.paint(renderer.add_layer(model, ValueType::u8, 512), stroke).tiles)
+      count += tile.address.x >= 2 ? tile.written.count() : 0;
+    return count;
+  };
+  EXPECT_EQ(hidden(0.9 * gap), 0);
+  EXPECT_GT(hidden(1.1 * gap), 5000);
+}
+
 TEST(Edit, painting_through_reaches_what_is_hidden) {
   TestRenderer renderer;
   auto stroke = dab(perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 1280, 720), 640, 360, 60);
@@ -352,6 +380,11 @@ TEST(Edit, strokes_that_cannot_be_painted_are_refused_with_a_reason) {
   refused(layer, stroke, 422);
   refused(layer, dab(camera, std::nan(""), 0, 10), 422);
   refused(layer, dab(camera, 50, 50, 0), 422);
+  for (const double bias : {-1e-9, 1.5, std::nan("")}) {
+    auto biased = dab(camera, 50, 50, 10);
+    biased.fixed_depth_bias = bias;
+    refused(layer, biased, 422);
+  }
   refused(layer, dab({glm::dmat4(0.0), camera.projection, 100, 100}, 50, 50, 10), 422);
 }
 

@@ -32,6 +32,7 @@ StrokeBatch random_stroke(std::mt19937& random) {
   if (stroke.radius_px > 0) stroke.radius_px *= 300;
   if (random() % 3 == 0) stroke.shape = ToolShape::square;
   stroke.through = random() % 5 == 0;
+  if (random() % 4 == 0) stroke.fixed_depth_bias = in(0, 0.01);
   if (random() % 3 == 0) stroke.camera.section = {{in(-1, 1), in(-1, 1), -1, in(0, 0.5)}, {in(-1, 1), 1, 0, 0.5}};
   return stroke;
 }

@@ -74,7 +74,7 @@ bool within_rounding(const Scene& scene, const Dab& dab, const std::vector<float
   const glm::dvec2 to_border = glm::abs(window - glm::round(window));
   const double here = depth[static_cast<std::size_t>(window.y) * static_cast<std::size_t>(camera.width) +
                             static_cast<std::size_t>(window.x)];
-  const double behind = ndc.z * 0.5 + 0.5 - render::kPaperDepthBias - here;
+  const double behind = ndc.z * 0.5 + 0.5 - bench::kPaperDepthBias - here;
   return std::abs(edge) < 2e-3 || std::min(to_border.x, to_border.y) < 1e-3 || std::abs(behind) < 1e-6;
 }
 
@@ -139,9 +139,7 @@ TEST(Paper, padding_by_a_compute_pass_sets_the_texels_that_the_raster_pass_sets)
 TEST(Paper, surface_texels_are_those_of_the_papers_algorithms_on_random_cameras_and_radii) {
   const auto scene = load_scan("statue_nefertiti_70k.ply");
   if (!scene) GTEST_SKIP() << "NO SCANS at " << STRATA_TEST_DATA << ": our edit was not compared with the paper's";
-  render::RendererOptions options;
-  options.paper_depth_bias = true;
-  TestRenderer renderer(options);
+  TestRenderer renderer;
   const auto model = renderer.add(*scene);
   std::unique_ptr<bench::PaperEditor> paper;
   renderer->run_on_gpu_thread_for_test(
@@ -155,7 +153,9 @@ TEST(Paper, surface_texels_are_those_of_the_papers_algorithms_on_random_cameras_
                  y = std::uniform_real_distribution(200.0, 520.0)(random);
     const double radius = std::uniform_real_distribution(5.0, 150.0)(random);
     const auto layer = renderer.add_layer(model, ValueType::u8, kResolution);
-    const auto ours = renderer.paint(layer, dab(camera, x, y, radius, 200));
+    auto stroke = dab(camera, x, y, radius, 200);
+    stroke.fixed_depth_bias = bench::kPaperDepthBias;
+    const auto ours = renderer.paint(layer, stroke);
     renderer->remove_layer(layer);
     std::vector<std::uint8_t> mask, coverage;
     renderer->run_on_gpu_thread_for_test([&] {

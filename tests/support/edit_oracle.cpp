@@ -80,7 +80,8 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
   const double slope = std::min(std::abs(here - at(x - 1, y)), std::abs(at(x + 1, y) - here)) +
                        std::min(std::abs(here - at(x, y - 1)), std::abs(at(x, y + 1) - here));
   const double base = bias.scale / (clip.w * clip.w);
-  const double allowed = base + std::min(bias.slope_factor * slope, bias.slope_limit * base);
+  const double allowed =
+      stroke.fixed_depth_bias.value_or(base + std::min(bias.slope_factor * slope, bias.slope_limit * base));
   const double depth_margin = here - (ndc.z * 0.5 + 0.5 - allowed);
   // Near a pixel's border the other pixel may have been asked.
   const double border = std::min({window.x - x, window.y - y, x + 1 - window.x, y + 1 - window.y});
@@ -96,7 +97,7 @@ OracleResult oracle_edit(const Scene& scene, const StrokeBatch& stroke, const st
   const glm::dmat4 clip =
       stroke.camera.projection * stroke.camera.view * glm::translate(glm::dmat4(1.0), scene.geometry->origin);
   const double diagonal = glm::length(glm::dvec3(scene.geometry->box_max) - glm::dvec3(scene.geometry->box_min));
-  const auto bias = render::slope_aware_bias(stroke.camera, diagonal);
+  const auto bias = render::depth_bias_of(stroke, diagonal);
   OracleResult result;
   for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
     const std::uint32_t block = map.block_of_slot[slot];

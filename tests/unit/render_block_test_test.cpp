@@ -63,7 +63,8 @@ void make_stroke(std::mt19937& random, Stroke& stroke) {
   stroke.test.width = kWidth;
   stroke.test.height = kHeight;
   stroke.test.square = stroke.batch.shape == ToolShape::square;
-  stroke.test.bias = {random() % 2 == 0, 2e-4, 1e-3, 1.5, 64.0};
+  stroke.test.bias = {{}, 1e-3, 1.5, 64.0};
+  if (random() % 2 == 0) stroke.test.bias.fixed = 2e-4;
 }
 
 TEST(BlockTest, every_vector_unit_of_this_machine_decides_as_plain_code_but_for_rounding) {

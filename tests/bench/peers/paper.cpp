@@ -9,7 +9,6 @@
 namespace strata::bench {
 namespace {
 
-constexpr float kBias = 2e-4f;
 constexpr int kPaddingGroup = 16;  // texels a side of a work-group of texture_padding.comp
 
 // A texture's whole content to one number.
@@ -119,7 +118,7 @@ void PaperEditor::edit(const Camera& camera, const gl::Texture& depth, glm::dvec
   glProgramUniform2f(editing, 1, static_cast<float>(camera.width), static_cast<float>(camera.height));
   glProgramUniform2f(editing, 2, lower_left.x, lower_left.y);
   glProgramUniform1f(editing, 3, static_cast<float>(radius_px));
-  glProgramUniform1f(editing, 4, kBias);
+  glProgramUniform1f(editing, 4, static_cast<float>(kPaperDepthBias));
   for (const GLuint program : {editing, padder.id()}) {
     glProgramUniform1ui(program, 5, value);
     glProgramUniform1ui(program, 6, edit_number_);

@@ -10,6 +10,8 @@
 
 namespace strata::bench {
 
+constexpr double kPaperDepthBias = 2e-4;  // its "small bias", in window depth
+
 // The paper's editing, literally: the Texture Editing Algorithm draws the whole mesh at its texture coordinates into data,
 // mask and edited-area textures, discarding what fails the window, depth (fixed bias) and tool tests; the Texture Padding
 // Algorithm then filters the whole texture, setting outline texels (1 wide) beside the edited area. The outline mask is

@@ -38,6 +38,9 @@ export interface Camera {
 /** Shape of the brush. */
 export type ToolShape = "disc" | "square";
 
+/** Fixed depth bias. How far behind what the camera sees a texel may lie and still be painted, in window depth: 0 at the near plane, 1 at the far one. Left out, it follows the model's size and the slope of the surface. */
+export type DepthBias = number;
+
 /** Stroke. Sweeps the brush along a path seen through a camera. Needs a value unless it erases. */
 export interface EditStroke {
   op: "stroke";
@@ -55,6 +58,7 @@ export interface EditStroke {
   path: Path;
   /** Paint hidden surface, too. Default: false. */
   through?: boolean;
+  depth_bias?: DepthBias;
 }
 
 /** Place on the surface. What a pixel of a view shows, or the surface point nearest to a point in space. */
@@ -350,6 +354,7 @@ export interface StrokeBegin {
   shape?: ToolShape;
   /** Default: false. */
   through?: boolean;
+  depth_bias?: DepthBias;
 }
 
 /** Next batch of a stroke's points. The brush is swept from the last point of the batch before. */

@@ -258,6 +258,7 @@ void read(const nlohmann::json& json, EditStroke& value) {
   read_optional_member(json, "shape", value.shape);
   read_member(json, "path", value.path);
   read_optional_member(json, "through", value.through);
+  read_optional_member(json, "depth_bias", value.depth_bias);
 }
 
 nlohmann::json to_json(const EditStroke& value) {
@@ -271,6 +272,7 @@ nlohmann::json to_json(const EditStroke& value) {
   write_member(json, "shape", value.shape);
   write_member(json, "path", value.path);
   write_member(json, "through", value.through);
+  write_optional_member(json, "depth_bias", value.depth_bias);
   return json;
 }
 
@@ -580,6 +582,7 @@ void read(const nlohmann::json& json, StrokeBegin& value) {
   read_optional_member(json, "radius_mm", value.radius_mm);
   read_optional_member(json, "shape", value.shape);
   read_optional_member(json, "through", value.through);
+  read_optional_member(json, "depth_bias", value.depth_bias);
 }
 
 nlohmann::json to_json(const StrokeBegin& value) {
@@ -595,6 +598,7 @@ nlohmann::json to_json(const StrokeBegin& value) {
   write_optional_member(json, "radius_mm", value.radius_mm);
   write_member(json, "shape", value.shape);
   write_member(json, "through", value.through);
+  write_optional_member(json, "depth_bias", value.depth_bias);
   return json;
 }
 

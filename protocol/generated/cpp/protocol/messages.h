@@ -36,6 +36,7 @@ enum class Schema {
   Uuid,
   Camera,
   ToolShape,
+  DepthBias,
   EditStroke,
   SurfacePlace,
   EditFill,
@@ -129,7 +130,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 102;
+constexpr int kSchemaCount = 103;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -158,6 +159,7 @@ struct EditStroke {
   strata::ToolShape shape = strata::ToolShape::disc;
   Path path;
   bool through = false;  // Paint hidden surface, too.
+  std::optional<double> depth_bias;
   bool operator==(const EditStroke&) const = default;
 };
 void read(const nlohmann::json& json, EditStroke& value);
@@ -429,6 +431,7 @@ struct StrokeBegin {
   std::optional<double> radius_mm;
   strata::ToolShape shape = strata::ToolShape::disc;
   bool through = false;
+  std::optional<double> depth_bias;
   bool operator==(const StrokeBegin&) const = default;
 };
 void read(const nlohmann::json& json, StrokeBegin& value);
