@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <span>
 
 #include "bench/bench_commands.h"
 #include "bench/edit_methods.h"
@@ -24,6 +25,7 @@ struct Options {
 constexpr int kWidth = 1280, kHeight = 720;
 // Dabs on the model as `camera()` sees it; the same for every method.
 const glm::dvec2 kCenters[] = {{640, 360}, {560, 400}, {700, 330}, {640, 290}, {580, 340}, {690, 420}, {620, 380}};
+constexpr std::size_t kCompared = 3;  // of them
 // What a texel takes at least: position 8, depth 4, value and flag read and written 4, and what a cache line brings besides.
 constexpr double kBytesPerTexel = 20;
 
@@ -59,7 +61,8 @@ Case measure(EditMethods& methods, int radius, int repeats) {
     }
   }
   if (methods.find("tiles") && methods.find("paper"))
-    result.agreement = methods.compare_tiles_and_paper(kCenters[0], radius);
+    for (const glm::dvec2 center : std::span(kCenters).first(kCompared))
+      result.agreement += methods.compare_tiles_and_paper(center, radius);
   return result;
 }
 
@@ -114,6 +117,7 @@ class Report {
       std::printf(" %13.3f %7.1f", found.median(method), tiles ? found.median(method) / found.median("tiles") : 0);
     }
     const EditAgreement& agreement = found.agreement;
+    agreement_ += agreement;
     std::printf("  %llu of %llu (off: tiles %llu, paper %llu; beyond rounding %llu)\n",
                 static_cast<unsigned long long>(agreement.differ), static_cast<unsigned long long>(agreement.compared),
                 static_cast<unsigned long long>(agreement.tiles_off),
@@ -124,11 +128,20 @@ class Report {
     write_result(options_.json, machine_, results_,
                  {{"creation", creation_},
                   {"not_run", not_run_},
+                  {"agreement", agreement_json(agreement_)},
                   {"copy_bytes_per_second", bandwidth_},
                   {"floor_bytes_per_texel", kBytesPerTexel}});
   }
 
  private:
+  static nlohmann::json agreement_json(const EditAgreement& agreement) {
+    return {{"surface_texels", agreement.compared},
+            {"surface_texels_differ", agreement.differ},
+            {"tiles_off", agreement.tiles_off},
+            {"paper_off", agreement.paper_off},
+            {"beyond_rounding", agreement.beyond_rounding},
+            {"identical", agreement.differ * 100'000 <= agreement.compared && agreement.beyond_rounding == 0}};
+  }
   static double mb(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
   nlohmann::json row(const std::string& method, int radius, const Case& found, double floor_ms) const {
@@ -146,12 +159,7 @@ class Report {
     if (method == "tiles") {
       json["floor_ms"] = floor_ms;
       if (const EditAgreement& agreement = found.agreement; agreement.compared > 0) {
-        json["surface_texels"] = agreement.compared;
-        json["surface_texels_differ"] = agreement.differ;
-        json["tiles_off"] = agreement.tiles_off;
-        json["paper_off"] = agreement.paper_off;
-        json["beyond_rounding"] = agreement.beyond_rounding;
-        json["identical"] = agreement.differ * 100'000 <= agreement.compared && agreement.beyond_rounding == 0;
+        json.update(agreement_json(agreement));
       }
     } else if (found.has("tiles")) {
       json["ratio_to_tiles"] = measured.ms.median() / found.median("tiles");
@@ -162,6 +170,7 @@ class Report {
   const Options& options_;
   nlohmann::json machine_;
   const double bandwidth_;
+  EditAgreement agreement_;  // over all cases
   const EditScene* scene_ = nullptr;
   int texture_ = 0;
   nlohmann::json results_ = nlohmann::json::array(), creation_ = nlohmann::json::array(),

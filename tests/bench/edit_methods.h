@@ -47,6 +47,15 @@ struct EditAgreement {
   std::uint64_t differ = 0;
   std::uint64_t tiles_off = 0, paper_off = 0;
   std::uint64_t beyond_rounding = 0;  // differ, though no threshold is near
+
+  EditAgreement& operator+=(const EditAgreement& other) {
+    compared += other.compared;
+    differ += other.differ;
+    tiles_off += other.tiles_off;
+    paper_off += other.paper_off;
+    beyond_rounding += other.beyond_rounding;
+    return *this;
+  }
 };
 
 // The methods of one scene and texture size, made from `names`: tiles, paper, paper-compute, octree, octree-fair. What cannot
