@@ -21,7 +21,7 @@ Result<Step> ComputePainter::step(GpuScene& scene, const PaintTarget& target) {
       collect_radii(target.mesh.geometry());
       return go_to(Stage::grid, begin_grid(scene));
     case Stage::grid:
-      if (!grid_.cells.ready()) return Step::waiting;
+      if (!grid_.values.ready()) return Step::waiting;
       if (depth_) DepthBuffers::finish_grid(*depth_, grid_);
       return go_to(Stage::rows, dispatch(scene, target));
     case Stage::rows:

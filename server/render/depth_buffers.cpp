@@ -30,7 +30,7 @@ Result<DepthBuffers> DepthBuffers::create(const std::filesystem::path& shader_di
                                           GpuMemory& memory, gl::ReadbackPool& readback) {
   auto pass = MeshPass::create(MeshPass::Kind::depth, shader_dir, triangles_per_slice);
   if (!pass) return tl::unexpected(pass.error());
-  auto grid = gl::Program::load(shader_dir, {"depth_grid_pass.comp"});
+  auto grid = DepthGridPass::create(shader_dir);
   if (!grid) return tl::unexpected(grid.error());
   auto gather = gl::Program::load(shader_dir, {"depth_gather_pass.comp"});
   if (!gather) return tl::unexpected(gather.error());
@@ -40,7 +40,7 @@ Result<DepthBuffers> DepthBuffers::create(const std::filesystem::path& shader_di
   buffers.memory_ = &memory;
   buffers.readback_ = &readback;
   buffers.pass_ = std::move(*pass);
-  buffers.grid_program_ = std::move(*grid);
+  buffers.grid_pass_ = std::move(*grid);
   buffers.gather_program_ = std::move(*gather);
   buffers.pixels_ = std::move(*pixels);
   return buffers;
@@ -58,8 +58,9 @@ Result<std::shared_ptr<DepthBuffer>> DepthBuffers::make(const DepthKey& key) {
   buffer->share = std::move(*share);
   buffer->texture = std::move(*texture);
   buffer->framebuffer = std::move(*framebuffer);
-  buffer->grid_width = (key.width + kCell - 1) / kCell;
-  buffer->grid_height = (key.height + kCell - 1) / kCell;
+  const auto cells = DepthGridPass::all_cells(buffer->texture);
+  buffer->grid_width = cells.width;
+  buffer->grid_height = cells.height;
   buffer->grid.resize(static_cast<std::size_t>(buffer->grid_width) * static_cast<std::size_t>(buffer->grid_height));
   buffer->start(key);
   return buffer;
@@ -97,8 +98,8 @@ Result<std::shared_ptr<DepthBuffer>> DepthBuffers::start(const DepthKey& key) {
 
 Result<bool> DepthBuffers::draw_slice(const std::shared_ptr<DepthBuffer>& buffer, const MeshBuffers& mesh,
                                       const Camera& camera, MeshProgress& progress) {
-  const auto drawn = pass_.draw_slice(mesh, mesh_view(camera, mesh.geometry().origin), buffer->framebuffer,
-                                      buffer->key.width, buffer->key.height, progress);
+  const auto drawn = pass_.draw_slice(mesh, mesh_view(camera, mesh.geometry().origin),
+                                      {buffer->framebuffer, buffer->texture}, progress);
   if (!drawn || !*drawn) return drawn;
   buffer->complete = true;
   recent_.push_front(buffer);
@@ -129,37 +130,33 @@ Result<DepthBuffers::GridRead> DepthBuffers::begin_grid(const DepthBuffer& buffe
     return static_cast<int>(std::clamp(std::floor(pixel / kCell), 0.0, count - 1.0));
   };
   GridRead read;
-  read.first_x = cell(box.x0, buffer.grid_width);
-  read.first_y = cell(box.y0, buffer.grid_height);
-  read.width = cell(box.x1, buffer.grid_width) - read.first_x + 1;
-  read.height = cell(box.y1, buffer.grid_height) - read.first_y + 1;
+  auto& cells = read.cells;
+  cells.first_x = cell(box.x0, buffer.grid_width);
+  cells.first_y = cell(box.y0, buffer.grid_height);
+  cells.width = cell(box.x1, buffer.grid_width) - cells.first_x + 1;
+  cells.height = cell(box.y1, buffer.grid_height) - cells.first_y + 1;
   bool known = true;
-  for (int y = read.first_y; y < read.first_y + read.height && known; ++y) {
-    const auto row = buffer.grid.begin() + static_cast<std::ptrdiff_t>(y) * buffer.grid_width + read.first_x;
-    known = std::all_of(row, row + read.width, [](float depth) { return depth >= 0; });
+  for (int y = cells.first_y; y < cells.first_y + cells.height && known; ++y) {
+    const auto row = buffer.grid.begin() + static_cast<std::ptrdiff_t>(y) * buffer.grid_width + cells.first_x;
+    known = std::all_of(row, row + cells.width, [](float depth) { return depth >= 0; });
   }
   if (known) return read;
 
-  auto cells =
-      readback_->begin(static_cast<std::size_t>(read.width) * static_cast<std::size_t>(read.height) * sizeof(float));
-  if (!cells) return tl::unexpected(cells.error());
-  grid_program_.use();
-  grid_program_.set(0, read.first_x, read.first_y);
-  grid_program_.set(1, read.width, read.height);
-  buffer.texture.bind(0);
-  cells->buffer().bind_storage(0);
-  glDispatchCompute(static_cast<GLuint>(read.width + 7) / 8, static_cast<GLuint>(read.height + 7) / 8, 1);
-  cells->submit();
-  read.cells = std::move(*cells);
+  auto values = readback_->begin(cells.bytes());
+  if (!values) return tl::unexpected(values.error());
+  grid_pass_.run(buffer.texture, cells, values->buffer());
+  values->submit();
+  read.values = std::move(*values);
   return read;
 }
 
 void DepthBuffers::finish_grid(DepthBuffer& buffer, const GridRead& read) {
-  if (!read.cells) return;
-  const std::byte* source = read.cells.data().data();
-  const std::size_t row_bytes = static_cast<std::size_t>(read.width) * sizeof(float);
-  for (int y = read.first_y; y < read.first_y + read.height; ++y, source += row_bytes) {
-    std::memcpy(&buffer.grid[static_cast<std::size_t>(y * buffer.grid_width + read.first_x)], source, row_bytes);
+  if (!read.values) return;
+  const auto& cells = read.cells;
+  const std::byte* source = read.values.data().data();
+  const std::size_t row_bytes = static_cast<std::size_t>(cells.width) * sizeof(float);
+  for (int y = cells.first_y; y < cells.first_y + cells.height; ++y, source += row_bytes) {
+    std::memcpy(&buffer.grid[static_cast<std::size_t>(y * buffer.grid_width + cells.first_x)], source, row_bytes);
   }
 }
 

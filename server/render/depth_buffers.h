@@ -10,6 +10,7 @@
 #include "gl/framebuffer.h"
 #include "gl/readback.h"
 #include "render/depth_copy.h"
+#include "render/depth_grid_pass.h"
 #include "render/mesh_pass.h"
 #include "render/tool_path.h"
 
@@ -65,12 +66,12 @@ class DepthBuffers {
 
   // Cells of the grid on their way from the GPU; empty when all were known.
   struct GridRead {
-    gl::Readback cells;
-    int first_x = 0, first_y = 0, width = 0, height = 0;
+    gl::Readback values;
+    DepthGridPass::Cells cells;
   };
   // Over a box of pixels, which may reach far out of the window.
   Result<GridRead> begin_grid(const DepthBuffer& buffer, const PixelBox& box);
-  static void finish_grid(DepthBuffer& buffer, const GridRead& read);  // once `cells` are ready
+  static void finish_grid(DepthBuffer& buffer, const GridRead& read);  // once `values` are ready
   // Depths under at most kMaxPathPoints pixels, which must lie inside the window.
   Result<gl::Readback> begin_gather(const DepthBuffer& buffer, std::span<const glm::ivec2> pixels);
   static std::vector<float> finish_gather(const gl::Readback& depths);
@@ -79,7 +80,8 @@ class DepthBuffers {
   GpuMemory* memory_ = nullptr;
   gl::ReadbackPool* readback_ = nullptr;
   MeshPass pass_;
-  gl::Program grid_program_, gather_program_;
+  DepthGridPass grid_pass_;
+  gl::Program gather_program_;
   gl::Buffer pixels_;
   std::deque<std::shared_ptr<DepthBuffer>> recent_;  // newest first
   std::vector<std::weak_ptr<DepthBuffer>> offered_;

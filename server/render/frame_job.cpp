@@ -147,7 +147,7 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
     mesh_look.uniforms.look_opacity[static_cast<glm::length_t>(i)] = std::clamp(view.looks[i].opacity, 0.0f, 1.0f);
   }
   const auto complete =
-      scene.gbuffer_pass().draw_slice(mesh, mesh_look, view.gbuffer, view.key.width, view.key.height, progress_);
+      scene.gbuffer_pass().draw_slice(mesh, mesh_look, {view.gbuffer, view.depth->texture}, progress_);
   if (!complete || !*complete) return complete;
   view.gbuffer_complete = view.depth->complete = true;
   // A software renderer works while it is called, a GPU until the picture can be read.

@@ -37,7 +37,7 @@ Result<Step> KernelPainter::step(GpuScene& scene, const PaintTarget& target) {
   const auto elapsed_ms = [&] {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   };
-  const KernelResult written = find_written(scene, target);
+  const KernelResult written = find_written(target);
   outcome_.cull_ms = outcome_.dispatch_ms = elapsed_ms();
   const auto pages = find_pages(written, target.layer);
   if (!pages) return tl::unexpected(pages.error());
@@ -48,7 +48,7 @@ Result<Step> KernelPainter::step(GpuScene& scene, const PaintTarget& target) {
   return Step::done;
 }
 
-KernelResult KernelPainter::find_written(GpuScene& scene, const PaintTarget& target) {
+KernelResult KernelPainter::find_written(const PaintTarget& target) {
   const mesh::Geometry& geometry = target.mesh.geometry();
   const auto at = path_pixels();
   std::vector<float> depths;

@@ -15,7 +15,7 @@ class KernelPainter : public StrokePainter {
 
  private:
   enum class Stage { begin, depth_drawn, paint };
-  KernelResult find_written(GpuScene& scene, const PaintTarget& target);
+  KernelResult find_written(const PaintTarget& target);
   // One a written tile; kNoPage where an eraser finds nothing.
   Result<std::vector<PageId>> find_pages(const KernelResult& written, LayerTextures& layer) const;
   void write(const KernelResult& written, std::span<const PageId> pages, LayerTextures& layer);

@@ -22,6 +22,7 @@ class MeshBuffers {
 
   const mesh::Geometry& geometry() const { return *geometry_; }
   const gl::VertexArray& vertex_array() const { return vertex_array_; }
+  const gl::Buffer& cluster_boxes() const { return cluster_boxes_; }  // of the geometry, 6 floats each
   std::size_t triangle_count() const { return geometry_->triangle_count(); }
 
   // Of the clusters that reach into the window, whole ones counted.
@@ -35,7 +36,7 @@ class MeshBuffers {
   std::size_t index_bytes() const { return geometry_->indices.size() * sizeof(std::uint32_t); }
 
   std::shared_ptr<const mesh::Geometry> geometry_;
-  gl::Buffer vertices_, indices_;
+  gl::Buffer vertices_, indices_, cluster_boxes_;
   gl::VertexArray vertex_array_;
   GpuMemory::Share share_;
   std::size_t uploaded_ = 0;

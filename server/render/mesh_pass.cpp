@@ -4,6 +4,8 @@
 #include <array>
 #include <span>
 
+#include "shared/cluster.h"
+
 namespace strata::render {
 namespace {
 
@@ -20,12 +22,23 @@ const char* light_define(LightMode mode) {
 // A plane that faces the viewer is shown in middle grey, however low the light stands.
 constexpr double kRakingOnPlane = 0.5, kMostRaking = 3;
 
+// A part of the clusters that are left is drawn before the others are looked at; a few are drawn sooner than looked at.
+constexpr std::size_t kCullAfter = 4, kFewClusters = 256;
+
+std::size_t next_culling(const MeshProgress& progress) {
+  const std::size_t rest = progress.clusters - progress.next_cluster;
+  return rest < kFewClusters ? progress.clusters : progress.next_cluster + rest / kCullAfter;
+}
+
 }  // namespace
 
 Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader_dir, std::size_t triangles_per_slice) {
   auto uniforms = gl::Buffer::create(sizeof(shader::MeshUniforms), gl::Buffer::Use::fixed, "mesh uniforms");
   if (!uniforms) return tl::unexpected(uniforms.error());
+  auto culler = ClusterCuller::create(shader_dir);
+  if (!culler) return tl::unexpected(culler.error());
   MeshPass pass;
+  pass.culler_ = std::move(*culler);
   pass.kind_ = kind;
   pass.shader_dir_ = shader_dir;
   pass.uniforms_ = std::move(*uniforms);
@@ -48,50 +61,75 @@ Result<const gl::Program*> MeshPass::program(const MeshView& view) {
   return &programs_.emplace(std::move(defines), std::move(*program)).first->second;
 }
 
-Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view, const gl::Framebuffer& target,
-                                  int width, int height, MeshProgress& progress) {
+Result<void> MeshPass::begin(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target,
+                             MeshProgress& progress) {
+  const GLuint framebuffer = target.framebuffer.id();
+  const float farthest = 1;
+  glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &farthest);
+  if (kind_ == Kind::gbuffer) {
+    const std::array<GLuint, 4> background{shader::kBackground, 0, 0, 0};
+    const std::array<float, 4> dark{0, 0, 0, 0};
+    glClearNamedFramebufferuiv(framebuffer, GL_COLOR, 0, background.data());
+    glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, dark.data());
+  }
+  std::vector<shader::DrawCommand> commands;
+  for (const auto cluster : mesh.visible_clusters(view.uniforms.clip_from_model, view.uniforms.eye)) {
+    constexpr std::size_t kTriangles = mesh::Geometry::kTrianglesPerCluster;
+    const std::size_t first = cluster * kTriangles;
+    const auto count = static_cast<std::uint32_t>(3 * std::min(kTriangles, mesh.triangle_count() - first));
+    commands.push_back({count, 1, static_cast<std::uint32_t>(3 * first), 0, 0});
+  }
+  progress.clusters = commands.size();
+  progress.next_culling = next_culling(progress);
+  progress.cleared = true;
+  if (commands.empty()) return {};
+  const auto bytes = std::as_bytes(std::span(commands));
+  auto buffer = gl::Buffer::create(bytes.size(), gl::Buffer::Use::fixed, "draws of clusters");
+  if (!buffer) return tl::unexpected(buffer.error());
+  buffer->upload(0, bytes);
+  progress.commands = std::move(*buffer);
+  return {};
+}
+
+Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target,
+                                  MeshProgress& progress) {
   auto built = program(view);
   if (!built) return tl::unexpected(built.error());
   if (!progress.cleared) {
-    const float farthest = 1;
-    glClearNamedFramebufferfv(target.id(), GL_DEPTH, 0, &farthest);
-    if (kind_ == Kind::gbuffer) {
-      const std::array<GLuint, 4> background{shader::kBackground, 0, 0, 0};
-      const std::array<float, 4> dark{0, 0, 0, 0};
-      glClearNamedFramebufferuiv(target.id(), GL_COLOR, 0, background.data());
-      glClearNamedFramebufferfv(target.id(), GL_COLOR, 1, dark.data());
-    }
-    progress.clusters = mesh.visible_clusters(view.uniforms.clip_from_model, view.uniforms.eye);
-    progress.cleared = true;
+    if (auto begun = begin(mesh, view, target, progress); !begun) return tl::unexpected(begun.error());
+  }
+  if (progress.clusters == 0) return true;
+  const std::size_t rest = progress.clusters - progress.next_cluster;
+  if (progress.next_cluster == progress.next_culling) {
+    auto hidden =
+        culler_.hide(target.depth, mesh, view.uniforms.clip_from_model, progress.commands, progress.next_cluster, rest);
+    if (!hidden) return tl::unexpected(hidden.error());
+    progress.next_culling = next_culling(progress);
   }
   uniforms_.upload_values(0, std::span(&view.uniforms, 1));
   uniforms_.bind_uniform(0);
   (*built)->use();
   for (std::size_t i = 0; i < view.looks.size(); ++i) view.looks[i]->bind(static_cast<GLuint>(i));
   mesh.vertex_array().bind();
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.id());
-  glViewport(0, 0, width, height);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer.id());
+  glViewport(0, 0, target.depth.width(), target.depth.height());
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
   glFrontFace(view.is_mirrored ? GL_CW : GL_CCW);
   for (GLuint i = 0; view.is_cut && i < shader::kSectionPlanes; ++i) glEnable(GL_CLIP_DISTANCE0 + i);
-  const std::size_t end = std::min(progress.next_cluster + clusters_per_slice_, progress.clusters.size());
-  std::vector<GLsizei> counts;
-  std::vector<const void*> offsets;
-  for (; progress.next_cluster < end; ++progress.next_cluster) {
-    constexpr std::size_t kTriangles = mesh::Geometry::kTrianglesPerCluster;
-    const std::size_t first = progress.clusters[progress.next_cluster] * kTriangles;
-    counts.push_back(static_cast<GLsizei>(3 * std::min(kTriangles, mesh.triangle_count() - first)));
-    offsets.push_back(reinterpret_cast<const void*>(3 * first * sizeof(std::uint32_t)));
-  }
-  if (!counts.empty())
-    glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
-                        static_cast<GLsizei>(counts.size()));
+  const std::size_t count = std::min(
+      {clusters_per_slice_, progress.clusters - progress.next_cluster, progress.next_culling - progress.next_cluster});
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, progress.commands.id());
+  glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
+                              reinterpret_cast<const void*>(progress.next_cluster * sizeof(shader::DrawCommand)),
+                              static_cast<GLsizei>(count), 0);
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+  progress.next_cluster += count;
   for (GLuint i = 0; view.is_cut && i < shader::kSectionPlanes; ++i) glDisable(GL_CLIP_DISTANCE0 + i);
   glFlush();  // lets the driver draw this slice while the next is prepared
-  return progress.next_cluster == progress.clusters.size();
+  return progress.next_cluster == progress.clusters;
 }
 
 MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& light) {

@@ -12,6 +12,7 @@
 #include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
+#include "render/cluster_culler.h"
 #include "render/mesh_buffers.h"
 #include "shared/mesh.h"
 
@@ -29,16 +30,24 @@ struct MeshView {
 // For a model whose coordinates are relative to `origin`; without looks.
 MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& light = {});
 
-// Position in a drawing of a mesh that is done in slices.
-struct MeshProgress {
-  std::vector<std::uint32_t> clusters;  // in drawing order
-  std::size_t next_cluster = 0;
-  bool cleared = false;
-
-  std::size_t triangles() const { return clusters.size() * mesh::Geometry::kTrianglesPerCluster; }
+// What a mesh is drawn into. The depth texture belongs to the framebuffer and has the window's size.
+struct MeshTarget {
+  const gl::Framebuffer& framebuffer;
+  const gl::Texture& depth;
 };
 
-// Draws a mesh, near parts first, which spares hidden ones their shading: depth alone, or the g-buffer. Both use
+// Position in a drawing of a mesh that is done in slices.
+struct MeshProgress {
+  gl::Buffer commands;       // shader::DrawCommand: clusters in drawing order
+  std::size_t clusters = 0;  // in the window
+  std::size_t next_cluster = 0;
+  std::size_t next_culling = 0;  // at this cluster those that follow are looked at
+  bool cleared = false;
+
+  std::size_t triangles() const { return clusters * mesh::Geometry::kTrianglesPerCluster; }
+};
+
+// Draws a mesh, near parts first, and leaves out clusters that lie behind them: depth alone, or the g-buffer. Both use
 // one vertex stage, so their depths are equal. Each call sets all state it needs: other passes may run between slices.
 // Nothing is culled by facing, because scans are open.
 class MeshPass {
@@ -47,17 +56,19 @@ class MeshPass {
   static Result<MeshPass> create(Kind kind, const std::filesystem::path& shader_dir, std::size_t triangles_per_slice);
 
   // Draws the next slice into `target` (cleared before the first); true when the mesh is complete.
-  Result<bool> draw_slice(const MeshBuffers& mesh, const MeshView& view, const gl::Framebuffer& target, int width,
-                          int height, MeshProgress& progress);
+  Result<bool> draw_slice(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target,
+                          MeshProgress& progress);
 
  private:
   // Built when it is first needed.
   Result<const gl::Program*> program(const MeshView& view);
+  Result<void> begin(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target, MeshProgress& progress);
 
   Kind kind_ = Kind::depth;
   std::filesystem::path shader_dir_;
   std::map<std::vector<std::string>, gl::Program> programs_;  // by their defines
   gl::Buffer uniforms_;
+  ClusterCuller culler_;
   std::size_t clusters_per_slice_ = 0;
 };
 

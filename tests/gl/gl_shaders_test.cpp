@@ -28,6 +28,7 @@ const std::map<std::vector<std::string>, Variants> kPrograms{
       {"UNLIT", "LOOKS 2"},
       {"SECTION", "LOOKS 0"},
       {"SECTION", "RAKING_LIGHT", "LOOKS 4"}}},
+    {{"cluster_cull_pass.comp"}, {{}}},
     {{"depth_grid_pass.comp"}, {{}}},
     {{"depth_gather_pass.comp"}, {{}}},
     {{"edit_pass.comp"}, {{"TEXEL_FORMAT r8ui"}, {"TEXEL_FORMAT r16ui"}, {"TEXEL_FORMAT r32ui"}}},

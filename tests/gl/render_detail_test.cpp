@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "mesh/detail_levels.h"
 #include "render/detail_budget.h"
+#include "shared/cluster.h"
 #include "support/gl_scene.h"
+#include "support/shader_dirs.h"
 
 namespace strata::test {
 namespace {
@@ -90,6 +93,65 @@ TEST_F(Detail, does_not_matter_for_clusters_outside_the_window) {
     request_.camera = request_all.camera = camera;
     EXPECT_EQ(mean_difference(renderer_.draw(request_), renderer_.draw(request_all)), 0);
   }
+}
+
+// A sphere of 380 clusters, drawn until it is complete.
+class Hidden : public testing::Test {
+ protected:
+  // Commands that lost their draw.
+  static std::size_t draw(render::MeshPass& pass, const render::MeshBuffers& mesh, const Camera& camera,
+                          render::DepthBuffer& buffer) {
+    render::MeshProgress progress;
+    const auto view = render::mesh_view(camera, mesh.geometry().origin);
+    while (true) {
+      const auto complete = pass.draw_slice(mesh, view, {buffer.framebuffer, buffer.texture}, progress);
+      EXPECT_TRUE(complete) << complete.error().detail;
+      if (!complete || *complete) break;
+    }
+    std::vector<shader::DrawCommand> commands(progress.clusters);
+    glGetNamedBufferSubData(progress.commands.id(), 0,
+                            static_cast<GLsizeiptr>(commands.size() * sizeof(shader::DrawCommand)), commands.data());
+    return static_cast<std::size_t>(std::ranges::count(commands, 0u, &shader::DrawCommand::instance_count));
+  }
+
+  TestRenderer renderer_;
+  Scene scene_ = make_scene(bumpy_sphere(180), 512);
+};
+
+TEST_F(Hidden, clusters_are_left_out_and_the_picture_stays) {
+  // The same mesh with boxes that are never hidden.
+  auto unculled = std::make_shared<mesh::Geometry>(*scene_.geometry);
+  for (auto& box : unculled->clusters) box = {unculled->box_min, unculled->box_max};
+  const Scene all{unculled, scene_.map, {}};
+  std::vector<Camera> cameras{
+      perspective_camera({0, -3.5, 0.8}, {0, 0, 0}, 640, 480), perspective_camera({1.1, 0.2, 0.1}, {0, 0, 0}, 333, 217),
+      perspective_camera({0.3, 0, 0}, {1, 0.5, 0}, 320, 240), orthographic_camera({2, 2, 1}, {0, 0, 0}, 500, 400, 1.3)};
+  cameras.push_back(cameras.front());
+  cameras.back().section = {{0, 1, 0, 0.2}};
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    EXPECT_EQ(renderer_.depth(scene_, cameras[i]), renderer_.depth(all, cameras[i])) << "camera " << i;
+  }
+}
+
+TEST_F(Hidden, clusters_of_the_far_side_are_most_of_it) {
+  const Camera camera = perspective_camera({0, -3.5, 0.8}, {0, 0, 0}, 640, 480);
+  renderer_->run_on_gpu_thread_for_test([&] {
+    render::GpuMemory memory(std::uint64_t{1} << 32);
+    gl::ReadbackPool readback;
+    auto depths = render::DepthBuffers::create(shader_dir(), std::size_t{1} << 16, memory, readback);
+    auto buffer = depths->start(render::depth_key(1, camera, camera.width, camera.height));
+    auto mesh = render::MeshBuffers::create(scene_.geometry, memory);
+    while (!(*mesh)->upload_slice()) {
+    }
+    // However much is drawn at once.
+    for (const std::size_t slice : {std::size_t{1} << 13, std::size_t{1} << 30}) {
+      auto pass = render::MeshPass::create(render::MeshPass::Kind::depth, shader_dir(), slice);
+      ASSERT_TRUE(pass);
+      const std::size_t hidden = draw(*pass, **mesh, camera, **buffer);
+      EXPECT_GT(hidden, scene_.geometry->clusters.size() / 4) << "slices of " << slice;
+      EXPECT_LT(hidden, scene_.geometry->clusters.size() * 6 / 10) << "slices of " << slice;
+    }
+  });
 }
 
 TEST(DetailBudget, takes_the_finest_level_that_fits_and_the_coarsest_when_none_does) {

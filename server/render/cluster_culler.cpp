@@ -1,0 +1,47 @@
+#include "render/cluster_culler.h"
+
+#include <glm/gtc/type_ptr.hpp>
+
+#include "shared/cluster.h"
+
+namespace strata::render {
+
+static_assert(shader::kIndicesPerCluster == 3 * mesh::Geometry::kTrianglesPerCluster);
+static_assert(sizeof(mesh::ClusterBox) == 6 * sizeof(float));
+static_assert(sizeof(shader::DrawCommand) == 20);
+
+Result<ClusterCuller> ClusterCuller::create(const std::filesystem::path& shader_dir) {
+  auto grid = DepthGridPass::create(shader_dir);
+  if (!grid) return tl::unexpected(grid.error());
+  auto program = gl::Program::load(shader_dir, {"cluster_cull_pass.comp"});
+  if (!program) return tl::unexpected(program.error());
+  ClusterCuller culler;
+  culler.grid_ = std::move(*grid);
+  culler.program_ = std::move(*program);
+  return culler;
+}
+
+Result<void> ClusterCuller::hide(const gl::Texture& depth, const MeshBuffers& mesh, const glm::mat4& clip_from_model,
+                                 const gl::Buffer& commands, std::size_t first, std::size_t count) {
+  const auto cells = DepthGridPass::all_cells(depth);
+  if (cells_.size() < cells.bytes()) {
+    auto made = gl::Buffer::create(cells.bytes(), gl::Buffer::Use::fixed, "depth cells for culling");
+    if (!made) return tl::unexpected(made.error());
+    cells_ = std::move(*made);
+  }
+  grid_.run(depth, cells, cells_);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  program_.use();
+  glProgramUniformMatrix4fv(program_.id(), 0, 1, GL_FALSE, glm::value_ptr(clip_from_model));
+  program_.set(1, depth.width(), depth.height());
+  program_.set(2, static_cast<GLuint>(first));
+  program_.set(3, static_cast<GLuint>(count));
+  cells_.bind_storage(0);
+  mesh.cluster_boxes().bind_storage(1);
+  commands.bind_storage(2);
+  glDispatchCompute(static_cast<GLuint>(count + 63) / 64, 1, 1);
+  glMemoryBarrier(GL_COMMAND_BARRIER_BIT);
+  return {};
+}
+
+}  // namespace strata::render
