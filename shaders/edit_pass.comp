@@ -4,7 +4,7 @@
 // Texture editing and padding in one dispatch: every texel of every candidate block is projected to the window and tested as
 // the paper's texture editing algorithm does; gutter texels carry their owner's position, so they follow it without a second
 // pass. One thread takes a row of 8 texels: it needs no shared memory, and rows of 8 are what one vector of a CPU holds.
-// TEXEL_FORMAT is r8ui, r16ui or r32ui.
+// TEXEL_FORMAT is r8ui, r16ui or r32ui. With TOOL_TEXTURE the tool is a texture of how far the cells of its shape are.
 layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform EditUniformBlock { EditUniforms edit; };
 layout(std430, binding = 0) readonly buffer Blocks { EditBlock blocks[]; };
@@ -14,10 +14,57 @@ layout(std430, binding = 3) writeonly buffer WrittenRows { uint written_rows[]; 
 layout(std430, binding = 4) readonly buffer PackedBoxes { float packed_boxes[]; };  // a slot: min x y z, step x y z
 layout(binding = 0) uniform usampler2DArray positions;
 layout(binding = 1) uniform sampler2D depth;
+#ifdef TOOL_TEXTURE
+layout(binding = 2) uniform usampler2D shape_distances;
+#endif
 layout(TEXEL_FORMAT, binding = 0) uniform writeonly uimage2DArray values;
 layout(r8ui, binding = 1) uniform writeonly uimage2DArray valid;
 layout(location = 0) uniform uint first_block;
 layout(location = 1) uniform uint block_count;
+
+#ifdef TOOL_TEXTURE
+
+// Whether a line between two points of the shape's raster meets a cell of it. It leaves at once the square of cells around it
+// among which none is set, so that it takes few steps, and never more than there are cells along it.
+bool meets_shape(vec2 a, vec2 b) {
+  const float side = float(kShapeCells);
+  vec2 d = b - a;
+  float low = 0.0, high = 1.0;
+  for (int i = 0; i < 2; ++i) {
+    if (d[i] == 0.0) {
+      if (a[i] < 0.0 || a[i] >= side) return false;
+    } else {
+      float t0 = -a[i] / d[i], t1 = (side - a[i]) / d[i];
+      low = max(low, min(t0, t1));
+      high = min(high, max(t0, t1));
+    }
+  }
+  if (low > high) return false;
+  ivec2 cell = clamp(ivec2(floor(a + low * d)), ivec2(0), ivec2(kShapeCells - 1u));
+  for (uint step = 0u; step < 2u * kShapeCells; ++step) {
+    int distance = int(texelFetch(shape_distances, cell, 0).r);
+    if (distance == 0) return true;
+    ivec2 first = cell - distance + 1, end = cell + distance;
+    float tx = d.x == 0.0 ? 2.0 : (float(d.x > 0.0 ? end.x : first.x) - a.x) / d.x;
+    float ty = d.y == 0.0 ? 2.0 : (float(d.y > 0.0 ? end.y : first.y) - a.y) / d.y;
+    if (min(tx, ty) > high) return false;
+    if (tx <= ty) {
+      cell = ivec2(d.x > 0.0 ? end.x : first.x - 1, clamp(int(floor(a.y + tx * d.y)), first.y, end.y - 1));
+    } else {
+      cell = ivec2(clamp(int(floor(a.x + ty * d.x)), first.x, end.x - 1), d.y > 0.0 ? end.y : first.y - 1);
+    }
+    if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(kShapeCells)))) return false;
+  }
+  return false;
+}
+
+// Where a point of the window lies in the shape's raster at either end of the segment; the raster's rows go down.
+bool in_segment(vec2 p, EditSegment s) {
+  const vec2 center = vec2(0.5 * float(kShapeCells)), half_side = vec2(0.5, -0.5) * float(kShapeCells);
+  return meets_shape(center + (p - s.ends.xy) * (half_side / s.tool.x), center + (p - s.ends.zw) * (half_side / s.tool.y));
+}
+
+#else
 
 bool in_disc(vec2 p, EditSegment s) {
   vec2 a = s.ends.xy;
@@ -54,12 +101,13 @@ bool in_square(vec2 p, EditSegment s) {
   return low < high || (low == high && s.tool.w == 0.0);
 }
 
+bool in_segment(vec2 p, EditSegment s) { return (edit.flags & kEditSquare) != 0u ? in_square(p, s) : in_disc(p, s); }
+
+#endif
+
 bool in_tool(vec2 p, uint first, uint count) {
-  bool square = (edit.flags & kEditSquare) != 0u;
-  for (uint i = first; i < first + count; ++i) {
-    EditSegment s = segments[segment_lists[i]];
-    if (square ? in_square(p, s) : in_disc(p, s)) return true;
-  }
+  for (uint i = first; i < first + count; ++i)
+    if (in_segment(p, segments[segment_lists[i]])) return true;
   return false;
 }
 
@@ -75,6 +123,26 @@ float depth_bias(ivec2 pixel, float here, float w) {
   float slope = min(abs(here - left), abs(right - here)) + min(abs(here - below), abs(above - here));
   float base = edit.bias.y / (w * w);
   return base + min(edit.bias.z * slope, edit.bias.w * base);
+}
+
+// render/facing_limit.h says how. At the window's border the neighbour that is there decides; where a pixel shows no surface,
+// nothing is painted.
+bool is_facing(ivec2 pixel, float here) {
+  ivec2 last = textureSize(depth, 0) - 1;
+  float left = here - texelFetch(depth, ivec2(max(pixel.x - 1, 0), pixel.y), 0).r;
+  float right = texelFetch(depth, ivec2(min(pixel.x + 1, last.x), pixel.y), 0).r - here;
+  float below = here - texelFetch(depth, ivec2(pixel.x, max(pixel.y - 1, 0)), 0).r;
+  float above = texelFetch(depth, ivec2(pixel.x, min(pixel.y + 1, last.y)), 0).r - here;
+  bool is_left = (abs(left) <= abs(right) && pixel.x > 0) || pixel.x == last.x;
+  bool is_below = (abs(below) <= abs(above) && pixel.y > 0) || pixel.y == last.y;
+  vec2 slope = vec2(is_left ? left : right, is_below ? below : above) * edit.window.xy;
+  vec2 center = (vec2(pixel) + 0.5) * 2.0 / edit.window.xy - 1.0;
+  vec3 w_row = edit.facing[2].xyz;
+  vec3 a = edit.facing[0].xyz - center.x * w_row, b = edit.facing[1].xyz - center.y * w_row;
+  vec3 ray = cross(a, b);
+  vec3 normal = slope.x * a + slope.y * b + edit.facing[3].xyz - 2.0 * (1.0 - here) * w_row;
+  float along = dot(normal, ray);
+  return here < 1.0 && along * along >= edit.facing[0].w * dot(normal, normal) * dot(ray, ray);
 }
 
 bool painted(uvec2 packed_position, vec3 box_min, vec3 box_step, uint first, uint count) {
@@ -93,7 +161,8 @@ bool painted(uvec2 packed_position, vec3 box_min, vec3 box_step, uint first, uin
   ivec2 pixel = ivec2(window);
   float here = texelFetch(depth, pixel, 0).r;
   if (edit.section_count > 0u && (floatBitsToUint(here) & kInsideMark) != 0u) return false;
-  return ndc.z * 0.5 + 0.5 - depth_bias(pixel, here, clip.w) <= here;
+  if (ndc.z * 0.5 + 0.5 - depth_bias(pixel, here, clip.w) > here) return false;
+  return (edit.flags & kEditFacing) == 0u || is_facing(pixel, here);
 }
 
 void main() {

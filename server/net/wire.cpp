@@ -34,6 +34,7 @@ Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Mod
     batch.radius_world = in_model_units(*stroke.radius_mm, model.unit);
   batch.through = stroke.through;
   batch.fixed_depth_bias = stroke.depth_bias;
+  batch.max_angle_deg = stroke.max_angle_deg;
   batch.erase = stroke.erase;
   batch.value_bits = *bits;
   return batch;

@@ -206,7 +206,7 @@ bool BlockCuller::keep_covering(const WindowBox& window, std::vector<std::uint32
   const double around = std::hypot(box.x1 - box.x0, box.y1 - box.y0) / 2 + kMargin_px;
   for (const auto segment : list) {
     const auto& s = path_.segments[segment];
-    if (distance_to_axis(s, center) + around < std::min(s.tool.x, s.tool.y)) {
+    if (distance_to_axis(s, center) + around < path_.inner_radius * std::min(s.tool.x, s.tool.y)) {
       list.assign(1, segment);
       return true;
     }

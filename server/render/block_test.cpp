@@ -1,8 +1,10 @@
 #include "render/block_test.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "shared/section.h"
 
@@ -123,11 +125,62 @@ STRATA_LANES void add_swept_square(const shader::EditSegment& s, const Lanes& la
   }
 }
 
+// Whether a line between two points of the shape's raster meets a cell of it. It leaves at once the square of cells around it
+// among which none is set, so that it takes few steps, and never more than there are cells along it.
+bool meets_shape(const std::uint8_t* distances, float ax, float ay, float bx, float by) {
+  constexpr auto kSide = static_cast<float>(kShapeSide);
+  constexpr float kNever = std::numeric_limits<float>::infinity();
+  const float dx = bx - ax, dy = by - ay;
+  float low = 0.0f, high = 1.0f;
+  const auto clip = [&](float from, float step) {
+    if (step == 0.0f) return from >= 0.0f && from < kSide;
+    const float t0 = -from / step, t1 = (kSide - from) / step;
+    low = std::max(low, std::min(t0, t1));
+    high = std::min(high, std::max(t0, t1));
+    return low <= high;
+  };
+  if (!clip(ax, dx) || !clip(ay, dy)) return false;
+  const auto cell_of = [](float at) { return std::clamp(static_cast<int>(at), 0, kShapeSide - 1); };
+  int x = cell_of(ax + low * dx), y = cell_of(ay + low * dy);
+  for (int step = 0; step < 2 * kShapeSide; ++step) {
+    const int distance = distances[y * kShapeSide + x];
+    if (distance == 0) return true;
+    const int x0 = x - distance + 1, x1 = x + distance, y0 = y - distance + 1, y1 = y + distance;
+    const float tx = dx == 0.0f ? kNever : (static_cast<float>(dx > 0.0f ? x1 : x0) - ax) / dx;
+    const float ty = dy == 0.0f ? kNever : (static_cast<float>(dy > 0.0f ? y1 : y0) - ay) / dy;
+    if (std::min(tx, ty) > high) return false;
+    if (tx <= ty) {
+      x = dx > 0.0f ? x1 : x0 - 1;
+      y = std::clamp(static_cast<int>(std::floor(ay + tx * dy)), y0, y1 - 1);
+    } else {
+      y = dy > 0.0f ? y1 : y0 - 1;
+      x = std::clamp(static_cast<int>(std::floor(ax + ty * dx)), x0, x1 - 1);
+    }
+    if (x < 0 || y < 0 || x >= kShapeSide || y >= kShapeSide) return false;
+  }
+  return false;
+}
+
+// Where a point of the window lies in the shape's raster at either end of the segment; the raster's rows go down.
+void add_swept_texture(const shader::EditSegment& s, const std::uint8_t* distances, const Lanes& lanes,
+                       std::int32_t* inside) {
+  constexpr float kHalf = kShapeSide / 2.0f;
+  const float from_scale = kHalf / s.tool.x, to_scale = kHalf / s.tool.y;
+  for (int i = 0; i < kLanes; ++i) {
+    if (inside[i] != 0 || lanes.live[i] == 0) continue;
+    inside[i] = meets_shape(distances, kHalf + (lanes.x[i] - s.ends.x) * from_scale,
+                            kHalf - (lanes.y[i] - s.ends.y) * from_scale, kHalf + (lanes.x[i] - s.ends.z) * to_scale,
+                            kHalf - (lanes.y[i] - s.ends.w) * to_scale);
+  }
+}
+
 STRATA_LANES void test_tool(const BlockTest& test, std::span<const std::uint32_t> segments, Lanes& lanes) {
   alignas(64) std::int32_t inside[kLanes] = {};
   for (const std::uint32_t number : segments) {
     const shader::EditSegment& s = test.path->segments[number];
-    if (test.square)
+    if (test.shape == ToolShape::texture)
+      add_swept_texture(s, test.texture->distances().data(), lanes, inside);
+    else if (test.shape == ToolShape::square)
       add_swept_square(s, lanes, inside);
     else if (s.tool.w > 0.0f)
       add_swept_disc(s, lanes, inside);
@@ -155,6 +208,41 @@ STRATA_LANES void test_depth(const BlockTest& test, Lanes& lanes) {
   }
 }
 
+// FacingLimit says how. At the window's border the neighbour that is there decides; where a pixel shows no surface, nothing is
+// painted.
+STRATA_LANES void test_facing(const BlockTest& test, Lanes& lanes) {
+  const FacingLimit& facing = *test.facing;
+  const float* const depth = test.depth->depth.data();
+  const int pitch = test.width, last_x = test.width - 1, last_y = test.height - 1;
+  const auto width = static_cast<float>(test.width), height = static_cast<float>(test.height);
+  const glm::vec3 x_row = facing.x_row, y_row = facing.y_row, w_row = facing.w_row, far_row = facing.far_row;
+  const float least = facing.least_squared_cosine;
+  for (int i = 0; i < kLanes; ++i) {
+    const std::int32_t live = lanes.live[i], pixel = lanes.pixel[i];
+    const std::int32_t px = live ? static_cast<std::int32_t>(lanes.x[i]) : 0,
+                       py = live ? static_cast<std::int32_t>(lanes.y[i]) : 0;
+    const float here = depth[pixel];
+    const float left = here - depth[pixel - (px > 0 ? 1 : 0)], right = depth[pixel + (px < last_x ? 1 : 0)] - here;
+    const float below = here - depth[pixel - (py > 0 ? pitch : 0)],
+                above = depth[pixel + (py < last_y ? pitch : 0)] - here;
+    const bool is_left = (std::abs(left) <= std::abs(right) && px > 0) || px == last_x;
+    const bool is_below = (std::abs(below) <= std::abs(above) && py > 0) || py == last_y;
+    const float along_x = (is_left ? left : right) * width, along_y = (is_below ? below : above) * height;
+    const float u = (static_cast<float>(px) + 0.5f) * 2.0f / width - 1.0f;
+    const float v = (static_cast<float>(py) + 0.5f) * 2.0f / height - 1.0f;
+    const float near = 2.0f * (1.0f - here);
+    const float ax = x_row.x - u * w_row.x, ay = x_row.y - u * w_row.y, az = x_row.z - u * w_row.z;
+    const float bx = y_row.x - v * w_row.x, by = y_row.y - v * w_row.y, bz = y_row.z - v * w_row.z;
+    const float rx = ay * bz - az * by, ry = az * bx - ax * bz, rz = ax * by - ay * bx;
+    const float nx = along_x * ax + along_y * bx + far_row.x - near * w_row.x;
+    const float ny = along_x * ay + along_y * by + far_row.y - near * w_row.y;
+    const float nz = along_x * az + along_y * bz + far_row.z - near * w_row.z;
+    const float along = nx * rx + ny * ry + nz * rz;
+    const float lengths = (nx * nx + ny * ny + nz * nz) * (rx * rx + ry * ry + rz * rz);
+    lanes.live[i] = live & std::int32_t{along * along >= least * lengths} & std::int32_t{here < 1.0f};
+  }
+}
+
 // Bit i is lane i.
 STRATA_LANES std::uint64_t bits_of(const std::int32_t* lanes) {
   alignas(64) std::uint8_t bytes[kLanes];
@@ -175,6 +263,7 @@ STRATA_LANES std::uint64_t test_lanes(const BlockTest& test, const std::uint64_t
   project(test, positions, box, lanes);
   if (!in_tool) test_tool(test, segments, lanes);
   if (test.depth) test_depth(test, lanes);
+  if (test.depth && test.facing) test_facing(test, lanes);
   if (!test.section.empty()) test_section(test, positions, box, lanes);
   return bits_of(lanes.live);
 }

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
+#include "core/stroke.h"
 #include "render/block_culler.h"
 #include "render/depth_copy.h"
+#include "render/facing_limit.h"
 
 namespace strata::render {
 
@@ -14,7 +17,9 @@ struct BlockTest {
   const ToolPath* path = nullptr;
   const DepthCopy* depth = nullptr;  // null: the stroke goes through
   int width = 0, height = 0;         // of the window, which is the depth's
-  bool square = false;
+  ToolShape shape = ToolShape::disc;
+  const ShapeTexture* texture = nullptr;  // of ToolShape::texture
+  std::optional<FacingLimit> facing;      // with a depth only
   DepthBias bias;
   std::span<const glm::vec4> section;  // planes in model space that cut the model open
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/facing_limit.h"
 #include "shared/edit.h"
 #include "shared/pages.h"
 
@@ -20,9 +21,16 @@ shader::EditUniforms make_uniforms(const StrokeBatch& stroke, const glm::dvec3& 
   uniforms.value = stroke.value_bits;
   uniforms.flags = (stroke.erase ? shader::kEditErase : 0u) | (stroke.through ? shader::kEditThrough : 0u) |
                    (stroke.shape == ToolShape::square ? shader::kEditSquare : 0u) |
-                   (bias.fixed ? shader::kEditFixedBias : 0u);
+                   (bias.fixed ? shader::kEditFixedBias : 0u) | (stroke.max_angle_deg ? shader::kEditFacing : 0u);
   uniforms.section_count = static_cast<std::uint32_t>(stroke.camera.section.size());
   std::ranges::copy(section_in_model(stroke.camera, origin), uniforms.section);
+  if (stroke.max_angle_deg) {
+    const FacingLimit limit = make_facing_limit(stroke.camera, *stroke.max_angle_deg);
+    uniforms.facing[0] = glm::vec4(limit.x_row, limit.least_squared_cosine);
+    uniforms.facing[1] = glm::vec4(limit.y_row, 0);
+    uniforms.facing[2] = glm::vec4(limit.w_row, 0);
+    uniforms.facing[3] = glm::vec4(limit.far_row, 0);
+  }
   return uniforms;
 }
 
@@ -44,13 +52,30 @@ DepthBias depth_bias_of(const StrokeBatch& stroke, double model_diagonal) {
 Result<EditPass> EditPass::create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback) {
   EditPass pass;
   pass.readback_ = &readback;
-  auto programs = ProgramPerWidth::load(shader_dir, "edit_pass.comp", [](int texel_bytes) {
-    return "TEXEL_FORMAT r" + std::to_string(8 * texel_bytes) + "ui";
-  });
+  const auto format = [](int texel_bytes) { return "TEXEL_FORMAT r" + std::to_string(8 * texel_bytes) + "ui"; };
+  auto programs = ProgramPerWidth::load(shader_dir, "edit_pass.comp", format);
   if (!programs) return tl::unexpected(programs.error());
   pass.programs_ = std::move(*programs);
+  // Of their own, so that strokes of discs and squares do not carry what only a shape needs.
+  auto shape_programs = ProgramPerWidth::load(shader_dir, "edit_pass.comp", format, {"TOOL_TEXTURE"});
+  if (!shape_programs) return tl::unexpected(shape_programs.error());
+  pass.shape_programs_ = std::move(*shape_programs);
   pass.timer_ = gl::TimerQuery::create("edit");
   return pass;
+}
+
+Result<void> EditPass::send_shape(const StrokeBatch& stroke) {
+  if (stroke.shape != ToolShape::texture || stroke.texture == shape_) return {};
+  static_assert(shader::kShapeCells == kShapeSide);
+  if (!shape_distances_) {
+    auto made = gl::Texture::create_2d(GL_R8UI, kShapeSide, kShapeSide, "tool shape");
+    if (!made) return tl::unexpected(made.error());
+    shape_distances_ = std::move(*made);
+  }
+  glTextureSubImage2D(shape_distances_.id(), 0, 0, 0, kShapeSide, kShapeSide, GL_RED_INTEGER, GL_UNSIGNED_BYTE,
+                      stroke.texture->distances().data());
+  shape_ = stroke.texture;
+  return {};
 }
 
 Result<std::vector<TileAddress>> EditPass::make_pages(const std::vector<CandidateBlock>& blocks, LayerTextures& layer) {
@@ -82,6 +107,7 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
     return tl::unexpected(problem);
   };
   if (auto flushed = tables.flush(); !flushed) return give_up(flushed.error());
+  if (auto sent = send_shape(stroke); !sent) return give_up(sent.error());
 
   // One dispatch a chunk: only one pair of images is bound at a time. Blocks without a page (erasing) go with the first.
   const auto chunk_of = [&](const CandidateBlock& block) {
@@ -110,7 +136,8 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
                   path.segments.size() * sizeof(shader::EditSegment) +
                   candidates.segment_lists.size() * sizeof(std::uint32_t);
 
-  const gl::Program& program = programs_.of(layer.pool().texel_bytes());
+  const bool has_shape = stroke.shape == ToolShape::texture;
+  const gl::Program& program = (has_shape ? shape_programs_ : programs_).of(layer.pool().texel_bytes());
   program.use();
   uniforms_.bind_uniform(0);
   blocks_.bind_storage(0);
@@ -120,6 +147,7 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
   map.boxes().bind_storage(4);
   map.positions().bind(0);
   if (depth) depth->bind(1);
+  if (has_shape) shape_distances_.bind(2);
   const auto begin = std::chrono::steady_clock::now();
   timer_.begin();
   for (std::size_t first = 0; first < edit.blocks.size();) {

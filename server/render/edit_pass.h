@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "gl/readback.h"
@@ -49,8 +50,12 @@ class EditPass {
  private:
   Result<std::vector<TileAddress>> make_pages(const std::vector<CandidateBlock>& blocks, LayerTextures& layer);
 
+  Result<void> send_shape(const StrokeBatch& stroke);
+
   gl::ReadbackPool* readback_ = nullptr;
-  ProgramPerWidth programs_;
+  ProgramPerWidth programs_, shape_programs_;
+  gl::Texture shape_distances_;                // made when a stroke first needs it; holds those of…
+  std::shared_ptr<const ShapeTexture> shape_;  // …the last one
   gl::TimerQuery timer_;
   StreamBuffer uniforms_{"edit uniforms"}, blocks_{"edit blocks"}, segments_{"edit segments"},
       lists_{"edit segment lists"};

@@ -63,7 +63,9 @@ KernelResult KernelPainter::find_written(const PaintTarget& target) {
   test.depth = stroke_.through ? nullptr : depth_->copy.get();
   test.width = stroke_.camera.width;
   test.height = stroke_.camera.height;
-  test.square = stroke_.shape == ToolShape::square;
+  test.shape = stroke_.shape;
+  test.texture = stroke_.texture.get();
+  if (stroke_.max_angle_deg) test.facing = make_facing_limit(stroke_.camera, *stroke_.max_angle_deg);
   test.bias = depth_bias(geometry);
   const SectionPlanes section = section_in_model(stroke_.camera, geometry.origin);
   test.section = std::span(section).first(stroke_.camera.section.size());

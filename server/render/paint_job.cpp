@@ -29,6 +29,16 @@ Result<void> validate(const StrokeBatch& stroke) {
   if (!std::isfinite(radius) || radius <= 0) {
     return fail(422, "Radius out of range", "Give radius_px or radius_world as a number above 0.", "radius");
   }
+  if (stroke.shape == ToolShape::texture && !stroke.texture)
+    return fail(422, "Shape missing", "A stroke with a shape of its own needs the shape's texture.", "shape");
+  if (const auto angle = stroke.max_angle_deg) {
+    if (!(*angle > 0 && *angle <= 90))
+      return fail(422, "Angle out of range", "Give the largest angle in degrees: above 0, 90 at most.",
+                  "max_angle_deg");
+    if (stroke.through)
+      return fail(422, "Angle of what is hidden",
+                  "What is hidden is seen at no angle: leave out `through` or `max_angle_deg`.", "max_angle_deg");
+  }
   if (const auto bias = stroke.fixed_depth_bias; bias && !(*bias >= 0 && *bias <= 1)) {
     return fail(
         422, "Depth bias out of range",

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "gl/program.h"
 
@@ -18,13 +19,15 @@ GLenum texel_component(int texel_bytes);
 // Programs of one shader file for each width.
 class ProgramPerWidth {
  public:
-  // `define_of` gives the width's define.
+  // `define_of` gives the width's define; `others` go to all.
   template <class DefineOf>
   static Result<ProgramPerWidth> load(const std::filesystem::path& shader_dir, const std::string& file,
-                                      DefineOf define_of) {
+                                      DefineOf define_of, const std::vector<std::string>& others = {}) {
     ProgramPerWidth programs;
     for (const int texel_bytes : {1, 2, 4}) {
-      auto program = gl::Program::load(shader_dir, {file}, {define_of(texel_bytes)});
+      std::vector<std::string> defines = others;
+      defines.push_back(define_of(texel_bytes));
+      auto program = gl::Program::load(shader_dir, {file}, defines);
       if (!program) return tl::unexpected(program.error());
       programs.programs_[index(texel_bytes)] = std::move(*program);
     }

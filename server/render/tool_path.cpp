@@ -8,6 +8,8 @@ namespace {
 
 // Covers any window, and its square is still a float.
 constexpr double kLargestRadius_px = 1e9;
+// Covers no texel, and can be divided by.
+constexpr double kSmallestRadius_px = 1e-3;
 
 PixelBox join(const PixelBox& a, const PixelBox& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
@@ -40,10 +42,11 @@ PixelBox box_of(const shader::EditSegment& s) {
 
 ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii_px) {
   ToolPath path;
+  if (stroke.shape == ToolShape::texture) path.inner_radius = stroke.texture->inner_radius();
   const auto point = [&](std::size_t i) {
     return glm::dvec2(stroke.path[i].x, stroke.camera.height - stroke.path[i].y);
   };
-  const auto radius = [&](std::size_t i) { return std::min(radii_px[i], kLargestRadius_px); };
+  const auto radius = [&](std::size_t i) { return std::clamp(radii_px[i], kSmallestRadius_px, kLargestRadius_px); };
   std::size_t from = 0;
   for (std::size_t i = 1; i < stroke.path.size(); ++i) {
     if (point(i) == point(from) && radius(i) == radius(from)) continue;

@@ -23,6 +23,8 @@ struct ToolPath {
   std::vector<PixelBox> boxes;        // of each segment with its tool
   std::vector<PixelBox> group_boxes;  // of each run of kSegmentsPerGroup segments
   PixelBox box;                       // of all
+  double inner_radius =
+      1;  // of the disc about the tool's centre that lies in the tool wholly, as a share of its radius
 
   static constexpr std::size_t kSegmentsPerGroup = 32;
 };

@@ -22,6 +22,9 @@ const uint kEditErase = 1u;
 const uint kEditThrough = 2u;
 const uint kEditSquare = 4u;
 const uint kEditFixedBias = 8u;
+const uint kEditFacing = 16u;  // surfaces seen at too much of a slant are left out
+
+const uint kShapeCells = 256u;  // a side of the texture of a tool's shape
 
 struct EditUniforms {
   mat4 clip_from_model;
@@ -32,6 +35,7 @@ struct EditUniforms {
   uint section_count;
   uint reserved;
   vec4 section[kSectionPlanes];  // section_count are used
+  vec4 facing[4];                // render/facing_limit.h: rows x, y, w, far; the last number of the first is the limit
 };
 
 const uint kEditRowsPerBlock = 8u;   // one thread a row of 8 texels
@@ -42,6 +46,6 @@ STRATA_SHARED_END
 #include <cstddef>
 static_assert(sizeof(strata::shader::EditSegment) == 32);
 static_assert(sizeof(strata::shader::EditBlock) == 16);
-static_assert(sizeof(strata::shader::EditUniforms) == 208);
+static_assert(sizeof(strata::shader::EditUniforms) == 272);
 static_assert(offsetof(strata::shader::EditUniforms, value) == 96);
 #endif

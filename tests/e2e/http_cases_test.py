@@ -83,6 +83,8 @@ def table(camera):
         ("a matrix of fifteen", "POST", L + "/edits", {**stroke, "camera": {**camera, "view": camera["view"][:15]}}, {}, 422, "camera.view"),
         ("a singular matrix", "POST", L + "/edits", {**stroke, "camera": singular}, {}, 422, "camera.view"),
         ("a window of no width", "POST", L + "/edits", {**stroke, "camera": {**camera, "width": 0}}, {}, 422, "camera.width"),
+        ("an obtuse angle", "POST", L + "/edits", {**stroke, "max_angle_deg": 91}, {}, 422, "max_angle_deg"),
+        ("an angle of what is hidden", "POST", L + "/edits", {**stroke, "max_angle_deg": 60, "through": True}, {}, 422, "max_angle_deg"),
         ("a negative bias", "POST", L + "/edits", {**stroke, "depth_bias": -0.1}, {}, 422, "depth_bias"),
         ("unknown shape", "POST", L + "/edits", {**stroke, "shape": "star"}, {}, 422, "shape"),
         ("pick without y", "POST", M + "/pick", without(pick, "y"), {}, 422, "y"),

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "support/gl_scene.h"
+#include "support/shapes.h"
 
 namespace strata::test {
 namespace {
@@ -30,8 +31,10 @@ StrokeBatch random_stroke(std::mt19937& random) {
   for (std::size_t i = 0; i < 1 + random() % 4; ++i) stroke.path.emplace_back(in(150, 650), in(100, 500));
   (random() % 2 ? stroke.radius_px : stroke.radius_world) = random() % 2 ? in(0.02, 0.2) : in(0.2, 0.6);
   if (stroke.radius_px > 0) stroke.radius_px *= 300;
-  if (random() % 3 == 0) stroke.shape = ToolShape::square;
+  stroke.shape = static_cast<ToolShape>(random() % 3);
+  if (stroke.shape == ToolShape::texture) stroke.texture = shape(random() % 2 ? in_flag : in_dots);
   stroke.through = random() % 5 == 0;
+  if (!stroke.through && random() % 3 == 0) stroke.max_angle_deg = in(20, 90);
   if (random() % 4 == 0) stroke.fixed_depth_bias = in(0, 0.01);
   if (random() % 3 == 0) stroke.camera.section = {{in(-1, 1), in(-1, 1), -1, in(0, 0.5)}, {in(-1, 1), 1, 0, 0.5}};
   return stroke;

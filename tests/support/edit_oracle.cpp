@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
@@ -13,7 +14,53 @@ namespace {
 
 constexpr double kRounding_px = 2e-3;
 constexpr double kRoundingDepth = 1e-6;
+constexpr double kRoundingAngle_rad = 5e-4;
 constexpr double kRoundingOfSize = 1e-6;  // of the model's diagonal, at a section plane
+
+// Where a line between two points of a shape's raster passes in each row of cells, whether one of them is the tool's. With
+// `slack` (cells) the shape is so much larger all around; below 0, smaller. Row by row and cell by cell: nothing of the
+// distances that the shader leaps by.
+bool line_meets_shape(const ShapeTexture& shape, const glm::dvec2& a, const glm::dvec2& b, double slack) {
+  for (int y = 0; y < kShapeSide; ++y) {
+    double low = 0, high = 1;
+    const double first = y - slack, end = y + 1 + slack;
+    if (a.y == b.y) {
+      if (a.y < first || a.y > end) continue;
+    } else {
+      const double t0 = (first - a.y) / (b.y - a.y), t1 = (end - a.y) / (b.y - a.y);
+      low = std::max(low, std::min(t0, t1));
+      high = std::min(high, std::max(t0, t1));
+      if (low > high) continue;
+    }
+    const double x0 = a.x + (b.x - a.x) * low, x1 = a.x + (b.x - a.x) * high;
+    const auto cell = [](double x) { return static_cast<int>(std::clamp(std::floor(x), -2.0, kShapeSide + 2.0)); };
+    for (int x = std::max(0, cell(std::min(x0, x1)) - 1); x <= std::min(kShapeSide - 1, cell(std::max(x0, x1)) + 1);
+         ++x)
+      if (shape.is_set(x, y) && x - slack <= std::max(x0, x1) && x + 1 + slack >= std::min(x0, x1)) return true;
+  }
+  return false;
+}
+
+// As `inside` for a shape: kRounding_px and more where the point is under it for certain, the negative where it is not.
+double inside_shape(const StrokeBatch& stroke, const std::vector<double>& radii, const glm::dvec2& p) {
+  const auto in_raster = [&](std::size_t i) {
+    const glm::dvec2 center(stroke.path[i].x, stroke.camera.height - stroke.path[i].y);
+    return ((p - center) * glm::dvec2(1, -1) / radii[i] + 1.0) * (kShapeSide / 2.0);
+  };
+  double best = -1;
+  for (std::size_t i = stroke.path.size() == 1 ? 0 : 1; i < stroke.path.size(); ++i) {
+    const std::size_t from = i == 0 ? 0 : i - 1;
+    const glm::dvec2 a = in_raster(from), b = in_raster(i);
+    if (glm::any(glm::lessThan(glm::max(a, b), glm::dvec2(-1))) ||
+        glm::any(glm::greaterThan(glm::min(a, b), glm::dvec2(kShapeSide + 1))))
+      continue;
+    const double slack = kRounding_px * kShapeSide / 2 / std::min(radii[from], radii[i]);
+    if (!line_meets_shape(*stroke.texture, a, b, slack)) continue;
+    if (line_meets_shape(*stroke.texture, a, b, -slack)) return 1;
+    best = std::max(best, line_meets_shape(*stroke.texture, a, b, 0) ? kRounding_px / 2 : -kRounding_px / 2);
+  }
+  return best;
+}
 
 // How far inside the tool a point is, in pixels; negative outside. Steps along each segment finely enough for kRounding_px:
 // independent of the closed form in the shader.
@@ -25,6 +72,7 @@ double inside(const StrokeBatch& stroke, const std::vector<double>& radii, const
     const glm::dvec2 d = glm::abs(p - center);
     return radius - (stroke.shape == ToolShape::disc ? glm::length(d) : std::max(d.x, d.y));
   };
+  if (stroke.shape == ToolShape::texture) return inside_shape(stroke, radii, p);
   double best = margin(point(0), radii[0]);
   for (std::size_t i = 1; i < stroke.path.size(); ++i) {
     const glm::dvec2 a = point(i - 1), b = point(i);
@@ -44,6 +92,39 @@ double inside(const StrokeBatch& stroke, const std::vector<double>& radii, const
     best = std::max(best, at((low + high) / 2));
   }
   return best;
+}
+
+// How much steeper than allowed the surface is in a pixel: the angle between the direction to the eye and the normal of the plane
+// through the pixel's centre and two neighbours, by points in the world; and the same where rounding picks other neighbours.
+std::pair<double, double> angle_margins(const StrokeBatch& stroke, const std::function<double(int, int)>& at, int x,
+                                        int y) {
+  const Camera& camera = stroke.camera;
+  const glm::dmat4 world_from_clip = glm::inverse(camera.projection * camera.view);
+  const auto point = [&](int px, int py) {
+    const glm::dvec4 p = world_from_clip * glm::dvec4((px + 0.5) * 2 / camera.width - 1,
+                                                      (py + 0.5) * 2 / camera.height - 1, at(px, py) * 2 - 1, 1);
+    return glm::dvec3(p) / p.w;
+  };
+  // The neighbour on either side whose depth is nearer; both where they are as near but for rounding.
+  const auto neighbours = [&](int dx, int dy, int where, int last) {
+    const double before = std::abs(at(x, y) - at(x - dx, y - dy)), after = std::abs(at(x + dx, y + dy) - at(x, y));
+    std::vector<int> sides;
+    if (where > 0 && (where == last || before <= after + 1.2e-7)) sides.push_back(-1);
+    if (where < last && (where == 0 || after <= before + 1.2e-7)) sides.push_back(1);
+    return sides;
+  };
+  const glm::dvec3 here = point(x, y);
+  const glm::dvec3 ray = ray_through_pixel(camera, x + 0.5, camera.height - 1 - y + 0.5).direction;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const int side_x : neighbours(1, 0, x, camera.width - 1)) {
+    for (const int side_y : neighbours(0, 1, y, camera.height - 1)) {
+      const glm::dvec3 normal = glm::cross(point(x + side_x, y) - here, point(x, y + side_y) - here);
+      const double angle = std::acos(std::min(1.0, std::abs(glm::dot(normal, ray)) / glm::length(normal)));
+      low = std::min(low, glm::radians(*stroke.max_angle_deg) - angle);
+      high = std::max(high, glm::radians(*stroke.max_angle_deg) - angle);
+    }
+  }
+  return {low, high};
 }
 
 // Margins of one texel: written when all are positive, undecided when the smallest is near 0.
@@ -86,7 +167,13 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
   // Near a pixel's border the other pixel may have been asked.
   const double border = std::min({window.x - x, window.y - y, x + 1 - window.x, y + 1 - window.y});
   undecided = undecided || std::abs(depth_margin) < kRoundingDepth || border < kRounding_px;
-  return kept && !inside && margin_px > 0 && depth_margin >= 0;
+  bool faces = true;
+  if (stroke.max_angle_deg) {
+    const auto [low, high] = angle_margins(stroke, at, x, y);
+    faces = here < 1 && low >= 0;
+    undecided = undecided || (low < kRoundingAngle_rad && high > -kRoundingAngle_rad);
+  }
+  return kept && !inside && margin_px > 0 && depth_margin >= 0 && faces;
 }
 
 }  // namespace

@@ -32,6 +32,24 @@ Block random_block(std::mt19937& random) {
   return block;
 }
 
+// Dots on every scale.
+std::shared_ptr<const ShapeTexture> random_shape(std::mt19937& random) {
+  ShapeBits bits{};
+  for (int dot = 0; dot < 12; ++dot) {
+    const int size = 1 << random() % 7, x0 = static_cast<int>(random() % 256), y0 = static_cast<int>(random() % 256);
+    for (int y = y0; y < std::min(y0 + size, kShapeSide); ++y)
+      for (int x = x0; x < std::min(x0 + size, kShapeSide); ++x)
+        bits[std::size_t(y * kShapeSide + x) / 64] |= std::uint64_t{1} << (x % 64);
+  }
+  return std::make_shared<const ShapeTexture>(bits);
+}
+
+FacingLimit random_facing(std::mt19937& random) {
+  Camera camera;
+  camera.projection = glm::perspective(0.9, 200.0 / 120, 0.2, 9.0);
+  return make_facing_limit(camera, std::uniform_real_distribution(10.0, 90.0)(random));
+}
+
 struct Stroke {
   StrokeBatch batch;
   ToolPath path;
@@ -45,7 +63,8 @@ void make_stroke(std::mt19937& random, Stroke& stroke) {
   constexpr int kWidth = 200, kHeight = 120;
   stroke.batch.camera.width = kWidth;
   stroke.batch.camera.height = kHeight;
-  if (random() % 2) stroke.batch.shape = ToolShape::square;
+  stroke.batch.shape = static_cast<ToolShape>(random() % 3);
+  if (stroke.batch.shape == ToolShape::texture) stroke.batch.texture = random_shape(random);
   std::vector<double> radii;
   for (std::size_t i = 0; i < 1 + random() % 3; ++i) {
     stroke.batch.path.emplace_back(in(0, kWidth), in(0, kHeight));
@@ -62,7 +81,9 @@ void make_stroke(std::mt19937& random, Stroke& stroke) {
   stroke.test.depth = random() % 3 ? &stroke.depth : nullptr;
   stroke.test.width = kWidth;
   stroke.test.height = kHeight;
-  stroke.test.square = stroke.batch.shape == ToolShape::square;
+  stroke.test.shape = stroke.batch.shape;
+  stroke.test.texture = stroke.batch.texture.get();
+  if (random() % 3 == 0) stroke.test.facing = random_facing(random);
   stroke.test.bias = {{}, 1e-3, 1.5, 64.0};
   if (random() % 2 == 0) stroke.test.bias.fixed = 2e-4;
 }

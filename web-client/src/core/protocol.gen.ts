@@ -41,6 +41,9 @@ export type ToolShape = "disc" | "square";
 /** Fixed depth bias. How far behind what the camera sees a texel may lie and still be painted, in window depth: 0 at the near plane, 1 at the far one. Left out, it follows the model's size and the slope of the surface. */
 export type DepthBias = number;
 
+/** Largest angle at which a surface is painted. Degrees between the direction to the eye and the normal of the surface in the texel's pixel of the camera's window: what is seen at more of a slant is left out. Not with `through`. Left out, there is no limit. */
+export type SlantLimit = number;
+
 /** Stroke. Sweeps the brush along a path seen through a camera. Needs a value unless it erases. */
 export interface EditStroke {
   op: "stroke";
@@ -59,6 +62,7 @@ export interface EditStroke {
   /** Paint hidden surface, too. Default: false. */
   through?: boolean;
   depth_bias?: DepthBias;
+  max_angle_deg?: SlantLimit;
 }
 
 /** Place on the surface. What a pixel of a view shows, or the surface point nearest to a point in space. */
@@ -355,6 +359,7 @@ export interface StrokeBegin {
   /** Default: false. */
   through?: boolean;
   depth_bias?: DepthBias;
+  max_angle_deg?: SlantLimit;
 }
 
 /** Next batch of a stroke's points. The brush is swept from the last point of the batch before. */

@@ -259,6 +259,7 @@ void read(const nlohmann::json& json, EditStroke& value) {
   read_member(json, "path", value.path);
   read_optional_member(json, "through", value.through);
   read_optional_member(json, "depth_bias", value.depth_bias);
+  read_optional_member(json, "max_angle_deg", value.max_angle_deg);
 }
 
 nlohmann::json to_json(const EditStroke& value) {
@@ -273,6 +274,7 @@ nlohmann::json to_json(const EditStroke& value) {
   write_member(json, "path", value.path);
   write_member(json, "through", value.through);
   write_optional_member(json, "depth_bias", value.depth_bias);
+  write_optional_member(json, "max_angle_deg", value.max_angle_deg);
   return json;
 }
 
@@ -583,6 +585,7 @@ void read(const nlohmann::json& json, StrokeBegin& value) {
   read_optional_member(json, "shape", value.shape);
   read_optional_member(json, "through", value.through);
   read_optional_member(json, "depth_bias", value.depth_bias);
+  read_optional_member(json, "max_angle_deg", value.max_angle_deg);
 }
 
 nlohmann::json to_json(const StrokeBegin& value) {
@@ -599,6 +602,7 @@ nlohmann::json to_json(const StrokeBegin& value) {
   write_member(json, "shape", value.shape);
   write_member(json, "through", value.through);
   write_optional_member(json, "depth_bias", value.depth_bias);
+  write_optional_member(json, "max_angle_deg", value.max_angle_deg);
   return json;
 }
 

@@ -37,6 +37,7 @@ enum class Schema {
   Camera,
   ToolShape,
   DepthBias,
+  SlantLimit,
   EditStroke,
   SurfacePlace,
   EditFill,
@@ -130,7 +131,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 103;
+constexpr int kSchemaCount = 104;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -160,6 +161,7 @@ struct EditStroke {
   Path path;
   bool through = false;  // Paint hidden surface, too.
   std::optional<double> depth_bias;
+  std::optional<double> max_angle_deg;
   bool operator==(const EditStroke&) const = default;
 };
 void read(const nlohmann::json& json, EditStroke& value);
@@ -432,6 +434,7 @@ struct StrokeBegin {
   strata::ToolShape shape = strata::ToolShape::disc;
   bool through = false;
   std::optional<double> depth_bias;
+  std::optional<double> max_angle_deg;
   bool operator==(const StrokeBegin&) const = default;
 };
 void read(const nlohmann::json& json, StrokeBegin& value);
