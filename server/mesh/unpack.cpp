@@ -62,10 +62,21 @@ class ScratchFile {
   int descriptor_ = -1;
 };
 
+// Folders, and what a Mac adds.
+bool is_hidden(std::string_view name) {
+  if (name.starts_with("__MACOSX/") || name.ends_with('/')) return true;
+  return name.substr(name.find_last_of("/\\") + 1).starts_with('.');
+}
+
 class Unpacker {
  public:
-  Unpacker(std::span<const std::uint8_t> zip, const std::filesystem::path& scratch, Progress& progress)
-      : zip_(zip), scratch_(scratch), progress_(progress), room_(zip.size() * kMostUnpackGain + kUnpackAlways) {}
+  Unpacker(std::span<const std::uint8_t> zip, const std::filesystem::path& scratch, Progress& progress,
+           const std::function<bool(std::string_view)>& wanted)
+      : zip_(zip),
+        scratch_(scratch),
+        progress_(progress),
+        wanted_(wanted),
+        room_(zip.size() * kMostUnpackGain + kUnpackAlways) {}
 
   Result<std::vector<InputFiles::Entry>> run() {
     if (auto opened = open(); !opened) return tl::unexpected(opened.error());
@@ -77,7 +88,7 @@ class Unpacker {
     for (zip_int64_t i = 0; i < count; ++i) {
       progress_.report(0, "Unpacking");
       const char* name = zip_get_name(archive_.get(), static_cast<zip_uint64_t>(i), 0);
-      if (name == nullptr || !is_wanted(name)) continue;
+      if (name == nullptr || is_hidden(name) || !wanted_(name)) continue;
       auto entry = unpack(static_cast<zip_uint64_t>(i), name);
       if (!entry) return tl::unexpected(entry.error());
       entries.push_back(std::move(*entry));
@@ -99,18 +110,6 @@ class Unpacker {
     }
     zip_error_fini(&error);
     return {};
-  }
-
-  static bool is_wanted(std::string_view name) {
-    static constexpr std::array<std::string_view, 11> kCompanions{".mtl",  ".bin",  ".jpg", ".jpeg", ".png", ".tif",
-                                                                  ".tiff", ".webp", ".bmp", ".tga",  ".ktx2"};
-    if (name.starts_with("__MACOSX/") || name.ends_with('/')) return false;
-    const std::string_view last = name.substr(name.find_last_of("/\\") + 1);
-    if (last.starts_with('.')) return false;
-    if (input_kind(name) != InputKind::companion) return true;
-    std::string lower(last);
-    for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return std::any_of(kCompanions.begin(), kCompanions.end(), [&](auto ending) { return lower.ends_with(ending); });
   }
 
   Result<InputFiles::Entry> unpack(zip_uint64_t index, const std::string& name) {
@@ -150,6 +149,7 @@ class Unpacker {
   std::span<const std::uint8_t> zip_;
   const std::filesystem::path& scratch_;
   Progress& progress_;
+  const std::function<bool(std::string_view)>& wanted_;
   std::uint64_t room_;
   std::unique_ptr<zip_t, DiscardArchive> archive_;
   std::vector<std::uint8_t> chunk_;
@@ -157,9 +157,19 @@ class Unpacker {
 
 }  // namespace
 
+bool is_scan_file(std::string_view name) {
+  static constexpr std::array<std::string_view, 11> kCompanions{".mtl",  ".bin",  ".jpg", ".jpeg", ".png", ".tif",
+                                                                ".tiff", ".webp", ".bmp", ".tga",  ".ktx2"};
+  if (input_kind(name) != InputKind::companion) return true;
+  std::string lower(name.substr(name.find_last_of("/\\") + 1));
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return std::any_of(kCompanions.begin(), kCompanions.end(), [&](auto ending) { return lower.ends_with(ending); });
+}
+
 Result<std::vector<InputFiles::Entry>> unpack_archive(std::span<const std::uint8_t> zip,
-                                                      const std::filesystem::path& scratch, Progress& progress) {
-  return Unpacker(zip, scratch, progress).run();
+                                                      const std::filesystem::path& scratch, Progress& progress,
+                                                      const std::function<bool(std::string_view)>& wanted) {
+  return Unpacker(zip, scratch, progress, wanted).run();
 }
 
 }  // namespace strata::mesh

@@ -13,10 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kAccepted =
-    "Send the scan as the body (PLY, OBJ, STL, glTF, GLB, or a zip of one scan with its textures), or the mesh and its "
-    "material and picture files together in a multipart/form-data form.";
-
 // std::string_view::find is too slow for gigabytes; memmem is vectorised.
 std::size_t find(std::string_view text, std::string_view what, std::size_t from) {
   if (from > text.size()) return std::string_view::npos;
@@ -65,7 +61,7 @@ Result<Upload> keep_part(std::string_view name, std::string_view content, const 
   return fail(507, "Disk full", "The upload could not be stored on the server's disk.");
 }
 
-Result<void> take_parts(const Request& request, std::string_view body, const fs::path& folder,
+Result<void> take_parts(const Request& request, std::string_view body, const fs::path& folder, const char* accepted,
                         std::vector<Upload>& uploads) {
   auto malformed = [] {
     return fail(400, "Malformed form", "The multipart/form-data body does not follow its boundary.", "body");
@@ -89,7 +85,7 @@ Result<void> take_parts(const Request& request, std::string_view body, const fs:
     if (name.empty()) continue;  // a field of the form
     if (uploads.size() >= kMostUploadFiles)
       return fail(413, "Too many files",
-                  "A scan has at most " + std::to_string(kMostUploadFiles) + " files; send it as a zip.", "body");
+                  "A form has at most " + std::to_string(kMostUploadFiles) + " files; send them as a zip.", "body");
     auto upload = keep_part(
         name,
         content_end > content_begin ? body.substr(content_begin, content_end - content_begin) : std::string_view(),
@@ -101,26 +97,26 @@ Result<void> take_parts(const Request& request, std::string_view body, const fs:
     if (std::any_of(uploads.begin(), uploads.end() - 1, has_its_name))
       return fail(422, "File sent twice", "The form holds two files named " + last.filename + ".", "body");
   }
-  if (uploads.empty()) return fail(415, "No file in the form", kAccepted, "body");
+  if (uploads.empty()) return fail(415, "No file in the form", accepted, "body");
   return {};
 }
 
 }  // namespace
 
-Result<std::vector<Upload>> take_upload(const Request& request, const fs::path& folder) {
+Result<std::vector<Upload>> take_upload(const Request& request, const fs::path& folder, const char* accepted) {
   const auto mapped = MappedFile::open(request.body_file);
-  if (!mapped || mapped->view().empty()) return fail(400, "Empty body", kAccepted, "body");
+  if (!mapped || mapped->view().empty()) return fail(400, "Empty body", accepted, "body");
   const std::string type = to_lower(request.header("content-type"));
   std::vector<Upload> uploads;
   if (type.starts_with("multipart/form-data")) {
-    if (auto taken = take_parts(request, mapped->view(), folder, uploads); !taken) {
+    if (auto taken = take_parts(request, mapped->view(), folder, accepted, uploads); !taken) {
       std::error_code ignored;
       for (const Upload& upload : uploads) fs::remove(upload.file, ignored);
       return tl::unexpected(taken.error());
     }
     return uploads;
   }
-  if (type.starts_with("multipart/")) return fail(415, "Form not understood", kAccepted, "Content-Type");
+  if (type.starts_with("multipart/")) return fail(415, "Form not understood", accepted, "Content-Type");
   std::string name = jobs::base_filename(parameter(request.header("content-disposition"), "filename"));
   if (name.empty() && type.starts_with("application/zip")) name = "scan.zip";
   uploads.push_back({request.body_file, std::move(name)});

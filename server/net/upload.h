@@ -14,9 +14,14 @@ struct Upload {
 };
 
 constexpr std::size_t kMostUploadFiles = 256;
+constexpr const char* kScanUpload =
+    "Send the scan as the body (PLY, OBJ, STL, glTF, GLB, or a zip of one scan with its textures), or the mesh and its "
+    "material and picture files together in a multipart/form-data form.";
 
 // The files in a request whose body is in a file: the body itself, or those of a multipart/form-data body, kMostUploadFiles at
-// most (each cut out into a file of its own in `folder`; none is left there after a Problem).
-Result<std::vector<Upload>> take_upload(const Request& request, const std::filesystem::path& folder);
+// most (each cut out into a file of its own in `folder`; none is left there after a Problem). `accepted` is what a body without
+// a file is told to be.
+Result<std::vector<Upload>> take_upload(const Request& request, const std::filesystem::path& folder,
+                                        const char* accepted = kScanUpload);
 
 }  // namespace strata::net

@@ -1,173 +1,71 @@
 #include "query/flat_map.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <limits>
 
 namespace strata::query {
 namespace {
 
-using nlohmann::json;
-
-constexpr int kMaxDepth = 16;
-
-tl::unexpected<Problem> refuse(const std::string& where, const std::string& what) {
-  return fail(422, "Map not understood", what, where.empty() ? "body" : "body." + where);
-}
-
-std::string inside(const std::string& where, const std::string& member) {
-  return where.empty() ? member : where + "." + member;
-}
-
-class AreaReader {
- public:
-  AreaReader(const std::string& attribute, double value) : attribute_(attribute), value_(value) {}
-
-  Result<void> read(const json& node, const std::string& where, int depth = 0) {
-    if (!node.is_object() || !node.contains("type") || !node["type"].is_string())
-      return refuse(where, "A GeoJSON object with a `type` is expected here.");
-    if (depth > 4) return refuse(where, "It is nested too deeply.");
-    const auto& type = node["type"].get_ref<const std::string&>();
-    if (type == "FeatureCollection") return each(node, "features", where, depth);
-    if (type == "GeometryCollection") return each(node, "geometries", where, depth);
-    if (type == "Feature") return feature(node, where, depth);
-    if (type == "Polygon") return polygon(node.value("coordinates", json()), inside(where, "coordinates"));
-    if (type == "MultiPolygon") {
-      const json polygons = node.value("coordinates", json());
-      if (!polygons.is_array()) return refuse(where, "A MultiPolygon has a list of polygons as `coordinates`.");
-      for (std::size_t i = 0; i < polygons.size(); ++i)
-        if (auto read = polygon(polygons[i], inside(where, "coordinates[" + std::to_string(i) + "]")); !read)
-          return read;
-      return {};
-    }
-    return refuse(where, "Only Polygon and MultiPolygon are painted, not " + type.substr(0, 40) + ".");
-  }
-
-  std::vector<MapArea> take() { return std::move(areas_); }
-
- private:
-  Result<void> each(const json& node, const char* member, const std::string& where, int depth) {
-    if (!node.contains(member) || !node[member].is_array())
-      return refuse(where, "It lacks the list `" + std::string(member) + "`.");
-    for (std::size_t i = 0; i < node[member].size(); ++i) {
-      const std::string place = inside(where, std::string(member) + "[" + std::to_string(i) + "]");
-      if (auto done = read(node[member][i], place, depth + 1); !done) return done;
-    }
-    return {};
-  }
-
-  Result<void> feature(const json& node, const std::string& where, int depth) {
-    if (!node.contains("geometry")) return refuse(where, "A feature has a `geometry`.");
-    if (node["geometry"].is_null()) return {};
-    if (!attribute_.empty()) {
-      const json properties = node.value("properties", json());
-      const json found = properties.is_object() ? properties.value(attribute_, json()) : json();
-      if (!found.is_number())
-        return refuse(inside(where, "properties"), "The property '" + attribute_ + "' holds no number.");
-      value_ = found.get<double>();
-    }
-    return read(node["geometry"], inside(where, "geometry"), depth + 1);
-  }
-
-  Result<void> polygon(const json& rings, const std::string& where) {
-    if (!rings.is_array() || rings.empty()) return refuse(where, "A polygon is a list of rings.");
-    std::vector<std::vector<glm::dvec2>> read_rings;
-    for (std::size_t r = 0; r < rings.size(); ++r) {
-      const std::string place = where + "[" + std::to_string(r) + "]";
-      if (!rings[r].is_array() || rings[r].size() < 3) return refuse(place, "A ring has at least three points.");
-      auto& ring = read_rings.emplace_back();
-      for (std::size_t p = 0; p < rings[r].size(); ++p) {
-        const json& point = rings[r][p];
-        if (!point.is_array() || point.size() < 2 || !point[0].is_number() || !point[1].is_number())
-          return refuse(place + "[" + std::to_string(p) + "]", "A point is a list of numbers: x, y.");
-        const glm::dvec2 at(point[0].get<double>(), point[1].get<double>());
-        if (!std::isfinite(at.x) || !std::isfinite(at.y))
-          return refuse(place + "[" + std::to_string(p) + "]", "Coordinates are finite numbers.");
-        if (++points_ > kMaxMapPoints)
-          return refuse(place, "A map has at most " + std::to_string(kMaxMapPoints) + " points; send it in parts.");
-        ring.push_back(at);
-      }
-    }
-    areas_.push_back({PolygonArea(read_rings), value_});
-    return {};
-  }
-
-  const std::string& attribute_;
-  double value_;
-  std::vector<MapArea> areas_;
-  std::size_t points_ = 0;
-};
+constexpr int kMostCells = 512;                             // a side
+constexpr std::size_t kMostEntries = std::size_t{1} << 22;  // areas that lie across everything stand in every cell
 
 }  // namespace
 
-Result<std::vector<MapArea>> parse_map_areas(std::string_view geojson, const std::string& attribute, double value) {
-  bool too_deep = false;
-  const json parsed = json::parse(
-      geojson,
-      [&](int depth, json::parse_event_t, const json&) {
-        too_deep = too_deep || depth > kMaxDepth;
-        return depth <= kMaxDepth;
-      },
-      false);
-  if (too_deep) return fail(422, "Map not understood", "It is nested too deeply to be GeoJSON.", "body");
-  if (parsed.is_discarded()) return fail(400, "Malformed JSON", "The body is no JSON text.", "body");
-  AreaReader reader(attribute, value);
-  if (auto read = reader.read(parsed, ""); !read) return tl::unexpected(read.error());
-  auto areas = reader.take();
-  if (areas.empty()) return fail(422, "No polygons", "The map holds no polygon.", "body");
-  return areas;
-}
-
-std::optional<double> value_at(const std::vector<MapArea>& areas, const glm::dvec2& point) {
-  for (auto area = areas.rbegin(); area != areas.rend(); ++area)
-    if (area->area.contains(point)) return area->value;
-  return std::nullopt;
-}
-
-Result<WorldFile> parse_world_file(std::string_view text, const std::string& field) {
-  std::array<double, 6> numbers{};
-  std::size_t count = 0;
-  const auto wrong = [&] {
-    return fail(422, "World file not understood",
-                "Give its six numbers: width and turn of a pixel in x and y, then the centre of the first pixel.",
-                field);
-  };
-  const auto is_gap = [](char c) { return c == ',' || c == ' ' || c == '\n' || c == '\r' || c == '\t'; };
-  for (std::size_t at = 0; at < text.size();) {
-    if (is_gap(text[at])) {
-      ++at;
-      continue;
-    }
-    if (count == numbers.size()) return wrong();
-    const auto [end, error] = std::from_chars(text.data() + at, text.data() + text.size(), numbers[count]);
-    if (error != std::errc() || !std::isfinite(numbers[count])) return wrong();
-    ++count;
-    at = static_cast<std::size_t>(end - text.data());
-    if (at < text.size() && !is_gap(text[at])) return wrong();
+FlatMap::FlatMap(std::vector<MapArea> areas)
+    : areas_(std::move(areas)), low_(std::numeric_limits<double>::infinity()), size_(0) {
+  glm::dvec2 high(-std::numeric_limits<double>::infinity());
+  for (const MapArea& each : areas_) {
+    low_ = glm::min(low_, each.area.low());
+    high = glm::max(high, each.area.high());
   }
-  if (count != numbers.size()) return wrong();
-  const WorldFile world{numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
-  const double area = world.x_per_column * world.y_per_row - world.x_per_row * world.y_per_column;
-  if (!std::isnormal(area)) return fail(422, "World file not understood", "Its pixels have no area.", field);
-  return world;
+  size_ = high - low_;
+  side_ = std::clamp(static_cast<int>(2 * std::sqrt(static_cast<double>(areas_.size()))), 1, kMostCells);
+  while (side_ > 1 && entries() > kMostEntries) side_ /= 2;
+
+  begins_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_) + 1, 0);
+  const auto each_cell = [&](const PolygonArea& area, const auto& take) {
+    const Cells cells = cells_of(area);
+    for (int y = cells.bottom; y <= cells.top; ++y)
+      for (int x = cells.left; x <= cells.right; ++x) take(static_cast<std::size_t>(y * side_ + x));
+  };
+  for (const MapArea& each : areas_) each_cell(each.area, [&](std::size_t at) { ++begins_[at + 1]; });
+  for (std::size_t at = 1; at < begins_.size(); ++at) begins_[at] += begins_[at - 1];
+  in_cell_.resize(begins_.back());
+  auto next = begins_;
+  for (std::size_t i = 0; i < areas_.size(); ++i)
+    each_cell(areas_[i].area, [&](std::size_t at) { in_cell_[next[at]++] = static_cast<std::uint32_t>(i); });
 }
 
-PlacedPicture::PlacedPicture(Picture picture, const WorldFile& world)
-    : picture_(std::move(picture)),
-      pixel_from_plane_(
-          glm::inverse(glm::dmat2(world.x_per_column, world.y_per_column, world.x_per_row, world.y_per_row))),
-      first_centre_(world.x, world.y) {}
+int FlatMap::cell(double at, double low, double size) const {
+  if (!(size > 0)) return 0;
+  return std::clamp(static_cast<int>((at - low) / size * side_), 0, side_ - 1);
+}
 
-std::optional<int> PlacedPicture::luminance_at(const glm::dvec2& point) const {
-  const glm::dvec2 pixel = pixel_from_plane_ * (point - first_centre_) + 0.5;
-  if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < picture_.width && pixel.y < picture_.height)) return std::nullopt;
-  const std::uint8_t* rgba =
-      picture_.rgba.data() + 4 * (static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(picture_.width) +
-                                  static_cast<std::size_t>(pixel.x));
-  if (rgba[3] < 128) return std::nullopt;
-  return static_cast<int>(std::lround(0.2126 * rgba[0] + 0.7152 * rgba[1] + 0.0722 * rgba[2]));
+FlatMap::Cells FlatMap::cells_of(const PolygonArea& area) const {
+  return {cell(area.low().x, low_.x, size_.x), cell(area.high().x, low_.x, size_.x),
+          cell(area.low().y, low_.y, size_.y), cell(area.high().y, low_.y, size_.y)};
+}
+
+std::size_t FlatMap::entries() const {
+  std::size_t sum = 0;
+  for (const MapArea& each : areas_) {
+    const Cells cells = cells_of(each.area);
+    sum +=
+        static_cast<std::size_t>(cells.right - cells.left + 1) * static_cast<std::size_t>(cells.top - cells.bottom + 1);
+  }
+  return sum;
+}
+
+std::optional<double> FlatMap::value_at(const glm::dvec2& point) const {
+  const glm::dvec2 inside = point - low_;
+  if (!(inside.x >= 0 && inside.y >= 0 && inside.x <= size_.x && inside.y <= size_.y)) return std::nullopt;
+  const auto at = static_cast<std::size_t>(cell(point.y, low_.y, size_.y) * side_ + cell(point.x, low_.x, size_.x));
+  for (std::size_t i = begins_[at + 1]; i > begins_[at]; --i) {
+    const MapArea& candidate = areas_[in_cell_[i - 1]];
+    if (candidate.area.contains(point)) return candidate.value;
+  }
+  return std::nullopt;
 }
 
 }  // namespace strata::query

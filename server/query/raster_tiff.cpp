@@ -1,87 +1,15 @@
-#include <tiffio.h>
-
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 #include <string>
 
 #include "query/raster.h"
 #include "query/raster_rows.h"
+#include "query/tiff_memory.h"
 
 namespace strata::query {
 namespace {
 
 constexpr int kTiffTile = 256;
-constexpr std::uint64_t kMaxTileBytes = 256u << 20;  // of a file's own tiles; larger ones are refused
-
-// A file in memory, and libtiff's first complaint about it.
-struct Memory {
-  std::span<const std::uint8_t> in;          // reading
-  std::vector<std::uint8_t>* out = nullptr;  // writing
-  std::uint64_t at = 0;
-  std::string complaint;
-
-  std::uint64_t size() const { return out ? out->size() : in.size(); }
-};
-
-Memory& memory(thandle_t handle) { return *static_cast<Memory*>(handle); }
-
-tmsize_t read_bytes(thandle_t handle, void* data, tmsize_t size) {
-  Memory& file = memory(handle);
-  if (size <= 0 || file.at >= file.size()) return 0;
-  const auto n = std::min<std::uint64_t>(static_cast<std::uint64_t>(size), file.size() - file.at);
-  std::memcpy(data, (file.out ? file.out->data() : file.in.data()) + file.at, n);
-  file.at += n;
-  return static_cast<tmsize_t>(n);
-}
-
-tmsize_t write_bytes(thandle_t handle, void* data, tmsize_t size) {
-  Memory& file = memory(handle);
-  if (!file.out || size < 0) return 0;
-  if (file.at + size > file.out->size()) file.out->resize(file.at + size);
-  std::memcpy(file.out->data() + file.at, data, size);
-  file.at += size;
-  return size;
-}
-
-toff_t seek_to(thandle_t handle, toff_t offset, int whence) {
-  Memory& file = memory(handle);
-  if (whence == SEEK_SET) file.at = offset;
-  if (whence == SEEK_CUR) file.at += offset;
-  if (whence == SEEK_END) file.at = file.size() + offset;
-  return file.at;
-}
-
-int close_nothing(thandle_t) { return 0; }
-toff_t size_of(thandle_t handle) { return memory(handle).size(); }
-int map_nothing(thandle_t, void**, toff_t*) { return 0; }
-void unmap_nothing(thandle_t, void*, toff_t) {}
-
-int keep_complaint(TIFF*, void* user, const char*, const char* format, va_list arguments) {
-  auto& complaint = static_cast<Memory*>(user)->complaint;
-  char text[300];
-  std::vsnprintf(text, sizeof text, format, arguments);
-  if (complaint.empty()) complaint = text;
-  return 1;
-}
-
-int ignore_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
-
-struct CloseTiff {
-  void operator()(TIFF* tiff) const { TIFFClose(tiff); }
-};
-using Tiff = std::unique_ptr<TIFF, CloseTiff>;
-
-Tiff open_tiff(Memory& file, const char* mode) {
-  std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
-  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_complaint, &file);
-  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore_warning, nullptr);
-  TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), 2 * kMaxTileBytes);
-  return Tiff(TIFFClientOpenExt("texels.tif", mode, &file, read_bytes, write_bytes, seek_to, close_nothing, size_of,
-                                map_nothing, unmap_nothing, options.get()));
-}
 
 std::uint16_t sample_format(ValueType type) {
   if (is_float(type)) return SAMPLEFORMAT_IEEEFP;
@@ -97,20 +25,6 @@ std::string describe(int samples, int bits, int format) {
   if (format == SAMPLEFORMAT_IEEEFP) kind = "floating-point numbers";
   return std::to_string(samples) + (samples == 1 ? " sample" : " samples") + " of " + std::to_string(bits) + "-bit " +
          kind;
-}
-
-// Only lossless codecs: the others would change values, and they are the larger attack surface.
-bool is_lossless(int compression) {
-  switch (compression) {
-    case COMPRESSION_NONE:
-    case COMPRESSION_LZW:
-    case COMPRESSION_DEFLATE:
-    case COMPRESSION_ADOBE_DEFLATE:
-    case COMPRESSION_PACKBITS:
-    case COMPRESSION_LZMA:
-    case COMPRESSION_ZSTD: return true;
-    default: return false;
-  }
 }
 
 Result<void> check_form(const Layer& layer, TIFF* tiff) {
@@ -150,17 +64,17 @@ Result<void> put_samples(TileMapBuilder& builder, const Layer& layer, const std:
   return {};
 }
 
-tl::unexpected<Problem> damaged(const Memory& file) {
+tl::unexpected<Problem> damaged(const TiffMemory& file) {
   return refuse_raster(
       "The TIFF cannot be read: " + (file.complaint.empty() ? std::string("damaged") : file.complaint) + ".");
 }
 
-Result<void> read_tiles(const Layer& layer, TIFF* tiff, const Memory& file, TileMapBuilder& builder) {
+Result<void> read_tiles(const Layer& layer, TIFF* tiff, const TiffMemory& file, TileMapBuilder& builder) {
   std::uint32_t tile_width = 0, tile_height = 0;
   TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &tile_width);
   TIFFGetField(tiff, TIFFTAG_TILELENGTH, &tile_height);
   const std::uint64_t pixel_bytes = 2u * bytes_per_texel(layer.type), row_bytes = tile_width * pixel_bytes;
-  if (tile_width == 0 || tile_height == 0 || row_bytes > kMaxTileBytes / tile_height)
+  if (tile_width == 0 || tile_height == 0 || row_bytes > kMaxTiffTileBytes / tile_height)
     return refuse_raster("The TIFF's tiles are " + std::to_string(tile_width) + " × " + std::to_string(tile_height) +
                          "; save it with tiles of 256 × 256.");
   std::vector<std::uint8_t> tile(row_bytes * tile_height);
@@ -177,7 +91,7 @@ Result<void> read_tiles(const Layer& layer, TIFF* tiff, const Memory& file, Tile
   return {};
 }
 
-Result<void> read_scanlines(const Layer& layer, TIFF* tiff, const Memory& file, TileMapBuilder& builder) {
+Result<void> read_scanlines(const Layer& layer, TIFF* tiff, const TiffMemory& file, TileMapBuilder& builder) {
   std::vector<std::uint8_t> line(std::size_t(layer.resolution) * 2 * bytes_per_texel(layer.type));
   if (TIFFScanlineSize64(tiff) != line.size()) return damaged(file);
   for (int row = 0; row < layer.resolution; ++row) {
@@ -211,7 +125,7 @@ void describe_form(TIFF* tiff, const Layer& layer) {
 
 Result<std::vector<std::uint8_t>> encode_tiff(const Layer& layer, const TileMap& tiles) {
   std::vector<std::uint8_t> out;
-  Memory file{{}, &out, 0, {}};
+  TiffMemory file{{}, &out, 0, {}};
   auto failed = [&] { return fail(500, "TIFF not written", "libtiff: " + file.complaint); };
   Tiff tiff = open_tiff(file, "wm");
   if (!tiff) return failed();
@@ -247,7 +161,7 @@ Result<std::vector<std::uint8_t>> encode_tiff(const Layer& layer, const TileMap&
 }
 
 Result<TileMap> decode_tiff(const Layer& layer, std::span<const std::uint8_t> bytes) {
-  Memory file{bytes, nullptr, 0, {}};
+  TiffMemory file{bytes, nullptr, 0, {}};
   Tiff tiff = open_tiff(file, "rm");
   if (!tiff) return damaged(file);
   if (auto form = check_form(layer, tiff.get()); !form) return tl::unexpected(form.error());

@@ -9,21 +9,11 @@ import zlib
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.cameras import camera_from
+from support.maps import png
 from support.meshes import bumpy_ball
 from support.strata_server import LONG_S, StrataServer
 
 M = "/models/ball"
-
-
-def png(width, height, color):
-    """A picture with the colour that `color(x, y)` gives, as (r, g, b)."""
-    rows = b"".join(b"\0" + b"".join(bytes(color(x, y)) for x in range(width)) for y in range(height))
-
-    def part(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-
-    head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + part(b"IHDR", head) + part(b"IDAT", zlib.compress(rows)) + part(b"IEND", b"")
 
 
 def pixels(picture):

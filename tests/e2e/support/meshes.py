@@ -18,10 +18,10 @@ def _grid_faces(rows, columns):
     return faces
 
 
-def folded_grid(cells=20, size=100.0):
-    """A sheet in folds that hide one another from the side."""
+def folded_grid(cells=20, size=100.0, fold=1.0):
+    """A sheet in folds that hide one another from the side; with a small `fold` it is nearly flat."""
     step = size / cells
-    vertices = [(j * step, i * step, 12 * math.sin(j * 0.9) + 4 * math.cos(i * 0.7))
+    vertices = [(j * step, i * step, fold * (12 * math.sin(j * 0.9) + 4 * math.cos(i * 0.7)))
                 for i in range(cells + 1) for j in range(cells + 1)]
     return ply(vertices, [(a, c, b) for a, b, c in _grid_faces(cells, cells)])
 

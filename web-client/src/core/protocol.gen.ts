@@ -723,6 +723,48 @@ export interface LayerList {
   total: number;
 }
 
+/** Colour that covers a part of a picture. */
+export interface MapColor {
+  color: string;
+  share: number;
+  /** It covers most of the border. */
+  background: boolean;
+}
+
+/** Attribute of a map's polygons. */
+export interface MapColumn {
+  name: string;
+  /** What every polygon has; mixed: it cannot be painted. */
+  type: "number" | "text" | "mixed";
+  samples: string[];
+}
+
+/** What a map file holds. */
+export interface MapContents {
+  kind: "polygons" | "picture";
+  format: "geojson" | "shapefile" | "picture" | "tiff";
+  /** Where the file names it. */
+  crs?: string;
+  /** In the plane: least x and y, greatest x and y. Absent: it does not say where it lies. */
+  bounds?: [number, number, number, number];
+  polygons?: number;
+  columns?: MapColumn[];
+  /** Pixels. */
+  width?: number;
+  height?: number;
+  /** In the order of a world file's lines. */
+  world?: number[];
+  /** Whose numbers can be painted. Absent: none. */
+  bands?: number;
+  type?: ValueType;
+  nodata?: number;
+  /** It can be seen as a picture. */
+  has_colors?: boolean;
+  /** Its bands are colours. */
+  is_rgb?: boolean;
+  colors?: MapColor[];
+}
+
 /** Values computed from the model's shape. The answer is a job; the layer is there once it is done. Unit, palette and description follow from the recipe where they are not given. */
 export interface ShapeRecipe {
   kind: "height" | "slope" | "azimuth" | "mean_curvature" | "gaussian_curvature" | "max_curvature" | "min_curvature" | "roughness" | "ambient_occlusion" | "boundary_distance" | "model_distance" | "vertex_property";

@@ -108,6 +108,9 @@ enum class Schema {
   Transfer,
   JobList,
   LayerList,
+  MapContents,
+  MapColumn,
+  MapColor,
   LayerCreate,
   ShapeRecipe,
   Recipe,
@@ -131,7 +134,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 104;
+constexpr int kSchemaCount = 107;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}

@@ -1,0 +1,47 @@
+#include "net/map_legend.h"
+
+#include <algorithm>
+
+namespace strata::net {
+namespace {
+
+constexpr std::size_t kMostPoints = 4096, kLongestName = 200;  // as in the schema `Palette`
+constexpr std::size_t kMostNamed = 5;
+
+}  // namespace
+
+Result<std::optional<query::KeyNames>> keys_of(room::Room& room, const Layer& layer) {
+  if (layer.palette.mode != PaletteMode::categorical) return std::nullopt;
+  const auto statistics = room.statistics(layer.slug);
+  if (!statistics) return tl::unexpected(statistics.error());
+  std::set<double> taken;
+  for (const auto& [key, of_key] : statistics->keys) taken.insert(key);
+  return query::KeyNames(layer.palette, taken);
+}
+
+Result<void> extend_legend(const Request& request, room::Room& room, const Layer& layer, const query::KeyNames& keys) {
+  if (!keys.has_changed()) return {};
+  const auto& names = keys.added_names();
+  if (request.principal->role < Role::curator) {
+    if (names.empty()) return {};
+    std::string listed;
+    for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i)
+      listed += (i ? ", " : "") + names[i].substr(0, kLongestName);
+    return fail(403, "Names not in the legend",
+                "The legend of the layer lacks: " + listed + (names.size() > kMostNamed ? ", …" : "") +
+                    ". A curator may add them.",
+                "attribute");
+  }
+  for (const std::string& name : names)
+    if (name.size() > kLongestName)
+      return fail(422, "Name too long", "\"" + name.substr(0, 60) + "…\" is too long for a legend.", "attribute");
+  Layer changed = layer;
+  changed.palette = keys.extended();
+  if (changed.palette.points.size() > kMostPoints)
+    return fail(422, "Too many names", "A legend holds at most " + std::to_string(kMostPoints) + " entries.",
+                "attribute");
+  if (auto done = room.update_layer(std::move(changed)); !done) return tl::unexpected(done.error());
+  return {};
+}
+
+}  // namespace strata::net

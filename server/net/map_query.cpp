@@ -1,0 +1,71 @@
+#include "net/map_query.h"
+
+#include <charconv>
+
+#include "query/map_features.h"
+
+namespace strata::net {
+
+Result<double> number_of(const Request& request, const std::string& name, double low, double high,
+                         std::optional<double> fallback) {
+  const auto found = request.query.find(name);
+  if (found == request.query.end()) {
+    if (fallback) return *fallback;
+    return fail(422, "Parameter missing", "Give `" + name + "`.", name);
+  }
+  double value = 0;
+  const std::string& text = found->second;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high))
+    return fail(422, "Parameter out of range", "`" + name + "` is a number in its range.", name);
+  return value;
+}
+
+Result<MapAxis> axis_of(const Request& request) {
+  const std::string text = request.query_or("along", "-z");
+  const int axis = text.size() == 2 ? text[1] - 'x' : -1;
+  if (axis < 0 || axis > 2 || (text[0] != '-' && text[0] != '+'))
+    return fail(422, "Unknown direction",
+                "`along` is one of -x, +x, -y, +y, -z, +z: the way that the map is looked at.", "along");
+  MapAxis made{glm::dvec3(0), axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
+  made.direction[axis] = text[0] == '-' ? -1 : 1;
+  return made;
+}
+
+Result<query::WorldFile> world_of(const Request& request, const MapFiles& files,
+                                  const std::optional<query::WorldFile>& own) {
+  if (const auto asked = request.query.find("world"); asked != request.query.end())
+    return query::parse_world_file(asked->second, "world");
+  if (const auto text = files.companion_text({"tfw", "tifw", "pgw", "jgw", "wld"}); !text.empty())
+    return query::parse_world_file(text, "body");
+  if (own) return *own;
+  return fail(
+      422, "Place missing",
+      "The picture does not say where it lies. Give `world`, the six numbers of its world file, or send that file "
+      "with it.",
+      "world");
+}
+
+Result<void> check_map_crs(const Model& model, const std::string& crs, bool in_degrees) {
+  if (in_degrees)
+    return fail(422, "Coordinates in degrees",
+                "The map lies in longitude and latitude. Save it in the plane coordinates of the model" +
+                    (model.crs.empty() ? "." : ", " + model.crs + "."),
+                "body");
+  if (!crs.empty() && !model.crs.empty() && crs != model.crs)
+    return fail(422, "Other coordinates",
+                "The map lies in " + crs + ", the model in " + model.crs + "; save the map in " + model.crs + ".",
+                "body");
+  return {};
+}
+
+Result<std::uint32_t> bits_of(const Layer& layer, double value, const std::string& where) {
+  auto bits = encode_value(layer.type, value);
+  if (bits) return *bits;
+  Problem problem = bits.error();
+  problem.detail = where + query::number_text(value) + " does not fit. " + problem.detail;
+  problem.field = "body";
+  return tl::unexpected(std::move(problem));
+}
+
+}  // namespace strata::net

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <shapefil.h>
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+
+namespace strata::query {
+
+// Files in memory for shapelib, and its first complaint about them. While one lives, its thread's shapelib calls through `hooks`
+// see these files alone; nothing is written anywhere.
+class ShapelibMemory {
+ public:
+  using Files = std::map<std::string, std::span<const std::uint8_t>>;
+  explicit ShapelibMemory(Files files);  // by name; one without bytes is not there
+  ~ShapelibMemory();
+  ShapelibMemory(const ShapelibMemory&) = delete;
+  ShapelibMemory& operator=(const ShapelibMemory&) = delete;
+
+  SAHooks* hooks() { return &hooks_; }
+  // "WHAT: the library's words." for a message.
+  std::string complaint(const std::string& what) const;
+
+  struct OpenFile {
+    std::span<const std::uint8_t> bytes;
+    std::size_t at = 0;
+  };
+
+ private:
+  static SAFile open(const char* name, const char* access);
+  static void complain(const char* message);
+
+  Files files_;
+  SAHooks hooks_{};
+  std::string complaint_;
+  ShapelibMemory* outer_;
+};
+
+}  // namespace strata::query

@@ -1,0 +1,219 @@
+#!/usr/bin/env python3
+"""Flat maps painted over a layer: shapefiles, GeoTIFF, scanned maps by their colours. With the refusals, undo and restart."""
+import json
+import os
+import sys
+import urllib.parse
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.maps import dbf, form, packed, png, shp, square, tiff
+from support.meshes import folded_grid
+from support.strata_server import StrataServer
+
+M = "/models/sheet"  # x and y from 0 to 100, seen whole from above
+POLYGONS = [[square(10, 10, 20)], [square(50, 10, 20), square(55, 15, 5)], [square(10, 60, 30)]]
+TABLE = [("UNIT", "N", 6, ["11", "12", "13"]), ("STATE", "C", 12, ["salt", "crack", "salt"]), ("SOME", "N", 4, ["1", "", "3"])]
+UTM = 'PROJCS["ETRS89 / UTM zone 30N",AUTHORITY["EPSG","25830"]]'
+
+
+def layer(server, name, kind="u8", **more):
+    made = server.ok("POST", M + "/layers", {"name": name, "type": kind, "resolution": 2048, **more}).json()
+    return f"{M}/layers/{made['slug']}"
+
+
+def values(server, path, *places):
+    name = path.rsplit("/", 1)[1]
+    answer = server.ok("POST", M + "/positions", {"points": [[x, y, 0] for x, y in places], "layers": [name]}).json()
+    return [each["values"][name].get("value") if each["values"][name]["valid"] else None for each in answer["positions"]]
+
+
+def query(path, **parameters):
+    return path + "?" + urllib.parse.urlencode(parameters)
+
+
+def contents(server, body, headers=None, **parameters):
+    return server.ok("POST", query(M + "/map-contents", **parameters), body, headers=headers).json()
+
+
+def check_shapefile(server):
+    files = {"units_shp": shp(POLYGONS), "units_dbf": dbf(TABLE)}
+    body, headers = form(**files)
+    told = contents(server, body, headers)
+    assert (told["kind"], told["format"], told["polygons"], told["bounds"]) == ("polygons", "shapefile", 3, [10, 10, 70, 90]), told
+    assert told["columns"] == [{"name": "UNIT", "type": "number", "samples": ["11", "12", "13"]},
+                               {"name": "STATE", "type": "text", "samples": ["salt", "crack"]},
+                               {"name": "SOME", "type": "mixed", "samples": ["1", "3"]}], told["columns"]
+
+    units = layer(server, "Units")
+    places = [(20, 20), (60, 25), (57, 17), (25, 75), (90, 90)]
+    painted = server.ok("POST", query(units + "/polygons", attribute="UNIT"), body, headers={**headers, "Idempotency-Key": "units"}).json()
+    assert painted["texels_changed"] > 0 and values(server, units, *places) == [11, 12, None, 13, None], values(server, units, *places)
+    # A repeat with another boundary is the same map.
+    again = server.ok("POST", query(units + "/polygons", attribute="UNIT"), body.replace(b"XyZ", b"other"),
+                      headers={"Content-Type": "multipart/form-data; boundary=other", "Idempotency-Key": "units"}).json()
+    assert again["sequence"] == painted["sequence"], again
+    area = {key["key"]: key["area_m2"] for key in server.get(units + "/statistics").json()["keys"]}
+    assert area[13] > 1.5 * area[11] > 1.5 * area[12] * 0.9, area
+    history = server.get(units + "/edits").json()
+    assert history["total"] == 1 and history["edits"][0]["op"] == "import", history
+    server.ok("POST", units + "/undo")
+    assert server.get(units + "/statistics").json()["texels"] == 0
+    server.ok("POST", units + "/redo")
+    assert values(server, units, *places) == [11, 12, None, 13, None]
+
+    # One value for all, from a zip in folders, without its table.
+    zipped = packed(**{"survey/units_shp": files["units_shp"], "survey/read_me": b"", "__MACOSX/units_shp": b"x"})
+    server.ok("POST", query(units + "/polygons", value=7), zipped, headers={"Content-Type": "application/zip"})
+    assert values(server, units, *places) == [7, 7, None, 7, None]
+
+    states = layer(server, "States", palette={"mode": "categorical", "points": [{"at": 4, "color": "#112233", "label": "crack"}]})
+    server.ok("POST", query(states + "/polygons", attribute="STATE"), body, headers=headers)
+    assert values(server, states, *places) == [1, 4, None, 1, None]
+    points = server.get(states).json()["palette"]["points"]
+    assert [(each["at"], each.get("label")) for each in points] == [(1, "salt"), (4, "crack")] and points[1]["color"] == "#112233ff", points
+    # Names of numbers, from GeoJSON.
+    feature = {"type": "Feature", "properties": {"id": 9, "what": "moss"},
+               "geometry": {"type": "Polygon", "coordinates": [[[80, 80], [95, 80], [95, 95], [80, 95]]]}}
+    server.ok("POST", query(states + "/polygons", attribute="id", names="what"), feature)
+    assert values(server, states, *places) == [1, 4, None, 1, 9]
+    assert {each["at"]: each.get("label") for each in server.get(states).json()["palette"]["points"]} == {1: "salt", 4: "crack", 9: "moss"}
+    print("shapefile: ok", flush=True)
+    return states, places
+
+
+def check_shapefile_refusals(server):
+    path = layer(server, "Refused")
+    good, table = shp(POLYGONS), dbf(TABLE)
+    for what, files, parameters, status, says in [
+        ("a name without a legend", {"a_shp": good, "a_dbf": table}, {"attribute": "STATE"}, 422, "categorical"),
+        ("an attribute that is not there", {"a_shp": good, "a_dbf": table}, {"attribute": "DEPTH"}, 422, "UNIT, STATE, SOME"),
+        ("an attribute that some lack", {"a_shp": good, "a_dbf": table}, {"attribute": "SOME"}, 422, "Record 2"),
+        ("an attribute without a table", {"a_shp": good, "a_prj": b""}, {"attribute": "UNIT"}, 422, "none at all"),
+        ("a table of another", {"a_shp": good, "a_dbf": dbf([("UNIT", "N", 6, ["1"])])}, {"attribute": "UNIT"}, 422, "do not belong together"),
+        ("cut off", {"a_shp": good[:-20], "a_dbf": table}, {"value": 1}, 422, "cut off"),
+        ("a table that is cut off", {"a_shp": good, "a_dbf": table[:-20]}, {"value": 1}, 422, ".dbf is cut off"),
+        ("two maps", {"a_shp": good, "b_shp": good}, {"value": 1}, 422, "a.shp, b.shp"),
+        ("no map", {"a_dbf": table, "a_prj": b"x"}, {"value": 1}, 415, "Send the map"),
+        ("a picture", {"a_png": png(1, 1, lambda x, y: (1, 2, 3))}, {"value": 1}, 415, "picture"),
+        ("degrees", {"a_shp": good, "a_prj": b'GEOGCS["WGS 84"]'}, {"value": 1}, 422, "longitude"),
+        ("a value that does not fit", {"a_shp": good}, {"value": 300}, 422, "300"),
+        ("names of nothing", {"a_shp": good}, {"value": 3, "names": "STATE"}, 422, "names"),
+    ]:
+        body, headers = form(**files)
+        answer = server.post(query(path + "/polygons", **parameters), body, headers=headers)
+        assert answer.status == status and says in answer.json()["detail"], (what, answer)
+    for what, body, status, says in [("an empty zip", packed(notes_md=b"x"), 415, "holds no map"),
+                                     ("a broken zip", packed(a_shp=good)[:-30], 422, "zip")]:
+        answer = server.post(query(path + "/polygons", value=1), body, headers={"Content-Type": "application/zip"})
+        assert answer.status == status and says in answer.json()["detail"], (what, answer)
+    assert server.get(path + "/edits").json()["total"] == 0
+    server.ok("PATCH", M, {"crs": "EPSG:32630"})
+    body, headers = form(a_shp=good, a_prj=UTM.encode())
+    answer = server.post(query(path + "/polygons", value=1), body, headers=headers)
+    assert answer.status == 422 and "EPSG:25830" in answer.json()["detail"] and "EPSG:32630" in answer.json()["detail"], answer
+    server.ok("PATCH", M, {"crs": "EPSG:25830"})
+    server.ok("POST", query(path + "/polygons", value=1), body, headers=headers)
+    print("refused shapefiles: ok", flush=True)
+
+
+def check_raster(server):
+    kind = {"Content-Type": "image/tiff"}
+    # 10 × 10 pixels of 10 units over the sheet; the first row is the highest y.
+    height = lambda x, y: -9999 if (x, y) == (0, 0) else 0.5 * x + y
+    raster = tiff(10, 10, height, nodata="-9999", scale=10.0, origin=(0, 100), epsg=25830)
+    told = contents(server, raster, kind)
+    assert (told["width"], told["height"], told["bands"], told["type"], told["nodata"], told["crs"]) == (10, 10, 1, "f32", -9999, "EPSG:25830"), told
+    assert told["world"] == [10, 0, 0, -10, 5, 95] and told["bounds"] == [0, 0, 100, 100] and not told["has_colors"], told
+    depth = layer(server, "Depth", "f32")
+    server.ok("POST", depth + "/picture", raster, headers=kind)
+    places = [(25, 95), (5, 95), (95, 5)]
+    assert values(server, depth, *places) == [1.0, None, 13.5], values(server, depth, *places)
+    server.ok("POST", depth + "/undo")
+    assert values(server, depth, *places) == [None, None, None]
+    # A place that is given counts more than its own; a world file beside it, too.
+    server.ok("POST", query(depth + "/picture", world="5,0,0,-5,2.5,97.5"), raster, headers=kind)
+    assert values(server, depth, (12, 98)) == [1.0] and values(server, depth, (95, 5)) == [None]
+    server.ok("POST", depth + "/undo")
+    body, headers = form(a_tif=raster, a_tfw=b"10\n0\n0\n-10\n15\n95\n")
+    server.ok("POST", depth + "/picture", body, headers=headers)
+    assert values(server, depth, (15, 95), (25, 95)) == [None, 0.5]
+    # Bands.
+    two = tiff(2, 1, lambda x, y: (x, 7 + x), kind="h", samples=2, scale=50.0, origin=(0, 100))
+    counts = layer(server, "Counts", "i16")
+    server.ok("POST", query(counts + "/picture", band=2), two, headers=kind)
+    assert values(server, counts, (25, 75), (75, 75)) == [7, 8]
+
+    grey = layer(server, "Grey")
+    for what, file, parameters, status, says in [
+        ("without a place", tiff(1, 1, lambda x, y: 1.0), {}, 422, "world"),
+        ("a fraction in a whole layer", raster, {}, 422, "Pixel 1, 0"),
+        ("no such band", two, {"band": 3}, 422, "1 to 2"),
+        ("band zero", two, {"band": 0}, 422, "band"),
+        ("a band and colours", two, {"band": 1, "colors": "auto"}, 422, "not both"),
+        ("colours of numbers", raster, {"colors": "auto"}, 422, "no colours"),
+        ("another system", tiff(1, 1, lambda x, y: 1, kind="B", scale=1.0, origin=(0, 0), epsg=32633), {}, 422, "EPSG:32633"),
+        ("cut off", raster[:-40], {}, 422, "cannot be read"),
+        ("nothing but a head", raster[:8], {}, 422, "cannot be read"),
+        ("pixels without a size", tiff(1, 1, lambda x, y: 1, kind="B", scale=1e-320, origin=(0, 0)), {}, 422, "area"),
+    ]:
+        answer = server.post(query(grey + "/picture", **parameters), file, headers=kind)
+        assert answer.status == status and (says in answer.json()["detail"] or says == answer.json().get("field")), (what, answer)
+    body, headers = form(a_tif=two, a_tfw=b"1 2 3")
+    assert server.post(grey + "/picture", body, headers=headers).status == 422
+    assert server.post(M + "/map-contents", body, headers=headers).status == 422
+    assert server.get(grey + "/edits").json()["total"] == 0
+    print("rasters: ok", flush=True)
+
+
+def check_colors(server):
+    def scanned(x, y):
+        shake = (x * 7 + y * 13) % 9 - 4
+        color = (238, 232, 218)
+        if 10 <= x < 40 and 10 <= y < 40:
+            color = (188, 44, 40)
+        if 60 <= x < 90 and 10 <= y < 30:
+            color = (44, 64, 180)
+        return tuple(each + shake for each in color)
+
+    picture = png(100, 100, scanned)  # a pixel a unit; its first row is y = 100
+    place = "1,0,0,-1,0.5,99.5"
+    told = contents(server, picture, {"Content-Type": "image/png"})
+    colors = told["colors"]
+    assert told["kind"] == "picture" and "world" not in told and len(colors) == 3, told
+    assert [each["background"] for each in colors] == [True, False, False] and abs(colors[1]["share"] - 0.09) < 0.005, colors
+    pigments = layer(server, "Pigments", palette={"mode": "categorical", "points": []})
+    keys = json.dumps({colors[1]["color"]: 5, "#2c40b4": 6})
+    server.ok("POST", query(pigments + "/picture", world=place, colors=keys), picture)
+    places = [(25, 75), (75, 80), (50, 50), (75, 60)]
+    assert values(server, pigments, *places) == [5, 6, None, None], values(server, pigments, *places)
+    points = {each["at"]: each["color"] for each in server.get(pigments).json()["palette"]["points"]}
+    assert points == {5: colors[1]["color"] + "ff", 6: "#2c40b4ff"}, points
+    server.ok("POST", pigments + "/undo")
+    server.ok("POST", query(pigments + "/picture", world=place, colors="auto"), picture)
+    assert values(server, pigments, *places) == [1, 2, None, None]
+    for what, parameters, says in [
+        ("no object", {"colors": "red"}, "object"), ("no colour", {"colors": '{"red":1}'}, "#rrggbb"), ("no number", {"colors": '{"#ff0000":"a"}'}, "number"),
+        ("too large a value", {"colors": '{"#ff0000":300}'}, "300"), ("no tolerance", {"colors": "auto", "tolerance": 0}, "tolerance"),
+    ]:
+        answer = server.post(query(pigments + "/picture", world=place, **parameters), picture)
+        assert answer.status == 422 and says in answer.json()["detail"], (what, answer)
+    blank = server.post(query(pigments + "/picture", world=place, colors="auto"), png(4, 4, lambda x, y: (9, 9, 9)))
+    assert blank.status == 422 and "background" in blank.json()["detail"], blank
+    print("colours: ok", flush=True)
+
+
+def main():
+    with StrataServer() as server:
+        server.import_model(folded_grid(fold=0.01), "sheet.ply", name="Sheet", unit="mm")
+        states, places = check_shapefile(server)
+        check_shapefile_refusals(server)
+        check_raster(server)
+        check_colors(server)
+        server.kill()
+        server.start()
+        assert values(server, states, *places) == [1, 4, None, 1, 9], "it survives the end of the server"
+        assert server.stop() == 0
+        server.assert_clean_log()
+
+
+main()
