@@ -18,6 +18,7 @@ struct JobResult {
   JobResult(std::int64_t the_model) : model(the_model) {}  // NOLINT(google-explicit-constructor): most make only that
   std::int64_t model = 0;
   std::vector<std::int64_t> layers;  // new ones on it
+  std::optional<std::int64_t> look;  // a new one on it
   nlohmann::json report;             // what else is to be told, see the schema `JobReport`; null: nothing
 };
 

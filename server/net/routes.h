@@ -46,6 +46,7 @@ void add_frame_routes(Router& router, const RouteContext& context);
 void add_texel_routes(Router& router, const RouteContext& context);
 void add_shape_routes(Router& router, const RouteContext& context);
 void add_map_routes(Router& router, const RouteContext& context);
+void add_orthophoto_routes(Router& router, const RouteContext& context);
 
 // --- shared by the route files
 

@@ -234,6 +234,7 @@ nlohmann::json to_json(const jobs::JobStatus& job) {
   if (!job.result) return json;
   json["model"] = job.result->model;
   if (!job.result->layers.empty()) json["layers"] = job.result->layers;
+  if (job.result->look) json["look"] = *job.result->look;
   if (!job.result->report.is_null()) json["report"] = job.result->report;
   return json;
 }

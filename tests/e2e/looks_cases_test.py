@@ -1,44 +1,17 @@
 #!/usr/bin/env python3
 """Looks, light, sections and scans of several files, over HTTP and from the command line."""
 import os
-import struct
 import subprocess
 import sys
 import tempfile
-import zlib
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.cameras import camera_from
-from support.maps import png
+from support.maps import pixels, png
 from support.meshes import bumpy_ball
 from support.strata_server import LONG_S, StrataServer
 
 M = "/models/ball"
-
-
-def pixels(picture):
-    """Rows of (r, g, b) of a PNG that the server made."""
-    width, height, _, kind = struct.unpack(">IIBB", picture[16:26])
-    channels = {2: 3, 6: 4}[kind]
-    at, data = 8, b""
-    while at < len(picture):
-        size, name = struct.unpack(">I4s", picture[at:at + 8])
-        if name == b"IDAT":
-            data += picture[at + 8:at + 8 + size]
-        at += size + 12
-    raw, rows, before = zlib.decompress(data), [], bytes(width * channels)
-    for y in range(height):
-        start = y * (width * channels + 1)
-        line, out = raw[start + 1:start + 1 + width * channels], bytearray(width * channels)
-        for i, value in enumerate(line):
-            a = out[i - channels] if i >= channels else 0
-            b, c = before[i], before[i - channels] if i >= channels else 0
-            p = a + b - c
-            nearest = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
-            out[i] = (value + [0, a, b, (a + b) // 2, nearest][raw[start]]) & 255
-        rows.append([tuple(out[x:x + 3]) for x in range(0, len(out), channels)])
-        before = bytes(out)
-    return rows
 
 
 def frame(server, **request):

@@ -6,7 +6,7 @@ import sys
 import urllib.parse
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from support.maps import dbf, form, packed, png, shp, square, tiff
+from support.maps import dbf, form, packed, pixels, png, shp, square, tiff
 from support.meshes import folded_grid
 from support.strata_server import StrataServer
 
@@ -202,6 +202,68 @@ def check_colors(server):
     print("colours: ok", flush=True)
 
 
+def look_colors(server, look, *places):
+    """What a camera from above sees at these places of the sheet, unlit."""
+    answer = server.ok("POST", M + "/frame", {"camera": ABOVE, "format": "png", "layers": [], "looks": [{"look": look}], "light": {"mode": "unlit"}})
+    rows = pixels(answer.body)
+    return [rows[round(400 - 4 * y - 0.5)][round(4 * x - 0.5)] for x, y in places]
+
+
+# 400 × 400 pixels over the sheet, without perspective.
+ABOVE = {"view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -100, 1],
+         "projection": [0.02, 0, 0, 0, 0, 0.02, 0, 0, 0, 0, -0.01, 0, 0, 0, -1, 1], "width": 400, "height": 400}
+
+
+def check_orthophoto(server):
+    def colored(x, y):
+        return (220, 30, 30) if x < 25 else (30, 30, 220) if y < 15 else (30, 200, 30)
+
+    picture = png(40, 40, colored)  # over x from 0 to 80, y from 20 to 100
+    plain = look_colors(server, server.ok("POST", M + "/looks?name=White", png(8, 8, lambda x, y: (255, 255, 255))).json()["id"], (90, 10))
+    body, headers = form(site_png=picture, site_pgw=b"2\n0\n0\n-2\n1\n99\n")
+    headers["Idempotency-Key"] = "ortho"
+    started = server.ok("POST", query(M + "/orthophotos", name="Orthophoto 2024"), body, expect=(202,), headers=headers).json()
+    job = server.wait_for_job(started["id"])
+    assert job["state"] == "done" and job["model"] == server.get(M).json()["id"], job
+    look = server.get(f"{M}/looks/{job['look']}").json()
+    assert (look["name"], look["slug"], look["visible"], look["media_type"]) == ("Orthophoto 2024", "orthophoto-2024", False, "image/png"), look
+    assert server.ok("POST", query(M + "/orthophotos", name="Orthophoto 2024"), body, expect=(202,), headers=headers).json()["id"] == job["id"]
+    seen = look_colors(server, look["id"], (30, 90), (70, 90), (70, 50), (48, 90), (52, 90))  # in the middle of charts
+    near = lambda a, b: all(abs(x - y) <= 3 for x, y in zip(a, b))
+    wanted = [(220, 30, 30), (30, 30, 220), (30, 200, 30), (220, 30, 30), (30, 30, 220)]
+    assert all(near(a, b) for a, b in zip(seen, wanted)), seen
+    # The picture ends at x = 80 and y = 20: beyond, nothing of it, and no dark seam before.
+    bare = look_colors(server, look["id"], (90, 10), (77, 50))
+    assert not near(bare[0], plain[0]) and max(bare[0]) - min(bare[0]) < 30 and near(bare[1], (30, 200, 30)), bare
+
+    tall = tiff(4, 4, lambda x, y: (10, 200, 200, 255 if x < 2 else 0), kind="B", samples=4, scale=25.0, origin=(0, 100), epsg=25830)
+    started = server.ok("POST", query(M + "/orthophotos", name="Half", resolution=2048), tall, expect=(202,), headers={"Content-Type": "image/tiff"}).json()
+    half = server.wait_for_job(started["id"])
+    assert half["state"] == "done", half
+    seen = look_colors(server, half["look"], (30, 50), (70, 50))
+    assert near(seen[0], (10, 200, 200)) and not near(seen[1], (10, 200, 200)), seen
+    assert server.get(f"{M}/looks/{half['look']}").json()["width"] == 2048
+
+    count = server.get(M + "/looks").json()["total"]
+    for what, body, parameters, status, field in [
+        ("no name", picture, {"world": "2,0,0,-2,1,99"}, 422, "name"),
+        ("no place", picture, {"name": "x"}, 422, "world"),
+        ("polygons", b'{"type":"Polygon","coordinates":[[[0,0],[1,0],[1,1]]]}', {"name": "x", "world": "2,0,0,-2,1,99"}, 415, "body"),
+        ("no power of two", picture, {"name": "x", "world": "2,0,0,-2,1,99", "resolution": 3000}, 422, "resolution"),
+        ("too coarse", picture, {"name": "x", "world": "2,0,0,-2,1,99", "resolution": 512}, 422, "resolution"),
+        ("too fine", picture, {"name": "x", "world": "2,0,0,-2,1,99", "resolution": 16384}, 422, "resolution"),
+        ("numbers", tiff(1, 1, lambda x, y: 0.5, scale=1.0, origin=(0, 1)), {"name": "x"}, 422, "body"),
+        ("damaged", picture[:-20], {"name": "x", "world": "2,0,0,-2,1,99"}, 422, None),
+    ]:
+        answer = server.post(query(M + "/orthophotos", **parameters), body)
+        assert answer.status == status and answer.json().get("field") == field, (what, answer)
+    far = server.wait_for_job(server.ok("POST", query(M + "/orthophotos", name="x", world="1,0,0,-1,5000,5000"), picture, expect=(202,)).json()["id"])
+    assert far["state"] == "failed" and far["problem"]["field"] == "world", far
+    assert server.get(M + "/looks").json()["total"] == count
+    print("orthophotos: ok", flush=True)
+    return job["look"], wanted[0]
+
+
 def main():
     with StrataServer() as server:
         server.import_model(folded_grid(fold=0.01), "sheet.ply", name="Sheet", unit="mm")
@@ -209,9 +271,11 @@ def main():
         check_shapefile_refusals(server)
         check_raster(server)
         check_colors(server)
+        look, color = check_orthophoto(server)
         server.kill()
         server.start()
         assert values(server, states, *places) == [1, 4, None, 1, 9], "it survives the end of the server"
+        assert look_colors(server, look, (30, 90)) == [color]
         assert server.stop() == 0
         server.assert_clean_log()
 

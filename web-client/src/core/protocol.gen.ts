@@ -696,6 +696,8 @@ export interface Job {
   model?: number;
   /** Ids of the layers that it made on the model. */
   layers?: number[];
+  /** Id of the look that it made on the model. */
+  look?: number;
   report?: TransferReport;
 }
 

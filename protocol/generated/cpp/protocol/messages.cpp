@@ -1128,6 +1128,7 @@ void read(const nlohmann::json& json, Job& value) {
   read_optional_member(json, "problem", value.problem);
   read_optional_member(json, "model", value.model);
   read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "look", value.look);
   read_optional_member(json, "report", value.report);
 }
 
@@ -1140,6 +1141,7 @@ nlohmann::json to_json(const Job& value) {
   write_optional_member(json, "problem", value.problem);
   write_optional_member(json, "model", value.model);
   write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "look", value.look);
   write_optional_member(json, "report", value.report);
   return json;
 }

@@ -891,6 +891,7 @@ struct Job {
   std::optional<nlohmann::json> problem;
   std::optional<std::int64_t> model;  // Id of the model, once it is done.
   std::optional<std::vector<std::int64_t>> layers;  // Ids of the layers that it made on the model.
+  std::optional<std::int64_t> look;  // Id of the look that it made on the model.
   std::optional<TransferReport> report;
   bool operator==(const Job&) const = default;
 };
