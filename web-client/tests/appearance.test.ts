@@ -81,12 +81,25 @@ const look = (id: number, visible: boolean): Look => ({
 describe("how a person sees the model", () => {
   let sent: [LookShown[] | null, Light][];
   let planes: Plane[];
+  let server: Look[];
+  let refuse_after: number;
   let appearance: Appearance;
 
   beforeEach(() => {
     sent = [];
     planes = [];
-    const api = new Api(async () => new Response(JSON.stringify({}), { headers: { ETag: '"1"' } }));
+    server = [look(1, true), look(2, false), look(3, false)];
+    refuse_after = Infinity;
+    const answer = (body: unknown): Response => new Response(JSON.stringify(body), { headers: { ETag: '"1"' } });
+    const api = new Api(async (path, init) => {
+      const id = Number(/looks\/(\d+)/.exec(path)?.[1]);
+      if (!id) return answer({ looks: server, total: server.length });
+      if (init?.method === "PATCH") {
+        if (refuse_after-- <= 0) return new Response("", { status: 503 });
+        server = server.map((each) => (each.id === id ? { ...each, ...(JSON.parse(String(init.body)) as Partial<Look>) } : each));
+      }
+      return answer(server.find((each) => each.id === id));
+    });
     appearance = new Appearance(api, "1", {
       send: (looks, light) => sent.push([looks, light]),
       send_section: (of) => (planes = of),
@@ -121,6 +134,22 @@ describe("how a person sees the model", () => {
     expect(sent.at(-1)![0]).toBeNull();
     appearance.on_event({ op: "look", event: "created", look_id: 9, look: look(9, false) });
     expect(appearance.looks.map(({ id }) => id)).toEqual([1, 2, 9]);
+  });
+
+  it("moves a look for everyone, and shows what the server has where that fails", async () => {
+    await appearance.move(appearance.looks[2]!, 0);
+    expect(appearance.looks.map(({ id }) => id)).toEqual([3, 1, 2]);
+    expect([...server].sort((a, b) => a.order - b.order).map(({ id }) => id)).toEqual([3, 1, 2]);
+    refuse_after = 1;
+    await expect(appearance.move(appearance.looks[2]!, 0)).rejects.toThrow();
+    const kept = [...server].sort((a, b) => a.order - b.order || a.id - b.id).map(({ id }) => id);
+    expect(appearance.looks.map(({ id }) => id)).toEqual(kept);
+  });
+
+  it("renames a look", async () => {
+    await appearance.rename(appearance.looks[1]!, "Infrared");
+    expect(appearance.looks[1]!.name).toBe("Infrared");
+    expect(server[1]!.name).toBe("Infrared");
   });
 
   it("goes back to the beginning at once", () => {

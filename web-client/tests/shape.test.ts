@@ -7,7 +7,7 @@ import { likely_tolerance_mm, share_text } from "../src/app/transfer-dialog";
 import { Api } from "../src/core/api";
 import type { Job, Model } from "../src/core/types";
 
-const input: ShapeInput = { kind: "roughness", radius: "", distance: "", absolute: false, model: "", property: "" };
+const input: ShapeInput = { kind: "roughness", radius: "", distance: "", rays: "", absolute: false, model: "", property: "" };
 
 describe("a recipe from what was filled in", () => {
   it("leaves out what is empty or not of its kind", () => {
@@ -16,6 +16,12 @@ describe("a recipe from what was filled in", () => {
     expect(recipe_of({ ...input, kind: "height", absolute: true })).toEqual({ kind: "height", absolute: true });
     expect(recipe_of({ ...input, kind: "model_distance", model: "7", distance: "30" })).toEqual({ kind: "model_distance", model: "7", distance_mm: 30 });
     expect(recipe_of({ ...input, kind: "vertex_property", property: "pot.ply/a/b" })).toEqual({ kind: "vertex_property", source: "pot.ply", property: "a/b" });
+  });
+  it("takes a number of rays for openness alone, within the server's bounds", () => {
+    const openness = { ...input, kind: "ambient_occlusion" as const };
+    expect(recipe_of({ ...openness, rays: "256" })).toEqual({ kind: "ambient_occlusion", rays: 256 });
+    expect(recipe_of({ ...input, rays: "256" })).toEqual({ kind: "roughness" });
+    for (const rays of ["15", "1025", "20.5", "many"]) expect(recipe_of({ ...openness, rays })).toMatchObject({ field: "rays" });
   });
   it("names the field that is wrong", () => {
     for (const radius of ["0", "-3", "wide"]) expect(recipe_of({ ...input, radius })).toEqual({ problem: texts.shape.bad_length, field: "radius" });

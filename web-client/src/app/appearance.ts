@@ -5,6 +5,7 @@ import type { Bounds } from "../core/camera";
 import type { Light, Look, LookEvent, LookShown, Plane } from "../core/protocol.gen";
 import { no_section, section_planes, type SectionChoice, type SectionMode } from "../core/section";
 import { notices } from "./notices";
+import { reorder } from "./reorder";
 import { texts } from "./texts";
 
 export const kMostLooksShown = 4;
@@ -69,6 +70,15 @@ export class Appearance {
 
   async rename(look: Look, name: string): Promise<void> {
     this.put(await this.api_.change_look(this.model_id_, look.id, { name }));
+  }
+
+  /** Moves the look to the place `index` of the list, which is bottom to top. */
+  async move(look: Look, index: number): Promise<void> {
+    await reorder(this.looks, look, index, {
+      show: (looks) => this.take_looks(looks),
+      save: async (each) => this.put(await this.api_.change_look(this.model_id_, each.id, { order: each.order })),
+      reload: () => this.api_.looks(this.model_id_),
+    });
   }
 
   async remove(look: Look): Promise<void> {

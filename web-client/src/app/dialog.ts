@@ -183,3 +183,52 @@ export function ask(question: { heading: string; lead: string; yes: string; dang
     document.body.append(element);
   });
 }
+
+/** A question for one line of text; asked by ask_text(). */
+@customElement("strata-text-question")
+class StrataTextQuestion extends LitElement {
+  @property() heading = "";
+  @property() label = "";
+  @property() text = "";
+  @property() yes = "";
+  answer: (text: string | null) => void = () => {};
+
+  static override styles = shared_styles;
+
+  @query("strata-dialog") private dialog_!: StrataDialog;
+  @query("input") private input_!: HTMLInputElement;
+  private answered_: string | null = null;
+
+  override render(): TemplateResult {
+    return html`<strata-dialog heading=${this.heading} @closed=${() => this.finish()}>
+      <form id="question" @submit=${this.on_submit}>
+        <label class="field">
+          <span>${this.label}</span>
+          <input type="text" required maxlength="200" .value=${this.text} autofocus />
+        </label>
+      </form>
+      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
+      <button slot="actions" class="primary" form="question">${this.yes}</button>
+    </strata-dialog>`;
+  }
+
+  private on_submit(event: Event): void {
+    event.preventDefault();
+    this.answered_ = this.input_.value.trim() || null;
+    this.dialog_.close();
+  }
+
+  private finish(): void {
+    this.answer(this.answered_);
+    this.remove();
+  }
+}
+
+/** The text; null: none was given. */
+export function ask_text(question: { heading: string; label: string; text: string; yes: string }): Promise<string | null> {
+  return new Promise((resolve) => {
+    const element = new StrataTextQuestion();
+    Object.assign(element, { ...question, answer: resolve });
+    document.body.append(element);
+  });
+}

@@ -4,6 +4,7 @@ import type { Api } from "../core/api";
 import type { LayerEvent, LayerOverride } from "../core/protocol.gen";
 import { complete_layer, type Layer, type LayerPatch } from "../core/types";
 import { notices } from "./notices";
+import { reorder } from "./reorder";
 import { texts } from "./texts";
 
 interface Override {
@@ -86,20 +87,11 @@ export class LayerList {
 
   /** Moves the layer to the place `index` of the list, which is bottom to top. */
   async move(layer: Layer, index: number): Promise<void> {
-    const wanted = this.all.filter((other) => other.id !== layer.id);
-    wanted.splice(Math.max(0, Math.min(index, wanted.length)), 0, layer);
-    const before = this.all;
-    this.all = wanted.map((each, order) => ({ ...each, order }));
-    this.host_.changed();
-    try {
-      for (const each of this.all) {
-        if (before.find((old) => old.id === each.id)?.order === each.order) continue;
-        await this.change(each, { order: each.order });
-      }
-    } catch (error) {
-      this.put_all(await this.api_.layers(this.model_id_).catch(() => before)); // some may have moved already
-      throw error;
-    }
+    await reorder(this.all, layer, index, {
+      show: (layers) => this.put_all(layers),
+      save: (each) => this.change(each, { order: each.order }),
+      reload: () => this.api_.layers(this.model_id_),
+    });
   }
 
   async remove(layer: Layer): Promise<void> {

@@ -5,7 +5,7 @@ import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
 import type { Model, VertexPropertyName } from "../core/types";
 import type { ModelSession } from "./model-session";
-import { kShapeGroups, other_models, recipe_of, shape_kind, type ShapeInput, type ShapeKind } from "./shape-kinds";
+import { kRays, kShapeGroups, other_models, recipe_of, shape_kind, type ShapeInput, type ShapeKind } from "./shape-kinds";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -16,7 +16,7 @@ export class StrataShapeFields extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   /** The field that the server or the dialog found wrong. */
   @property() wrong = "";
-  @state() private input_: ShapeInput = { kind: "mean_curvature", radius: "", distance: "", absolute: false, model: "", property: "" };
+  @state() private input_: ShapeInput = { kind: "mean_curvature", radius: "", distance: "", rays: "", absolute: false, model: "", property: "" };
   @state() private models_: Model[] = [];
   @state() private properties_: VertexPropertyName[] = [];
 
@@ -109,6 +109,7 @@ export class StrataShapeFields extends LitElement {
             ${info.takes.includes("property") ? this.property_field() : nothing}
             ${info.takes.includes("radius") ? this.length_field("radius", words.radius, words.radius_hint) : nothing}
             ${info.takes.includes("distance") ? this.length_field("distance", words.distance, words.distance_hint) : nothing}
+            ${info.takes.includes("rays") ? this.rays_field() : nothing}
             ${info.takes.includes("absolute") ? this.absolute_field() : nothing}
           </div>`}`;
   }
@@ -134,6 +135,24 @@ export class StrataShapeFields extends LitElement {
         />
         mm
       </div>
+    </label>`;
+  }
+
+  private rays_field(): TemplateResult {
+    return html`<label class="field">
+      <span>${words.rays}</span>
+      <input
+        type="number"
+        name="rays"
+        min=${kRays.least}
+        max=${kRays.most}
+        step="1"
+        placeholder=${kRays.usual}
+        title=${words.rays_hint}
+        .value=${this.input_.rays}
+        aria-invalid=${this.wrong === "rays" ? "true" : "false"}
+        @input=${(event: Event) => this.change({ rays: (event.target as HTMLInputElement).value })}
+      />
     </label>`;
   }
 

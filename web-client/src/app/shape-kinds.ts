@@ -3,6 +3,9 @@
 import type { Model, ShapeRecipe } from "../core/types";
 import { texts } from "./texts";
 
+/** Of openness, at each point. */
+export const kRays = { least: 16, most: 1024, usual: 64 } as const;
+
 export type ShapeKind = ShapeRecipe["kind"];
 
 export interface ShapeKindInfo {
@@ -10,7 +13,7 @@ export interface ShapeKindInfo {
   title: string;
   lead: string;
   /** What may be set for it. */
-  takes: readonly ("radius" | "distance" | "absolute" | "model" | "property")[];
+  takes: readonly ("radius" | "distance" | "rays" | "absolute" | "model" | "property")[];
 }
 
 const words = texts.shape.kinds;
@@ -24,7 +27,7 @@ export const kShapeGroups: readonly { title: string; kinds: readonly ShapeKindIn
       { kind: "max_curvature", ...words.max_curvature, takes: ["radius"] },
       { kind: "min_curvature", ...words.min_curvature, takes: ["radius"] },
       { kind: "roughness", ...words.roughness, takes: ["radius"] },
-      { kind: "ambient_occlusion", ...words.ambient_occlusion, takes: ["distance"] },
+      { kind: "ambient_occlusion", ...words.ambient_occlusion, takes: ["distance", "rays"] },
     ],
   },
   {
@@ -56,6 +59,7 @@ export interface ShapeInput {
   kind: ShapeKind;
   radius: string;
   distance: string;
+  rays: string;
   absolute: boolean;
   model: string;
   property: string; // "source/property"
@@ -73,6 +77,11 @@ export function recipe_of(input: ShapeInput): ShapeRecipe | { problem: string; f
     const value = Number(text);
     if (!(value > 0)) return { problem: texts.shape.bad_length, field: name };
     recipe[member] = value;
+  }
+  if (takes.includes("rays") && input.rays.trim() !== "") {
+    const rays = Number(input.rays);
+    if (!Number.isInteger(rays) || rays < kRays.least || rays > kRays.most) return { problem: texts.shape.bad_rays(kRays.least, kRays.most), field: "rays" };
+    recipe.rays = rays;
   }
   if (takes.includes("absolute") && input.absolute) recipe.absolute = true;
   if (takes.includes("model")) {

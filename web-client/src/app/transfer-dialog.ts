@@ -15,6 +15,8 @@ import { texts } from "./texts";
 
 const words = texts.transfer;
 
+const kUsualAngle = 60; // degrees
+
 /** What a re-scan differs by, as a first guess: a 500th of the object's size, in millimetres. */
 export function likely_tolerance_mm(model: Pick<Model, "bounds" | "unit">): number {
   const { min, max } = model.bounds;
@@ -161,6 +163,22 @@ export class StrataTransferDialog extends LitElement {
         </div>
       </label>
       <p class="hint">${words.tolerance_hint}</p>
+      <label class="field">
+        <span>${words.angle}</span>
+        <div class="length">
+          <input
+            type="number"
+            name="angle"
+            min="1"
+            max="180"
+            step="any"
+            value=${kUsualAngle}
+            aria-invalid=${this.problem_field_ === "max_angle" ? "true" : "false"}
+          />
+          °
+        </div>
+      </label>
+      <p class="hint">${words.angle_hint}</p>
     </form>`;
   }
 
@@ -174,10 +192,17 @@ export class StrataTransferDialog extends LitElement {
   private async on_submit(event: Event): Promise<void> {
     event.preventDefault();
     const { session } = this;
-    const tolerance_mm = Number(new FormData(this.form_!).get("tolerance"));
+    const form = new FormData(this.form_!);
+    const tolerance_mm = Number(form.get("tolerance"));
+    const max_angle = Number(form.get("angle"));
     if (!(tolerance_mm > 0)) {
       this.problem_field_ = "tolerance_mm";
       this.problem_ = texts.shape.bad_length;
+      return;
+    }
+    if (!(max_angle >= 1 && max_angle <= 180)) {
+      this.problem_field_ = "max_angle";
+      this.problem_ = words.bad_angle;
       return;
     }
     const from = this.models_?.find(({ id }) => String(id) === this.from_);
@@ -188,6 +213,7 @@ export class StrataTransferDialog extends LitElement {
       const { done } = await session.jobs.transfer(words.job(from.name), {
         from: this.from_,
         tolerance_mm,
+        max_angle,
         ...(all ? {} : { layers: [...this.chosen_].map(String) }),
       });
       void done.then((made) => session.show_made(made));

@@ -5,7 +5,7 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { format_length, metres_per } from "../core/measure";
 import type { LightMode, Look, Point3 } from "../core/protocol.gen";
 import { kAxes, with_box_side, world_position, type SectionMode } from "../core/section";
-import { ask } from "./dialog";
+import { ask, ask_text } from "./dialog";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import "./light-pad";
@@ -212,6 +212,7 @@ export class StrataViewPanel extends LitElement {
     const { session } = this;
     const { appearance } = session;
     const visible = appearance.visible(look);
+    const place = appearance.looks.indexOf(look);
     const percent = Math.round(appearance.opacity(look) * 100);
     const label = visible ? texts.layers.hide(look.name) : texts.layers.show(look.name);
     return html`<li class=${visible ? "" : "off"}>
@@ -235,6 +236,21 @@ export class StrataViewPanel extends LitElement {
               download="${look.slug}.${look.media_type === "image/png" ? "png" : "jpg"}"
               >${icon("down")}${texts.view.look_download}</a
             >
+            <button class="quiet" role="menuitem" @click=${() => void this.rename_look(look)}>
+              ${icon("edit")}${texts.view.look_rename}
+            </button>
+            <button
+              class="quiet"
+              role="menuitem"
+              ?disabled=${place === appearance.looks.length - 1}
+              @click=${() => this.move_look(look, place + 1)}
+            >
+              ${icon("up")}${texts.layers.up}
+            </button>
+            <button class="quiet" role="menuitem" ?disabled=${place === 0} @click=${() => this.move_look(look, place - 1)}>
+              ${icon("down")}${texts.layers.down}
+            </button>
+            <hr />
             <button class="quiet" role="menuitem" @click=${() => void this.delete_look(look)}>
               ${icon("trash")}${texts.layers.delete}
             </button>
@@ -268,6 +284,17 @@ export class StrataViewPanel extends LitElement {
     } finally {
       this.adding_ = false;
     }
+  }
+
+  private async rename_look(look: Look): Promise<void> {
+    const words = texts.view;
+    const name = await ask_text({ heading: words.look_rename_title(look.name), label: words.look_name, text: look.name, yes: texts.save });
+    if (name === null || name === look.name) return;
+    await this.session.appearance.rename(look, name).catch((error: unknown) => notices.error(error));
+  }
+
+  private move_look(look: Look, place: number): void {
+    this.session.appearance.move(look, place).catch((error: unknown) => notices.error(error));
   }
 
   private async delete_look(look: Look): Promise<void> {

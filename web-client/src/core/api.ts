@@ -152,6 +152,9 @@ export class Api {
     const { etag } = await this.layer(model, layer);
     await this.request("DELETE", layer_path(model, layer), undefined, { "If-Match": etag });
   }
+  async looks(model: Id): Promise<wire.Look[]> {
+    return (await this.json<wire.LookList>("GET", `/models/${encodeURIComponent(model)}/looks`)).looks;
+  }
   /** A picture on the model's texture coordinates, named as its file. */
   async create_look(model: Id, file: File): Promise<wire.Look> {
     const query = new URLSearchParams({ name: name_of_file(file.name) });
