@@ -39,6 +39,7 @@ class MemoryLedger {
   void set_budget(std::uint64_t budget_bytes) { budget_bytes_ = budget_bytes; }
   std::uint64_t budget() const { return budget_bytes_; }
   std::uint64_t used() const { return used_bytes_; }
+  bool fits(std::uint64_t bytes) const { return used_bytes_ + bytes <= budget_bytes_; }  // with nothing evicted
   bool exceeded() const { return used_bytes_ > budget_bytes_; }
 
   // Frees one thing that is not used or can be made again; false when there is none. Called by `reserve`, on its thread.

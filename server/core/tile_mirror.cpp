@@ -23,6 +23,18 @@ std::size_t TileMirror::bytes() const {
   return tiles_.size() * (sizeof(TileData) + std::size_t{kTexelsPerTile} * bytes_per_texel(type_));
 }
 
+void TileMirror::assign(TileMap tiles, std::int64_t sequence) {
+  std::erase_if(tiles, [](const auto& entry) { return !entry.second || !entry.second->valid.any(); });
+  std::lock_guard lock(mutex_);
+  tiles_ = std::move(tiles);
+  sequence_ = sequence;
+}
+
+std::shared_ptr<const void> TileMirror::hold() const {
+  ++*holds_;
+  return {holds_.get(), [holds = holds_](const void*) { --*holds; }};
+}
+
 void TileMirror::put(const TileMap& tiles, std::int64_t sequence) {
   std::lock_guard lock(mutex_);
   for (const auto& [address, data] : tiles) {

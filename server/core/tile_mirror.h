@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -31,10 +32,18 @@ class TileMirror {
 
   // Replaces tiles in one step; a null or empty tile is dropped. Called in sequence order.
   void put(const TileMap& tiles, std::int64_t sequence);
+  // Replaces everything.
+  void assign(TileMap tiles, std::int64_t sequence);
+
+  // Taken before an edit is given to the GPU and given back once `put` has brought what it did, or it was refused: meanwhile the
+  // GPU may hold what the mirror does not. The hold may outlive the mirror.
+  std::shared_ptr<const void> hold() const;
+  bool held() const { return *holds_ > 0; }
 
  private:
   const ValueType type_;
   const int resolution_;
+  const std::shared_ptr<std::atomic<int>> holds_ = std::make_shared<std::atomic<int>>(0);
   mutable std::mutex mutex_;
   TileMap tiles_;
   std::int64_t sequence_ = 0;

@@ -35,8 +35,14 @@ Step FrameJob::step(GpuScene& scene) {
     switch (stage_) {
       case Stage::prepare:
         if (auto prepared = prepare(scene, **view); !prepared) return tl::unexpected(prepared.error());
-        stage_ = (*view)->gbuffer_complete ? Stage::area : Stage::gbuffer;
+        stage_ = Stage::layers;
         return Step::more;
+      case Stage::layers: {
+        auto here = bring_layers(scene);
+        if (!here) return tl::unexpected(here.error());
+        if (*here) stage_ = (*view)->gbuffer_complete ? Stage::area : Stage::gbuffer;
+        return Step::more;
+      }
       case Stage::gbuffer: {
         auto complete = draw_slice(scene, **view);
         if (!complete) return tl::unexpected(complete.error());
@@ -86,7 +92,7 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   for (const LayerStyle& style : request.layers) {
     auto layer = scene.layer(style.layer);
     if (!layer) return tl::unexpected(layer.error());
-    if ((*layer)->model != view.model)
+    if ((*layer)->model() != view.model)
       return fail(422, "Layer of another model", "A view shows layers of its own model.", "layers");
     const bool has_colors =
         style.palette && (style.palette->mode == PaletteMode::categorical || !style.palette->points.empty());
@@ -121,6 +127,20 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   view.looks = request.looks;
   view.lighting = request.light;
   return prepare_gbuffer(view, key, scene.depths(), scene.memory());
+}
+
+Result<bool> FrameJob::bring_layers(GpuScene& scene) {
+  const bool all_kept = layer_uses_.size() == task_.request.layers.size();
+  for (const LayerStyle& style : task_.request.layers) {
+    auto layer = scene.layer(style.layer);
+    if (!layer) return tl::unexpected(layer.error());
+    if (!all_kept) layer_uses_.push_back((*layer)->use(scene.next_use()));
+  }
+  for (const LayerStyle& style : task_.request.layers) {
+    const auto here = (*scene.layer(style.layer))->bring();
+    if (!here || !*here) return here;
+  }
+  return true;
 }
 
 Result<int> FrameJob::choose_level(GpuScene& scene, const View& view) const {
@@ -193,7 +213,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   for (const LayerStyle& style : request.layers) {
     auto layer = scene.layer(style.layer);
     if (!layer) return tl::unexpected(layer.error());
-    input.layers.push_back({(*layer)->textures.get(), style.palette, style.opacity});
+    input.layers.push_back({&(*layer)->textures(), style.palette, style.opacity});
   }
   if (auto flushed = scene.tables().flush(); !flushed) return tl::unexpected(flushed.error());
   if (auto shaded = scene.shade_pass().shade(input, scene.tables()); !shaded) return tl::unexpected(shaded.error());

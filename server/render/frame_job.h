@@ -19,8 +19,9 @@ class FrameJob {
   void abort(const Problem& problem) { task_.done(tl::unexpected(problem)); }
 
  private:
-  enum class Stage { prepare, gbuffer, area, shade, readback };
+  enum class Stage { prepare, layers, gbuffer, area, shade, readback };
   Result<void> prepare(GpuScene& scene, View& view);
+  Result<bool> bring_layers(GpuScene& scene);  // true when all are on the GPU
   Result<int> choose_level(GpuScene& scene, const View& view) const;
   Result<bool> draw_slice(GpuScene& scene, View& view);  // true when complete
   Result<void> choose_area(GpuScene& scene, const View& view);
@@ -30,6 +31,7 @@ class FrameJob {
 
   FrameTask task_;
   Stage stage_ = Stage::prepare;
+  std::vector<std::shared_ptr<const void>> layer_uses_;
   MeshProgress progress_;
   std::chrono::steady_clock::time_point mesh_begin_;  // when its first slice was drawn
   Frame frame_;

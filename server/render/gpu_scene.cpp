@@ -82,6 +82,8 @@ Result<void> GpuScene::load() {
                                                               : EditPath::compute;
   memory_.set_budget(options_.gpu_memory_bytes > 0 ? options_.gpu_memory_bytes : default_budget());
   memory_.set_evictor([this] { return evict_one(); });
+  for (PagePool* pool : {&pool_1_, &pool_2_, &pool_4_})
+    pool->set_evictor([this, pool] { return let_a_layer_leave(pool); });
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glDisable(GL_DITHER);
@@ -95,19 +97,31 @@ Result<void> GpuScene::load() {
   return keep(shade_pass_, ShadePass::create(dir, info_.software));
 }
 
-// Pages that no layer uses go first, then depth buffers of cameras that no view has, then the buffers of the view that
-// was not drawn for the longest time.
+// Pages that no layer uses go first, then depth buffers of cameras that no view has, then the layer and at last the buffers
+// of the view that were not used for the longest time.
 bool GpuScene::evict_one() {
   for (PagePool* pool : {&pool_1_, &pool_2_, &pool_4_}) {
     if (pool->drop_empty_chunk()) return true;
   }
   if (depths_ && depths_->evict_one()) return true;
+  if (let_a_layer_leave()) return true;
   View* oldest = nullptr;
   for (auto& [handle, view] : views_) {
     if (view.has_buffers() && !view.drawing && (!oldest || view.last_used < oldest->last_used)) oldest = &view;
   }
   if (!oldest) return false;
   oldest->drop_buffers();
+  return true;
+}
+
+bool GpuScene::let_a_layer_leave(const PagePool* pool) {
+  GpuLayer* oldest = nullptr;
+  for (auto& [handle, layer] : layers_) {
+    if (!layer.can_leave() || (pool && &layer.textures().pool() != pool)) continue;
+    if (!oldest || layer.last_used() < oldest->last_used()) oldest = &layer;
+  }
+  if (!oldest) return false;
+  oldest->leave();
   return true;
 }
 
@@ -131,7 +145,8 @@ LookHandle GpuScene::add(Look look) {
   return handle;
 }
 
-Result<LayerHandle> GpuScene::add_layer(ModelHandle model_handle, ValueType type, int resolution) {
+Result<LayerHandle> GpuScene::add_layer(ModelHandle model_handle, ValueType type, int resolution,
+                                        std::shared_ptr<const TileMirror> mirror) {
   if (auto found = model(model_handle); !found) return tl::unexpected(found.error());
   if (resolution < kLowestResolution || resolution > kHighestResolution ||
       !std::has_single_bit(static_cast<unsigned>(resolution))) {
@@ -145,7 +160,7 @@ Result<LayerHandle> GpuScene::add_layer(ModelHandle model_handle, ValueType type
                                                      : pool_4_);
   if (!textures) return tl::unexpected(textures.error());
   const LayerHandle handle = next_handle();
-  layers_.emplace(handle, Layer{model_handle, std::move(*textures)});
+  layers_.try_emplace(handle, model_handle, std::move(*textures), std::move(mirror));
   return handle;
 }
 
@@ -162,7 +177,7 @@ Result<GpuScene::Model*> GpuScene::model(ModelHandle handle) {
   return &found->second;
 }
 
-Result<GpuScene::Layer*> GpuScene::layer(LayerHandle handle) {
+Result<GpuLayer*> GpuScene::layer(LayerHandle handle) {
   const auto found = layers_.find(handle);
   if (found == layers_.end()) return tl::unexpected(unknown("layer", handle));
   return &found->second;
@@ -182,7 +197,7 @@ Result<GpuScene::Look*> GpuScene::look(LookHandle handle) {
 
 void GpuScene::remove_model(ModelHandle handle) {
   std::erase_if(looks_, [&](const auto& entry) { return entry.second.model == handle; });
-  std::erase_if(layers_, [&](const auto& entry) { return entry.second.model == handle; });
+  std::erase_if(layers_, [&](const auto& entry) { return entry.second.model() == handle; });
   std::erase_if(views_, [&](const auto& entry) { return entry.second.model == handle; });
   if (depths_) depths_->forget_model(handle);
   models_.erase(handle);

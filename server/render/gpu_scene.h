@@ -8,6 +8,7 @@
 #include "gl/egl_context.h"
 #include "render/detail_budget.h"
 #include "render/edit_pass.h"
+#include "render/gpu_layer.h"
 #include "render/look_texture.h"
 #include "render/shade_pass.h"
 #include "render/tile_reader.h"
@@ -23,10 +24,6 @@ class GpuScene {
     std::vector<std::unique_ptr<MeshBuffers>> levels;  // the full mesh, then coarser copies
     const MeshBuffers& mesh() const { return *levels.front(); }
     std::map<int, std::unique_ptr<SurfaceMapTextures>> maps;  // by resolution, complete ones only
-  };
-  struct Layer {
-    ModelHandle model = 0;
-    std::unique_ptr<LayerTextures> textures;
   };
   struct Look {
     ModelHandle model = 0;
@@ -60,11 +57,13 @@ class GpuScene {
 
   ModelHandle add(Model model);
   LookHandle add(Look look);
-  Result<LayerHandle> add_layer(ModelHandle model, ValueType type, int resolution);
+  // `mirror` may be null: see GpuLayer.
+  Result<LayerHandle> add_layer(ModelHandle model, ValueType type, int resolution,
+                                std::shared_ptr<const TileMirror> mirror = nullptr);
   Result<ViewHandle> add_view(ModelHandle model);
   // A Problem 404 for a handle that is unknown, removed, or of another generation.
   Result<Model*> model(ModelHandle handle);
-  Result<Layer*> layer(LayerHandle handle);
+  Result<GpuLayer*> layer(LayerHandle handle);
   Result<View*> view(ViewHandle handle);
   Result<Look*> look(LookHandle handle);
   void remove_model(ModelHandle handle);  // and its layers, looks and views
@@ -79,6 +78,8 @@ class GpuScene {
   GpuScene(const RendererOptions& options, std::uint64_t generation, GpuMemory& memory);
   Result<void> load();
   bool evict_one();
+  // The layer that was not used for the longest time; of `pool`, if one is given.
+  bool let_a_layer_leave(const PagePool* pool = nullptr);
   std::uint64_t next_handle() { return generation_ << 40 | ++handles_; }
   Problem unknown(const char* what, std::uint64_t handle) const;
 
@@ -98,7 +99,7 @@ class GpuScene {
   std::optional<ShadePass> shade_pass_;
   DetailBudget detail_budget_;
   std::unordered_map<ModelHandle, Model> models_;
-  std::unordered_map<LayerHandle, Layer> layers_;
+  std::unordered_map<LayerHandle, GpuLayer> layers_;
   std::unordered_map<ViewHandle, View> views_;
   std::unordered_map<LookHandle, Look> looks_;
 };

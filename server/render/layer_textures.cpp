@@ -1,5 +1,7 @@
 #include "render/layer_textures.h"
 
+#include <numeric>
+
 #include "shared/pages.h"
 
 namespace strata::render {
@@ -23,9 +25,7 @@ LayerTextures::LayerTextures(ValueType type, int resolution, PageTables& tables,
       bytes_(std::make_shared<std::atomic<std::uint64_t>>(std::uint64_t{table_entries()} * sizeof(PageId))) {}
 
 LayerTextures::~LayerTextures() {
-  for (std::uint32_t i = 0; i < table_entries(); ++i) {
-    if (const PageId page = tables_.at(table_offset_ + i); page != shader::kNoPage) pool_.free(page);
-  }
+  free_pages();
   tables_.free(table_offset_, table_entries());
   *bytes_ = 0;
 }
@@ -52,6 +52,15 @@ void LayerTextures::free_page(TileAddress tile) {
   --pages_in_chunk_[present >> shader::kPageChunkShift];
   tables_.set(index(tile), shader::kNoPage);
   *bytes_ -= pool_.bytes_per_page();
+}
+
+void LayerTextures::free_pages() {
+  for (int y = 0; y < tiles_per_side_; ++y)
+    for (int x = 0; x < tiles_per_side_; ++x) free_page({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
+}
+
+std::size_t LayerTextures::page_count() const {
+  return std::accumulate(pages_in_chunk_.begin(), pages_in_chunk_.end(), std::size_t{0});
 }
 
 }  // namespace strata::render

@@ -26,6 +26,7 @@ class LayerTextures {
   std::uint32_t table_offset() const { return table_offset_; }
   bool has_page_in(std::uint32_t chunk) const { return pages_in_chunk_[chunk] > 0; }
 
+  std::size_t page_count() const;
   bool contains(TileAddress tile) const { return tile.x < tiles_per_side_ && tile.y < tiles_per_side_; }
   PageId page(TileAddress tile) const { return tables_.at(index(tile)); }  // kNoPage when empty
   // An empty page where there is none.
@@ -33,6 +34,7 @@ class LayerTextures {
   // Takes a page of the pool for a tile that has none.
   void put_page(TileAddress tile, PageId page);
   void free_page(TileAddress tile);
+  void free_pages();  // of all tiles
 
   // Table and pages. The counter outlives the layer, so that any thread may ask.
   const std::shared_ptr<std::atomic<std::uint64_t>>& bytes() const { return bytes_; }

@@ -32,6 +32,8 @@ Place place_of(PageId page) {
 }  // namespace
 
 Result<PageId> PagePool::allocate() {
+  while (free_.empty() && !memory_.fits(chunk_bytes(1)) && free_some_ && free_some_()) {
+  }
   if (free_.empty()) {
     if (auto added = add_chunk(); !added) return tl::unexpected(added.error());
   }
@@ -88,6 +90,10 @@ void PagePool::read(PageId page, TileData& data) const {
   data.valid = mask_of(flags);
 }
 
+std::uint64_t PagePool::chunk_bytes(int slices) const {
+  return std::uint64_t{kSliceSize} * kSliceSize * static_cast<unsigned>(slices * (texel_bytes_ + 1));
+}
+
 Result<void> PagePool::add_chunk() {
   const auto unused = std::find_if(chunks_.begin(), chunks_.end(), [](const Chunk& chunk) { return !chunk.values; });
   const auto number = static_cast<std::size_t>(unused - chunks_.begin());
@@ -112,9 +118,7 @@ Result<void> PagePool::add_chunk() {
 }
 
 Result<PagePool::Chunk> PagePool::make_chunk(std::size_t number, int slices) {
-  const std::uint64_t bytes =
-      std::uint64_t{kSliceSize} * kSliceSize * static_cast<unsigned>(slices * (texel_bytes_ + 1));
-  auto share = memory_.reserve(bytes, "layer tiles");
+  auto share = memory_.reserve(chunk_bytes(slices), "layer tiles");
   if (!share) return tl::unexpected(share.error());
   const std::string name = "pages of " + std::to_string(texel_bytes_) + " bytes, chunk " + std::to_string(number);
   auto values = gl::Texture::create_array(texel_format(texel_bytes_), kSliceSize, kSliceSize, slices, name);

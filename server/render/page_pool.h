@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/problem.h"
@@ -29,6 +30,9 @@ class PagePool {
   const gl::Texture& values(std::uint32_t chunk) const { return chunks_[chunk].values; }
   const gl::Texture& valid(std::uint32_t chunk) const { return chunks_[chunk].valid; }
 
+  // Frees pages of this pool that are not needed for now; false when it has none to free. Asked before others must give way.
+  void set_evictor(std::function<bool()> free_some) { free_some_ = std::move(free_some); }
+
   // A page whose content is undefined. A Problem 503 when no chunk can be added.
   Result<PageId> allocate();
   void free(PageId page);
@@ -46,11 +50,13 @@ class PagePool {
     GpuMemory::Share share;
     std::uint32_t used_pages = 0;
   };
+  std::uint64_t chunk_bytes(int slices) const;
   Result<void> add_chunk();
   Result<Chunk> make_chunk(std::size_t number, int slices);
 
   const int texel_bytes_;
   GpuMemory& memory_;
+  std::function<bool()> free_some_;
   std::vector<Chunk> chunks_;  // by number
   std::vector<PageId> free_;   // the last one is taken first
 };

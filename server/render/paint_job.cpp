@@ -59,9 +59,9 @@ Step PaintJob::step(GpuScene& scene) {
 Result<PaintTarget> PaintJob::target(GpuScene& scene) {
   auto layer = scene.layer(layer_);
   if (!layer) return tl::unexpected(layer.error());
-  auto model = scene.model((*layer)->model);
+  auto model = scene.model((*layer)->model());
   if (!model) return tl::unexpected(model.error());
-  LayerTextures& textures = *(*layer)->textures;
+  LayerTextures& textures = (*layer)->textures();
   const auto map = (*model)->maps.find(textures.resolution());
   if (map == (*model)->maps.end()) {
     return fail(409, "Surface map missing",
@@ -73,6 +73,16 @@ Result<PaintTarget> PaintJob::target(GpuScene& scene) {
 
 Result<Step> PaintJob::advance(GpuScene& scene, const PaintTarget& target) {
   switch (stage_) {
+    case Stage::layer: {
+      auto layer = scene.layer(layer_);
+      if (!layer) return tl::unexpected(layer.error());
+      if (!layer_use_) layer_use_ = (*layer)->use(scene.next_use());
+      auto here = (*layer)->bring();
+      if (!here) return tl::unexpected(here.error());
+      if (!*here) return Step::yield;
+      stage_ = Stage::begin;
+      return Step::more;
+    }
     case Stage::begin:
       if (auto begun = begin(scene, target); !begun) return tl::unexpected(begun.error());
       stage_ = Stage::depth;
@@ -107,7 +117,7 @@ Result<void> PaintJob::begin(GpuScene& scene, const PaintTarget& target) {
 Result<void> PaintJob::find_depth(GpuScene& scene) {
   if (stroke_.through && stroke_.radius_px > 0) return {};
   const Camera& camera = stroke_.camera;
-  const auto key = depth_key((*scene.layer(layer_))->model, camera, camera.width, camera.height);
+  const auto key = depth_key((*scene.layer(layer_))->model(), camera, camera.width, camera.height);
   depth_ = scene.depths().find(key);
   if (depth_) return {};
   auto started = scene.depths().start(key);

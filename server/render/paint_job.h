@@ -4,7 +4,7 @@
 
 namespace strata::render {
 
-// One stroke batch: depth of the mesh where no view has it, then what the StrokePainter does. A refused stroke has painted
+// One stroke batch: the layer where it left the GPU, depth of the mesh where no view has it, then what the StrokePainter does. A refused stroke has painted
 // nothing.
 class PaintJob {
  public:
@@ -15,7 +15,7 @@ class PaintJob {
   void abort(const Problem& problem) { done_(tl::unexpected(problem)); }
 
  private:
-  enum class Stage { begin, depth, painting };
+  enum class Stage { layer, begin, depth, painting };
   Result<PaintTarget> target(GpuScene& scene);
   Result<Step> advance(GpuScene& scene, const PaintTarget& target);
   Result<void> begin(GpuScene& scene, const PaintTarget& target);
@@ -25,7 +25,8 @@ class PaintJob {
   const LayerHandle layer_;
   StrokeBatch stroke_;
   Renderer::Done<StrokeOutcome> done_;
-  Stage stage_ = Stage::begin;
+  Stage stage_ = Stage::layer;
+  std::shared_ptr<const void> layer_use_;
   std::shared_ptr<DepthBuffer> depth_;  // null where nothing asks for it
   MeshProgress drawn_;
   std::unique_ptr<StrokePainter> painter_;

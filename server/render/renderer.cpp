@@ -96,6 +96,19 @@ struct Renderer::Impl {
     post(Lane::ordered, std::make_shared<Simple>(Simple{std::move(done), std::move(work)}));
   }
 
+  void add_layer(ModelHandle model, ValueType type, int resolution, std::shared_ptr<const TileMirror> mirror,
+                 Done<LayerHandle> done) {
+    post_simple<LayerHandle>(std::move(done), [this, model, type, resolution, mirror](GpuScene& at) {
+      auto handle = at.add_layer(model, type, resolution, mirror);
+      if (handle) {
+        const auto layer = at.layer(*handle);
+        std::lock_guard lock(mutex);
+        layer_bytes[*handle] = (*layer)->textures().bytes();
+      }
+      return handle;
+    });
+  }
+
   // Removals are never refused: a full queue must not keep memory. A lost context has removed all by itself.
   void post_removal(std::function<void(GpuScene&)> work) {
     Job job{[this, work = std::move(work)] {
@@ -173,16 +186,14 @@ void Renderer::remove_surface_map(ModelHandle model, int resolution) {
   });
 }
 
+void Renderer::add_layer(ModelHandle model, std::shared_ptr<const TileMirror> mirror, Done<LayerHandle> done) {
+  const ValueType type = mirror->type();
+  const int resolution = mirror->resolution();
+  impl_->add_layer(model, type, resolution, std::move(mirror), std::move(done));
+}
+
 void Renderer::add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done) {
-  impl_->post_simple<LayerHandle>(std::move(done), [impl = impl_.get(), model, type, resolution](GpuScene& scene) {
-    auto handle = scene.add_layer(model, type, resolution);
-    if (handle) {
-      const auto layer = scene.layer(*handle);
-      std::lock_guard lock(impl->mutex);
-      impl->layer_bytes[*handle] = (*layer)->textures->bytes();
-    }
-    return handle;
-  });
+  impl_->add_layer(model, type, resolution, nullptr, std::move(done));
 }
 
 void Renderer::remove_layer(LayerHandle layer) {
@@ -195,10 +206,6 @@ void Renderer::remove_layer(LayerHandle layer) {
 
 void Renderer::write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done) {
   impl_->post(Lane::ordered, std::make_shared<TilesUpload>(layer, std::move(tiles), std::move(done)));
-}
-
-void Renderer::load_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done) {
-  impl_->post(Lane::background, std::make_shared<TilesUpload>(layer, std::move(tiles), std::move(done)));
 }
 
 void Renderer::paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done) {

@@ -125,8 +125,7 @@ struct ModelGeometry {
 
 // Owns the GPU: one thread with the EGL context and a bounded queue (invariant 1 of ARCHITECTURE.md). All functions are
 // thread-safe and return at once; callbacks run on the GPU thread and must be quick. Order: edits and layer changes in
-// the order given, before frames, before background work (uploads of models, surface maps and what layers hold when a model
-// is opened, in slices). A full queue or
+// the order given, before frames, before background work (uploads of models and surface maps, in slices). A full queue or
 // a stopped renderer answers with a Problem 503; a lost context answers pending work with a Problem 503 titled "GPU lost".
 // (Only a stopped renderer calls back on the caller's thread: there is no other left.)
 class Renderer {
@@ -138,7 +137,7 @@ class Renderer {
   GpuInfo info() const;
   bool ready() const;  // false while a lost context cannot be replaced: what is asked for meanwhile is refused
   std::uint64_t gpu_bytes_used() const;
-  std::uint64_t layer_bytes_used(LayerHandle layer) const;  // page table and pages
+  std::uint64_t layer_bytes_used(LayerHandle layer) const;  // page table and pages that are on the GPU
   int debug_errors() const;
 
   template <class T>
@@ -153,14 +152,15 @@ class Renderer {
 
   void remove_surface_map(ModelHandle model, int resolution);  // strokes at it are refused (409) from then on
 
+  // A layer that holds what `mirror` does, now and later: it is brought to the GPU when it is first shown or painted, and may leave it
+  // again while `mirror` is not held (TileMirror::hold) and no frame shows it.
+  void add_layer(ModelHandle model, std::shared_ptr<const TileMirror> mirror, Done<LayerHandle> done);
+  // An empty layer that is known to the GPU alone.
   void add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done);
   void remove_layer(LayerHandle layer);
   // Sets whole tiles (fill, undo, import); done after the GPU has them. In order with strokes. Frames that are drawn before
   // `done` may show some of the tiles as they were.
   void write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done);
-  // The same for what a new layer holds from the start: it may be shown and painted only after `done`, and edits and frames of
-  // others go first.
-  void load_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done);
   void paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done);
 
   // Views keep a g-buffer and the last picture. Requests of one view replace each other while they wait ("latest wins"):

@@ -107,7 +107,9 @@ void TilesUpload::give_back_pages() {
 Result<bool> TilesUpload::advance(GpuScene& scene) {
   auto layer = scene.layer(layer_);
   if (!layer) return tl::unexpected(layer.error());
-  LayerTextures& textures = *(*layer)->textures;
+  LayerTextures& textures = (*layer)->textures();
+  if (!layer_use_) layer_use_ = (*layer)->use(scene.next_use());
+  if (const auto here = (*layer)->bring(); !here || !*here) return here;
   pool_ = &textures.pool();
   if (prepared_ < tiles_.size()) {
     const std::size_t end = std::min(prepared_ + kTilesPreparedPerStep, tiles_.size());

@@ -70,6 +70,7 @@ class TilesUpload {
   const LayerHandle layer_;
   const std::vector<TileUpload> tiles_;
   Renderer::Done<void> done_;
+  std::shared_ptr<const void> layer_use_;
   std::size_t prepared_ = 0, written_ = 0;  // tiles
   PagePool* pool_ = nullptr;                // of the layer
   std::vector<PageId> pages_;               // of `pool_`, for tiles that have none yet

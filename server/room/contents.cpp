@@ -50,17 +50,9 @@ Result<render::ModelGeometry> read_geometry(store::Store& store, std::int64_t mo
   return geometry;
 }
 
-Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model, const Layer& layer,
-                                      const TileMap& tiles) {
-  auto handle = await<render::LayerHandle>(
-      [&](auto done) { renderer.add_layer(model, layer.type, layer.resolution, std::move(done)); });
-  if (!handle || tiles.empty()) return handle;
-  std::vector<render::TileUpload> uploads;
-  for (const auto& [address, data] : tiles) uploads.push_back({address, data});
-  auto written = await<void>([&](auto done) { renderer.load_tiles(*handle, std::move(uploads), std::move(done)); });
-  if (written) return handle;
-  renderer.remove_layer(*handle);
-  return tl::unexpected(written.error());
+Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model,
+                                      std::shared_ptr<const TileMirror> mirror) {
+  return await<render::LayerHandle>([&](auto done) { renderer.add_layer(model, std::move(mirror), std::move(done)); });
 }
 
 Result<GpuContents> fill_gpu(render::Renderer& renderer, const render::ModelGeometry& geometry,
@@ -69,7 +61,7 @@ Result<GpuContents> fill_gpu(render::Renderer& renderer, const render::ModelGeom
   if (!model) return tl::unexpected(model.error());
   GpuContents contents{*model, {}};
   for (const LayerState& layer : layers) {
-    auto handle = add_layer(renderer, *model, layer.layer, layer.mirror->snapshot().tiles);
+    auto handle = add_layer(renderer, *model, layer.mirror);
     if (!handle) {
       renderer.remove_model(*model);
       return tl::unexpected(handle.error());

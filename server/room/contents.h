@@ -29,7 +29,7 @@ struct GpuContents {
 // A model and its layers, from their mirrors: all of it or nothing.
 Result<GpuContents> fill_gpu(render::Renderer& renderer, const render::ModelGeometry& geometry,
                              const std::vector<LayerState>& layers);
-Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model, const Layer& layer,
-                                      const TileMap& tiles);
+Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model,
+                                      std::shared_ptr<const TileMirror> mirror);
 
 }  // namespace strata::room

@@ -243,6 +243,7 @@ bool EditPipeline::map_ready(int resolution) {
 void EditPipeline::start_stroke(Waiting taken, const LayerState& layer) {
   ++in_flight_;
   auto item = std::make_shared<Waiting>(std::move(taken));
+  item->hold = layer.mirror->hold();
   parts_.renderer.paint(layer.handle, std::get<StrokeEdit>(item->request.edit).batch,
                         then([this, item](Result<render::StrokeOutcome> outcome) {
                           --in_flight_;
@@ -299,6 +300,7 @@ void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item, Result<
   std::vector<render::TileUpload> uploads;
   for (const auto& change : computed->changes) uploads.push_back({change.address, change.after});
   busy_ = true;
+  item->hold = layer->mirror->hold();
   parts_.renderer.write_tiles(layer->handle, std::move(uploads),
                               then([this, item, computed = std::move(*computed)](const Result<void>& uploaded) mutable {
                                 busy_ = false;

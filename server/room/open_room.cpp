@@ -53,7 +53,7 @@ OpenRoom::OpenRoom(const RoomParts& parts, Model model, render::ModelGeometry ge
       coarser_(std::move(geometry.coarser)),
       strand_(parts.strands.get_executor()),
       maps_(std::make_shared<SurfaceMaps>(geometry_, parts.renderer, parts.memory, parts.workers)),
-      surface_(std::make_shared<SurfaceLookup>(geometry_)),
+      surface_(std::make_shared<SurfaceLookup>(geometry_, parts.memory)),
       model_(std::move(model)),
       last_used_(std::chrono::steady_clock::now()),
       recovery_(strand_) {}
@@ -180,7 +180,8 @@ Result<Layer> OpenRoom::create_layer(Layer layer, const store::FirstAnswer<Layer
   if (auto ok = check_layer(layer, model()); !ok) return tl::unexpected(ok.error());
   auto created = exclusively<Layer>([this, layer, answer]() -> Result<Layer> {
     // The GPU first: of what it refuses nothing is in the database.
-    auto handle = add_layer(parts_.renderer, model_handle(), layer, {});
+    auto mirror = std::make_shared<TileMirror>(layer.type, layer.resolution);
+    auto handle = add_layer(parts_.renderer, model_handle(), mirror);
     if (!handle) return tl::unexpected(gpu_problem(handle.error()));
     auto made = parts_.store.create_layer(layer, answer);
     if (!made) {
@@ -190,8 +191,7 @@ Result<Layer> OpenRoom::create_layer(Layer layer, const store::FirstAnswer<Layer
     on_strand([&] {
       {
         std::lock_guard lock(mutex_);
-        layers_.emplace(made->id, LayerState{*made, *handle, std::make_shared<TileMirror>(made->type, made->resolution),
-                                             std::make_shared<const Palette>(made->palette)});
+        layers_.emplace(made->id, LayerState{*made, *handle, mirror, std::make_shared<const Palette>(made->palette)});
       }
       tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::created, *made); });
       sort_layers_changed();
@@ -413,7 +413,7 @@ bool OpenRoom::empty() const {
 }
 
 bool OpenRoom::drop_map() {
-  return on_strand([&] { return pipeline_->is_still() && maps_->drop_oldest(); });
+  return surface_->drop_graphs() || on_strand([&] { return pipeline_->is_still() && maps_->drop_oldest(); });
 }
 
 bool OpenRoom::deserted(std::chrono::steady_clock::time_point now) const {

@@ -44,7 +44,9 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
     if (asked.at) {
       auto past = parts_.store.load_tiles(item.layer, asked.at);
       if (!past) return tl::unexpected(past.error());
-      auto copy = add_layer(parts_.renderer, model, item.layer, past->tiles);
+      auto mirror = std::make_shared<TileMirror>(item.layer.type, item.layer.resolution);
+      mirror->assign(std::move(past->tiles), *asked.at);
+      auto copy = add_layer(parts_.renderer, model, std::move(mirror));
       if (!copy) return tl::unexpected(gpu_problem(copy.error()));
       handle = *copy;
       borrowed.layers.push_back(handle);

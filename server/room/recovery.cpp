@@ -64,6 +64,10 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
         continue;
       }
       state.handle = known->second.handle;
+      // The GPU knows the layer by this mirror.
+      auto tiles = state.mirror->snapshot();
+      known->second.mirror->assign(std::move(tiles.tiles), tiles.sequence);
+      state.mirror = known->second.mirror;
       if (known->second.layer.version > state.layer.version) {  // changed since it was read
         const std::int64_t sequence = state.layer.sequence;
         state.layer = known->second.layer;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 
+#include "core/memory_ledger.h"
 #include "core/progress.h"
 #include "mesh/search_tree.h"
 #include "mesh/texel_graph.h"
@@ -14,11 +15,15 @@ namespace strata::room {
 // threads. Thread-safe.
 class SurfaceLookup {
  public:
-  explicit SurfaceLookup(std::shared_ptr<const mesh::Geometry> geometry) : geometry_(std::move(geometry)) {}
+  // `memory` must outlive it.
+  SurfaceLookup(std::shared_ptr<const mesh::Geometry> geometry, MemoryLedger& memory)
+      : geometry_(std::move(geometry)), memory_(memory) {}
 
   const mesh::Geometry& geometry() const { return *geometry_; }
   std::shared_ptr<const mesh::SearchTree> tree();
+  // A Problem 503 beyond the budget of main memory.
   Result<std::shared_ptr<const mesh::TexelGraph>> graph(const mesh::SurfaceMap& map);
+  bool drop_graphs();  // they are made again when next asked for; false when there is none, or one is being made
   void stop() { progress_.cancel(); }
 
  private:
@@ -26,8 +31,15 @@ class SurfaceLookup {
   Progress progress_;
   std::once_flag tree_once_;
   std::shared_ptr<const mesh::SearchTree> tree_;
+  Result<std::shared_ptr<const mesh::TexelGraph>> find_or_build(const mesh::SurfaceMap& map);
+
+  struct Graph {
+    std::shared_ptr<const mesh::TexelGraph> graph;
+    MemoryLedger::Share share;  // empty until it was reserved
+  };
+  MemoryLedger& memory_;
   std::mutex graphs_mutex_;
-  std::map<int, std::shared_ptr<const mesh::TexelGraph>> graphs_;  // by resolution
+  std::map<int, Graph> graphs_;  // by resolution
 };
 
 }  // namespace strata::room

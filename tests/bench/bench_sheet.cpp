@@ -84,7 +84,7 @@ std::string row(render::Renderer& renderer, const BenchMesh& mesh, int top) {
   using namespace render;
   const auto model = await<ModelHandle>([&](auto done) { renderer.add_model({mesh.geometry, {}}, done); });
   const auto layer = await<LayerHandle>([&](auto done) { renderer.add_layer(model, ValueType::u8, kTexture, done); });
-  await<void>([&](auto done) { renderer.load_tiles(layer, checker_tiles(), done); });
+  await<void>([&](auto done) { renderer.write_tiles(layer, checker_tiles(), done); });
   const auto view = await<ViewHandle>([&](auto done) { renderer.add_view(model, done); });
   std::ostringstream svg;
   for (int i = 0; i < kDirectionCount; ++i) {

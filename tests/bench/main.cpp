@@ -8,8 +8,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   const std::map<std::string, strata::bench::Command> commands{
       {"atlas", strata::bench::add_atlas(app)},   {"edit", strata::bench::add_edit(app)},
-      {"import", strata::bench::add_import(app)}, {"query", strata::bench::add_query(app)},
-      {"sheet", strata::bench::add_sheet(app)},   {"stream", strata::bench::add_stream(app)}};
+      {"import", strata::bench::add_import(app)}, {"memory", strata::bench::add_memory(app)},
+      {"query", strata::bench::add_query(app)},   {"sheet", strata::bench::add_sheet(app)},
+      {"stream", strata::bench::add_stream(app)}};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

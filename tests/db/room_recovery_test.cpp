@@ -68,21 +68,14 @@ class RoomRecovery : public RoomTest {
  protected:
   void execute(const char* sql) { Connection(dsn_).execute(sql); }
 
-  // Leaves the GPU so full that no layer more can be filled, and returns one that was not; painting and viewing still work.
-  Layer fill_gpu(const Layer& first) {
-    EXPECT_TRUE(send(stroke(first, 5, {{320, 240}}, 20)));
-    EXPECT_TRUE(room()->picture({camera({0.3, -1, 0.4})}));
-    restart(renderer_->gpu_bytes_used() + (9u << 20));  // a slice of pages of four bytes takes 20 MiB
-    EXPECT_TRUE(room()->statistics(first.slug));
-    for (int i = 0; i < 20; ++i) {
-      const Layer next = make_layer(ValueType::u32, 2048, "layer-" + std::to_string(i));
-      const Answer filled = send(request(next, room::FillEdit{false, 3}));
-      if (filled) continue;
-      EXPECT_EQ(filled.error().status, 503);
-      return next;
+  // Starts again with a GPU that has room for one slice of pages of four bytes, 20 MiB: for a layer of 2048² that is painted all
+  // over, not for one of 4096². What is shown and painted is not more than that now.
+  void restart_with_little_gpu_memory(std::initializer_list<Layer> layers) {
+    for (const Layer& layer : layers) {
+      EXPECT_TRUE(send(stroke(layer, 5, {{320, 240}}, 20)));
     }
-    ADD_FAILURE() << "all fitted";
-    return first;
+    EXPECT_TRUE(room()->picture({camera({0.3, -1, 0.4})}));
+    restart(renderer_->gpu_bytes_used() + (9u << 20));
   }
 
   // Commits an edit behind the room's back, as a commit does whose answer was lost.
@@ -133,9 +126,31 @@ TEST(TileChanges, a_stroke_changes_what_it_wrote_whatever_the_gpu_holds_elsewher
 
 // --- the GPU
 
+TEST_F(RoomRecovery, layers_that_do_not_fit_the_gpu_together_are_painted_in_turn) {
+  const Layer a = make_layer(ValueType::u32, 2048, "a"), b = make_layer(ValueType::u32, 2048, "b");
+  restart_with_little_gpu_memory({a});
+  for (std::uint32_t value = 1; value < 4; ++value)
+    for (const Layer& layer : {a, b}) {
+      ASSERT_TRUE(send(request(layer, room::FillEdit{false, value})));
+      ASSERT_TRUE(send(stroke(layer, 10 + value, {{310, 250}}, 20)));
+    }
+  expect_room_equals_journal(a);
+  expect_room_equals_journal(b);
+  const auto both = room()->picture({camera({0.3, -1, 0.4})});
+  ASSERT_FALSE(both) << "two full layers in one picture";
+  EXPECT_EQ(both.error().status, 503);
+  restart();
+  expect_picture_of_journal();
+}
+
 TEST_F(RoomRecovery, a_fill_that_does_not_fit_the_gpu_is_refused_and_leaves_all_as_it_was) {
-  const Layer layer = fill_gpu(make_layer(ValueType::u32));
-  EXPECT_TRUE(room()->tiles(layer.slug, {})->tiles.empty());
+  const Layer other = make_layer(ValueType::u32, 2048, "other"), layer = make_layer(ValueType::u32, 4096, "large");
+  restart_with_little_gpu_memory({other, layer});
+  const auto before = room()->tiles(layer.slug, {});
+  const Answer filled = send(request(layer, room::FillEdit{false, 3}));
+  ASSERT_FALSE(filled);
+  EXPECT_EQ(filled.error().status, 503);
+  EXPECT_TRUE(test::equal(room()->tiles(layer.slug, {})->tiles, before->tiles));
   const auto next = send_until_taken(stroke(layer, 7, {{310, 250}}, 20));
   ASSERT_TRUE(next) << next.error().detail;
   expect_room_equals_journal(layer);
@@ -145,9 +160,9 @@ TEST_F(RoomRecovery, a_fill_that_does_not_fit_the_gpu_is_refused_and_leaves_all_
 TEST_F(RoomRecovery, what_was_erased_comes_back_when_other_paint_has_taken_its_pages) {
   options_.retry_for = std::chrono::milliseconds(500);
   restart();
-  const Layer a = make_layer(ValueType::u32, 2048, "a");
+  const Layer a = make_layer(ValueType::u32, 2048, "a"), b = make_layer(ValueType::u32, 2048, "b");
+  restart_with_little_gpu_memory({a});
   ASSERT_TRUE(send(request(a, room::FillEdit{false, 3})));
-  const Layer b = fill_gpu(a);
   const auto saved = room()->tiles("a", {});
   Ears ears;
   auto member = room()->join("anna", &ears, [](stream::FrameBytes) {});

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <random>
 
@@ -141,38 +142,132 @@ TEST(Layers, memory_of_removed_layers_serves_layers_of_other_widths) {
   }
 }
 
-TEST(Layers, what_a_layer_holds_from_the_start_is_loaded_behind_edits) {
-  TestRenderer renderer;
-  const auto model = renderer.add(make_scene(flat_square(), 256));
-  const auto layer = renderer.add_layer(model, ValueType::u8, 256);
-  std::vector<render::TileUpload> tiles;
-  for (std::uint16_t y = 0; y < 2; ++y)
-    for (std::uint16_t x = 0; x < 2; ++x) tiles.push_back({{x, y}, random_tile(ValueType::u8, x + 2u * y)});
-  std::vector<std::string> order;
-  std::promise<void> loaded;
-  std::promise<render::LayerHandle> added;
-  renderer->run_on_gpu_thread_for_test([&] {  // nothing runs until both wait
-    renderer->load_tiles(layer, tiles, [&](Result<void> done) {
-      EXPECT_TRUE(done);
-      order.emplace_back("load");
-      loaded.set_value();
-    });
-    renderer->add_layer(model, ValueType::u8, 256, [&](Result<render::LayerHandle> done) {
-      order.emplace_back("layer");
-      added.set_value(*done);
-    });
-  });
-  loaded.get_future().wait();
-  added.get_future().wait();
-  EXPECT_EQ(order, (std::vector<std::string>{"layer", "load"}));
-  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 200, 200, 0.5);
-  for (const auto& tile : renderer.paint(layer, dab(camera, 100, 100, 30, 5)).tiles) {
-    TileData expected = *tiles[tile.address.y * 2u + tile.address.x].data;
-    for (int i = 0; i < kTexelsPerTile; ++i) {
-      if (tile.written.test(i)) expected.write(i, 5);
-    }
-    EXPECT_EQ(tile.after, expected);
+// Layers of 16 x 16 tiles of four bytes with mirrors: a chunk each, and two chunks fit.
+class Leaving : public testing::Test {
+ protected:
+  static constexpr int kResolution = 2048, kTilesPerSide = kResolution / kTileSize;
+  // What the model takes, and two chunks of 256 pages of four bytes at 20 MiB, and views.
+  static render::RendererOptions options() {
+    static const std::uint64_t model_bytes = [] {
+      TestRenderer renderer;
+      renderer.add(make_scene(flat_square(), kResolution));
+      return renderer->gpu_bytes_used();
+    }();
+    render::RendererOptions options;
+    options.gpu_memory_bytes = model_bytes + (48u << 20);
+    return options;
   }
+
+  struct Mirrored {
+    std::shared_ptr<TileMirror> mirror;
+    render::LayerHandle handle = 0;
+  };
+  // Filled with `value`.
+  Mirrored add(std::uint32_t value) {
+    Mirrored layer{std::make_shared<TileMirror>(ValueType::u32, kResolution)};
+    auto tile = std::make_shared<TileData>(ValueType::u32);
+    for (int i = 0; i < kTexelsPerTile; ++i) tile->write(i, value);
+    TileMap tiles;
+    for (std::uint16_t y = 0; y < kTilesPerSide; ++y)
+      for (std::uint16_t x = 0; x < kTilesPerSide; ++x) tiles[{x, y}] = tile;
+    layer.mirror->put(tiles, 1);
+    layer.handle =
+        *await<render::LayerHandle>([&](auto done) { renderer_->add_layer(model_, layer.mirror, std::move(done)); });
+    return layer;
+  }
+  Result<render::Frame> draw(std::initializer_list<Mirrored> layers) {
+    render::FrameRequest request;
+    request.view = view_;
+    request.camera = camera_;
+    request.width = request.height = 200;
+    auto palette = std::make_shared<Palette>(default_palette(ValueType::u32, true));
+    for (const Mirrored& layer : layers) request.layers.push_back({layer.handle, palette, 1});
+    return await<render::Frame>([&](auto done) { renderer_->draw(request, std::move(done)); });
+  }
+  static std::array<int, 3> middle(const Result<render::Frame>& frame) {
+    if (!frame) return {-1, -1, -1};
+    const auto* pixel = frame->pixels.data() + 4 * (100 * 200 + 100);
+    return {pixel[0], pixel[1], pixel[2]};
+  }
+  bool is_here(const Mirrored& layer) { return renderer_->layer_bytes_used(layer.handle) > (1u << 20); }
+
+  TestRenderer renderer_{options()};
+  render::ModelHandle model_ = renderer_.add(make_scene(flat_square(), kResolution));
+  render::ViewHandle view_ = renderer_.add_view(model_);
+  Camera camera_ = orthographic_camera({0, 0, 2}, {0, 0, 0}, 200, 200, 0.5);
+};
+
+TEST_F(Leaving, a_layer_comes_to_the_gpu_when_it_is_first_shown) {
+  const auto layer = add(7);
+  EXPECT_FALSE(is_here(layer));
+  const auto bare = middle(draw({}));
+  EXPECT_FALSE(is_here(layer));
+  EXPECT_NE(middle(draw({layer})), bare);
+  EXPECT_TRUE(is_here(layer));
+}
+
+TEST_F(Leaving, layers_that_nobody_looks_at_make_room_for_those_that_are_shown) {
+  const auto first = add(1), second = add(5), third = add(9);
+  const auto of_first = middle(draw({first}));
+  const auto of_second = middle(draw({second}));
+  EXPECT_NE(of_first, of_second);
+  for (int round = 0; round < 3; ++round) {
+    draw({third});
+    EXPECT_EQ(middle(draw({first})), of_first);
+    EXPECT_EQ(middle(draw({second})), of_second);
+    EXPECT_LE(renderer_->gpu_bytes_used(), options().gpu_memory_bytes);
+  }
+  EXPECT_FALSE(is_here(first) && is_here(second) && is_here(third));
+}
+
+TEST_F(Leaving, more_layers_at_once_than_there_is_memory_for_are_refused) {
+  const auto a = add(1), b = add(3), c = add(9);
+  const auto refused = draw({a, b, c});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().status, 503);
+  EXPECT_TRUE(draw({a})) << "the refused ones are let go";
+}
+
+TEST_F(Leaving, what_is_painted_lies_over_what_the_layer_holds) {
+  const auto layer = add(3), other = add(1), third = add(2);
+  const auto outcome = renderer_.paint(layer.handle, dab(camera_, 100, 100, 20, 8));
+  ASSERT_FALSE(outcome.tiles.empty());
+  TileMap after;
+  for (const auto& tile : outcome.tiles) {
+    after[tile.address] = std::make_shared<const TileData>(tile.after);
+    for (int i = 0; i < kTexelsPerTile; ++i)
+      ASSERT_EQ(tile.after.bits(i), tile.written.test(i) ? 8u : 3u) << "texel " << i;
+  }
+  layer.mirror->put(after, 2);
+  const auto painted = middle(draw({layer}));
+  draw({other});
+  draw({third});
+  EXPECT_FALSE(is_here(layer));
+  EXPECT_EQ(middle(draw({layer})), painted) << "after it has left and come again";
+}
+
+TEST_F(Leaving, a_layer_that_knows_more_than_its_mirror_stays) {
+  const auto layer = add(3), other = add(1), third = add(2);
+  auto hold = layer.mirror->hold();
+  renderer_.paint(layer.handle, dab(camera_, 100, 100, 20, 8));
+  const auto painted = middle(draw({layer}));
+  draw({other});
+  draw({third});
+  EXPECT_TRUE(is_here(layer));
+  EXPECT_EQ(middle(draw({layer})), painted);
+  hold.reset();
+  draw({other});
+  draw({third});
+  EXPECT_FALSE(is_here(layer)) << "the mirror is held no more";
+}
+
+TEST_F(Leaving, tiles_are_written_over_what_the_layer_holds) {
+  const auto layer = add(3);
+  auto tile = std::make_shared<TileData>(ValueType::u32);
+  renderer_.write(layer.handle, {{{0, 0}, tile}});
+  EXPECT_EQ(renderer_->layer_bytes_used(layer.handle),
+            std::uint64_t{kTilesPerSide * kTilesPerSide} * 4 +
+                std::uint64_t{kTilesPerSide * kTilesPerSide - 1} * kTexelsPerTile * 5);
 }
 
 TEST(Layers, tiles_that_do_not_all_fit_leave_the_layer_as_it_was) {
