@@ -101,7 +101,12 @@ Result<void> MapFiles::choose_main() {
     if (kind_of(files_[i], files_.size() == 1)) maps.push_back(i);
   if (maps.empty())
     return fail(415, "No map",
-                files_.empty() ? "The zip holds no map: no .shp, .geojson, .tif, .png or .jpg." : kMapUpload, "body");
+                files_.empty()
+                    ? "The zip holds no map: no .shp, .geojson, .tif, .png or .jpg."
+                    : std::string(last_part(files_.front().name)).substr(0, 100) +
+                          " is no map by itself. Send it with its .shp or picture; maps are GeoJSON, shapefiles, "
+                          "TIFF, PNG and JPEG.",
+                "body");
   if (maps.size() > 1) {
     std::string named;
     for (std::size_t i = 0; i < std::min(maps.size(), kMostNamed); ++i)

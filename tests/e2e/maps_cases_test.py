@@ -93,7 +93,7 @@ def check_shapefile_refusals(server):
         ("cut off", {"a_shp": good[:-20], "a_dbf": table}, {"value": 1}, 422, "cut off"),
         ("a table that is cut off", {"a_shp": good, "a_dbf": table[:-20]}, {"value": 1}, 422, ".dbf is cut off"),
         ("two maps", {"a_shp": good, "b_shp": good}, {"value": 1}, 422, "a.shp, b.shp"),
-        ("no map", {"a_dbf": table, "a_prj": b"x"}, {"value": 1}, 415, "Send the map"),
+        ("no map", {"a_dbf": table, "a_prj": b"x"}, {"value": 1}, 415, "a.dbf is no map by itself"),
         ("a picture", {"a_png": png(1, 1, lambda x, y: (1, 2, 3))}, {"value": 1}, 415, "picture"),
         ("degrees", {"a_shp": good, "a_prj": b'GEOGCS["WGS 84"]'}, {"value": 1}, 422, "longitude"),
         ("a value that does not fit", {"a_shp": good}, {"value": 300}, 422, "300"),

@@ -89,7 +89,10 @@ try {
   await wait_for(async () => (await server.json("GET", `${base}/layers/curvature/statistics`)).texels === 0, "the layer to be empty");
 
   say("long work shows how far it is, and is cancelled");
-  await start_computing("Openness", { Name: "Never", "Looks as far as": "30" });
+  await start_computing("Openness", { Name: "Never", "Looks as far as": "30", "Rays at each point": "7" });
+  await button("Compute layer").click();
+  await page.getByText("Give a whole number of rays from 16 to 1024.").waitFor();
+  await page.getByLabel("Rays at each point").fill("128");
   await page.getByRole("radiogroup", { name: "Smallest detail" }).getByRole("radio").last().click(); // the finest takes longest
   await button("Compute layer").click();
   await page.getByRole("progressbar", { name: "Never" }).waitFor();
@@ -106,7 +109,7 @@ try {
 
   say("layers are brought over from another scan, with a report");
   const then = await import_hill("Then", 40);
-  await import_hill("Now", 57);
+  const now = await import_hill("Now", 57);
   const made = await server.json("POST", `/models/${then}/layers`, { name: "Terraces", type: "u8", compute: { kind: "height" } });
   await wait_for(async () => (await server.json("GET", `/jobs/${made.id}`)).state === "done", "the terraces");
   await page.goto(server.url);
@@ -116,12 +119,18 @@ try {
   await page.getByRole("menuitem", { name: "Bring layers over…" }).click();
   await page.locator("strata-transfer-dialog select").selectOption({ label: "Then" });
   await page.getByRole("checkbox", { name: "Terraces" }).waitFor();
+  await page.getByLabel("Their surfaces face the same way within").fill("0");
+  await button("Bring over").click();
+  await page.getByText("Give an angle from 1 to 180 degrees.").waitFor();
+  await page.getByLabel("Their surfaces face the same way within").fill("45");
   await keep_picture("transfer-dialog");
   await button("Bring over").click();
   await page.getByText(/of this surface has a counterpart/).waitFor();
   const row = page.getByRole("row", { name: /Terraces/ });
   assert.match(await row.innerText(), /cm²\s+0 %/);
   await button("Paint on Terraces").waitFor();
+  const [brought] = (await server.json("GET", `/models/${now}/layers/terraces/edits`)).edits;
+  assert.equal(brought.recipe.max_angle, 45, JSON.stringify(brought));
   await browser.settled();
   await keep_picture("transferred");
 
@@ -131,6 +140,17 @@ try {
   await button("Paint on quality").waitFor();
   await browser.settled();
   await keep_picture("quality");
+
+  say("a table of numbers for the vertices of the scan is painted");
+  const numbers = hill(57).split("end_header\n")[1].split("\n").slice(0, 58 * 58).map((line) => Number(line.split(" ")[3]) * 10);
+  await button("Options for quality").click();
+  await page.getByRole("menuitem", { name: "Paint from a file…" }).click();
+  await page.locator("strata-map-dialog input[type=file]").setInputFiles({ name: "tenfold.csv", mimeType: "text/csv", buffer: Buffer.from(numbers.join("\n")) });
+  await page.getByText("One number a line").waitFor();
+  await button("Paint").click();
+  await page.locator("strata-map-dialog").waitFor({ state: "detached" });
+  const tenfold = await server.json("GET", `/models/${now}/layers/quality/statistics`);
+  assert.ok(Math.abs(tenfold.max - 10) < 0.1 && tenfold.min >= 0, JSON.stringify({ ...tenfold, histogram: [] }));
 
   browser.assert_no_complaints();
   server.assert_clean_log();

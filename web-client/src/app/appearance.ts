@@ -68,6 +68,13 @@ export class Appearance {
     if (!this.visible(look)) this.set_visible(look, true);
   }
 
+  /** A look that work made for this person: they see it at once. */
+  async show_made(id: number): Promise<void> {
+    if (!this.looks.some((look) => look.id === id)) this.take_looks(await this.api_.looks(this.model_id_));
+    const look = this.looks.find((each) => each.id === id);
+    if (look && !this.visible(look)) this.set_visible(look, true);
+  }
+
   async rename(look: Look, name: string): Promise<void> {
     this.put(await this.api_.change_look(this.model_id_, look.id, { name }));
   }

@@ -57,7 +57,7 @@ export function choose_scans(files: readonly DroppedFile[]): Scan[] {
 export class Imports {
   entries: readonly ImportEntry[] = [];
   private next_key_ = 1;
-  private readonly uploads_ = new Map<number, Upload>();
+  private readonly uploads_ = new Map<number, Upload<Job>>();
   private readonly jobs_ = new Map<number, Job["id"]>();
   private readonly listeners_ = new Set<() => void>();
 

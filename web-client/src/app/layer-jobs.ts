@@ -1,4 +1,4 @@
-// Work under way that makes layers of the open model: computing one from the shape, bringing some over from another scan. The layers
+// Work under way that makes layers or looks of the open model: computing one from the shape, bringing some over from another scan. The layers
 // themselves come to the page like anyone's, when they are done.
 
 import { ApiError, type Api } from "../core/api";
@@ -43,6 +43,11 @@ export class LayerJobs {
     return { done: this.follow(name, job) };
   }
 
+  /** Work that something else has started; `made` hears of it once it is done. */
+  watch(name: string, job: Job, made: (job: Job) => void): void {
+    void this.follow(name, job, made);
+  }
+
   async cancel(key: number): Promise<void> {
     const job = this.entries.find((entry) => entry.key === key)?.job;
     if (job) await this.api_.cancel_job(job.id);
@@ -53,7 +58,7 @@ export class LayerJobs {
     this.changed_();
   }
 
-  private async follow(name: string, first: Job): Promise<readonly number[]> {
+  private async follow(name: string, first: Job, made: (job: Job) => void = () => {}): Promise<readonly number[]> {
     const key = this.next_key_++;
     this.entries = [...this.entries, { key, name, job: first, problem: null, report: null }];
     try {
@@ -61,6 +66,7 @@ export class LayerJobs {
       if (job.state === "failed") this.change(key, { problem: job.problem ?? { status: 500, title: job.message } });
       else if (job.report) this.change(key, { report: job.report });
       else this.dismiss(key);
+      if (job.state === "done") made(job);
       return job.layers ?? [];
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

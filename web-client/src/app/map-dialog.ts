@@ -1,33 +1,52 @@
-// <strata-map-dialog>: paints a layer from a file: readings (CSV), a flat map (GeoJSON) or an orthophoto.
+// <strata-map-dialog>: paints a layer from files: readings and vertex values (CSV), maps of areas, rasters, orthophotos, scanned maps.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { ApiError } from "../core/api";
 import { format_area } from "../core/measure";
-import type { Layer } from "../core/types";
+import type { EditResult } from "../core/protocol.gen";
+import type { Layer, MapContents } from "../core/types";
 import "./dialog";
 import { follow_session } from "./follow-session";
-import { kAlong, map_kind, number_attributes, world_numbers, type Along, type MapKind } from "./map-file";
+import "./map-colors";
+import {
+  accepted, as_uploads, color_keys, color_rows, file_kind, kMapEndings, kTableEndings, picture_modes, table_kind, unknown_file, world_numbers,
+  type Along, type ColorRow, type PictureMode,
+} from "./map-file"; // prettier-ignore
+import { direction_field, found_line, progress_line, world_field } from "./map-place";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { radio_group } from "./radio-group";
+import { Sending, type Begin } from "./sending";
 import { number_field_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 import "./value-picker";
+
+const words = texts.maps;
+const kFirstLine_bytes = 65536;
+const kTolerance = { least: 1, most: 60, usual: 12 } as const; // of colours
+
+type Kind = "readings" | "vertices" | "polygons" | "picture";
 
 @customElement("strata-map-dialog")
 export class StrataMapDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @property({ attribute: false }) layer!: Layer;
-  @state() private file_: File | null = null;
-  @state() private kind_: MapKind | null = null;
-  @state() private attributes_: string[] = [];
+  @state() private files_: readonly File[] = [];
+  @state() private kind_: Kind | null = null;
+  @state() private contents_: MapContents | null = null;
   @state() private attribute_ = "";
-  @state() private problem_ = "";
-  @state() private working_ = false;
+  @state() private names_ = "";
+  @state() private mode_: PictureMode = "luminance";
+  @state() private rows_: readonly ColorRow[] = [];
+  @state() private painting_ = false;
   private radius_mm_ = 5;
   private tolerance_mm_ = 5;
+  private source_ = "";
   private along_: Along = "-z";
   private world_ = "";
+  private band_ = 1;
+  private tolerance_: number = kTolerance.usual;
+  private readonly sending_ = new Sending(this);
 
   constructor() {
     super();
@@ -47,34 +66,65 @@ export class StrataMapDialog extends LitElement {
         grid-template-columns: repeat(auto-fit, minmax(140px, 1fr));
         gap: 12px;
       }
+      .part {
+        display: grid;
+        gap: 6px;
+      }
+      .found {
+        padding: 9px 12px;
+        border-radius: var(--radius-small);
+        background: var(--calm-soft);
+        font-size: 0.9rem;
+      }
+      .short {
+        width: 110px;
+      }
       textarea {
         font: 0.95rem var(--mono);
+      }
+      progress {
+        width: 100%;
+        height: 6px;
+        accent-color: var(--accent);
       }
     `,
   ];
 
   override render(): TemplateResult {
-    const words = texts.maps;
+    const ready = this.kind_ !== null && !this.sending_.busy;
     return html`<strata-dialog heading=${words.title(this.layer.name)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <form id="map" @submit=${(event: Event) => this.on_submit(event)}>
         <p class="hint">${words.lead}</p>
         <label class="field">
           <span>${words.file}</span>
-          <input type="file" accept=".csv,.tsv,.txt,.geojson,.json,.png,.jpg,.jpeg" @change=${(event: Event) => void this.on_file(event)} />
+          <input
+            type="file"
+            multiple
+            accept=${accepted([...kTableEndings, ...kMapEndings])}
+            ?disabled=${this.painting_}
+            @change=${(event: Event) => void this.on_files(event)}
+          />
         </label>
-        ${this.kind_ === "readings" ? this.readings() : nothing} ${this.kind_ === "polygons" ? this.polygons() : nothing}
-        ${this.kind_ === "picture" ? this.picture() : nothing}
-        ${this.problem_ ? html`<p class="error" role="alert">${this.problem_}</p>` : nothing}
-        ${this.working_ ? html`<p class="hint" role="status">${words.working}</p>` : nothing}
+        ${this.files_.length === 0 ? html`<p class="hint">${words.file_hint}</p>` : nothing} ${this.fields()}
+        ${this.sending_.problem ? html`<p class="error" role="alert">${this.sending_.problem}</p>` : nothing}
+        ${this.sending_.busy ? progress_line(this.sending_.share, this.painting_ ? words.working : words.looking) : nothing}
       </form>
-      <button slot="actions" class="primary" form="map" ?disabled=${!this.kind_ || this.working_} @click=${() => void this.apply()}>
-        ${words.paint}
-      </button>
+      <button slot="actions" class="primary" form="map" ?disabled=${!ready}>${words.paint}</button>
     </strata-dialog>`;
   }
 
+  private fields(): TemplateResult | typeof nothing {
+    const { contents_: contents } = this;
+    if (this.kind_ === "readings") return this.readings();
+    if (this.kind_ === "vertices") return this.vertices();
+    if (!contents) return nothing;
+    return html`${found_line(contents)} ${direction_field(this.along_, (along) => (this.along_ = along))}
+    ${contents.kind === "polygons" ? this.polygons(contents) : this.picture(contents)}`;
+  }
+
+  // ── tables ────────────────────────────────────────────────────────────────────────────────────────────────────────
+
   private readings(): TemplateResult {
-    const words = texts.maps;
     const length = (label: string, value: number, set: (mm: number) => void): TemplateResult =>
       html`<label class="field">
         <span>${label}</span>
@@ -96,57 +146,162 @@ export class StrataMapDialog extends LitElement {
       </div>`;
   }
 
-  private polygons(): TemplateResult {
-    const words = texts.maps;
-    const { session, layer } = this;
-    return html`${this.direction()}
-      <label class="field">
-        <span>${words.attribute}</span>
-        <select @change=${(event: Event) => (this.attribute_ = (event.target as HTMLSelectElement).value)}>
-          <option value="">${words.one_value}</option>
-          ${this.attributes_.map((name) => html`<option value=${name} ?selected=${name === this.attribute_}>${name}</option>`)}
-        </select>
-      </label>
-      ${this.attribute_ === ""
-        ? html`<strata-value-picker
-            .session=${session}
-            .layer=${layer}
-            .value=${session.painting.brush.value_of(layer)}
-          ></strata-value-picker>`
+  private get sources(): string[] {
+    return (this.session.model?.source_files ?? []).map(({ name }) => name).filter((name) => /\.(ply|obj)$/i.test(name));
+  }
+
+  private vertices(): TemplateResult {
+    return html`<p class="hint">${words.vertices_hint}</p>
+      ${this.sources.length > 1
+        ? html`<label class="field">
+            <span>${words.source}</span>
+            <select name="source" @change=${(event: Event) => (this.source_ = (event.target as HTMLSelectElement).value)}>
+              ${this.sources.map((name) => html`<option value=${name} ?selected=${name === this.source_}>${name}</option>`)}
+            </select>
+          </label>`
         : nothing}`;
   }
 
-  private picture(): TemplateResult {
-    const words = texts.maps;
-    return html`<p class="hint">${words.picture_hint}</p>
-      ${this.direction()}
-      <label class="field">
-        <span>${words.world}</span>
-        <textarea
-          rows="2"
-          placeholder="0.5, 0, 0, -0.5, 100, 200"
-          @input=${(event: Event) => (this.world_ = (event.target as HTMLTextAreaElement).value)}
-        ></textarea>
-      </label>`;
+  // ── maps ──────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+  private polygons({ columns = [] }: MapContents): TemplateResult {
+    const { session, layer } = this;
+    const has_names = layer.palette.mode === "categorical";
+    const usable = columns.filter(({ type }) => type !== "mixed");
+    const chosen = usable.find(({ name }) => name === this.attribute_);
+    const name_columns = columns.filter(({ type, name }) => type === "text" && name !== chosen?.name);
+    const option = (value: string, label: string, now: string): TemplateResult =>
+      html`<option value=${value} ?selected=${value === now}>${label}</option>`;
+    return html`<label class="field">
+        <span>${words.attribute}</span>
+        <select name="attribute" @change=${(event: Event) => (this.attribute_ = (event.target as HTMLSelectElement).value)}>
+          ${option("", words.one_value, this.attribute_)}
+          ${usable.map(({ name, type }) =>
+            option(name, type === "number" ? words.attribute_number(name) : words.attribute_text(name), this.attribute_),
+          )}
+        </select>
+      </label>
+      ${chosen && chosen.samples.length > 0 ? html`<p class="hint">${words.samples(chosen.samples.slice(0, 6).join(", "))}</p>` : nothing}
+      ${chosen?.type === "text" ? html`<p class="hint">${has_names ? words.names_become : words.names_need_legend}</p>` : nothing}
+      ${chosen?.type === "number" && has_names && name_columns.length > 0
+        ? html`<label class="field">
+            <span>${words.names}</span>
+            <select name="names" @change=${(event: Event) => (this.names_ = (event.target as HTMLSelectElement).value)}>
+              ${option("", words.no_names, this.names_)} ${name_columns.map(({ name }) => option(name, name, this.names_))}
+            </select>
+          </label>`
+        : nothing}
+      ${chosen
+        ? nothing
+        : html`<strata-value-picker
+            .session=${session}
+            .layer=${layer}
+            .value=${session.painting.brush.value_of(layer)}
+          ></strata-value-picker>`}`;
   }
 
-  private direction(): TemplateResult {
-    const words = texts.maps;
+  private picture(contents: MapContents): TemplateResult {
+    const modes = picture_modes(contents);
+    return html`${world_field(contents, this.world_, (text) => (this.world_ = text))}
+      <div class="part">
+        <span class="caption" id="gives">${words.picture_gives}</span>
+        ${radio_group({
+          label: { id: "gives" },
+          class: "segments",
+          choices: modes.map((mode) => ({ value: mode, content: words.modes[mode], title: words.mode_hints[mode] })),
+          chosen: this.mode_,
+          choose: (mode) => (this.mode_ = mode),
+        })}
+        <p class="hint">${words.mode_hints[this.mode_]}</p>
+      </div>
+      ${this.mode_ === "band" && (contents.bands ?? 1) > 1 ? this.band(contents.bands!) : nothing}
+      ${this.mode_ === "colors" ? this.colors() : nothing}`;
+  }
+
+  private band(bands: number): TemplateResult {
     return html`<label class="field">
-      <span>${words.along}</span>
-      <select @change=${(event: Event) => (this.along_ = (event.target as HTMLSelectElement).value as Along)}>
-        ${kAlong.map((along) => html`<option value=${along} ?selected=${along === this.along_}>${words.direction[along]}</option>`)}
-      </select>
+      <span>${words.band}</span>
+      <input
+        class="short"
+        type="number"
+        name="band"
+        min="1"
+        max=${bands}
+        .value=${String(this.band_)}
+        @input=${(event: Event) => (this.band_ = Number((event.target as HTMLInputElement).value))}
+      />
     </label>`;
   }
 
-  private async on_file(event: Event): Promise<void> {
-    const [file] = (event.target as HTMLInputElement).files ?? [];
-    this.file_ = file ?? null;
-    this.kind_ = file ? map_kind(file.name) : null;
-    this.problem_ = file && !this.kind_ ? texts.maps.unknown(file.name) : "";
-    this.attribute_ = "";
-    this.attributes_ = file && this.kind_ === "polygons" ? number_attributes(await file.text()) : [];
+  private colors(): TemplateResult {
+    return html`<strata-map-colors
+        .layer=${this.layer}
+        .rows=${this.rows_}
+        @rows=${(event: CustomEvent<ColorRow[]>) => (this.rows_ = event.detail)}
+      ></strata-map-colors>
+      <label class="field">
+        <span>${words.color_tolerance}</span>
+        <input
+          class="short"
+          type="number"
+          name="tolerance"
+          min=${kTolerance.least}
+          max=${kTolerance.most}
+          step="any"
+          title=${words.color_tolerance_hint}
+          .value=${String(this.tolerance_)}
+          @change=${(event: Event) => void this.on_tolerance(event)}
+        />
+      </label>`;
+  }
+
+  // ── what is done ──────────────────────────────────────────────────────────────────────────────────────────────────
+
+  private async on_files(event: Event): Promise<void> {
+    const files = [...((event.target as HTMLInputElement).files ?? [])];
+    this.sending_.cancel();
+    [this.files_, this.kind_, this.contents_, this.attribute_, this.names_] = [files, null, null, "", ""];
+    this.sending_.refuse("");
+    const names = files.map(({ name }) => name);
+    const kind = file_kind(names);
+    if (files.length === 0) return;
+    if (kind === null) {
+      this.sending_.refuse(words.unknown(unknown_file(names)));
+    } else if (kind === "table") {
+      const read = table_kind(await files[0]!.slice(0, kFirstLine_bytes).text());
+      if (files === this.files_) this.kind_ = read;
+      this.source_ = this.sources[0] ?? "";
+    } else {
+      await this.look();
+    }
+  }
+
+  /** Asks the server what the files hold. */
+  private async look(): Promise<void> {
+    const { files_: files, session } = this;
+    const query = { tolerance: String(this.tolerance_) };
+    const contents = await this.sending_.run((progress) =>
+      session.api.map_contents(session.model_id, query, as_uploads(files), progress),
+    );
+    if (!contents || files !== this.files_) return;
+    this.contents_ = contents;
+    this.kind_ = contents.kind;
+    if (contents.kind === "picture") {
+      const modes = picture_modes(contents);
+      if (!modes.includes(this.mode_) || this.rows_.length === 0) this.mode_ = modes[0] ?? "luminance";
+      const { mode, points } = this.layer.palette;
+      this.rows_ = color_rows(contents.colors ?? [], mode === "categorical" ? points.map(({ at }) => at) : []);
+    }
+  }
+
+  private async on_tolerance(event: Event): Promise<void> {
+    const tolerance = Number((event.target as HTMLInputElement).value);
+    if (!(tolerance >= kTolerance.least && tolerance <= kTolerance.most)) {
+      this.sending_.refuse(words.bad_tolerance(kTolerance.least, kTolerance.most));
+      return;
+    }
+    this.tolerance_ = tolerance;
+    await this.look();
   }
 
   private on_submit(event: Event): void {
@@ -154,36 +309,50 @@ export class StrataMapDialog extends LitElement {
     void this.apply();
   }
 
-  /** The query of the request; a text that says what is missing. */
-  private query(kind: MapKind): Record<string, string> | string {
-    if (kind === "readings") return { radius_mm: String(this.radius_mm_), tolerance_mm: String(this.tolerance_mm_) };
-    if (kind === "polygons") {
-      const value = this.session.painting.brush.value_of(this.layer);
-      return { along: this.along_, ...(this.attribute_ ? { attribute: this.attribute_ } : { value: String(value) }) };
+  /** The request; a text that says what is missing. */
+  private request(kind: Kind): Begin<EditResult> | string {
+    const { session, layer } = this;
+    const files = as_uploads(this.files_);
+    if (kind === "vertices") {
+      const source = this.sources.length > 1 ? this.source_ : null;
+      return (progress) => session.api.put_vertex_values(session.model_id, layer.id, source, files[0]!, progress);
     }
-    const world = world_numbers(this.world_);
-    return world === null ? texts.maps.world_wrong : { along: this.along_, world };
+    const query = kind === "readings" ? { radius_mm: String(this.radius_mm_), tolerance_mm: String(this.tolerance_mm_) } : this.map_query(kind);
+    if (typeof query === "string") return query;
+    return (progress) => session.api.paint_map(session.model_id, layer.id, kind, query, files, progress);
+  }
+
+  private map_query(kind: "polygons" | "picture"): Record<string, string> | string {
+    const along = { along: this.along_ };
+    if (kind === "polygons") {
+      const value = String(this.session.painting.brush.value_of(this.layer));
+      if (this.attribute_ === "") return { ...along, value };
+      return { ...along, attribute: this.attribute_, ...(this.names_ ? { names: this.names_ } : {}) };
+    }
+    const world = this.contents_?.world ? {} : { world: world_numbers(this.world_) };
+    if (world.world === null) return words.world_wrong;
+    const placed = { ...along, ...(world as Record<string, string>) };
+    if (this.mode_ === "luminance") return placed;
+    if (this.mode_ === "band") return { ...placed, band: String(this.band_) };
+    const colors = color_keys(this.rows_);
+    return colors === null ? words.colors_wrong : { ...placed, colors, tolerance: String(this.tolerance_) };
   }
 
   private async apply(): Promise<void> {
-    const { session, layer, file_: file, kind_: kind } = this;
-    if (!file || !kind || this.working_) return;
-    const query = this.query(kind);
-    if (typeof query === "string") {
-      this.problem_ = query;
+    if (!this.kind_ || this.sending_.busy) return;
+    const request = this.request(this.kind_);
+    if (typeof request === "string") {
+      this.sending_.refuse(request);
       return;
     }
-    this.working_ = true;
-    this.problem_ = "";
-    try {
-      const { texels_changed, area_m2 } = await session.api.paint_map(session.model_id, layer.id, kind, query, file);
-      if (texels_changed === 0) notices.show("info", texts.areas.nothing_changed);
-      else notices.show("success", texts.areas.changed(format_area(area_m2)));
-      this.dispatchEvent(new CustomEvent("closed"));
-    } catch (error) {
-      this.problem_ = error instanceof ApiError ? error.message : texts.problems.unexpected;
-    } finally {
-      this.working_ = false;
-    }
+    this.painting_ = true;
+    this.sending_.gives_up = false; // closing the dialog does not undo it
+    const done = await this.sending_.run(request);
+    this.painting_ = false;
+    this.sending_.gives_up = true;
+    if (!done) return;
+    if (done.texels_changed === 0) notices.show("info", texts.areas.nothing_changed);
+    else notices.show("success", texts.areas.changed(format_area(done.area_m2)));
+    this.dispatchEvent(new CustomEvent("closed"));
   }
 }

@@ -16,6 +16,7 @@ import "./layer-dialog";
 import type { LayerPanelRequest } from "./layer-panel";
 import "./layer-panel";
 import "./map-dialog";
+import "./orthophoto-dialog";
 import { model_styles } from "./model-styles";
 import { ModelSession } from "./model-session";
 import { follow } from "./routes";
@@ -33,7 +34,7 @@ import "./value-readout";
 import "./view-panel";
 import "./where-dialog";
 
-type OpenDialog = LayerPanelRequest | WhereRequest | { dialog: "scale" | "help" | "about" } | null;
+type OpenDialog = LayerPanelRequest | WhereRequest | { dialog: "scale" | "help" | "about" | "orthophoto" } | null;
 
 const kPanelWidth = { least: 270, first: 330, most: 620 };
 const kPanelKey = "strata.panel_width";
@@ -234,7 +235,12 @@ export class StrataModelPage extends LitElement {
             @request=${request}
           ></strata-layer-panel>
         </section>
-        <section><strata-view-panel .session=${session}></strata-view-panel></section>
+        <section>
+          <strata-view-panel
+            .session=${session}
+            @orthophoto=${() => (this.dialog_ = { dialog: "orthophoto" })}
+          ></strata-view-panel>
+        </section>
       </div>
     </aside>`;
   }
@@ -271,6 +277,8 @@ export class StrataModelPage extends LitElement {
           .layer=${newest(session, dialog.layer)}
           @closed=${closed}
         ></strata-map-dialog>`;
+      case "orthophoto":
+        return html`<strata-orthophoto-dialog .session=${session} @closed=${closed}></strata-orthophoto-dialog>`;
       case "scale":
         return html`<strata-scale-dialog .session=${session} @closed=${closed}></strata-scale-dialog>`;
       case "help":

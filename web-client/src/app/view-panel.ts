@@ -192,6 +192,11 @@ export class StrataViewPanel extends LitElement {
           ? html`<button class="quiet" ?disabled=${this.adding_} @click=${() => this.file_input_.click()}>
                 ${icon("plus")}${this.adding_ ? words.look_adding : words.look_add}
               </button>
+              <strata-menu label=${words.look_more}>
+                <button class="quiet" role="menuitem" @click=${() => this.dispatchEvent(new CustomEvent("orthophoto"))}>
+                  ${icon("import")}${texts.orthophoto.open}
+                </button>
+              </strata-menu>
               <input type="file" accept="image/jpeg,image/png" hidden aria-label=${words.look_add} @change=${this.on_file} />`
           : nothing}
       </div>

@@ -43,11 +43,13 @@ export interface UploadFile {
   path: string;
 }
 
-export interface Upload {
-  /** Resolves with the job that imports the file. */
-  done: Promise<Job>;
+export interface Upload<T> {
+  /** Resolves with the answer. */
+  done: Promise<T>;
   cancel(): void;
 }
+
+type Progress = (share: number) => void;
 
 const kBase = "/api/v1";
 
@@ -82,35 +84,10 @@ export class Api {
   }
 
   /** A mesh as the raw body, or with its companions as a form; with progress (0…1 of the bytes sent). */
-  upload_model(files: readonly UploadFile[], progress: (share: number) => void): Upload {
+  upload_model(files: readonly UploadFile[], progress: (share: number) => void): Upload<Job> {
     const { file } = files[0]!;
-    const form = new FormData();
-    if (files.length > 1) for (const each of files) form.append("files", each.file, each.path);
-    const request = this.make_request_();
-    const done = new Promise<Job>((resolve, reject) => {
-      const query = new URLSearchParams({ name: name_of_file(file.name), filename: file.name });
-      request.open("POST", `${kBase}/models?${query}`);
-      if (files.length === 1) request.setRequestHeader("Content-Type", "application/octet-stream");
-      request.setRequestHeader("Idempotency-Key", new_id());
-      request.upload.onprogress = (event) => {
-        if (event.lengthComputable) progress(event.loaded / event.total);
-      };
-      request.onload = () => {
-        if (request.status >= 400) {
-          reject(new ApiError(problem_of_text(request.status, request.responseText)));
-          return;
-        }
-        try {
-          resolve(JSON.parse(request.responseText) as Job);
-        } catch {
-          reject(new ApiError(problem_of_text(502, "")));
-        }
-      };
-      request.onerror = () => reject(unreachable());
-      request.onabort = () => reject(new ApiError({ status: 499, title: "Cancelled" }));
-      request.send(files.length === 1 ? file : form);
-    });
-    return { done, cancel: () => request.abort() };
+    const query = new URLSearchParams({ name: name_of_file(file.name), filename: file.name });
+    return this.upload("POST", `/models?${query}`, files, progress);
   }
 
   async job(id: Id): Promise<Job> {
@@ -191,15 +168,67 @@ export class Api {
     return (await response.json()) as wire.EditResult;
   }
 
-  /** Paints a file over the layer: "readings", "polygons" or "picture". Answered once it is durable. */
-  async paint_map(model: Id, layer: Id, kind: string, query: Record<string, string>, file: Blob): Promise<wire.EditResult> {
-    const response = await this.request_raw("POST", `${layer_path(model, layer)}/${kind}?${new URLSearchParams(query)}`, file, kFile);
-    return (await response.json()) as wire.EditResult;
+  /** Paints files over the layer. Answered once it is durable. */
+  paint_map(
+    model: Id,
+    layer: Id,
+    kind: "readings" | "polygons" | "picture",
+    query: Record<string, string>,
+    files: readonly UploadFile[],
+    progress: Progress,
+  ): Upload<wire.EditResult> {
+    const path = `${layer_path(model, layer)}/${kind}?${new URLSearchParams(query)}`;
+    return this.upload("POST", path, files, progress, kind !== "readings"); // the names of maps tell what they are
+  }
+  /** One number a line for each vertex of a scan; `source` where the model has several. Answered once it is durable. */
+  put_vertex_values(model: Id, layer: Id, source: string | null, file: UploadFile, progress: Progress): Upload<wire.EditResult> {
+    const query = source === null ? "" : `?${new URLSearchParams({ source })}`;
+    return this.upload("PUT", `${layer_path(model, layer)}/vertices.csv${query}`, [file], progress);
+  }
+  /** What a map's files hold. */
+  map_contents(model: Id, query: Record<string, string>, files: readonly UploadFile[], progress: Progress): Upload<wire.MapContents> {
+    const path = `/models/${encodeURIComponent(model)}/map-contents?${new URLSearchParams(query)}`;
+    return this.upload("POST", path, files, progress, true);
+  }
+  /** Makes a look of an orthophoto. */
+  add_orthophoto(model: Id, query: Record<string, string>, files: readonly UploadFile[], progress: Progress): Upload<Job> {
+    const path = `/models/${encodeURIComponent(model)}/orthophotos?${new URLSearchParams(query)}`;
+    return this.upload("POST", path, files, progress, true);
   }
 
   async frame(model: Id, camera: CameraMessage): Promise<Blob> {
     const response = await this.request("POST", `/models/${encodeURIComponent(model)}/frame`, { camera, format: "jpeg" });
     return response.blob();
+  }
+
+  /** As a form, or the only file as the body; `fetch` does not tell how much is sent. */
+  private upload<T>(method: string, path: string, files: readonly UploadFile[], progress: Progress, as_form = files.length > 1): Upload<T> {
+    const form = new FormData();
+    if (as_form) for (const each of files) form.append("files", each.file, each.path);
+    const request = this.make_request_();
+    const done = new Promise<T>((resolve, reject) => {
+      request.open(method, kBase + path);
+      if (!as_form) request.setRequestHeader("Content-Type", "application/octet-stream");
+      request.setRequestHeader("Idempotency-Key", new_id());
+      request.upload.onprogress = (event) => {
+        if (event.lengthComputable) progress(event.loaded / event.total);
+      };
+      request.onload = () => {
+        if (request.status >= 400) {
+          reject(new ApiError(problem_of_text(request.status, request.responseText)));
+          return;
+        }
+        try {
+          resolve(JSON.parse(request.responseText) as T);
+        } catch {
+          reject(new ApiError(problem_of_text(502, "")));
+        }
+      };
+      request.onerror = () => reject(unreachable());
+      request.onabort = () => reject(new ApiError({ status: 499, title: "Cancelled" }));
+      request.send(as_form ? form : files[0]!.file);
+    });
+    return { done, cancel: () => request.abort() };
   }
 
   private async json<T>(method: string, path: string, body?: unknown): Promise<T> {

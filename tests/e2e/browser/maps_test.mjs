@@ -1,0 +1,209 @@
+// Maps from files in the page: a shapefile with names, a scanned map by its colours, a raster of numbers, an orthophoto as a look, which
+// is then renamed and moved. What the dialogs say of the files, and what is refused.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { Browser, rgb } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kSupport = join(dirname(fileURLToPath(import.meta.url)), "..", "support");
+const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
+
+const browser = await Browser.open();
+const { page } = browser;
+const server = new StrataServer({ demo: true });
+const folder = mkdtempSync(join(tmpdir(), "strata-maps-"));
+const file = (name) => join(folder, name);
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const base = "/models/demo-pot";
+const layer = (name) => server.json("GET", `${base}/layers/${name}`);
+const statistics = (name) => server.json("GET", `${base}/layers/${name}/statistics`);
+const button = (name) => page.getByRole("button", { name, exact: true });
+const dialog = page.locator("strata-map-dialog, strata-orthophoto-dialog");
+const shot = async (name) => {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+};
+async function open_dialog(name) {
+  await button(`Options for ${name}`).click();
+  await page.getByRole("menuitem", { name: "Paint from a file…" }).click();
+}
+async function give(...names) {
+  await dialog.locator("input[type=file]").setInputFiles(names.map(file));
+}
+async function seen_from_front() {
+  await page.getByLabel("The map is looked at").selectOption({ value: "+y" });
+}
+async function paint() {
+  await button("Paint").click();
+  await page.getByText(/m² changed\./).first().waitFor();
+  await dialog.waitFor({ state: "detached" });
+}
+
+/** Files over the front of the model, seen along y: x and z. */
+function make_files({ min, max }) {
+  const [x, z, size] = [(min[0] + max[0]) / 2, (min[2] + max[2]) / 2, max[0] - min[0]];
+  const code = `
+import json, sys
+from maps import *
+folder, x, z, size = sys.argv[1], *map(float, sys.argv[2:])
+def put(name, content): open(folder + "/" + name, "wb").write(content)
+s = size / 8
+put("walls.shp", shp([[square(x - 2 * s, z, s)], [square(x + s, z, s)]]))
+put("walls.dbf", dbf([("ID", "N", 6, ["7", "9"]), ("STATE", "C", 10, ["Salt", "Moss"])]))
+paper = lambda u, v: (190, 40, 40) if 12 <= u < 28 and 20 <= v < 44 else (40, 60, 180) if 36 <= u < 52 and 20 <= v < 44 else (238, 232, 218)
+put("plan.png", png(64, 64, paper))
+place = lambda pixels: "%r\\n0\\n0\\n%r\\n%r\\n%r\\n" % (size / pixels, -size / pixels, x - size / 2 + size / pixels / 2, z + size / 2 - size / pixels / 2)
+put("plan.pgw", place(64).encode())
+put("depth.tif", tiff(16, 16, lambda u, v: 0.5 * u, nodata="-9999", scale=size / 16, origin=(x - size / 2, z + size / 2)))
+put("photo.png", png(32, 32, lambda u, v: (255, 0, 255)))
+put("photo.pgw", place(32).encode())
+`;
+  execFileSync("python3", ["-c", code, folder, String(x), String(z), String(size)], { env: { ...process.env, PYTHONPATH: kSupport } });
+  writeFileSync(file("values.csv"), "0.5\n0.25\n");
+  writeFileSync(file("notes.doc"), "?");
+}
+
+try {
+  await server.start();
+  make_files((await server.json("GET", base)).bounds);
+  await server.json("POST", `${base}/layers`, { name: "States", type: "u8", resolution: 2048, palette: { mode: "categorical", points: [{ at: 4, color: kMagenta, label: "Moss" }] } });
+  await server.json("POST", `${base}/layers`, { name: "Depth", type: "f32", resolution: 2048 });
+  const look = await fetch(`${server.url}/api/v1${base}/looks?name=Infrared`, { method: "POST", headers: { Authorization: `Bearer ${server.token}` }, body: readFileSync(file("plan.png")) });
+  assert.equal(look.status, 201, await look.clone().text());
+  await page.goto(server.link);
+  await page.getByRole("link", { name: /Demo pot/ }).click();
+  await browser.drawn();
+  const later = button("Decide later");
+  if (await later.isVisible()) await later.click();
+
+  say("a shapefile tells its attributes, and names become classes");
+  await open_dialog("States");
+  await shot("maps-empty");
+  await give("walls.shp", "walls.dbf");
+  await page.getByText("2 areas · 2 attributes").waitFor();
+  await page.getByLabel("Each area gets").selectOption("STATE");
+  await page.getByText("Such as Salt, Moss").waitFor();
+  await page.getByText("others become new classes").waitFor();
+  await seen_from_front();
+  await shot("maps-shapefile");
+  await paint();
+  const states = await statistics("states");
+  assert.deepEqual(states.keys.map(({ key }) => key).sort(), [1, 4]);
+  assert.deepEqual((await layer("states")).palette.points.map(({ at, label }) => [at, label]), [[1, "Salt"], [4, "Moss"]]);
+  await browser.saved();
+  await wait_for(async () => (await browser.count(rgb(kMagenta))) > 500, "the moss on the pot", 150);
+
+  say("numbers with the names of another attribute");
+  await open_dialog("States");
+  await give("walls.shp", "walls.dbf");
+  await page.getByLabel("Each area gets").selectOption("ID");
+  await page.getByLabel("Names of the classes").selectOption("STATE");
+  await seen_from_front();
+  await paint();
+  assert.deepEqual((await statistics("states")).keys.map(({ key }) => key).sort(), [7, 9]);
+
+  say("a scanned map: its colours are found, and get values");
+  await open_dialog("States");
+  await give("plan.png", "plan.pgw");
+  await page.getByText("The file says where it lies.").waitFor();
+  const values = page.locator("strata-map-colors input[type=number]");
+  await wait_for(async () => (await values.count()) === 3, "the three colours");
+  assert.deepEqual(await Promise.all([0, 1, 2].map((i) => values.nth(i).isDisabled())), [true, false, false]);
+  await values.nth(1).fill("");
+  await seen_from_front();
+  await button("Paint").click();
+  await page.getByRole("alert").getByText("Give every colour that is used a number").waitFor();
+  await values.nth(1).fill("4");
+  await values.nth(2).fill("11");
+  await shot("maps-colours");
+  await paint();
+  assert.deepEqual((await statistics("states")).keys.map(({ key }) => key).sort((a, b) => a - b).filter((key) => key === 4 || key === 11), [4, 11]);
+
+  say("a raster of numbers lies where it says");
+  await open_dialog("Depth");
+  await give("depth.tif");
+  await page.getByText("16 × 16 px · 1 band").waitFor();
+  await page.getByText("The number that the raster has there").waitFor();
+  await seen_from_front();
+  await shot("maps-raster");
+  await paint();
+  const depth = await statistics("depth");
+  assert.ok(depth.texels > 1000 && depth.min >= 0 && depth.max <= 7.5, JSON.stringify(depth).slice(0, 200));
+
+  say("who may only paint adds no names to the legend, and paints those that are there");
+  const annotator = server.add_person("ann", "annotator");
+  const as_annotator = (query) => {
+    const form = new FormData();
+    for (const name of ["walls.shp", "walls.dbf"]) form.append("files", new Blob([readFileSync(file(name))]), name);
+    return fetch(`${server.url}/api/v1${base}/layers/few/polygons?along=%2By&${query}`, { method: "POST", headers: { Authorization: `Bearer ${annotator}` }, body: form });
+  };
+  await server.json("POST", `${base}/layers`, { name: "Few", type: "u8", visible: false, palette: { mode: "categorical", points: [{ at: 1, color: kMagenta, label: "Salt" }] } });
+  const refused = await as_annotator("attribute=STATE");
+  assert.equal(refused.status, 403);
+  assert.match((await refused.json()).detail, /lacks: Moss/);
+  assert.equal((await layer("few")).palette.points.length, 1);
+  assert.equal((await statistics("few")).texels, 0);
+  assert.equal((await as_annotator("attribute=ID")).status, 200);
+
+  say("what is no map, and numbers for vertices");
+  await open_dialog("Depth");
+  await give("notes.doc");
+  await page.getByRole("alert").getByText("“notes.doc” is none of these").waitFor();
+  await give("walls.dbf");
+  await page.getByRole("alert").getByText("walls.dbf is no map by itself").waitFor();
+  await give("values.csv");
+  await page.getByText("One number a line").waitFor();
+  await button("Paint").click();
+  await page.getByRole("alert").waitFor();
+  await shot("maps-vertices");
+  await page.keyboard.press("Escape");
+
+  say("an orthophoto becomes a look");
+  for (const { id } of (await server.json("GET", `${base}/layers`)).layers) await server.json("PATCH", `${base}/layers/${id}`, { visible: false });
+  await page.locator("strata-view-panel").getByRole("button", { name: "View", exact: true }).click();
+  await button("More about looks").click();
+  await page.getByRole("menuitem", { name: "Add an orthophoto…" }).click();
+  await give("photo.png", "photo.pgw");
+  await page.getByLabel("Name", { exact: true }).waitFor();
+  assert.equal(await page.getByLabel("Name", { exact: true }).inputValue(), "photo");
+  await page.getByLabel("Name", { exact: true }).fill("Ortho");
+  await seen_from_front();
+  await shot("maps-orthophoto");
+  await button("Add").click();
+  await dialog.waitFor({ state: "detached" });
+  await button("Hide Ortho").waitFor();
+  await wait_for(async () => (await browser.count(rgb(kMagenta))) > 5000, "the orthophoto on the pot", 300);
+  await shot("maps-look");
+
+  say("it is renamed and moved");
+  const names = () => page.locator("strata-view-panel li .name").allTextContents();
+  await button("Options for Ortho").click();
+  await page.getByRole("menuitem", { name: "Rename…" }).click();
+  await page.getByLabel("Name", { exact: true }).fill("Front 2024");
+  await page.keyboard.press("Enter");
+  await button("Options for Front 2024").waitFor();
+  assert.deepEqual(await names(), ["Front 2024", "Infrared"]);
+  await button("Options for Front 2024").click();
+  await page.getByRole("menuitem", { name: "Move down" }).click();
+  await wait_for(async () => (await names())[1] === "Front 2024", "the look below the other");
+  await wait_for(async () => (await server.json("GET", `${base}/looks`)).looks.at(-1).name === "Infrared", "the server to know");
+  await shot("maps-looks");
+
+  say("the end");
+  browser.assert_no_complaints(["422", "415"]);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
+  await shot("maps");
+  throw error;
+} finally {
+  rmSync(folder, { recursive: true, force: true });
+  await browser.close();
+  await server.remove();
+}

@@ -1,0 +1,123 @@
+// <strata-orthophoto-dialog>: makes a look of a picture that was taken along an axis.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { name_of_file } from "../core/api";
+import type { MapContents } from "../core/types";
+import "./dialog";
+import { accepted, as_uploads, file_kind, kPictureEndings, unknown_file, world_numbers, type Along } from "./map-file";
+import { direction_field, found_line, progress_line, world_field } from "./map-place";
+import type { ModelSession } from "./model-session";
+import { notices } from "./notices";
+import { Sending } from "./sending";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+const words = texts.orthophoto;
+
+@customElement("strata-orthophoto-dialog")
+export class StrataOrthophotoDialog extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @state() private files_: readonly File[] = [];
+  @state() private contents_: MapContents | null = null;
+  @state() private name_ = "";
+  private along_: Along = "-z";
+  private world_ = "";
+  private readonly sending_ = new Sending(this);
+
+  static override styles = [
+    shared_styles,
+    css`
+      form {
+        display: grid;
+        gap: 14px;
+      }
+      .found {
+        padding: 9px 12px;
+        border-radius: var(--radius-small);
+        background: var(--calm-soft);
+        font-size: 0.9rem;
+      }
+      textarea {
+        font: 0.95rem var(--mono);
+      }
+      progress {
+        width: 100%;
+        height: 6px;
+        accent-color: var(--accent);
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { contents_: contents } = this;
+    return html`<strata-dialog heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+      <form id="orthophoto" @submit=${(event: Event) => void this.on_submit(event)}>
+        <p class="hint">${words.lead}</p>
+        <label class="field">
+          <span>${words.file}</span>
+          <input type="file" multiple accept=${accepted(kPictureEndings)} @change=${(event: Event) => void this.on_files(event)} />
+        </label>
+        ${contents
+          ? html`${found_line(contents)}
+              <label class="field">
+                <span>${words.name}</span>
+                <input
+                  type="text"
+                  name="name"
+                  required
+                  maxlength="200"
+                  .value=${this.name_}
+                  @input=${(event: Event) => (this.name_ = (event.target as HTMLInputElement).value)}
+                />
+              </label>
+              ${direction_field(this.along_, (along) => (this.along_ = along))}
+              ${world_field(contents, this.world_, (text) => (this.world_ = text))}`
+          : nothing}
+        ${this.sending_.problem ? html`<p class="error" role="alert">${this.sending_.problem}</p>` : nothing}
+        ${this.sending_.busy ? progress_line(this.sending_.share, texts.maps.looking) : nothing}
+      </form>
+      <button slot="actions" class="primary" form="orthophoto" ?disabled=${!contents || this.sending_.busy}>${words.add}</button>
+    </strata-dialog>`;
+  }
+
+  private async on_files(event: Event): Promise<void> {
+    const files = [...((event.target as HTMLInputElement).files ?? [])];
+    this.sending_.cancel();
+    [this.files_, this.contents_] = [files, null];
+    this.sending_.refuse("");
+    const names = files.map(({ name }) => name);
+    if (files.length === 0) return;
+    if (file_kind(names) !== "map") {
+      this.sending_.refuse(texts.maps.unknown(unknown_file(names)));
+      return;
+    }
+    const { api, model_id } = this.session;
+    const contents = await this.sending_.run((progress) => api.map_contents(model_id, {}, as_uploads(files), progress));
+    if (!contents || files !== this.files_) return;
+    if (contents.kind === "polygons") this.sending_.refuse(words.no_picture);
+    else if (!contents.has_colors) this.sending_.refuse(words.no_colors);
+    else this.contents_ = contents;
+    const picture = files.find(({ name }) => /\.(tiff?|png|jpe?g|zip)$/i.test(name)) ?? files[0]!;
+    this.name_ = name_of_file(picture.name);
+  }
+
+  private async on_submit(event: Event): Promise<void> {
+    event.preventDefault();
+    const { session, contents_: contents } = this;
+    if (!contents || this.sending_.busy) return;
+    const world = contents.world ? "" : world_numbers(this.world_);
+    if (world === null) {
+      this.sending_.refuse(texts.maps.world_wrong);
+      return;
+    }
+    const name = this.name_.trim();
+    const query = { name, along: this.along_, ...(world ? { world } : {}) };
+    const job = await this.sending_.run((progress) => session.api.add_orthophoto(session.model_id, query, as_uploads(this.files_), progress));
+    if (!job) return;
+    session.jobs.watch(words.job(name), job, ({ look }) => {
+      if (look) session.appearance.show_made(look).catch((error: unknown) => notices.error(error));
+    });
+    this.dispatchEvent(new CustomEvent("closed"));
+  }
+}
