@@ -214,6 +214,28 @@ CREATE TABLE public.tokens (
     CONSTRAINT tokens_kind_check CHECK ((kind = ANY (ARRAY['session'::text, 'script'::text, 'owner_link'::text])))
 );
 
+CREATE TABLE public.tool_shapes (
+    id bigint NOT NULL,
+    name text NOT NULL,
+    slug public.slug NOT NULL,
+    cells bytea NOT NULL,
+    created timestamp with time zone DEFAULT now() NOT NULL,
+    deleted timestamp with time zone,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT tool_shapes_cells_check CHECK ((octet_length(cells) = 8192)),
+    CONSTRAINT tool_shapes_name_check CHECK ((name <> ''::text)),
+    CONSTRAINT tool_shapes_slug_check CHECK (((slug)::text <> ALL (ARRAY['disc'::text, 'square'::text])))
+);
+
+ALTER TABLE public.tool_shapes ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.tool_shapes_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.users (
     id bigint NOT NULL,
     name text NOT NULL,
@@ -288,6 +310,9 @@ ALTER TABLE ONLY public.tile_revisions
 ALTER TABLE ONLY public.tokens
     ADD CONSTRAINT tokens_pkey PRIMARY KEY (hash);
 
+ALTER TABLE ONLY public.tool_shapes
+    ADD CONSTRAINT tool_shapes_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.users
     ADD CONSTRAINT users_name_key UNIQUE (name);
 
@@ -317,6 +342,8 @@ CREATE INDEX tile_revisions_edit ON public.tile_revisions USING btree (layer_id,
 CREATE INDEX tile_revisions_key ON public.tile_revisions USING btree (layer_id, tile_y, tile_x, sequence) WHERE (key_tile IS NOT NULL);
 
 CREATE INDEX tokens_user ON public.tokens USING btree (user_name);
+
+CREATE UNIQUE INDEX tool_shapes_slug ON public.tool_shapes USING btree (slug) WHERE (deleted IS NULL);
 
 ALTER TABLE ONLY public.blob_chunks
     ADD CONSTRAINT blob_chunks_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256) ON DELETE CASCADE;

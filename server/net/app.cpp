@@ -13,13 +13,15 @@ constexpr std::size_t kMaxWaitingQueries = 256;
 
 bool changes(Method method) { return method != Method::get && method != Method::head && method != Method::options; }
 
-std::shared_ptr<LiveShared> make_shared_state(const ServerOptions& options, store::Store& store) {
+std::shared_ptr<LiveShared> make_shared_state(const ServerOptions& options, store::Store& store,
+                                              const std::shared_ptr<ToolShelf>& tools) {
   auto shared = std::make_shared<LiveShared>();
   shared->metrics = std::make_shared<Metrics>();
   shared->strokes = std::make_shared<StrokeBook>();
   shared->queries = std::make_shared<WorkerPool>(options.query_threads, kMaxWaitingQueries);
   shared->store = &store;
   shared->limits = options.live;
+  shared->find_tool = [tools](const std::string& ref) { return tools->find(ref); };
   return shared;
 }
 
@@ -46,9 +48,11 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       answers_(store),
       edit_book_(store),
       files_(options_.static_dir),
-      shared_(make_shared_state(options_, store)),
+      tools_(std::make_shared<ToolShelf>(store)),
+      shared_(make_shared_state(options_, store, tools_)),
       workers_(options_.worker_threads, options_.max_waiting_requests),
-      context_{options_, store, rooms, jobs, renderer, auth_, edit_book_, live_sockets_, *shared_->metrics, workers_} {
+      context_{options_,          store,    rooms,  jobs, renderer, auth_, edit_book_, live_sockets_,
+               *shared_->metrics, workers_, *tools_} {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
   add_project_routes(router_, context_);
@@ -57,6 +61,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_job_routes(router_, context_);
   add_layer_routes(router_, context_);
   add_look_routes(router_, context_);
+  add_tool_routes(router_, context_);
   add_edit_routes(router_, context_);
   add_query_routes(router_, context_);
   add_frame_routes(router_, context_);
@@ -185,9 +190,10 @@ bool App::is_still_welcome(const std::string& secret, Role role) {
 }
 
 std::shared_ptr<LiveSession> App::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) {
-  live_sockets_.add(socket, entry.secret);
-  return std::make_shared<LiveSession>(shared_, std::move(entry.room), std::move(entry.project_slug),
-                                       std::move(entry.principal), std::move(socket));
+  auto session = std::make_shared<LiveSession>(shared_, std::move(entry.room), std::move(entry.project_slug),
+                                               std::move(entry.principal), socket);
+  live_sockets_.add(std::move(socket), session, std::move(entry.secret));
+  return session;
 }
 
 }  // namespace strata::net

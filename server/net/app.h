@@ -64,6 +64,7 @@ class App {
   EditBook edit_book_;
   StaticFiles files_;
   LiveSockets live_sockets_;
+  const std::shared_ptr<ToolShelf> tools_;
   std::shared_ptr<LiveShared> shared_;
   WorkerPool workers_;
   Router router_;

@@ -71,6 +71,10 @@ void LiveSession::on_closed() {
   // Leaving waits for the room's listeners, which may wait for our mutex: so not under it.
 }
 
+void LiveSession::tell(const protocol::ServerMessage& message) {
+  if (member()) send(message);
+}
+
 // --- messages
 
 void LiveSession::on(const protocol::Hello& message) {
@@ -151,9 +155,14 @@ void LiveSession::on(const protocol::LayersUpdate& message) {
 
 void LiveSession::on(const protocol::StrokeBegin& message) {
   if (!may_edit(message.id)) return;
+  if (!names_tool(message)) return begin(message);
+  work_ = [self = shared_from_this(), message] { self->begin(message); };  // to look for the tool may block
+}
+
+void LiveSession::begin(const protocol::StrokeBegin& message) {
   auto layer = layer_of(message.layer);
   if (!layer) return refuse(layer.error(), message.id);
-  auto tool = stroke_tool(message, *layer, room_->model());
+  auto tool = stroke_tool(message, *layer, room_->model(), shared_->find_tool);
   if (!tool) return refuse(tool.error(), message.id);
   if (auto begun = shared_->strokes->begin(owner_, message.stroke, std::move(*tool)); !begun)
     refuse(begun.error(), message.id);
@@ -175,9 +184,14 @@ void LiveSession::on(const protocol::StrokeEnd& message) {
 
 void LiveSession::on(const protocol::EditRequest& message) {
   if (!may_edit(message.id)) return;
+  if (!names_tool(message.edit)) return edit(message);
+  work_ = [self = shared_from_this(), message] { self->edit(message); };
+}
+
+void LiveSession::edit(const protocol::EditRequest& message) {
   auto layer = layer_of(message.layer);
   if (!layer) return refuse(layer.error(), message.id);
-  auto request = edit_request(message.edit, *layer, room_->model(), message.id, principal_.user);
+  auto request = edit_request(message.edit, *layer, room_->model(), message.id, principal_.user, shared_->find_tool);
   if (!request) return refuse(request.error(), message.id);
   submit(std::move(*request), std::nullopt);
 }

@@ -14,6 +14,7 @@
 #include "net/metrics.h"
 #include "net/stroke_book.h"
 #include "net/token_bucket.h"
+#include "net/wire.h"
 #include "net/worker_pool.h"
 #include "protocol/parse.h"
 #include "room/room.h"
@@ -45,6 +46,7 @@ struct LiveShared {
   std::shared_ptr<StrokeBook> strokes;
   std::shared_ptr<WorkerPool> queries;  // picks: they may be slow the first time
   store::Store* store = nullptr;
+  FindTool find_tool;
   LiveLimits limits;
 };
 
@@ -66,6 +68,8 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   Work on_text(const std::string& text);
   void on_binary();
   void on_closed();
+  // What concerns the whole site; only who was welcomed hears it. Any thread.
+  void tell(const protocol::ServerMessage& message);
 
   // --- room::Listener
   void edit_applied(const Edit& edit) override;
@@ -95,6 +99,8 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void on(const protocol::PresenceUpdate& message);
   void on(const protocol::Pick& message);
 
+  void begin(const protocol::StrokeBegin& message);
+  void edit(const protocol::EditRequest& message);
   void paint(const protocol::StrokeExtend& message);
   void find_start(const protocol::StrokeExtend& message);
   template <class Message>

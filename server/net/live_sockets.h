@@ -9,14 +9,25 @@
 
 namespace strata::net {
 
-// The open WebSockets: a stopping server says goodbye to all, and who signs out is gone everywhere. Thread-safe.
+// The open WebSockets: what concerns the site is told to all, a stopping server says goodbye to all, and who signs out is gone
+// everywhere. Thread-safe.
 class LiveSockets {
  public:
   // `secret`: what the person showed to come in.
-  void add(std::weak_ptr<LiveSocket> socket, std::string secret) {
+  void add(std::weak_ptr<LiveSocket> socket, std::weak_ptr<LiveSession> session, std::string secret) {
     std::lock_guard lock(mutex_);
     std::erase_if(entries_, [](const Entry& known) { return known.socket.expired(); });
-    entries_.push_back({std::move(socket), std::move(secret)});
+    entries_.push_back({std::move(socket), std::move(session), std::move(secret)});
+  }
+  // Whichever model they look at.
+  void tell_all(const protocol::ServerMessage& message) {
+    std::vector<std::shared_ptr<LiveSession>> sessions;
+    {
+      std::lock_guard lock(mutex_);
+      for (const Entry& entry : entries_)
+        if (auto session = entry.session.lock()) sessions.push_back(std::move(session));
+    }
+    for (const auto& session : sessions) session->tell(message);
   }
   void close_all(int code, const std::string& reason) {
     close_if([](const Entry&) { return true; }, code, reason);
@@ -28,6 +39,7 @@ class LiveSockets {
  private:
   struct Entry {
     std::weak_ptr<LiveSocket> socket;
+    std::weak_ptr<LiveSession> session;
     std::string secret;
   };
   template <class Choice>

@@ -11,6 +11,7 @@
 #include "net/metrics.h"
 #include "net/router.h"
 #include "net/server_options.h"
+#include "net/tool_shelf.h"
 #include "protocol/parse.h"
 #include "render/renderer.h"
 #include "room/room.h"
@@ -30,6 +31,7 @@ struct RouteContext {
   LiveSockets& live_sockets;
   Metrics& metrics;
   WorkerPool& workers;
+  ToolShelf& tools;
 };
 
 void add_system_routes(Router& router, const RouteContext& context);
@@ -40,6 +42,7 @@ void add_import_routes(Router& router, const RouteContext& context);
 void add_job_routes(Router& router, const RouteContext& context);
 void add_layer_routes(Router& router, const RouteContext& context);
 void add_look_routes(Router& router, const RouteContext& context);
+void add_tool_routes(Router& router, const RouteContext& context);
 void add_edit_routes(Router& router, const RouteContext& context);
 void add_query_routes(Router& router, const RouteContext& context);
 void add_frame_routes(Router& router, const RouteContext& context);

@@ -79,11 +79,11 @@ void add_edit_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context](const Request& request) { return history(context, request); }),
               .query = {"limit", "offset"}});
   change(layer + "/edits",
-         editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+         editing(context, [&context](const Request& request, const Target& target) -> Result<room::EditRequest> {
            auto asked = body_of<protocol::Edit>(request);
            if (!asked) return tl::unexpected(asked.error());
            return edit_request(*asked, target.layer, target.room->model(), edit_id(request, target.layer, "edit"),
-                               request.user());
+                               request.user(), [&](const std::string& ref) { return context.tools.find(ref); });
          }));
   change(layer + "/undo",
          editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {

@@ -20,14 +20,34 @@ Result<std::uint32_t> value_bits(const Layer& layer, double value, bool erase) {
   return *bits;
 }
 
+bool is_tool(const protocol::ToolShape& shape) {
+  const auto* word = std::get_if<std::string>(&shape);
+  return !word || (*word != "disc" && *word != "square");
+}
+
+// Nothing for discs and squares.
+Result<FoundTool> tool_of(const protocol::ToolShape& shape, const FindTool& find_tool) {
+  if (!is_tool(shape)) return FoundTool{};
+  const std::string ref = protocol::to_ref(shape);
+  Result<FoundTool> found = find_tool ? find_tool(ref) : fail(404, {}, {});
+  if (found || found.error().status != 404) return found;
+  return fail(
+      422, "Unknown tool",
+      "There is no tool `" + ref.substr(0, 100) + "`. `shape` is disc, square, or a tool listed at /api/v1/tools.",
+      "shape");
+}
+
 // The brush members that EditStroke and StrokeBegin share.
 template <class Stroke>
-Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Model& model) {
+Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Model& model, const FoundTool& tool) {
   auto bits = value_bits(layer, stroke.value, stroke.erase);
   if (!bits) return tl::unexpected(bits.error());
   StrokeBatch batch;
   batch.camera = stroke.camera;
-  batch.shape = stroke.shape;
+  batch.shape = tool.shape                                      ? ToolShape::texture
+                : stroke.shape == protocol::ToolShape("square") ? ToolShape::square
+                                                                : ToolShape::disc;
+  batch.texture = tool.shape;
   if (stroke.radius_px)
     batch.radius_px = *stroke.radius_px;
   else if (stroke.radius_mm)
@@ -88,18 +108,27 @@ nlohmann::json vec3(const glm::dvec3& v) { return nlohmann::json::array({v.x, v.
 
 }  // namespace
 
+bool names_tool(const protocol::Edit& edit) {
+  const auto* stroke = std::get_if<protocol::EditStroke>(&edit);
+  return stroke && is_tool(stroke->shape);
+}
+bool names_tool(const protocol::StrokeBegin& begin) { return is_tool(begin.shape); }
+
 double in_model_units(double millimetres, Unit unit) { return millimetres * 0.001 / metres_per(unit); }
 
 Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer, const Model& model,
-                                       const Uuid& id, const std::string& user) {
+                                       const Uuid& id, const std::string& user, const FindTool& find_tool) {
   room::EditRequest request;
   request.id = id;
   request.user = user;
   request.layer_id = layer.id;
   request.record = protocol::to_json(edit);
   if (const auto* stroke = std::get_if<protocol::EditStroke>(&edit)) {
-    auto batch = brush_of(*stroke, layer, model);
+    auto tool = tool_of(stroke->shape, find_tool);
+    if (!tool) return tl::unexpected(tool.error());
+    auto batch = brush_of(*stroke, layer, model, *tool);
     if (!batch) return tl::unexpected(batch.error());
+    if (tool->shape) request.record["shape"] = tool->id;
     batch->path.assign(stroke->path.begin(), stroke->path.end());
     request.edit = room::StrokeEdit{std::move(*batch), id, 0};
     return request;
@@ -116,14 +145,18 @@ Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& 
   return request;
 }
 
-Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer, const Model& model) {
-  auto batch = brush_of(begin, layer, model);
+Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer, const Model& model,
+                               const FindTool& find_tool) {
+  auto found = tool_of(begin.shape, find_tool);
+  if (!found) return tl::unexpected(found.error());
+  auto batch = brush_of(begin, layer, model, *found);
   if (!batch) return tl::unexpected(batch.error());
   StrokeTool tool;
   tool.layer_id = layer.id;
   tool.batch = std::move(*batch);
   tool.record = protocol::to_json(begin);
   tool.record["op"] = "stroke";
+  if (found->shape) tool.record["shape"] = found->id;
   for (const char* member : {"id", "layer", "stroke"}) tool.record.erase(member);
   return tool;
 }
@@ -263,7 +296,8 @@ nlohmann::json to_json(const store::JournalRow& row) {
   if (row.answer.is_object())
     for (const char* member : {"texels_changed", "area_m2"})
       if (auto found = row.answer.find(member); found != row.answer.end()) json[member] = *found;
-  if (auto recipe = row.record.find("recipe"); recipe != row.record.end()) json["recipe"] = *recipe;
+  for (const char* member : {"recipe", "shape", "max_angle_deg", "depth_bias"})
+    if (auto found = row.record.find(member); found != row.record.end()) json[member] = *found;
   return json;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -20,10 +22,22 @@ namespace strata::net {
 // Millimetres on the object in the model's unit.
 double in_model_units(double millimetres, Unit unit);
 
-// `edit` for the layer; its `record` is the edit as asked.
+// A tool of the site, ready to paint with.
+struct FoundTool {
+  std::int64_t id = 0;
+  std::shared_ptr<const ShapeTexture> shape;
+};
+using FindTool = std::function<Result<FoundTool>(const std::string& ref)>;  // by id or slug; may block
+// Whether the brush is a tool of the site, so that `find_tool` will be called.
+bool names_tool(const protocol::Edit& edit);
+bool names_tool(const protocol::StrokeBegin& begin);
+
+// `edit` for the layer; its `record` is the edit as asked, with a tool's id in place of its slug. A tool that is not there is
+// refused (422, `shape`); without `find_tool`, any.
 Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer, const Model& model,
-                                       const Uuid& id, const std::string& user);
-Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer, const Model& model);
+                                       const Uuid& id, const std::string& user, const FindTool& find_tool = {});
+Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer, const Model& model,
+                               const FindTool& find_tool = {});
 room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n,
                                 const std::string& user);
 

@@ -12,7 +12,9 @@
 #include "core/layer.h"
 #include "core/look.h"
 #include "core/model.h"
+#include "core/shape_texture.h"
 #include "core/tile_mirror.h"
+#include "core/tool.h"
 #include "store/first_answer.h"
 #include "store/journal.h"
 #include "store/pg_limits.h"
@@ -93,6 +95,16 @@ class Store {
   Result<Look> update_look(const Look& look, const FirstAnswer<Look>& answer = {});  // all but its picture
   Result<void> delete_look(std::int64_t id, const FirstAnswer<>& answer = {});
   Result<std::vector<std::uint8_t>> look_picture(std::int64_t id);
+
+  // --- tools: shapes for the brush, of the whole site
+  static constexpr int kMostTools = 200;  // that are not deleted
+  Result<std::vector<Tool>> tools();      // that are not deleted, by name
+  // By slug, those that are not deleted; by id, deleted ones, too.
+  Result<Tool> tool(const std::string& ref);
+  Result<Tool> create_tool(const Tool& tool, const ShapeBits& shape, const FirstAnswer<Tool>& answer = {});
+  Result<Tool> update_tool(const Tool& tool, const FirstAnswer<Tool>& answer = {});  // its name
+  Result<void> delete_tool(std::int64_t id, const FirstAnswer<>& answer = {});
+  Result<ShapeBits> tool_shape(std::int64_t id);  // deleted or not
 
   // --- layers
   Result<std::vector<Layer>> layers(std::int64_t model_id);  // by order

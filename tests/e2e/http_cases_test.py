@@ -226,6 +226,9 @@ def check_sizes(server):
         answer = raw_request(server, f"PUT /api/v1{L}/texels.npy HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer {server.token}\r\n"
                                      f"Expect: 100-continue\r\nContent-Length: {size}\r\n\r\n".encode())
         assert answer.startswith(b"HTTP/1.1 413" if is_refused else b"HTTP/1.1 100"), (size, answer[:300])
+    answer = raw_request(server, f"POST /api/v1/tools?name=x HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer {server.token}\r\n"
+                                 f"Expect: 100-continue\r\nContent-Length: {9 << 20}\r\n\r\n".encode())
+    assert answer.startswith(b"HTTP/1.1 413"), answer[:300]
 
 
 def check_repeats(server, camera):

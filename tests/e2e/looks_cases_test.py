@@ -7,8 +7,8 @@ import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.cameras import camera_from
-from support.maps import pixels, png
 from support.meshes import bumpy_ball
+from support.pictures import pixels, png
 from support.strata_server import LONG_S, StrataServer
 
 M = "/models/ball"

@@ -6,8 +6,9 @@ import sys
 import urllib.parse
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from support.maps import dbf, form, packed, pixels, png, shp, square, tiff
+from support.maps import dbf, form, packed, shp, square, tiff
 from support.meshes import folded_grid
+from support.pictures import pixels, png
 from support.strata_server import StrataServer
 
 M = "/models/sheet"  # x and y from 0 to 100, seen whole from above

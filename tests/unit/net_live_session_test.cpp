@@ -4,6 +4,8 @@
 
 #include <deque>
 
+#include "support/shapes.h"
+
 namespace strata::net {
 namespace {
 
@@ -164,6 +166,53 @@ struct Live : testing::Test {
   std::shared_ptr<LiveSession> session;
   const std::string stroke = to_string(random_uuid());
 };
+
+TEST_F(Live, a_tool_of_the_site_is_looked_for_on_a_worker_before_the_stroke_begins) {
+  const auto shape = test::shape(test::in_flag);
+  shared->find_tool = [&](const std::string& ref) -> Result<FoundTool> {
+    if (ref != "12") return fail(404, "Not found", "There is no such tool.");
+    return FoundTool{12, shape};
+  };
+  hello();
+  auto begun = begin(stroke);
+  begun["shape"] = 12;
+  auto work = session->on_text(begun.dump());
+  ASSERT_TRUE(work);
+  work();
+  say(extend(stroke, 0, {{1, 1}}));
+  ASSERT_EQ(room->edits.size(), 1u);
+  EXPECT_EQ(std::get<room::StrokeEdit>(room->edits[0].request.edit).batch.texture, shape);
+
+  auto unknown = begin(to_string(random_uuid()));
+  unknown["shape"] = "star";
+  work = session->on_text(unknown.dump());
+  ASSERT_TRUE(work);
+  work();
+  ASSERT_EQ(socket->of("problem").size(), 1u);
+  EXPECT_EQ(socket->of("problem")[0]["field"], "shape");
+  EXPECT_EQ(socket->of("problem")[0]["ref"], unknown["id"]);
+
+  json edit = {{"op", "edit"}, {"id", to_string(random_uuid())}, {"layer", "cracks"}};
+  edit["edit"] = {{"op", "stroke"}, {"value", 1},  {"camera", camera_json()},
+                  {"radius_px", 3}, {"shape", 12}, {"path", {{1, 1}}}};
+  work = session->on_text(edit.dump());
+  ASSERT_TRUE(work);
+  work();
+  ASSERT_EQ(room->edits.size(), 2u);
+  EXPECT_EQ(room->edits[1].request.record["shape"], 12);
+}
+
+TEST_F(Live, what_concerns_the_site_is_told_to_those_who_were_welcomed) {
+  protocol::ToolEvent gone;
+  gone.event = protocol::ToolEventEvent::deleted;
+  gone.tool_id = 4;
+  session->tell(gone);
+  EXPECT_TRUE(socket->sent.empty());
+  hello();
+  session->tell(gone);
+  ASSERT_EQ(socket->of("tool").size(), 1u);
+  EXPECT_EQ(socket->of("tool")[0]["tool_id"], 4);
+}
 
 TEST_F(Live, a_deleted_model_is_told_before_the_connection_ends) {
   hello();

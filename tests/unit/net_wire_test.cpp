@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/shapes.h"
+
 namespace strata::net {
 namespace {
 
@@ -178,6 +180,66 @@ TEST(Wire, a_batch_keeps_in_the_journal_all_that_made_it) {
   EXPECT_EQ(request.record["camera"]["width"], 640);
   EXPECT_FALSE(request.record.contains("id"));
   EXPECT_EQ(end_of_path(request.record), glm::dvec2(2, 3));
+}
+
+TEST(Wire, a_tool_of_the_site_gives_its_shape_and_its_id_to_the_record) {
+  const auto shape = test::shape(test::in_flag);
+  std::string asked;
+  const FindTool find = [&](const std::string& ref) -> Result<FoundTool> {
+    asked = ref;
+    if (ref == "gone") return fail(503, "Database unavailable", "Wait.");
+    if (ref != "flag" && ref != "12") return fail(404, "Not found", "There is no such tool.");
+    return FoundTool{12, shape};
+  };
+  auto edit = stroke(1);
+  const auto with_shape = [&](const protocol::ToolShape& of) {
+    std::get<protocol::EditStroke>(edit).shape = of;
+    return edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), "anna", find);
+  };
+  for (const protocol::ToolShape& of : {protocol::ToolShape("flag"), protocol::ToolShape(std::int64_t{12})}) {
+    const auto request = with_shape(of);
+    ASSERT_TRUE(request);
+    EXPECT_TRUE(names_tool(edit));
+    const auto& batch = std::get<room::StrokeEdit>(request->edit).batch;
+    EXPECT_EQ(batch.shape, ToolShape::texture);
+    EXPECT_EQ(batch.texture, shape);
+    EXPECT_EQ(request->record["shape"], 12) << "whatever becomes of its slug";
+  }
+  EXPECT_EQ(with_shape("star").error().status, 422);
+  EXPECT_EQ(with_shape("star").error().field, "shape");
+  EXPECT_EQ(with_shape("gone").error().status, 503);
+  asked.clear();
+  const auto square = with_shape("square");
+  EXPECT_FALSE(names_tool(edit));
+  EXPECT_EQ(std::get<room::StrokeEdit>(square->edit).batch.shape, ToolShape::square);
+  EXPECT_EQ(square->record["shape"], "square");
+  EXPECT_EQ(asked, "");
+
+  protocol::StrokeBegin begin;
+  begin.camera = camera();
+  begin.radius_px = 4.0;
+  begin.shape = "flag";
+  const auto tool = stroke_tool(begin, layer_of(ValueType::u8), model_in(Unit::m), find);
+  ASSERT_TRUE(tool);
+  EXPECT_EQ(tool->batch.texture, shape);
+  EXPECT_EQ(tool->record["shape"], 12);
+  EXPECT_EQ(stroke_tool(begin, layer_of(ValueType::u8), model_in(Unit::m)).error().field, "shape");
+}
+
+TEST(Wire, bias_and_angle_of_a_stroke_are_optional) {
+  auto edit = stroke(1);
+  const auto batch = [&] {
+    auto request = edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), "anna");
+    return std::pair(std::get<room::StrokeEdit>(request->edit).batch, request->record);
+  };
+  EXPECT_FALSE(batch().first.fixed_depth_bias || batch().first.max_angle_deg);
+  EXPECT_FALSE(batch().second.contains("depth_bias") || batch().second.contains("max_angle_deg"));
+  std::get<protocol::EditStroke>(edit).depth_bias = 2e-4;
+  std::get<protocol::EditStroke>(edit).max_angle_deg = 60.0;
+  EXPECT_EQ(batch().first.fixed_depth_bias, 2e-4);
+  EXPECT_EQ(batch().first.max_angle_deg, 60.0);
+  EXPECT_EQ(batch().second["depth_bias"], 2e-4);
+  EXPECT_EQ(batch().second["max_angle_deg"], 60.0);
 }
 
 TEST(Wire, the_end_of_a_path_is_found_only_in_strokes) {

@@ -162,7 +162,7 @@ TEST(ProtocolMessages, a_stroke_arrives_as_it_was_sent) {
   EXPECT_FALSE(begin.erase);
   EXPECT_FALSE(begin.radius_px);
   EXPECT_EQ(begin.radius_mm, 2.5);
-  EXPECT_EQ(begin.shape, ToolShape::square);
+  EXPECT_EQ(begin.shape, ToolShape("square"));
   EXPECT_EQ(begin.camera.view[3], glm::dvec4(4, 5, 6, 1));  // column-major
   EXPECT_EQ(begin.camera.width, 800);
 }

@@ -43,6 +43,7 @@ beforeEach(() => {
     saved: vi.fn(),
     layer: vi.fn(),
     look: vi.fn(),
+    tool: vi.fn(),
     model: vi.fn(),
     record: vi.fn(),
     presence: vi.fn(),
@@ -187,6 +188,16 @@ describe("strokes", () => {
     expect(begin).toMatchObject({ erase: true, radius_mm: 2.5 });
     expect(begin).not.toHaveProperty("value");
     expect(begin).not.toHaveProperty("radius_px");
+  });
+
+  it("a stroke names the shape of its brush, and the slant that it reaches where there is a limit", () => {
+    connect();
+    connection.begin_stroke({ ...stroke_options, shape: 12, max_angle_deg: 60 });
+    connection.begin_stroke({ ...stroke_options, shape: "square" });
+    const [limited, plain] = socket().of("stroke.begin");
+    expect(limited).toMatchObject({ shape: 12, max_angle_deg: 60 });
+    expect(plain).toMatchObject({ shape: "square" });
+    expect(plain).not.toHaveProperty("max_angle_deg");
   });
 
   it("what is applied still counts as unsaved until it is saved", () => {

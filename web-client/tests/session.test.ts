@@ -242,7 +242,7 @@ describe("what this person shows and hides", () => {
     await open();
     session.layers.set_visible(session.layers.all[0]!, false);
     socket().lose();
-    await vi.advanceTimersByTimeAsync(300);
+    await vi.advanceTimersByTimeAsync(1000);
     join("owner", [layer(8, 1)]);
     expect(socket().of("layers")).toEqual([]);
     session.layers.set_opacity(session.layers.all[0]!, 0.5);

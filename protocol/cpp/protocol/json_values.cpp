@@ -47,9 +47,6 @@ void read_core(const nlohmann::json& json, strata::Light& value) {
   read_core(json.at("mode"), value.mode);
   if (const auto direction = json.find("direction"); direction != json.end()) read_core(*direction, value.direction);
 }
-void read_core(const nlohmann::json& json, strata::ToolShape& value) {
-  value = json.get_ref<const std::string&>() == "square" ? ToolShape::square : ToolShape::disc;
-}
 void read_core(const nlohmann::json& json, strata::ValueType& value) {
   if (auto type = parse_value_type(json.get_ref<const std::string&>())) value = *type;
 }
@@ -83,7 +80,6 @@ nlohmann::json write_core(const strata::LightMode& value) { return kLightModes.a
 nlohmann::json write_core(const strata::Light& value) {
   return {{"mode", write_core(value.mode)}, {"direction", write_core(value.direction)}};
 }
-nlohmann::json write_core(const strata::ToolShape& value) { return value == ToolShape::square ? "square" : "disc"; }
 nlohmann::json write_core(const strata::ValueType& value) { return name(value); }
 nlohmann::json write_core(const strata::LayerKind& value) {
   return value == LayerKind::database ? "database" : "numeric";

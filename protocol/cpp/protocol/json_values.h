@@ -14,7 +14,6 @@
 #include "core/light.h"
 #include "core/model.h"
 #include "core/problem.h"
-#include "core/stroke.h"
 #include "core/uuid.h"
 
 // What the generated reading and writing is made of. JSON that comes in here has passed `validate`, so that no type is
@@ -45,7 +44,6 @@ void read_core(const nlohmann::json& json, glm::dmat4& value);
 void read_core(const nlohmann::json& json, strata::Camera& value);
 void read_core(const nlohmann::json& json, strata::LightMode& value);
 void read_core(const nlohmann::json& json, strata::Light& value);
-void read_core(const nlohmann::json& json, strata::ToolShape& value);
 void read_core(const nlohmann::json& json, strata::ValueType& value);
 void read_core(const nlohmann::json& json, strata::LayerKind& value);
 void read_core(const nlohmann::json& json, strata::Unit& value);
@@ -58,7 +56,6 @@ nlohmann::json write_core(const glm::dmat4& value);
 nlohmann::json write_core(const strata::Camera& value);
 nlohmann::json write_core(const strata::LightMode& value);
 nlohmann::json write_core(const strata::Light& value);
-nlohmann::json write_core(const strata::ToolShape& value);
 nlohmann::json write_core(const strata::ValueType& value);
 nlohmann::json write_core(const strata::LayerKind& value);
 nlohmann::json write_core(const strata::Unit& value);

@@ -12,6 +12,7 @@ import type { ModelSession } from "./model-session";
 import { radio_group } from "./radio-group";
 import { number_field_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
+import "./shape-picker";
 import "./value-picker";
 
 const kSliderSteps = 1000;
@@ -45,6 +46,15 @@ export class StrataBrushPanel extends LitElement {
         align-items: center;
         gap: 8px 12px;
       }
+      .slant {
+        display: grid;
+        grid-template-columns: 1fr 92px;
+        align-items: center;
+        gap: 12px;
+      }
+      .slant input:disabled + span {
+        opacity: 0.5;
+      }
       .pair {
         display: flex;
         flex-wrap: wrap;
@@ -68,7 +78,7 @@ export class StrataBrushPanel extends LitElement {
   private strokes(layer: Layer, erases: boolean): TemplateResult {
     return html`<h2>${erases ? texts.brush.eraser_title : texts.brush.title}</h2>
       ${erases ? html`<p class="hint">${texts.brush.erases(layer.name)}</p>` : this.value(layer)} ${this.width()}
-      ${this.through()} ${erases ? nothing : this.whole(layer)}`;
+      ${this.through()} ${this.slant()} ${erases ? nothing : this.whole(layer)}`;
   }
 
   private areas(layer: Layer, tool: "bucket" | "lasso" | "polygon"): TemplateResult {
@@ -126,6 +136,43 @@ export class StrataBrushPanel extends LitElement {
     </label>`;
   }
 
+  private slant(): TemplateResult {
+    const { painting } = this.session;
+    const { slant, through } = painting.brush;
+    const limited = slant.limited && !through;
+    return html`<div class="slant">
+      <label class="check" title=${through ? texts.brush.slant_through : ""}>
+        <input
+          type="checkbox"
+          .checked=${limited}
+          ?disabled=${through}
+          @change=${(event: Event) => {
+            const { checked } = event.target as HTMLInputElement;
+            painting.set_brush((brush) => (brush.slant.limited = checked));
+          }}
+        />
+        <span>${texts.brush.slant}</span>
+      </label>
+      <span class="number">
+        <input
+          type="number"
+          min="1"
+          max="90"
+          step="any"
+          .value=${String(slant.max_deg)}
+          ?disabled=${!limited}
+          aria-label=${texts.brush.slant_degrees}
+          @change=${(event: Event) => {
+            const input = event.target as HTMLInputElement;
+            painting.set_brush((brush) => brush.set_slant(input.valueAsNumber));
+            input.value = String(painting.brush.slant.max_deg);
+          }}
+        />
+        <span>°</span>
+      </span>
+    </div>`;
+  }
+
   /** What needs no pointer. */
   private whole(layer: Layer): TemplateResult {
     const detail: WhereRequest = { dialog: "where", layer };
@@ -138,7 +185,7 @@ export class StrataBrushPanel extends LitElement {
 
   private width(): TemplateResult {
     const { session } = this;
-    const { unit, width, shape } = session.painting.brush;
+    const { unit, width } = session.painting.brush;
     const range = kWidths[unit];
     const now = width[unit];
     const slider = (kSliderSteps * Math.log(now / range.min)) / Math.log(range.max / range.min);
@@ -182,17 +229,8 @@ export class StrataBrushPanel extends LitElement {
           chosen: unit,
           choose: (chosen) => this.set_unit(chosen),
         })}
-        ${radio_group<typeof shape>({
-          label: texts.brush.shape,
-          class: "segments",
-          choices: [
-            { value: "disc", content: texts.brush.disc },
-            { value: "square", content: texts.brush.square },
-          ],
-          chosen: shape,
-          choose: (chosen) => session.painting.set_brush((brush) => (brush.shape = chosen)),
-        })}
-      </div>`;
+      </div>
+      <strata-shape-picker .session=${session}></strata-shape-picker>`;
   }
 
   /** The width in the other unit, at the surface under the pointer. */

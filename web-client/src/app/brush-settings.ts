@@ -3,6 +3,7 @@
 import { purpose_of } from "../core/palette";
 import { holds_fractions, value_range, type Layer } from "../core/types";
 import { format_number } from "../core/measure";
+import type { ToolShape } from "../core/protocol.gen";
 import { texts } from "./texts";
 
 export type WidthUnit = "px" | "mm";
@@ -12,8 +13,10 @@ export const kWidths = { px: { min: 1, max: 2000 }, mm: { min: 0.05, max: 5000 }
 export class BrushSettings {
   unit: WidthUnit = "px";
   width: Record<WidthUnit, number> = { px: 40, mm: 5 }; // diameters; px are CSS pixels
-  shape: "disc" | "square" = "disc";
+  shape: ToolShape = "disc";
   through = false; // what is hidden, too
+  /** What is seen at more of a slant is left out, where that is wanted. Not together with what is hidden. */
+  slant = { limited: false, max_deg: 60 };
   /** Of polygon, lasso and bucket. */
   areas: { erases: boolean; reach: "connected" | "island" } = { erases: false, reach: "connected" };
   private readonly values_ = new Map<number, number>();
@@ -21,6 +24,10 @@ export class BrushSettings {
   set_width(unit: WidthUnit, width: number): void {
     if (!Number.isFinite(width)) return;
     this.width[unit] = Math.min(kWidths[unit].max, Math.max(kWidths[unit].min, width));
+  }
+
+  set_slant(max_deg: number): void {
+    if (Number.isFinite(max_deg)) this.slant.max_deg = Math.min(90, Math.max(1, max_deg));
   }
 
   /** One step of the [ and ] keys. */

@@ -23,6 +23,7 @@ import { Painting } from "./painting";
 import { PointerWatch } from "./pointer-watch";
 import { forget, remember } from "./sessions";
 import { texts } from "./texts";
+import { ToolShapes } from "./tool-shapes";
 import { ViewControl } from "./view-control";
 
 export class ModelSession {
@@ -41,6 +42,7 @@ export class ModelSession {
   readonly appearance: Appearance;
   readonly pointer: PointerWatch;
   readonly painting: Painting;
+  readonly shapes: ToolShapes;
   readonly tools: ToolManager;
   /** Set by the stage. */
   on_frame: (part: FrameMessage) => void = () => {};
@@ -95,6 +97,11 @@ export class ModelSession {
       may_paint: () => this.can_paint,
       changed,
     });
+    this.shapes = new ToolShapes(api, {
+      chosen: () => this.painting.brush.shape,
+      choose: (shape) => this.painting.set_brush((brush) => (brush.shape = shape)),
+      changed,
+    });
     this.tools = this.make_tools();
   }
 
@@ -131,6 +138,7 @@ export class ModelSession {
         saved: () => {},
         layer: (event) => this.on_layer(event),
         look: (event) => this.appearance.on_event(event),
+        tool: (event) => this.shapes.on_event(event),
         model: (event) => this.on_model(event),
         record: () => {},
         presence: (message) => {
@@ -340,6 +348,7 @@ export class ModelSession {
     this.put_model(message.model);
     this.layers.take_all(message.layers.map(complete_layer));
     this.appearance.take_looks(message.looks);
+    this.shapes.refresh();
   }
 
   private on_layer(event: LayerEvent): void {

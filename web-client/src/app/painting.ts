@@ -63,14 +63,15 @@ export class Painting {
     if (!layer) return null;
     const value = this.value_for(layer, erase);
     if (value === null) return null;
-    const { unit, width, shape } = this.brush;
+    const { unit, width, shape, through, slant } = this.brush;
     const { connection, view } = this.host_;
     const stroke = connection.begin_stroke({
       layer: layer.id,
       value,
       erase,
       camera: view.camera.message(),
-      through: this.brush.through,
+      through,
+      ...(slant.limited && !through ? { max_angle_deg: slant.max_deg } : {}),
       radius: unit === "px" ? { px: (width.px / 2) * view.scale } : { mm: width.mm / 2 },
       shape,
     });

@@ -15,6 +15,7 @@ import { outline_overlay } from "./outline-overlay";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
+import { shape_picture } from "./tool-shapes";
 
 const kMostWindowPixels = 1920 * 1200;
 const kMostScale = 2; // window pixels per CSS pixel
@@ -80,6 +81,18 @@ export class StrataStage extends LitElement {
       }
       svg.over {
         overflow: visible;
+      }
+      .shape-cursor {
+        position: absolute;
+        pointer-events: none;
+        opacity: 0.62;
+        filter: drop-shadow(0 0 1px #fff) drop-shadow(0 0 1px rgb(20 26 26));
+      }
+      .shape-cursor i {
+        display: block;
+        width: 100%;
+        height: 100%;
+        mask: center / 100% 100% no-repeat;
       }
       .waiting {
         position: absolute;
@@ -213,7 +226,9 @@ export class StrataStage extends LitElement {
     const erases = session.tools.active === "eraser";
     const color = layer && !erases ? color_of(layer.palette, session.painting.brush.value_of(layer)) : null;
     const fill = color ? css_color(color) : "none";
-    const square = session.painting.brush.shape === "square";
+    const { shape } = session.painting.brush;
+    const square = shape === "square";
+    if (typeof shape === "number" && radius >= 4) return this.shape_cursor(shape, x, y, radius, erases ? null : color);
     const outline = (width: number, stroke: string, dashes: string, filled: boolean): TemplateResult =>
       square
         ? svg`<rect x=${x - radius} y=${y - radius} width=${2 * radius} height=${2 * radius} fill=${filled ? fill : "none"}
@@ -227,6 +242,18 @@ export class StrataStage extends LitElement {
         ? svg`<path d="M${x - 10} ${y}h6M${x + 4} ${y}h6M${x} ${y - 10}v6M${x} ${y + 4}v6" stroke="#20292a" stroke-width="1.5" />`
         : svg`<circle cx=${x} cy=${y} r="1.2" fill="#fff" />`}
     </svg>`;
+  }
+
+  /** The same for a shape of a picture: a tint with a dark rim, in the layer's colour or clear. */
+  private shape_cursor(tool: number, x: number, y: number, radius: number, color: string | null): TemplateResult {
+    const square = {
+      left: `${x - radius}px`,
+      top: `${y - radius}px`,
+      width: `${2 * radius}px`,
+      height: `${2 * radius}px`,
+    };
+    const tint = { "mask-image": `url(${shape_picture(tool)})`, background: color ? css_color(color) : "#fff" };
+    return html`<div class="shape-cursor" aria-hidden="true" ${styled(square)}><i ${styled(tint)}></i></div>`;
   }
 
   private people(): TemplateResult[] {

@@ -148,6 +148,20 @@ export class Api {
   async delete_look(model: Id, look: Id): Promise<void> {
     await this.request("DELETE", look_path(model, look));
   }
+  async tools(): Promise<wire.Tool[]> {
+    return (await this.json<wire.ToolList>("GET", "/tools")).tools;
+  }
+  async create_tool(picture: File, name: string, part: string): Promise<wire.Tool> {
+    const query = new URLSearchParams({ name, part });
+    const response = await this.request_raw("POST", `/tools?${query}`, picture, { "Content-Type": picture.type });
+    return this.parsed<wire.Tool>(response);
+  }
+  async rename_tool(tool: Id, name: string): Promise<wire.Tool> {
+    return this.json("PATCH", `/tools/${encodeURIComponent(tool)}`, { name });
+  }
+  async delete_tool(tool: Id): Promise<void> {
+    await this.request("DELETE", `/tools/${encodeURIComponent(tool)}`);
+  }
   async statistics(model: Id, layer: Id): Promise<Statistics> {
     return this.json("GET", `${layer_path(model, layer)}/statistics`);
   }

@@ -23,6 +23,8 @@ import {
   type Saved,
   type ServerMessage,
   type StrokeBegin,
+  type ToolEvent,
+  type ToolShape,
   type Welcome,
 } from "./protocol.gen";
 
@@ -54,6 +56,7 @@ export interface ConnectionCallbacks {
   saved(message: Saved): void;
   layer(message: LayerEvent): void;
   look(message: LookEvent): void;
+  tool(message: ToolEvent): void;
   model(message: ModelEvent): void;
   record(message: RecordEvent): void;
   presence(message: Presence): void;
@@ -78,8 +81,9 @@ export interface StrokeOptions {
   erase: boolean;
   camera: CameraMessage;
   radius: { px: number } | { mm: number };
-  shape: "disc" | "square";
+  shape: ToolShape;
   through: boolean;
+  max_angle_deg?: number;
 }
 
 export type Point = [number, number];
@@ -243,6 +247,7 @@ export class Connection {
       ...("px" in options.radius ? { radius_px: options.radius.px } : { radius_mm: options.radius.mm }),
       shape: options.shape,
       ...(options.through ? { through: true } : {}),
+      ...(options.max_angle_deg === undefined ? {} : { max_angle_deg: options.max_angle_deg }),
     };
     this.change(begin);
     return new StrokeHandle(begin.stroke, this.path_points_, (message) => {
@@ -336,6 +341,8 @@ export class Connection {
         return this.callbacks_.layer(message);
       case "look":
         return this.callbacks_.look(message);
+      case "tool":
+        return this.callbacks_.tool(message);
       case "model":
         return this.callbacks_.model(message);
       case "record":

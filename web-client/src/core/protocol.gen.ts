@@ -35,8 +35,17 @@ export interface Camera {
   section?: Section;
 }
 
-/** Shape of the brush. */
-export type ToolShape = "disc" | "square";
+/** Shape of the brush. `disc`, `square`, or a tool of the site by id or slug. A path sweeps it without steps. */
+export type ToolShape = number | string;
+
+/** Tool of the site. A shape for the brush: a raster of 256 × 256 cells over the square of side 2 · radius. It never changes. */
+export interface Tool {
+  id: number;
+  name: string;
+  slug: string;
+  /** No longer listed; kept because edits may have been made with it. */
+  deleted: boolean;
+}
 
 /** Fixed depth bias. How far behind what the camera sees a texel may lie and still be painted, in window depth: 0 at the near plane, 1 at the far one. Left out, it follows the model's size and the slope of the surface. */
 export type DepthBias = number;
@@ -516,6 +525,14 @@ export interface LookEvent {
   look?: Look;
 }
 
+/** A tool of the site was created, renamed or deleted. `tool` is there for created and changed. */
+export interface ToolEvent {
+  op: "tool";
+  event: "created" | "changed" | "deleted";
+  tool_id: number;
+  tool?: Tool;
+}
+
 /** The model's description changed, or it was deleted. `model` is there for changed. */
 export interface ModelEvent {
   op: "model";
@@ -846,6 +863,17 @@ export interface LookList {
   total: number;
 }
 
+/** Tools of the site, by name. */
+export interface ToolList {
+  tools: Tool[];
+  total: number;
+}
+
+/** Another name for a tool. */
+export interface ToolPatch {
+  name: string;
+}
+
 /** Changes to a look's description and defaults. */
 export interface LookPatch {
   name?: string;
@@ -887,6 +915,10 @@ export interface HistoryEntry {
   texels_changed?: number;
   area_m2?: number;
   recipe?: Recipe;
+  /** Of a stroke; a tool by its id. */
+  shape?: ToolShape;
+  max_angle_deg?: SlantLimit;
+  depth_bias?: DepthBias;
 }
 
 /** History of a layer, newest first. */
@@ -1008,6 +1040,7 @@ export type ServerMessage =
   | Unsaved
   | LayerEvent
   | LookEvent
+  | ToolEvent
   | ModelEvent
   | RecordEvent
   | Presence
@@ -1023,6 +1056,7 @@ const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([
   "unsaved",
   "layer",
   "look",
+  "tool",
   "model",
   "record",
   "presence",

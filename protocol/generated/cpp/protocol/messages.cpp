@@ -117,6 +117,24 @@ void read(const nlohmann::json& json, LookEventEvent& value) {
 
 nlohmann::json to_json(const LookEventEvent& value) { return name(value); }
 
+std::string_view name(ToolEventEvent value) {
+  switch (value) {
+    case ToolEventEvent::created: return "created";
+    case ToolEventEvent::changed: return "changed";
+    case ToolEventEvent::deleted: return "deleted";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ToolEventEvent& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "created") value = ToolEventEvent::created;
+  if (text == "changed") value = ToolEventEvent::changed;
+  if (text == "deleted") value = ToolEventEvent::deleted;
+}
+
+nlohmann::json to_json(const ToolEventEvent& value) { return name(value); }
+
 std::string_view name(ModelEventEvent value) {
   switch (value) {
     case ModelEventEvent::changed: return "changed";
@@ -883,6 +901,21 @@ nlohmann::json to_json(const LookEvent& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, ToolEvent& value) {
+  read_member(json, "event", value.event);
+  read_member(json, "tool_id", value.tool_id);
+  read_optional_member(json, "tool", value.tool);
+}
+
+nlohmann::json to_json(const ToolEvent& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "tool";
+  write_member(json, "event", value.event);
+  write_member(json, "tool_id", value.tool_id);
+  write_optional_member(json, "tool", value.tool);
+  return json;
+}
+
 void read(const nlohmann::json& json, ModelEvent& value) {
   read_member(json, "event", value.event);
   read_optional_member(json, "model", value.model);
@@ -1256,6 +1289,16 @@ nlohmann::json to_json(const VertexPropertyList& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, ToolPatch& value) {
+  read_member(json, "name", value.name);
+}
+
+nlohmann::json to_json(const ToolPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  return json;
+}
+
 void read(const nlohmann::json& json, LookPatch& value) {
   read_optional_member(json, "name", value.name);
   read_optional_member(json, "description", value.description);
@@ -1321,6 +1364,9 @@ void read(const nlohmann::json& json, HistoryEntry& value) {
   read_optional_member(json, "texels_changed", value.texels_changed);
   read_optional_member(json, "area_m2", value.area_m2);
   read_optional_member(json, "recipe", value.recipe);
+  read_optional_member(json, "shape", value.shape);
+  read_optional_member(json, "max_angle_deg", value.max_angle_deg);
+  read_optional_member(json, "depth_bias", value.depth_bias);
 }
 
 nlohmann::json to_json(const HistoryEntry& value) {
@@ -1335,6 +1381,9 @@ nlohmann::json to_json(const HistoryEntry& value) {
   write_optional_member(json, "texels_changed", value.texels_changed);
   write_optional_member(json, "area_m2", value.area_m2);
   write_optional_member(json, "recipe", value.recipe);
+  write_optional_member(json, "shape", value.shape);
+  write_optional_member(json, "max_angle_deg", value.max_angle_deg);
+  write_optional_member(json, "depth_bias", value.depth_bias);
   return json;
 }
 
@@ -1605,6 +1654,7 @@ std::optional<Schema> server_message_schema(std::string_view op) {
   if (op == Unsaved::kOp) return Schema::Unsaved;
   if (op == LayerEvent::kOp) return Schema::LayerEvent;
   if (op == LookEvent::kOp) return Schema::LookEvent;
+  if (op == ToolEvent::kOp) return Schema::ToolEvent;
   if (op == ModelEvent::kOp) return Schema::ModelEvent;
   if (op == RecordEvent::kOp) return Schema::RecordEvent;
   if (op == Presence::kOp) return Schema::Presence;
@@ -1637,6 +1687,10 @@ void read(const nlohmann::json& json, ServerMessage& value) {
   }
   if (op == LookEvent::kOp) {
     read(json, value.emplace<LookEvent>());
+    return;
+  }
+  if (op == ToolEvent::kOp) {
+    read(json, value.emplace<ToolEvent>());
     return;
   }
   if (op == ModelEvent::kOp) {

@@ -16,7 +16,6 @@
 #include "core/light.h"
 #include "core/model.h"
 #include "core/problem.h"
-#include "core/stroke.h"
 #include "core/uuid.h"
 
 // Messages and bodies as plain values. `read` takes JSON that `validate` (protocol/validate.h) has let through and
@@ -36,6 +35,7 @@ enum class Schema {
   Uuid,
   Camera,
   ToolShape,
+  Tool,
   DepthBias,
   SlantLimit,
   EditStroke,
@@ -86,6 +86,7 @@ enum class Schema {
   Unsaved,
   LayerEvent,
   LookEvent,
+  ToolEvent,
   ModelEvent,
   RecordEvent,
   PresencePointer,
@@ -117,6 +118,8 @@ enum class Schema {
   VertexPropertyList,
   VertexPropertyName,
   LookList,
+  ToolList,
+  ToolPatch,
   LookPatch,
   LayerPatch,
   EditResult,
@@ -134,7 +137,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 107;
+constexpr int kSchemaCount = 111;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -150,7 +153,8 @@ using LayerRef = std::variant<std::int64_t, std::string>;
 
 using Camera = strata::Camera;
 
-using ToolShape = strata::ToolShape;
+// Shape of the brush. `disc`, `square`, or a tool of the site by id or slug. A path sweeps it without steps.
+using ToolShape = std::variant<std::int64_t, std::string>;
 
 // Stroke. Sweeps the brush along a path seen through a camera. Needs a value unless it erases.
 struct EditStroke {
@@ -160,7 +164,7 @@ struct EditStroke {
   strata::Camera camera;
   std::optional<double> radius_px;  // Radius in window pixels.
   std::optional<double> radius_mm;  // Radius in millimetres on the object.
-  strata::ToolShape shape = strata::ToolShape::disc;
+  ToolShape shape = "disc";
   Path path;
   bool through = false;  // Paint hidden surface, too.
   std::optional<double> depth_bias;
@@ -434,7 +438,7 @@ struct StrokeBegin {
   strata::Camera camera;
   std::optional<double> radius_px;
   std::optional<double> radius_mm;
-  strata::ToolShape shape = strata::ToolShape::disc;
+  ToolShape shape = "disc";
   bool through = false;
   std::optional<double> depth_bias;
   std::optional<double> max_angle_deg;
@@ -675,6 +679,24 @@ void read(const nlohmann::json& json, LookEvent& value);
 nlohmann::json to_json(const LookEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<LookEvent> = Schema::LookEvent;
+
+enum class ToolEventEvent { created, changed, deleted };
+std::string_view name(ToolEventEvent value);
+void read(const nlohmann::json& json, ToolEventEvent& value);
+nlohmann::json to_json(const ToolEventEvent& value);
+
+// A tool of the site was created, renamed or deleted. `tool` is there for created and changed.
+struct ToolEvent {
+  static constexpr std::string_view kOp = "tool";
+  ToolEventEvent event{};
+  std::int64_t tool_id = 0;
+  std::optional<nlohmann::json> tool;
+  bool operator==(const ToolEvent&) const = default;
+};
+void read(const nlohmann::json& json, ToolEvent& value);
+nlohmann::json to_json(const ToolEvent& value);
+template <>
+inline constexpr Schema kSchemaOf<ToolEvent> = Schema::ToolEvent;
 
 enum class ModelEventEvent { changed, deleted };
 std::string_view name(ModelEventEvent value);
@@ -990,6 +1012,16 @@ nlohmann::json to_json(const VertexPropertyList& value);
 template <>
 inline constexpr Schema kSchemaOf<VertexPropertyList> = Schema::VertexPropertyList;
 
+// Another name for a tool.
+struct ToolPatch {
+  std::string name;
+  bool operator==(const ToolPatch&) const = default;
+};
+void read(const nlohmann::json& json, ToolPatch& value);
+nlohmann::json to_json(const ToolPatch& value);
+template <>
+inline constexpr Schema kSchemaOf<ToolPatch> = Schema::ToolPatch;
+
 // Changes to a look's description and defaults.
 struct LookPatch {
   std::optional<std::string> name;
@@ -1049,6 +1081,9 @@ struct HistoryEntry {
   std::optional<std::int64_t> texels_changed;
   std::optional<double> area_m2;
   std::optional<nlohmann::json> recipe;
+  std::optional<ToolShape> shape;  // Of a stroke; a tool by its id.
+  std::optional<double> max_angle_deg;
+  std::optional<double> depth_bias;
   bool operator==(const HistoryEntry&) const = default;
 };
 void read(const nlohmann::json& json, HistoryEntry& value);
@@ -1218,7 +1253,7 @@ std::optional<Schema> client_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ClientMessage& value);
 nlohmann::json to_json(const ClientMessage& value);
 
-using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ModelEvent, RecordEvent, Presence, Picked, ProblemMessage>;
+using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, Presence, Picked, ProblemMessage>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> server_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ServerMessage& value);

@@ -15,6 +15,7 @@ std::string_view name(Schema schema) {
     case Schema::Uuid: return "Uuid";
     case Schema::Camera: return "Camera";
     case Schema::ToolShape: return "ToolShape";
+    case Schema::Tool: return "Tool";
     case Schema::DepthBias: return "DepthBias";
     case Schema::SlantLimit: return "SlantLimit";
     case Schema::EditStroke: return "EditStroke";
@@ -65,6 +66,7 @@ std::string_view name(Schema schema) {
     case Schema::Unsaved: return "Unsaved";
     case Schema::LayerEvent: return "LayerEvent";
     case Schema::LookEvent: return "LookEvent";
+    case Schema::ToolEvent: return "ToolEvent";
     case Schema::ModelEvent: return "ModelEvent";
     case Schema::RecordEvent: return "RecordEvent";
     case Schema::PresencePointer: return "PresencePointer";
@@ -96,6 +98,8 @@ std::string_view name(Schema schema) {
     case Schema::VertexPropertyList: return "VertexPropertyList";
     case Schema::VertexPropertyName: return "VertexPropertyName";
     case Schema::LookList: return "LookList";
+    case Schema::ToolList: return "ToolList";
+    case Schema::ToolPatch: return "ToolPatch";
     case Schema::LookPatch: return "LookPatch";
     case Schema::LayerPatch: return "LayerPatch";
     case Schema::EditResult: return "EditResult";
@@ -127,7 +131,8 @@ std::string_view schema_bundle() {
 "LayerRef":{"oneOf":[{"type":"integer","minimum":1,"maximum":9007199254740991},{"type":"string","minLength":1,"maxLength":128}]},
 "Uuid":{"type":"string","minLength":36,"maxLength":36,"pattern":"^[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}$"},
 "Camera":{"type":"object","additionalProperties":false,"required":["view","projection","width","height"],"properties":{"view":{"$ref":"#/definitions/Matrix"},"projection":{"$ref":"#/definitions/Matrix"},"width":{"type":"integer","minimum":1,"maximum":8192},"height":{"type":"integer","minimum":1,"maximum":8192},"section":{"$ref":"#/definitions/Section"}}},
-"ToolShape":{"type":"string","enum":["disc","square"]},
+"ToolShape":{"oneOf":[{"type":"integer","minimum":1,"maximum":9007199254740991},{"type":"string","minLength":1,"maxLength":128}]},
+"Tool":{"type":"object","additionalProperties":false,"required":["id","name","slug","deleted"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"name":{"type":"string","minLength":1,"maxLength":200},"slug":{"type":"string","minLength":1,"maxLength":128},"deleted":{"type":"boolean"}}},
 "DepthBias":{"type":"number","minimum":0,"maximum":1},
 "SlantLimit":{"type":"number","exclusiveMinimum":0,"maximum":90},
 "EditStroke":{"type":"object","additionalProperties":false,"required":["op","camera","path"],"oneOf":[{"required":["radius_px"]},{"required":["radius_mm"]}],"anyOf":[{"required":["value"]},{"required":["erase"],"properties":{"erase":{"const":true}}}],"properties":{"op":{"const":"stroke"},"value":{"type":"number","minimum":-3.4028234663852886e+38,"maximum":3.4028234663852886e+38},"erase":{"type":"boolean"},"camera":{"$ref":"#/definitions/Camera"},"radius_px":{"type":"number","exclusiveMinimum":0,"maximum":8192},"radius_mm":{"type":"number","exclusiveMinimum":0,"maximum":10000000.0},"shape":{"$ref":"#/definitions/ToolShape"},"path":{"$ref":"#/definitions/Path"},"through":{"type":"boolean"},"depth_bias":{"$ref":"#/definitions/DepthBias"},"max_angle_deg":{"$ref":"#/definitions/SlantLimit"}}},
@@ -178,6 +183,7 @@ std::string_view schema_bundle() {
 "Unsaved":{"type":"object","additionalProperties":false,"required":["op","ids"],"properties":{"op":{"const":"unsaved"},"ids":{"type":"array","minItems":1,"maxItems":100000,"items":{"$ref":"#/definitions/Uuid"}},"detail":{"type":"string","maxLength":2000}}},
 "LayerEvent":{"type":"object","additionalProperties":false,"required":["op","event","layer_id"],"properties":{"op":{"const":"layer"},"event":{"type":"string","enum":["created","changed","deleted","edited"]},"layer_id":{"type":"integer","minimum":1,"maximum":9007199254740991},"layer":{"$ref":"#/definitions/Layer"},"sequence":{"type":"integer","minimum":0,"maximum":9007199254740991},"user":{"type":"string","maxLength":200}}},
 "LookEvent":{"type":"object","additionalProperties":false,"required":["op","event","look_id"],"properties":{"op":{"const":"look"},"event":{"type":"string","enum":["created","changed","deleted"]},"look_id":{"type":"integer","minimum":1,"maximum":9007199254740991},"look":{"$ref":"#/definitions/Look"}}},
+"ToolEvent":{"type":"object","additionalProperties":false,"required":["op","event","tool_id"],"properties":{"op":{"const":"tool"},"event":{"type":"string","enum":["created","changed","deleted"]},"tool_id":{"type":"integer","minimum":1,"maximum":9007199254740991},"tool":{"$ref":"#/definitions/Tool"}}},
 "ModelEvent":{"type":"object","additionalProperties":false,"required":["op","event"],"properties":{"op":{"const":"model"},"event":{"type":"string","enum":["changed","deleted"]},"model":{"$ref":"#/definitions/Model"}}},
 "RecordEvent":{"type":"object","additionalProperties":false,"required":["op","event","table","key"],"properties":{"op":{"const":"record"},"event":{"type":"string","enum":["created","changed","deleted"]},"table":{"type":"string","minLength":1,"maxLength":128},"key":{"type":"integer","minimum":0,"maximum":4294967295},"user":{"type":"string","maxLength":200}}},
 "PresencePointer":{"type":"object","additionalProperties":false,"required":["position"],"properties":{"position":{"$ref":"#/definitions/Point3"},"normal":{"$ref":"#/definitions/Point3"}}},
@@ -209,10 +215,12 @@ std::string_view schema_bundle() {
 "VertexPropertyList":{"type":"object","additionalProperties":false,"required":["properties","total"],"properties":{"properties":{"type":"array","minItems":0,"maxItems":10000,"items":{"$ref":"#/definitions/VertexPropertyName"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
 "VertexPropertyName":{"type":"object","additionalProperties":false,"required":["source","property"],"properties":{"source":{"type":"string","maxLength":255},"property":{"type":"string","maxLength":1000}}},
 "LookList":{"type":"object","additionalProperties":false,"required":["looks","total"],"properties":{"looks":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/Look"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
+"ToolList":{"type":"object","additionalProperties":false,"required":["tools","total"],"properties":{"tools":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/Tool"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
+"ToolPatch":{"type":"object","additionalProperties":false,"required":["name"],"properties":{"name":{"type":"string","minLength":1,"maxLength":200}}},
 "LookPatch":{"type":"object","additionalProperties":false,"minProperties":1,"properties":{"name":{"type":"string","minLength":1,"maxLength":200},"description":{"type":"string","maxLength":10000},"opacity":{"type":"number","minimum":0,"maximum":1},"visible":{"type":"boolean"},"order":{"type":"integer","minimum":-1000000,"maximum":1000000}}},
 "LayerPatch":{"type":"object","additionalProperties":false,"minProperties":1,"properties":{"name":{"type":"string","minLength":1,"maxLength":200},"unit":{"type":"string","maxLength":50},"description":{"type":"string","maxLength":10000},"palette":{"$ref":"#/definitions/Palette"},"opacity":{"type":"number","minimum":0,"maximum":1},"visible":{"type":"boolean"},"order":{"type":"integer","minimum":-1000000,"maximum":1000000}}},
 "EditResult":{"type":"object","additionalProperties":false,"required":["sequence","texels_changed","area_m2"],"properties":{"sequence":{"type":"integer","minimum":0,"maximum":9007199254740991},"texels_changed":{"type":"integer","minimum":0,"maximum":9007199254740991},"area_m2":{"type":"number","minimum":0,"maximum":1e+30}}},
-"HistoryEntry":{"type":"object","additionalProperties":false,"required":["sequence","user","time","op"],"properties":{"sequence":{"type":"integer","minimum":0,"maximum":9007199254740991},"id":{"$ref":"#/definitions/Uuid"},"stroke":{"$ref":"#/definitions/Uuid"},"user":{"type":"string","maxLength":200},"time":{"type":"string","minLength":20,"maxLength":40},"op":{"type":"string","enum":["stroke","fill","import","undo","redo","restore"]},"in_force":{"type":"boolean"},"texels_changed":{"type":"integer","minimum":0,"maximum":9007199254740991},"area_m2":{"type":"number","minimum":0,"maximum":1e+30},"recipe":{"$ref":"#/definitions/Recipe"}}},
+"HistoryEntry":{"type":"object","additionalProperties":false,"required":["sequence","user","time","op"],"properties":{"sequence":{"type":"integer","minimum":0,"maximum":9007199254740991},"id":{"$ref":"#/definitions/Uuid"},"stroke":{"$ref":"#/definitions/Uuid"},"user":{"type":"string","maxLength":200},"time":{"type":"string","minLength":20,"maxLength":40},"op":{"type":"string","enum":["stroke","fill","import","undo","redo","restore"]},"in_force":{"type":"boolean"},"texels_changed":{"type":"integer","minimum":0,"maximum":9007199254740991},"area_m2":{"type":"number","minimum":0,"maximum":1e+30},"recipe":{"$ref":"#/definitions/Recipe"},"shape":{"$ref":"#/definitions/ToolShape"},"max_angle_deg":{"$ref":"#/definitions/SlantLimit"},"depth_bias":{"$ref":"#/definitions/DepthBias"}}},
 "EditList":{"type":"object","additionalProperties":false,"required":["edits","total"],"properties":{"edits":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/HistoryEntry"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
 "Empty":{"type":"object","additionalProperties":false,"properties":{}},
 "Restore":{"type":"object","additionalProperties":false,"required":["sequence"],"properties":{"sequence":{"type":"integer","minimum":0,"maximum":9007199254740991}}},

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <map>
+#include <mutex>
+
+#include "net/wire.h"
+#include "store/store.h"
+
+namespace strata::net {
+
+// The tools of the site as strokes ask for them. Their shapes are kept ready once they were asked for: they never change. Blocks,
+// thread-safe.
+class ToolShelf {
+ public:
+  explicit ToolShelf(store::Store& store) : store_(store) {}
+  Result<FoundTool> find(const std::string& ref);
+
+ private:
+  static constexpr std::size_t kMostReady = 64;  // 72 KiB each
+
+  store::Store& store_;
+  std::mutex mutex_;
+  std::map<std::int64_t, std::shared_ptr<const ShapeTexture>> ready_;
+};
+
+}  // namespace strata::net

@@ -1,0 +1,202 @@
+// Shapes of the brush at work: made of a picture by file and by drop, chosen by mouse and by keys, painted with, renamed, and deleted
+// by somebody else; and the limit of the slant.
+import assert from "node:assert/strict";
+import { mkdirSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { Browser } from "../support/browser.mjs";
+import { encode_png } from "../support/png.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const browser = await Browser.open();
+const { page } = browser;
+const server = new StrataServer({ demo: true });
+const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-tools";
+mkdirSync(kOutput, { recursive: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const picker = page.locator("strata-shape-picker");
+const shape = (name) => picker.getByRole("radio", { name, exact: true });
+const dialog = page.locator("strata-shape-dialog");
+const shot = async (name, of = browser) => writeFileSync(join(kOutput, `tools-${name}.png`), await of.settled());
+
+/** A dark shape on white paper. */
+function drawing(inside) {
+  const side = 200;
+  const data = new Uint8Array(side * side * 4);
+  for (let y = 0; y < side; ++y)
+    for (let x = 0; x < side; ++x) {
+      const level = inside((x + 0.5) * 2 / side - 1, 1 - (y + 0.5) * 2 / side) ? 20 : 255;
+      data.set([level, level, level, 255], (y * side + x) * 4);
+    }
+  return Buffer.from(encode_png({ width: side, height: side, data }));
+}
+const star = drawing((x, y) => Math.hypot(x, y) < 0.45 + 0.4 * Math.cos(5 * (Math.atan2(y, x) - Math.PI / 2)));
+const leaf = drawing((x, y) => Math.hypot(x - 0.5, y + 0.5) < 1.15 && Math.hypot(x + 0.5, y - 0.5) < 1.15);
+
+try {
+  await server.start();
+  await page.goto(server.link);
+  await page.getByRole("link", { name: /Demo pot/ }).click();
+  await browser.drawn();
+  await page.keyboard.press("b");
+  const newest = async () => {
+    const layers = (await server.json("GET", "/models/demo-pot/layers")).layers;
+    const edits = await Promise.all(layers.map(({ id }) => server.json("GET", `/models/demo-pot/layers/${id}/edits?limit=1`)));
+    return edits.flatMap(({ edits }) => edits).sort((a, b) => b.sequence - a.sequence)[0];
+  };
+  const paint = async (points) => {
+    const known = (await newest()).sequence;
+    await browser.drag(points);
+    return wait_for(async () => {
+      const edit = await newest();
+      return edit.sequence > known ? edit : null;
+    }, "the stroke in the history");
+  };
+
+  say("the brush is round at first");
+  assert.equal(await shape("Round").getAttribute("aria-checked"), "true");
+
+  say("a picture becomes a shape: what of it is seen beforehand");
+  await picker.locator("input[type=file]").setInputFiles({ name: "five_pointed_star.png", mimeType: "image/png", buffer: star });
+  await dialog.getByRole("radio", { name: "Dark parts", checked: true }).waitFor();
+  assert.equal(await dialog.getByLabel("Name").inputValue(), "five pointed star");
+  const painted_share = () =>
+    dialog.locator("canvas").evaluate((canvas) => {
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      return data.filter((value, at) => at % 4 === 3 && value > 0).length / (data.length / 4);
+    });
+  const share = await painted_share();
+  assert.ok(share > 0.15 && share < 0.4, String(share));
+  await dialog.getByRole("radio", { name: "Light parts" }).click();
+  assert.ok(Math.abs((await painted_share()) - (1 - share)) < 0.01);
+  await dialog.getByRole("radio", { name: "Dark parts" }).click();
+  await shot("dialog");
+  await dialog.getByLabel("Name").fill("Star");
+  await dialog.getByRole("button", { name: "Add shape" }).click();
+  await dialog.waitFor({ state: "detached" });
+  await wait_for(async () => (await shape("Star").getAttribute("aria-checked")) === "true", "the new shape to be chosen");
+
+  say("the pointer shows the shape, and the stroke is of it");
+  await page.getByLabel("Width, px").fill("150");
+  await page.keyboard.press("Tab");
+  await browser.point(0.5, 0.5);
+  const cursor = page.locator("strata-stage .shape-cursor");
+  assert.ok(Math.abs((await cursor.boundingBox()).width - 150) < 1);
+  await shot("cursor");
+  const [{ id }] = (await server.json("GET", "/tools")).tools;
+  const dab = await paint([[0.5, 0.5]]);
+  assert.equal(dab.shape, id);
+  assert.equal(dab.max_angle_deg, undefined);
+  await shot("painted");
+
+  say("a file that is dropped becomes a shape, too");
+  const transfer = await page.evaluateHandle((bytes) => {
+    const data = new DataTransfer();
+    data.items.add(new File([new Uint8Array(bytes)], "leaf.png", { type: "image/png" }));
+    return data;
+  }, [...leaf]);
+  await picker.dispatchEvent("dragover", { dataTransfer: transfer });
+  await picker.dispatchEvent("drop", { dataTransfer: transfer });
+  await dialog.getByRole("button", { name: "Add shape" }).click();
+  await shape("leaf").waitFor();
+
+  say("what is no picture is refused in plain words");
+  await picker.locator("input[type=file]").setInputFiles({ name: "notes.png", mimeType: "image/png", buffer: Buffer.from("hello") });
+  await dialog.getByText("“notes.png” is not a picture that can be read").waitFor();
+  assert.equal(await dialog.getByRole("button", { name: "Add shape" }).isDisabled(), true);
+  await page.keyboard.press("Escape");
+  await dialog.waitFor({ state: "detached" });
+
+  say("keys choose among the shapes");
+  await shape("leaf").focus();
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await shape("Star").getAttribute("aria-checked"), "true");
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await shape("Round").getAttribute("aria-checked"), "true");
+  await page.keyboard.press("ArrowLeft");
+  assert.equal(await shape("Star").getAttribute("aria-checked"), "true");
+
+  say("a surface at a slant is skipped where that is wanted");
+  const limit = page.getByLabel("Skip surfaces seen at a slant of more than");
+  await limit.check();
+  await page.getByLabel("Largest angle between").fill("35");
+  await page.keyboard.press("Tab");
+  const facing = await paint([[0.45, 0.5], [0.62, 0.5]]);
+  assert.equal(facing.max_angle_deg, 35);
+  await shot("slant");
+  await page.getByLabel("Also what is hidden behind").check();
+  assert.equal(await limit.isDisabled(), true);
+  assert.equal((await paint([[0.5, 0.55]])).max_angle_deg, undefined);
+  await page.getByLabel("Also what is hidden behind").uncheck();
+  assert.equal(await limit.isChecked(), true);
+  await limit.uncheck();
+
+  say("a shape is renamed");
+  await picker.getByRole("button", { name: "Options for Star" }).click();
+  await picker.getByRole("menuitem", { name: "Rename" }).click();
+  await page.getByRole("textbox", { name: "Name" }).fill("Five points");
+  await page.keyboard.press("Enter");
+  await shape("Five points").waitFor();
+
+  say("somebody else deletes it: the brush is round, and what was painted stays");
+  const before = await newest();
+  await server.request("DELETE", `/tools/${id}`);
+  await page.getByText("The shape “Five points” was deleted").waitFor();
+  assert.equal(await shape("Round").getAttribute("aria-checked"), "true");
+  assert.equal(await shape("Five points").count(), 0);
+  assert.equal((await paint([[0.5, 0.6]])).shape, "disc");
+  await page.keyboard.press("Control+z");
+  await browser.saved();
+  await page.keyboard.press("Control+z");
+  await browser.saved();
+  assert.ok((await newest()).sequence > before.sequence);
+
+  say("one's own deletion asks first");
+  await shape("leaf").click();
+  await picker.getByRole("button", { name: "Options for leaf" }).click();
+  await picker.getByRole("menuitem", { name: "Delete" }).click();
+  await page.getByRole("button", { name: "Delete", exact: true }).click();
+  await shape("leaf").waitFor({ state: "detached" });
+  assert.deepEqual(await server.json("GET", "/tools"), { tools: [], total: 0 });
+
+  say("the help sheet tells of it");
+  await page.mouse.click((await browser.stage_box()).x + 10, (await browser.stage_box()).y + 10);
+  await page.keyboard.press("?");
+  await page.getByText("Skip surfaces seen at a slant", { exact: true }).waitFor();
+  await shot("help");
+  await page.keyboard.press("Escape");
+
+  say("on a phone the shapes are chosen by touch");
+  const phone = await Browser.open({ viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true });
+  try {
+    await phone.sign_in(server, server.token);
+    await phone.page.goto(`${server.url}/models/1`);
+    await phone.drawn();
+    await phone.page.getByRole("button", { name: /^Brush/ }).first().tap();
+    await phone.page.getByRole("button", { name: "Show the panel" }).tap();
+    const shapes = phone.page.locator("strata-shape-picker");
+    await shapes.locator("input[type=file]").setInputFiles({ name: "leaf.png", mimeType: "image/png", buffer: leaf });
+    await phone.page.getByRole("button", { name: "Add shape" }).tap();
+    await shapes.getByRole("radio", { name: "Square", exact: true }).tap();
+    assert.equal(await shapes.getByRole("radio", { name: "Square", exact: true }).getAttribute("aria-checked"), "true");
+    await shapes.getByRole("radio", { name: "leaf", exact: true }).tap();
+    assert.equal(await shapes.getByRole("radio", { name: "leaf", exact: true }).getAttribute("aria-checked"), "true");
+    await shapes.scrollIntoViewIfNeeded();
+    await shot("phone", phone);
+    phone.assert_no_complaints();
+  } finally {
+    await phone.close();
+  }
+
+  browser.assert_no_complaints();
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`--- failed at: ${step}\n--- log of the server\n${server.log.slice(-50).join("\n")}`);
+  writeFileSync(join(kOutput, "tools-failed.png"), await page.screenshot());
+  throw error;
+} finally {
+  await browser.close();
+  await server.remove();
+}

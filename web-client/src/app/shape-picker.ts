@@ -1,0 +1,185 @@
+// <strata-shape-picker>: what the brush is shaped like: round, square, or as a picture that somebody gave. A picture that is
+// dropped here becomes a shape.
+
+import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import type { Tool, ToolShape } from "../core/protocol.gen";
+import { ask, ask_text } from "./dialog";
+import { follow_session } from "./follow-session";
+import { icon } from "./icons";
+import "./menu";
+import type { ModelSession } from "./model-session";
+import { notices } from "./notices";
+import { radio_group, type RadioChoice } from "./radio-group";
+import "./shape-dialog";
+import { styled } from "./styled";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+import { shape_picture } from "./tool-shapes";
+
+const is_picture = ({ type }: { type: string }): boolean => type === "image/png" || type === "image/jpeg";
+
+@customElement("strata-shape-picker")
+export class StrataShapePicker extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @state() private file_: File | null = null; // that becomes a shape
+  @state() private over_ = false; // files are held over it
+  @query("input[type=file]") private input_!: HTMLInputElement;
+
+  constructor() {
+    super();
+    follow_session(this);
+    this.addEventListener("dragover", (event) => this.on_drag_over(event));
+    this.addEventListener("dragleave", () => (this.over_ = false));
+    this.addEventListener("drop", (event) => this.on_drop(event));
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: grid;
+        gap: 6px;
+      }
+      .head {
+        display: flex;
+        align-items: center;
+        gap: 6px;
+        min-height: 36px;
+      }
+      .head .name {
+        flex: 1;
+        min-width: 0;
+        font-size: 0.88rem;
+      }
+      .shapes {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 6px;
+      }
+      .area {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 6px;
+        max-height: 156px;
+        overflow-y: auto;
+        padding: 2px;
+        border-radius: var(--radius-small);
+      }
+      .area.over {
+        outline: 2px dashed var(--accent);
+        outline-offset: 2px;
+      }
+      .shapes button,
+      .area > button {
+        width: 44px;
+        min-height: 44px;
+        padding: 6px;
+      }
+      .shapes button[aria-checked="true"] {
+        border-color: var(--accent);
+        box-shadow: inset 0 0 0 1px var(--accent);
+      }
+      .area > button {
+        border-style: dashed;
+        border-color: var(--line-strong);
+      }
+      .shape {
+        width: 100%;
+        height: 30px;
+        background: currentColor;
+        mask: center / contain no-repeat;
+      }
+      .shapes svg {
+        width: 30px;
+        height: 30px;
+        fill: currentColor;
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.session.shapes.want();
+  }
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const { shape } = session.painting.brush;
+    const words = texts.shapes;
+    const tool = session.shapes.find(shape);
+    const builtin = (value: "disc" | "square", content: TemplateResult): RadioChoice<ToolShape> => ({
+      value,
+      title: texts.brush[value],
+      content: html`<svg viewBox="0 0 24 24" aria-hidden="true">${content}</svg><span class="visually-hidden">${texts.brush[value]}</span>`,
+    });
+    return html`<div class="head">
+        <span class="caption">${texts.brush.shape}</span>
+        <span class="name ellipsis">${tool ? tool.name : shape === "square" ? texts.brush.square : texts.brush.disc}</span>
+        ${tool && session.can_curate
+          ? html`<strata-menu label=${texts.layers.options(tool.name)}>
+              <button class="quiet" role="menuitem" @click=${() => void this.rename(tool)}>${icon("edit")}${words.rename}</button>
+              <button class="quiet" role="menuitem" @click=${() => void this.remove_tool(tool)}>${icon("trash")}${texts.layers.delete}</button>
+            </strata-menu>`
+          : nothing}
+      </div>
+      <div class="area ${this.over_ ? "over" : ""}">
+        ${radio_group<ToolShape>({
+          label: texts.brush.shape,
+          class: "shapes",
+          choices: [
+            builtin("disc", svg`<circle cx="12" cy="12" r="9" />`),
+            builtin("square", svg`<rect x="4" y="4" width="16" height="16" />`),
+            ...session.shapes.list.map(({ id, name }) => ({
+              value: id,
+              title: name,
+              content: html`<span class="shape" ${styled({ "mask-image": `url(${shape_picture(id)})` })}></span
+                ><span class="visually-hidden">${name}</span>`,
+            })),
+          ],
+          chosen: shape,
+          choose: (chosen) => session.painting.set_brush((brush) => (brush.shape = chosen)),
+        })}
+        ${session.can_paint
+          ? html`<button aria-label=${words.new_shape} title=${words.new_hint} @click=${() => this.input_.click()}>${icon("plus")}</button>
+              <input type="file" accept="image/png,image/jpeg" hidden aria-label=${words.new_shape} @change=${this.on_file} />`
+          : nothing}
+      </div>
+      ${this.file_
+        ? html`<strata-shape-dialog .session=${session} .file=${this.file_} @closed=${() => (this.file_ = null)}></strata-shape-dialog>`
+        : nothing}`;
+  }
+
+  private on_file(): void {
+    this.file_ = this.input_.files?.[0] ?? null;
+    this.input_.value = "";
+  }
+
+  private on_drag_over(event: DragEvent): void {
+    if (!this.session.can_paint || ![...(event.dataTransfer?.items ?? [])].some(({ kind }) => kind === "file")) return;
+    event.preventDefault();
+    this.over_ = true;
+  }
+
+  private on_drop(event: DragEvent): void {
+    this.over_ = false;
+    const [file] = event.dataTransfer?.files ?? [];
+    if (!file || !this.session.can_paint) return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (is_picture(file)) this.file_ = file;
+    else notices.show("problem", texts.shapes.unreadable(file.name));
+  }
+
+  private async rename(tool: Tool): Promise<void> {
+    const words = texts.shapes;
+    const name = await ask_text({ heading: words.rename_title(tool.name), label: words.name, text: tool.name, yes: words.rename });
+    if (name && name !== tool.name) await this.session.shapes.rename(tool, name).catch((error: unknown) => notices.error(error));
+  }
+
+  private async remove_tool(tool: Tool): Promise<void> {
+    const words = texts.shapes;
+    const question = { heading: words.delete_title(tool.name), lead: words.delete_lead, yes: texts.delete, danger: true };
+    if (await ask(question)) await this.session.shapes.remove(tool).catch((error: unknown) => notices.error(error));
+  }
+}
