@@ -74,6 +74,8 @@ int run(const Options& options) {
   start = now_ms();
   site.restart();
   const double ready_ms = now_ms() - start;
+  room = must(site.rooms->open(model.slug));
+  const double open_ms = now_ms() - start;
   first_frame(site, model.slug);
   const double restart_ms = now_ms() - start;
   const Samples full = full_frames(site, model.slug);
@@ -91,6 +93,7 @@ int run(const Options& options) {
                               {"layers", options.layers},
                               {"texture", options.resolution},
                               {"restart_ready_ms", ready_ms},
+                              {"restart_open_ms", open_ms},
                               {"restart_to_first_frame_ms", restart_ms},
                               {"full_frame", full.json()}};
   std::printf("%s: %llu triangles, %d charts, %.1f %% of texels used\n", options.model.c_str(),
@@ -98,8 +101,8 @@ int run(const Options& options) {
   std::printf("import %.2f s, to the first frame %.2f s (%.2f s of processor), peak memory %.0f MiB\n",
               import_ms / 1000, import_to_frame_ms / 1000, watch.cpu_seconds(), watch.peak_mib());
   watch.print();
-  std::printf("restart with %d painted %d² layers: ready %.2f s, first frame %.2f s\n", options.layers,
-              options.resolution, ready_ms / 1000, restart_ms / 1000);
+  std::printf("restart with %d painted %d² layers: ready %.2f s, model open %.2f s, first frame %.2f s\n",
+              options.layers, options.resolution, ready_ms / 1000, open_ms / 1000, restart_ms / 1000);
   std::printf("a frame of the full mesh from a new camera: %.0f ms (%.0f to %.0f)\n", full.median(), full.quantile(0),
               full.quantile(1));
   write_result(options.json, machine(&gpu), nlohmann::json::array({result}));
