@@ -154,6 +154,10 @@ Result<MapTiff> describe(TIFF* tiff, int largest_side) {
   const int compression = tag_of<std::uint16_t>(tiff, TIFFTAG_COMPRESSION);
   std::uint16_t photometric = PHOTOMETRIC_MINISBLACK;
   TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
+  const int orientation = tag_of<std::uint16_t>(tiff, TIFFTAG_ORIENTATION);
+  if (orientation != ORIENTATION_TOPLEFT)
+    return refuse("The TIFF is stored turned or mirrored (orientation " + std::to_string(orientation) +
+                  "), so its place is not certain; save it upright.");
   const auto type = sample_type(bits, format);
   const bool is_readable =
       is_picture_codec(compression) && TIFFIsCODECConfigured(static_cast<std::uint16_t>(compression));

@@ -145,6 +145,9 @@ TEST(MapTiff, that_cannot_be_read_is_refused) {
       << "pixels without area";
   EXPECT_FALSE(
       inspect(grey({TiffFile::doubles(33550, {NAN, 1, 0}), TiffFile::doubles(33922, {0, 0, 0, 1, 1, 0})}).write()));
+  TiffFile turned = grey();
+  turned.orientation = 6;
+  EXPECT_FALSE(inspect(turned.write()));
   // Of another type than the standard says: passed over.
   const auto strange =
       inspect(grey({TiffFile::shorts(33550, {1, 1, 0}), TiffFile::shorts(33922, {0, 0, 0, 1, 1, 0})}).write());
