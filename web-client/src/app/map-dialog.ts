@@ -9,8 +9,8 @@ import "./dialog";
 import { follow_session } from "./follow-session";
 import "./map-colors";
 import {
-  accepted, as_uploads, color_keys, color_rows, file_kind, kMapEndings, kTableEndings, picture_modes, table_kind, unknown_file, world_numbers,
-  type Along, type ColorRow, type PictureMode,
+  accepted, as_uploads, color_keys, color_rows, file_kind, kMapEndings, kTableEndings, picture_modes, table_kind, unknown_file,
+  world_numbers, type Along, type ColorRow, type PictureMode,
 } from "./map-file"; // prettier-ignore
 import { direction_field, found_line, progress_line, world_field } from "./map-place";
 import type { ModelSession } from "./model-session";
@@ -317,7 +317,8 @@ export class StrataMapDialog extends LitElement {
       const source = this.sources.length > 1 ? this.source_ : null;
       return (progress) => session.api.put_vertex_values(session.model_id, layer.id, source, files[0]!, progress);
     }
-    const query = kind === "readings" ? { radius_mm: String(this.radius_mm_), tolerance_mm: String(this.tolerance_mm_) } : this.map_query(kind);
+    const lengths = { radius_mm: String(this.radius_mm_), tolerance_mm: String(this.tolerance_mm_) };
+    const query = kind === "readings" ? lengths : this.map_query(kind);
     if (typeof query === "string") return query;
     return (progress) => session.api.paint_map(session.model_id, layer.id, kind, query, files, progress);
   }

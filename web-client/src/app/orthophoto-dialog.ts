@@ -113,7 +113,8 @@ export class StrataOrthophotoDialog extends LitElement {
     }
     const name = this.name_.trim();
     const query = { name, along: this.along_, ...(world ? { world } : {}) };
-    const job = await this.sending_.run((progress) => session.api.add_orthophoto(session.model_id, query, as_uploads(this.files_), progress));
+    const files = as_uploads(this.files_);
+    const job = await this.sending_.run((progress) => session.api.add_orthophoto(session.model_id, query, files, progress));
     if (!job) return;
     session.jobs.watch(words.job(name), job, ({ look }) => {
       if (look) session.appearance.show_made(look).catch((error: unknown) => notices.error(error));

@@ -80,7 +80,8 @@ export function recipe_of(input: ShapeInput): ShapeRecipe | { problem: string; f
   }
   if (takes.includes("rays") && input.rays.trim() !== "") {
     const rays = Number(input.rays);
-    if (!Number.isInteger(rays) || rays < kRays.least || rays > kRays.most) return { problem: texts.shape.bad_rays(kRays.least, kRays.most), field: "rays" };
+    const { least, most } = kRays;
+    if (!Number.isInteger(rays) || rays < least || rays > most) return { problem: texts.shape.bad_rays(least, most), field: "rays" };
     recipe.rays = rays;
   }
   if (takes.includes("absolute") && input.absolute) recipe.absolute = true;
