@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""Writes the seeds of the mesh fuzzers beside itself: one small file per feature of the formats."""
+"""Writes the seeds of the mesh and map fuzzers beside itself: one small file per feature of the formats."""
 import io
 import json
 import pathlib
 import struct
+import sys
 import zipfile
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "e2e"))
+from support import maps  # noqa: E402
 
 
 def ply(name, order, elements, rows):
@@ -152,7 +155,19 @@ for method, tag in ((zipfile.ZIP_STORED, "stored"), (zipfile.ZIP_DEFLATED, "defl
         for name, content in (("../a/pot.obj", OBJ["uv.obj"]), ("a/a.mtl", MTL["plain.mtl"]), ("readme.txt", b"text")):
             archive.writestr(zipfile.ZipInfo(name), content, method)
     ZIP[tag + ".zip"] = packed.getvalue()
-for folder, seeds in (("stl", STL), ("gltf", GLTF), ("mtl", MTL), ("zip", ZIP)):
+SHP = maps.shp([[maps.square(0, 0, 10), maps.square(2, 2, 3)], [maps.square(20, 0, 5)]])
+AREAS = {"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {"id": 1, "what": "salt", "seen": True}, "geometry": {"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 4]]]}},
+    {"type": "Feature", "properties": None, "geometry": {"type": "MultiPolygon", "coordinates": [[[[0, 0, 1], [4, 0, 1], [4, 4, 1]]]]}}]}
+MAP = {
+    "bare.shp": SHP,
+    "table.shp": SHP + maps.dbf([("ID", "N", 6, ["1", "-2.5"]), ("WHAT", "C", 8, ["salt", "Gr\xfcn"]), ("SEEN", "L", 1, ["T", "n"])]),
+    "numbers.tif": maps.tiff(4, 3, lambda x, y: x - y / 2, nodata="-9999", scale=0.5, origin=(10, 20), epsg=25830),
+    "bands.tif": maps.tiff(3, 2, lambda x, y: (x, y), kind="h", samples=2),
+    "colours.tif": maps.tiff(3, 2, lambda x, y: (255, x, y, 255 * (x > 0)), kind="B", samples=4),
+    "areas.geojson": json.dumps(AREAS).encode(),
+}
+for folder, seeds in (("stl", STL), ("gltf", GLTF), ("mtl", MTL), ("zip", ZIP), ("map", MAP)):
     (HERE / folder).mkdir(exist_ok=True)
     for name, content in seeds.items():
         (HERE / folder / name).write_bytes(content)
