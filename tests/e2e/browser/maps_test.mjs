@@ -50,6 +50,7 @@ function make_files({ min, max }) {
   const code = `
 import json, sys
 from maps import *
+from pictures import png
 folder, x, z, size = sys.argv[1], *map(float, sys.argv[2:])
 def put(name, content): open(folder + "/" + name, "wb").write(content)
 s = size / 8
