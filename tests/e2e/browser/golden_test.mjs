@@ -98,7 +98,7 @@ async function box_of(locator) {
 
 /** The page's own screens, at the size of a laptop and of a phone. */
 async function compare_page(server) {
-  const laptop = await Browser.open();
+  const laptop = await Browser.open({ viewport: { width: 1280, height: 900 } }); // the legend is seen below the brush
   try {
     const { page } = laptop;
     await page.goto(server.link);
@@ -155,6 +155,8 @@ async function write_readme_picture(browser) {
   const { page } = browser;
   await page.keyboard.press("Escape");
   await page.keyboard.press("v");
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await browser.settled();
   const box = await browser.stage_box();
   await page.mouse.click(box.x + 20, box.y + 20); // away from the button that opened the dialog
   await page.keyboard.press("+");

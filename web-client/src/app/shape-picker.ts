@@ -39,18 +39,15 @@ export class StrataShapePicker extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 6px;
+        grid-template-columns: auto 1fr auto;
+        gap: 10px;
       }
-      .head {
-        display: flex;
-        align-items: center;
-        gap: 6px;
-        min-height: 36px;
+      .caption {
+        line-height: 46px;
       }
-      .head .name {
-        flex: 1;
-        min-width: 0;
-        font-size: 0.88rem;
+      strata-menu {
+        align-self: start;
+        margin-top: 5px;
       }
       .shapes {
         display: flex;
@@ -113,16 +110,7 @@ export class StrataShapePicker extends LitElement {
       title: texts.brush[value],
       content: html`<svg viewBox="0 0 24 24" aria-hidden="true">${content}</svg><span class="visually-hidden">${texts.brush[value]}</span>`,
     });
-    return html`<div class="head">
-        <span class="caption">${texts.brush.shape}</span>
-        <span class="name ellipsis">${tool ? tool.name : shape === "square" ? texts.brush.square : texts.brush.disc}</span>
-        ${tool && session.can_curate
-          ? html`<strata-menu label=${texts.layers.options(tool.name)}>
-              <button class="quiet" role="menuitem" @click=${() => void this.rename(tool)}>${icon("edit")}${words.rename}</button>
-              <button class="quiet" role="menuitem" @click=${() => void this.remove_tool(tool)}>${icon("trash")}${texts.layers.delete}</button>
-            </strata-menu>`
-          : nothing}
-      </div>
+    return html`<span class="caption">${texts.brush.shape}</span>
       <div class="area ${this.over_ ? "over" : ""}">
         ${radio_group<ToolShape>({
           label: texts.brush.shape,
@@ -145,6 +133,12 @@ export class StrataShapePicker extends LitElement {
               <input type="file" accept="image/png,image/jpeg" hidden aria-label=${words.new_shape} @change=${this.on_file} />`
           : nothing}
       </div>
+      ${tool && session.can_curate
+        ? html`<strata-menu label=${texts.layers.options(tool.name)}>
+            <button class="quiet" role="menuitem" @click=${() => void this.rename(tool)}>${icon("edit")}${words.rename}</button>
+            <button class="quiet" role="menuitem" @click=${() => void this.remove_tool(tool)}>${icon("trash")}${texts.layers.delete}</button>
+          </strata-menu>`
+        : nothing}
       ${this.file_
         ? html`<strata-shape-dialog .session=${session} .file=${this.file_} @closed=${() => (this.file_ = null)}></strata-shape-dialog>`
         : nothing}`;
