@@ -218,7 +218,8 @@ STRATA_LANES void test_facing(const BlockTest& test, Lanes& lanes) {
   const glm::vec3 x_row = facing.x_row, y_row = facing.y_row, w_row = facing.w_row, far_row = facing.far_row;
   const float least = facing.least_squared_cosine;
   for (int i = 0; i < kLanes; ++i) {
-    const std::int32_t live = lanes.live[i], pixel = lanes.pixel[i];
+    // A texel that is out already asks the first pixel: its own neighbours need not lie in the window.
+    const std::int32_t live = lanes.live[i], pixel = live ? lanes.pixel[i] : 0;
     const std::int32_t px = live ? static_cast<std::int32_t>(lanes.x[i]) : 0,
                        py = live ? static_cast<std::int32_t>(lanes.y[i]) : 0;
     const float here = depth[pixel];
