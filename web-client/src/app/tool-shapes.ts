@@ -41,7 +41,7 @@ export class ToolShapes {
     return this.list.find((tool) => tool.id === shape);
   }
 
-  async add(file: File, name: string, part: ShapePart): Promise<void> {
+  async add(file: Blob, name: string, part: ShapePart): Promise<void> {
     const tool = await this.api_.create_tool(file, name, part);
     this.put(tool);
     this.host_.choose(tool.id);

@@ -151,7 +151,7 @@ export class Api {
   async tools(): Promise<wire.Tool[]> {
     return (await this.json<wire.ToolList>("GET", "/tools")).tools;
   }
-  async create_tool(picture: File, name: string, part: string): Promise<wire.Tool> {
+  async create_tool(picture: Blob, name: string, part: string): Promise<wire.Tool> {
     const query = new URLSearchParams({ name, part });
     const response = await this.request_raw("POST", `/tools?${query}`, picture, { "Content-Type": picture.type });
     return this.parsed<wire.Tool>(response);
