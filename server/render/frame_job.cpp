@@ -100,6 +100,7 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
       return fail(422, "Palette not usable", "A layer in a view needs a palette with points, and a finite opacity.",
                   "layers");
     }
+    layer_uses_.push_back((*layer)->use(view.last_used));
   }
   if (auto valid = validate(request.light); !valid) return valid;
   if (request.looks.size() > kMaxLooksShown)
@@ -130,14 +131,10 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
 }
 
 Result<bool> FrameJob::bring_layers(GpuScene& scene) {
-  const bool all_kept = layer_uses_.size() == task_.request.layers.size();
   for (const LayerStyle& style : task_.request.layers) {
     auto layer = scene.layer(style.layer);
     if (!layer) return tl::unexpected(layer.error());
-    if (!all_kept) layer_uses_.push_back((*layer)->use(scene.next_use()));
-  }
-  for (const LayerStyle& style : task_.request.layers) {
-    const auto here = (*scene.layer(style.layer))->bring();
+    const auto here = (*layer)->bring();
     if (!here || !*here) return here;
   }
   return true;

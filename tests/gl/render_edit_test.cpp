@@ -12,12 +12,6 @@ namespace {
 
 constexpr int kResolution = 1024;
 
-int written_texels(const render::StrokeOutcome& outcome) {
-  int count = 0;
-  for (const auto& tile : outcome.tiles) count += tile.written.count();
-  return count;
-}
-
 void expect_as_oracle(TestRenderer& renderer, const Scene& scene, const StrokeBatch& stroke, int at_least) {
   const auto model = renderer.add(scene);
   const auto layer = renderer.add_layer(model, ValueType::u8, kResolution);

@@ -226,4 +226,10 @@ Difference compare(const OracleResult& expected, const render::StrokeOutcome& ou
   return difference;
 }
 
+int written_texels(const render::StrokeOutcome& outcome) {
+  int count = 0;
+  for (const auto& tile : outcome.tiles) count += tile.written.count();
+  return count;
+}
+
 }  // namespace strata::test

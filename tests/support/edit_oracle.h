@@ -24,4 +24,6 @@ struct Difference {
 };
 Difference compare(const OracleResult& expected, const render::StrokeOutcome& outcome);
 
+int written_texels(const render::StrokeOutcome& outcome);  // of all tiles
+
 }  // namespace strata::test
