@@ -29,7 +29,7 @@ DepthCopy make_depth_copy(std::vector<float> depth, int width, int height, int t
   copy.height = height;
   copy.depth = std::move(depth);
   copy.slope.resize(copy.depth.size());
-  const int cells_x = (width + kCell - 1) / kCell, cells_y = (height + kCell - 1) / kCell;
+  const int cells_x = depth_cells(width), cells_y = depth_cells(height);
   copy.grid.resize(static_cast<std::size_t>(cells_x) * static_cast<std::size_t>(cells_y));
   const auto row = [&](int y) {
     return copy.depth.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);

@@ -2,7 +2,14 @@
 
 #include <vector>
 
+#include "shared/depth_probe.h"
+
 namespace strata::render {
+
+// How many cells of the coarse grid lie across so many pixels of a window.
+constexpr int depth_cells(int pixels) {
+  return (pixels + static_cast<int>(shader::kDepthCell) - 1) / static_cast<int>(shader::kDepthCell);
+}
 
 // A depth buffer in main memory, for edits that are decided there. Row by row from below.
 struct DepthCopy {

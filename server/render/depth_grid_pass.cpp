@@ -1,6 +1,6 @@
 #include "render/depth_grid_pass.h"
 
-#include "shared/depth_probe.h"
+#include "render/depth_copy.h"
 
 namespace strata::render {
 
@@ -13,8 +13,7 @@ Result<DepthGridPass> DepthGridPass::create(const std::filesystem::path& shader_
 }
 
 DepthGridPass::Cells DepthGridPass::all_cells(const gl::Texture& depth) {
-  constexpr int kCell = static_cast<int>(shader::kDepthCell);
-  return {0, 0, (depth.width() + kCell - 1) / kCell, (depth.height() + kCell - 1) / kCell};
+  return {0, 0, depth_cells(depth.width()), depth_cells(depth.height())};
 }
 
 void DepthGridPass::run(const gl::Texture& depth, const Cells& cells, const gl::Buffer& target) const {

@@ -5,7 +5,6 @@
 #include <thread>
 
 #include "render/tile_bytes.h"
-#include "shared/depth_probe.h"
 #include "shared/pages.h"
 
 namespace strata::render {
@@ -14,8 +13,7 @@ namespace {
 int thread_count() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
 
 DepthGrid grid_of(const DepthCopy& depth) {
-  constexpr int kCell = static_cast<int>(shader::kDepthCell);
-  return {depth.grid.data(), (depth.width + kCell - 1) / kCell, (depth.height + kCell - 1) / kCell};
+  return {depth.grid.data(), depth_cells(depth.width), depth_cells(depth.height)};
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     Room::Saved saved;
     Work work;                                                        // of `when_idle`, instead of an edit
     enum class Lookup { none, asked, is_new } lookup = Lookup::none;  // is_new: the journal does not know its id
-    std::shared_ptr<const void> hold;                                 // of the mirror, while the GPU is ahead of it
+    std::shared_ptr<const void> hold = {};                            // of the mirror, while the GPU is ahead of it
   };
   // Applied and on its way to the journal; what is needed to take it back.
   struct Pending {
