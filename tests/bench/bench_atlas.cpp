@@ -5,11 +5,11 @@
 #include <thread>
 
 #include "bench/bench_commands.h"
+#include "bench/bench_mesh.h"
 #include "bench/harness.h"
 #include "bench/step_watch.h"
 #include "mesh/atlas.h"
 #include "mesh/atlas_report.h"
-#include "mesh/load.h"
 
 namespace strata::bench {
 namespace {
@@ -34,9 +34,8 @@ nlohmann::json precision(const mesh::TriangleMesh& mesh, const mesh::Atlas& atla
 nlohmann::json facts(const std::string& name, const Options& options) {
   StepWatch watch;
   Progress progress;
-  const std::string title = std::filesystem::path(name).filename().string();
-  const auto files = mesh_files(name, options.cache);
-  auto loaded = watch.run("read", progress, [&] { return mesh::load_mesh(files, progress); });
+  const std::string title = mesh_title(name);
+  auto loaded = watch.run("read", progress, [&] { return load_named_mesh(name, options.cache, progress); });
   if (!loaded) return {{"mesh", title}, {"refused", loaded.error().detail}};
   const mesh::TriangleMesh& mesh = loaded->mesh;
   Result<mesh::Atlas> atlas = fail(0, "", "not tried");
@@ -84,12 +83,14 @@ void print(const nlohmann::json& row) {
 
 int run(const Options& options) {
   nlohmann::json rows = nlohmann::json::array();
-  for (const auto& name : options.all ? all_meshes() : options.meshes) {
+  bool any_refused = false;
+  for (const auto& name : options.all ? must(all_meshes()) : options.meshes) {
     rows.push_back(facts(name, options));
     print(rows.back());
+    any_refused |= rows.back().contains("refused");
   }
   write_result(options.json, machine(nullptr), rows);
-  return 0;
+  return options.all || !any_refused ? 0 : 1;
 }
 
 }  // namespace
@@ -98,8 +99,10 @@ Command add_atlas(CLI::App& app) {
   auto* command =
       app.add_subcommand("atlas", "Facts of the atlas of each mesh: texels used, stretch, footprints, seconds");
   auto options = std::make_shared<Options>();
-  command->add_option("meshes", options->meshes, "Presets (vessel, excavation, amazon, thai, textured10m) or files");
-  command->add_flag("--all", options->all, "Every mesh of the data folder, and the presets");
+  command->add_option("meshes", options->meshes,
+                      "Presets (vessel, excavation, amazon, thai, textured10m) or files that an import takes");
+  command->add_flag("--all", options->all,
+                    "Every mesh of the data folder, and the presets; those that are refused are named");
   command->add_option("--resolutions", options->resolutions, "Where footprints are measured")->delimiter(',');
   command->add_flag("--make", options->make_always, "Never keep the file's own texture coordinates");
   command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();

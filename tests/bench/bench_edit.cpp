@@ -192,7 +192,7 @@ int run(Options options) {
   std::printf("%s, %s\n", gpu.renderer.c_str(), gpu.version.c_str());
   Report report(options, gpu, copy_bandwidth(*renderer));
   for (const auto& name : options.models) {
-    EditScene scene{load_bench_mesh(name, options.cache), {}, 0};
+    EditScene scene{must(load_bench_mesh(name, {options.cache})), {}, 0};
     scene.camera = look_at(*scene.mesh.geometry, {0.45, -0.8, 0.5}, kWidth, kHeight);
     scene.model = await<render::ModelHandle>([&](auto done) {
       renderer->add_model({scene.mesh.geometry, {}}, std::move(done));

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "bench/bench_commands.h"
+#include "bench/bench_mesh.h"
 #include "bench/harness.h"
 #include "bench/step_watch.h"
 #include "jobs/import_job.h"
@@ -44,8 +45,7 @@ Samples full_frames(Site& site, const std::string& model) {
 int run(const Options& options) {
   Site site;
   jobs::ImportRequest request;
-  const auto file = mesh_file(options.model, options.cache);
-  request.files = {{file.filename().string(), file}};
+  request.files = must(mesh_files(options.model, options.cache));
   Progress progress;
 
   StepWatch watch;

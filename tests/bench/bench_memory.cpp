@@ -5,6 +5,7 @@
 #include <random>
 
 #include "bench/bench_commands.h"
+#include "bench/bench_mesh.h"
 #include "bench/harness.h"
 #include "core/revision.h"
 #include "query/dabs.h"
@@ -76,7 +77,7 @@ std::size_t stored_as_noise(TileData tile) {
 int run(const Options& options) {
   const auto renderer = start_renderer();
   const auto gpu = renderer->info();
-  const BenchMesh mesh = load_bench_mesh(options.model, options.cache);
+  const BenchMesh mesh = must(load_bench_mesh(options.model, {options.cache}));
   const auto model = await<render::ModelHandle>([&](auto done) {
     renderer->add_model({mesh.geometry, {}}, std::move(done));
   });

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "bench/bench_commands.h"
+#include "bench/bench_mesh.h"
 #include "bench/harness.h"
 #include "jobs/import_job.h"
 
@@ -17,8 +18,7 @@ struct Options {
 int run(const Options& options) {
   Site site;
   jobs::ImportRequest request;
-  const auto file = mesh_file(options.model, options.cache);
-  request.files = {{file.filename().string(), file}};
+  request.files = must(mesh_files(options.model, options.cache));
   Progress progress;
   const Model model = must(jobs::import_model(*site.store, request, progress));
   auto room = must(site.rooms->open(model.slug));

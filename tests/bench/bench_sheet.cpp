@@ -1,26 +1,34 @@
 // A contact sheet: each model as the renderer draws it under a checker layer, for a person to judge seams, distortion and
 // density. An SVG with JPEG pictures, which any browser shows.
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
 #include "bench/bench_commands.h"
+#include "bench/bench_mesh.h"
 #include "bench/harness.h"
 #include "core/picture.h"
+#include "mesh/texture_sampler.h"
 
 namespace strata::bench {
 namespace {
 
-constexpr int kPicture = 480;   // pixels, square
-constexpr int kCaption = 44;    // pixels below a row
+constexpr int kPicture = 480;  // pixels, square
+constexpr int kFiner = 2;      // drawn so many times larger, so that fields far away do not flicker
+constexpr int kCaption = 62;   // pixels below a row
+constexpr int kHeader = 54;
 constexpr int kTexture = 2048;  // of the checker layer
 constexpr int kSquare = 16;     // texels of a field of the checker
-const glm::dvec3 kDirections[] = {{0.4, -1, 0.35}, {-0.5, 1, 0.3}, {0.2, -0.4, 1}};
+// From the right of the front, from the left of the back, from above: to the right, to the front, up.
+const glm::dvec3 kDirections[] = {{0.5, 1, 0.45}, {-0.5, -1, 0.45}, {0.15, 0.45, 1}};
 constexpr int kDirectionCount = 3;
+constexpr double kAboveFlat = 1.1;  // of terrain little would be seen from lower down
 
 struct Options {
   std::vector<std::string> meshes;
-  std::string cache = "build/bench", out = "contact-sheet.svg";
-  bool make_always = false, all = false;
+  BenchMeshOptions load;
+  std::string out = "contact-sheet.svg";
+  bool all = false;
 };
 
 // Fields of kSquare texels in turn dark and light; every eighth line of fields is tinted, so that one sees which way u and
@@ -45,8 +53,8 @@ std::shared_ptr<const Palette> checker_palette() {
   auto palette = std::make_shared<Palette>();
   palette->mode = PaletteMode::categorical;
   palette->min = 0, palette->max = 5;
-  palette->points = {{0, {70, 70, 74, 255}, ""},    {1, {232, 230, 224, 255}, ""}, {2, {150, 40, 40, 255}, ""},
-                     {3, {240, 170, 160, 255}, ""}, {4, {40, 70, 150, 255}, ""},   {5, {165, 190, 240, 255}, ""}};
+  palette->points = {{0, {112, 112, 118, 255}, ""}, {1, {242, 240, 234, 255}, ""}, {2, {170, 40, 40, 255}, ""},
+                     {3, {240, 170, 160, 255}, ""}, {4, {40, 70, 170, 255}, ""},   {5, {165, 190, 240, 255}, ""}};
   return palette;
 }
 
@@ -67,16 +75,51 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string caption(const BenchMesh& mesh) {
+std::string text_at(int x, int y, const std::string& text, const char* style = "") {
+  return "<text x=\"" + std::to_string(x) + "\" y=\"" + std::to_string(y) + "\"" + style + ">" + escaped(text) +
+         "</text>\n";
+}
+
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  char text[400];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+// How large the model and a field of the checker are.
+std::string size_caption(const BenchMesh& mesh) {
+  const glm::dvec3 extent = mesh.geometry->box_max - mesh.geometry->box_min;
+  const double texels = mesh.atlas.coverage * kTexture * kTexture;
+  const std::string unit = mesh.unit.empty() ? "units" : mesh.unit;
+  return formatted("%zu triangles · %.5g × %.5g × %.5g %s, %s up · a field is %.3g %s wide",
+                   mesh.geometry->triangle_count(), extent.x, extent.y, extent.z, unit.c_str(),
+                   mesh.standing.up.c_str(), kSquare * std::sqrt(mesh.area / texels), unit.c_str());
+}
+
+std::string atlas_caption(const BenchMesh& mesh) {
   const auto& atlas = mesh.atlas;
   const double texels = atlas.coverage * atlas.lowest_resolution * atlas.lowest_resolution;
-  char text[400];
-  std::snprintf(text, sizeof text,
-                "%zu triangles · %s texture coordinates · %d charts · %.1f %% of texels used · mean stretch %.2f · "
-                "largest texel %.2f × the mean",
-                mesh.geometry->triangle_count(), atlas.source == "file" ? "the file's" : "made", atlas.charts,
-                100 * atlas.coverage, atlas.stretch_mean, atlas.texel_area_max * texels / mesh.area);
-  return text;
+  return formatted(
+      "%s texture coordinates · %d chart%s · %.1f %% of texels used · mean stretch %.2f · largest texel %.2f × the mean",
+      atlas.source == "file" ? "the file's" : "made", atlas.charts, atlas.charts == 1 ? "" : "s", 100 * atlas.coverage,
+      atlas.stretch_mean, atlas.texel_area_max * texels / mesh.area);
+}
+
+std::string header() {
+  return text_at(8, 22, "From the right of the front, from the left of the back, from above.",
+                 " font-weight=\"bold\"") +
+         text_at(8, 42,
+                 formatted(
+                     "Fields of %d × %d texels of a layer of %d². Red lines run along v, blue ones along u, %d texels "
+                     "apart. Good: fields of one size all over, and square; where lines break, charts meet.",
+                     kSquare, kSquare, kTexture, 8 * kSquare));
+}
+
+bool lies_flat(const BenchMesh& mesh) {
+  const glm::dvec3 extent = mesh.geometry->box_max - mesh.geometry->box_min;
+  const int up = mesh.standing.up == "x" ? 0 : mesh.standing.up == "y" ? 1 : 2;
+  return extent[up] < 0.3 * std::max(extent[(up + 1) % 3], extent[(up + 2) % 3]);
 }
 
 // One row: the pictures of a model and its caption.
@@ -90,42 +133,54 @@ std::string row(render::Renderer& renderer, const BenchMesh& mesh, int top) {
   for (int i = 0; i < kDirectionCount; ++i) {
     FrameRequest request;
     request.view = view;
-    request.camera = look_at(*mesh.geometry, kDirections[i], kPicture, kPicture);
-    request.width = request.height = kPicture;
+    request.width = request.height = kPicture * kFiner;
+    glm::dvec3 from = kDirections[i];
+    if (lies_flat(mesh)) from.z = std::max(from.z, kAboveFlat);
+    request.camera = fitted_camera(*mesh.geometry, mesh.standing, from, request.width);
     request.layers = {{layer, checker_palette(), 1}};
     const Frame frame = await<Frame>([&](auto done) { renderer.draw(request, done); });
-    const auto jpeg = encode_jpeg(frame.pixels, frame.width, frame.height, {85, true});
+    static_assert(kFiner == 2);
+    const Picture picture = mesh::halve({frame.width, frame.height, frame.pixels});
+    const auto jpeg = encode_jpeg(picture.rgba, picture.width, picture.height, {85, true});
     svg << "<image x=\"" << i * kPicture << "\" y=\"" << top << "\" width=\"" << kPicture << "\" height=\"" << kPicture
         << "\" href=\"data:image/jpeg;base64," << base64(jpeg) << "\"/>\n";
   }
-  const std::string name = std::filesystem::path(mesh.name).filename().string();
-  svg << "<text x=\"8\" y=\"" << top + kPicture + 18 << "\" font-weight=\"bold\">" << escaped(name) << "</text>\n"
-      << "<text x=\"8\" y=\"" << top + kPicture + 36 << "\">" << escaped(caption(mesh)) << "</text>\n";
+  svg << text_at(8, top + kPicture + 18, mesh_title(mesh.name), " font-weight=\"bold\"")
+      << text_at(8, top + kPicture + 36, size_caption(mesh)) << text_at(8, top + kPicture + 53, atlas_caption(mesh));
   renderer.remove_model(model);
   return svg.str();
 }
 
 int run(const Options& options) {
   const auto renderer = start_renderer();
-  std::string rows;
-  int top = 0;
-  for (const auto& name : options.all ? all_meshes() : options.meshes) {
-    const BenchMesh mesh = load_bench_mesh(name, options.cache, options.make_always);
-    std::printf("%s: %s\n", name.c_str(), caption(mesh).c_str());
+  std::string rows, refused;
+  int top = kHeader;
+  for (const auto& name : options.all ? must(all_meshes()) : options.meshes) {
+    const auto mesh = load_bench_mesh(name, options.load);
+    const std::string said =
+        mesh_title(name) + (mesh ? ": " + atlas_caption(*mesh) : " is not shown: " + mesh.error().detail);
+    std::printf("%s\n", said.c_str());
     std::fflush(stdout);
-    rows += row(*renderer, mesh, top);
-    top += kPicture + kCaption;
+    if (mesh) {
+      rows += row(*renderer, *mesh, top);
+      top += kPicture + kCaption;
+    } else {
+      refused += said + "\n";
+    }
   }
+  std::istringstream lines(refused);
+  for (std::string line; std::getline(lines, line); top += 18) rows += text_at(8, top + 18, line, " font-size=\"12\"");
   std::ofstream out(options.out);
-  out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kDirectionCount * kPicture << "\" height=\"" << top
+  out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kDirectionCount * kPicture << "\" height=\""
+      << top + 18
       << "\" font-family=\"sans-serif\" font-size=\"14\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
-      << rows << "</svg>\n";
+      << header() << rows << "</svg>\n";
   out.close();
   if (!out) {
     std::fprintf(stderr, "strata-bench: cannot write %s\n", options.out.c_str());
     return 1;
   }
-  return 0;
+  return options.all || refused.empty() ? 0 : 1;
 }
 
 }  // namespace
@@ -133,11 +188,14 @@ int run(const Options& options) {
 Command add_sheet(CLI::App& app) {
   auto* command = app.add_subcommand("sheet", "A contact sheet of models under a checker layer, as SVG");
   auto options = std::make_shared<Options>();
-  command->add_option("meshes", options->meshes, "pot, pot:N, presets or files");
-  command->add_flag("--all", options->all, "Every mesh of the data folder, and the presets");
+  command->add_option("meshes", options->meshes, "pot, pot:N, presets or files that an import takes");
+  command->add_flag("--all", options->all,
+                    "Every mesh of the data folder, and the presets; those that are refused are named");
   command->add_option("-o,--out", options->out, "Where the sheet goes")->capture_default_str();
-  command->add_flag("--make", options->make_always, "Never keep the file's own texture coordinates");
-  command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();
+  command->add_flag("--make", options->load.make_always, "Never keep the file's own texture coordinates");
+  command->add_option("--up", options->load.up, "The axis that points up, of files that cannot say it")
+      ->check(CLI::IsMember({"x", "y", "z"}));
+  command->add_option("--cache", options->load.cache, "Where generated meshes are kept")->capture_default_str();
   return [options] { return run(*options); };
 }
 

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "bench/bench_commands.h"
+#include "bench/bench_mesh.h"
 #include "bench/harness.h"
 #include "jobs/import_job.h"
 #include "protocol/frame_header.h"
@@ -63,7 +64,7 @@ int run(const Options& options) {
   Site site;
   Progress progress;
   // Imported through the store like any model, from a PLY the bench writes when it is the generated pot.
-  const BenchMesh bench = load_bench_mesh(options.model, options.cache);
+  const BenchMesh bench = must(load_bench_mesh(options.model, {options.cache}));
   store::Store::NewModel made;
   made.model.name = made.model.slug = "bench";
   made.model.project_id = must(site.store->project("default")).id;

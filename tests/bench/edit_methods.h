@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/bench_mesh.h"
 #include "bench/harness.h"
 #include "render/depth_copy.h"
 

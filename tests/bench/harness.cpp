@@ -3,15 +3,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <future>
 #include <glm/gtc/matrix_transform.hpp>
 #include <iostream>
 #include <thread>
 
-#include "mesh/demo_pot.h"
-#include "mesh/load.h"
 #include "support/shader_dirs.h"
 
 namespace strata::bench {
@@ -38,18 +35,6 @@ std::string cpu_name() {
 [[noreturn]] void stop(const std::string& why) {
   std::cerr << "strata-bench: " << why << std::endl;
   std::exit(1);
-}
-
-constexpr std::array kPresets{"vessel", "excavation", "amazon", "thai", "textured10m"};
-
-bool is_preset(const std::string& name) { return std::find(kPresets.begin(), kPresets.end(), name) != kPresets.end(); }
-
-mesh::TriangleMesh pot_of(const std::string& name) {
-  const auto colon = name.find(':');
-  if (colon == std::string::npos) return mesh::make_demo_pot();
-  const double wanted = std::stod(name.substr(colon + 1));
-  const double at_one = double(mesh::make_demo_pot().triangle_count());
-  return mesh::make_demo_pot(wanted / at_one);
 }
 
 }  // namespace
@@ -92,97 +77,6 @@ void write_result(const std::string& json_file, const nlohmann::json& machine, c
   json["results"] = results;
   out << json.dump(2) << "\n";
   if (!out) stop("cannot write " + json_file);
-}
-
-namespace {
-
-std::filesystem::path unpacked(const std::filesystem::path& file, const std::filesystem::path& cache) {
-  const std::string ending = file.extension().string();
-  if (ending != ".xz" && ending != ".gz") return file;
-  const auto plain = cache / file.stem();
-  if (std::filesystem::exists(plain)) return plain;
-  std::filesystem::create_directories(cache);
-  const std::string command =
-      (ending == ".xz" ? "xz" : "gzip") + std::string(" -dc '") + file.string() + "' > '" + plain.string() + "'";
-  if (std::system(command.c_str()) != 0) {
-    std::filesystem::remove(plain);
-    stop("could not unpack " + file.string());
-  }
-  return plain;
-}
-
-}  // namespace
-
-std::filesystem::path mesh_file(const std::string& name, const std::filesystem::path& cache) {
-  if (!is_preset(name)) {
-    if (!std::filesystem::exists(name))
-      stop("no such file or model: " + name +
-           " (pot, pot:N, vessel, excavation, amazon, thai, textured10m, or a file)");
-    return unpacked(name, cache);
-  }
-  const auto file = cache / (name + ".ply");
-  if (std::filesystem::exists(file)) return file;
-  const std::filesystem::path maker = std::filesystem::path(STRATA_TEST_DATA) / "make_big_mesh.py";
-  if (!std::filesystem::exists(maker))
-    stop("the preset " + name + " needs " + maker.string() + "; use pot:N or a file instead");
-  std::filesystem::create_directories(cache);
-  const std::string command = "python3 '" + maker.string() + "' --preset " + name + " -o '" + file.string() + "' >&2";
-  if (std::system(command.c_str()) != 0) stop("could not make the preset " + name + " (it needs python3 with numpy)");
-  return file;
-}
-
-std::vector<mesh::InputFile> mesh_files(const std::string& name, const std::filesystem::path& cache) {
-  const auto file = mesh_file(name, cache);
-  std::vector<mesh::InputFile> files{{file.filename().string(), file}};
-  const auto kind = mesh::input_kind(file.filename().string());
-  if (kind != mesh::InputKind::obj && kind != mesh::InputKind::gltf) return files;
-  for (const auto& beside :
-       std::filesystem::directory_iterator(file.parent_path().empty() ? "." : file.parent_path())) {
-    const std::string filename = beside.path().filename().string();
-    if (beside.is_regular_file() && mesh::input_kind(filename) == mesh::InputKind::companion)
-      files.push_back({filename, beside.path()});
-  }
-  return files;
-}
-
-std::vector<std::string> all_meshes() {
-  std::vector<std::string> names;
-  const std::filesystem::path data = STRATA_TEST_DATA;
-  if (!std::filesystem::exists(data)) stop("there is no data folder at " + data.string());
-  for (auto entry = std::filesystem::recursive_directory_iterator(data); entry != std::filesystem::end(entry);
-       ++entry) {
-    if (entry->is_directory() && entry->path().filename() == "nasty") entry.disable_recursion_pending();
-    if (!entry->is_regular_file()) continue;
-    std::string plain = entry->path().filename().string();
-    for (const std::string packed : {".xz", ".gz"})
-      if (plain.ends_with(packed)) plain.resize(plain.size() - packed.size());
-    if (mesh::is_mesh(mesh::input_kind(plain))) names.push_back(entry->path().string());
-  }
-  std::sort(names.begin(), names.end());
-  names.insert(names.end(), kPresets.begin(), kPresets.end());
-  return names;
-}
-
-BenchMesh load_bench_mesh(const std::string& name, const std::filesystem::path& cache, bool make_always) {
-  BenchMesh bench;
-  bench.name = name;
-  Progress progress;
-  mesh::TriangleMesh mesh;
-  if (name == "pot" || name.starts_with("pot:")) {
-    mesh = pot_of(name);
-  } else {
-    bench.file = mesh_file(name, cache);
-    mesh = must(mesh::load_mesh(mesh_files(name, cache), progress)).mesh;
-  }
-  mesh::Atlas atlas;
-  if (auto kept = mesh.corner_uvs.empty() || make_always ? fail(0, "", "") : mesh::keep_uvs(mesh, 2048, progress))
-    atlas = std::move(*kept);
-  else
-    atlas = must(mesh::make_atlas(mesh, 2048, progress));
-  bench.area = mesh::surface_area(mesh);
-  bench.atlas = atlas.report;
-  bench.geometry = std::make_shared<const mesh::Geometry>(mesh::build_geometry(mesh, atlas));
-  return bench;
 }
 
 std::unique_ptr<render::Renderer> start_renderer() {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/input_files.h"
+#include "mesh/geometry.h"
 #include "render/renderer.h"
 #include "room/room.h"
 #include "store/cluster.h"
@@ -37,23 +37,6 @@ nlohmann::json machine(const render::GpuInfo* gpu);
 // `more`: further members beside `machine` and `results`.
 void write_result(const std::string& json_file, const nlohmann::json& machine, const nlohmann::json& results,
                   const nlohmann::json& more = nlohmann::json::object());
-
-// A mesh by name: `pot` or `pot:TRIANGLES` (generated here), a file, or a preset of the data folder's make_big_mesh.py
-// (vessel, excavation, amazon, thai, textured10m), made once into `cache`. Exits with a message where it cannot be had.
-struct BenchMesh {
-  std::string name;
-  std::filesystem::path file;                      // empty for `pot`
-  std::shared_ptr<const mesh::Geometry> geometry;  // with an atlas
-  double area = 0;
-  AtlasReport atlas;
-};
-std::filesystem::path mesh_file(const std::string& name, const std::filesystem::path& cache);
-// With what lies beside an OBJ or glTF. Files that end in .xz or .gz are unpacked into `cache`.
-std::vector<mesh::InputFile> mesh_files(const std::string& name, const std::filesystem::path& cache);
-// Every mesh of the data folder but those of nasty/, and the presets.
-std::vector<std::string> all_meshes();
-// The file's own texture coordinates where they can carry layers, unless `make_always`.
-BenchMesh load_bench_mesh(const std::string& name, const std::filesystem::path& cache, bool make_always = false);
 
 std::unique_ptr<render::Renderer> start_renderer();
 template <class T>

@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
-"""Seconds that layers computed from a shape take, and a transfer, from the request to the durable layer.
+"""What layers computed from a shape take, and a transfer, from the request to the durable layer.
 
     STRATA_BINARY=build/release/bin/strata tests/bench/shape_times.py SCAN.ply [--unit mm] [--resolution 4096] [--from OTHER.ply]
+                                                                      [--kinds slope,…] [--cancel] [--json FILE]
 
 Each is done once after one that is not counted, which opens the model and maps its surface. Beside the seconds on the clock stand
-those of the server's processors: they are what to compare where others use the machine, too.
+those of the server's processors, which are what to compare where others use the machine, too; the most memory that the server (not its
+PostgreSQL) held meanwhile; and the longest time in which what a person sees of the job's progress did not change. With --cancel each
+is started again and cancelled when a quarter, half and most of that time has passed: the longest time until it had ended.
 """
 import argparse
+import json
 import os
 import sys
 import time
@@ -15,6 +19,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 from support.strata_server import StrataServer, wait_for
 
 KINDS = ["height", "slope", "azimuth", "mean_curvature", "gaussian_curvature", "roughness", "ambient_occlusion", "boundary_distance"]
+CANCELLED_AFTER = (0.25, 0.5, 0.85)
+LONG_S = 3600
 
 
 def read(path):
@@ -28,18 +34,55 @@ def processor_seconds(server):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def peak_mib(server):
+    with open(f"/proc/{server.process.pid}/status", encoding="ascii") as file:
+        return next(int(line.split()[1]) / 1024 for line in file if line.startswith("VmHWM"))
+
+
+def forget_peak(server):
+    with open(f"/proc/{server.process.pid}/clear_refs", "w", encoding="ascii") as file:
+        file.write("5")
+
+
+def follow(server, job_id, what):
+    """The ended job, and the longest time in which it showed nothing new."""
+    seen, since, silence = None, time.monotonic(), 0
+
+    def ended():
+        nonlocal seen, since, silence
+        job = server.ok("GET", f"/jobs/{job_id}").json()
+        now = time.monotonic()
+        silence = max(silence, now - since)
+        if (job["progress"], job["message"]) != seen:
+            seen, since = (job["progress"], job["message"]), now
+        return None if job["state"] in ("queued", "running") else job
+
+    job = wait_for(ended, what, limit_s=LONG_S)
+    return job, silence
+
+
 def measure(server, what, path, body):
-    """One line of the table; the job."""
+    """One line of the table; the figures and the job."""
+    forget_peak(server)
     start, used = time.monotonic(), processor_seconds(server)
+    job, silence = follow(server, server.ok("POST", path, body).json()["id"], what)
+    figures = {"what": what, "seconds": time.monotonic() - start, "cpu_seconds": processor_seconds(server) - used,
+               "peak_mib": peak_mib(server), "silence_s": silence}
+    if job["state"] != "done":
+        figures["refused"] = job["problem"]["title"]
+    print(f"{what:20} {figures['seconds']:6.1f} s   {figures['cpu_seconds']:6.1f} s of processors   {figures['peak_mib']:6.0f} MiB   "
+          f"silent for {silence:4.1f} s{' (' + figures['refused'] + ')' if 'refused' in figures else ''}", flush=True)
+    return figures, job
+
+
+def seconds_to_cancel(server, path, body, after):
+    """From the request to cancel to the job's end; None where the job had ended before."""
     job_id = server.ok("POST", path, body).json()["id"]
-    job = wait_for(lambda: over(server.ok("GET", f"/jobs/{job_id}").json()), what, limit_s=3600)
-    said = "" if job["state"] == "done" else f" ({job['problem']['title']})"
-    print(f"{what:20} {time.monotonic() - start:6.1f} s   {processor_seconds(server) - used:6.1f} s of processors{said}", flush=True)
-    return job
-
-
-def over(job):
-    return None if job["state"] in ("queued", "running") else job
+    time.sleep(after)
+    asked = time.monotonic()
+    server.request("DELETE", f"/jobs/{job_id}")
+    job, _ = follow(server, job_id, "the end of a cancelled job")
+    return time.monotonic() - asked if job["state"] == "cancelled" else None
 
 
 def main():
@@ -48,23 +91,40 @@ def main():
     parser.add_argument("--unit", default="mm")
     parser.add_argument("--resolution", type=int, default=4096)
     parser.add_argument("--from", dest="other", help="another version of the scan: the distance to it, and a transfer of all layers to it")
+    parser.add_argument("--kinds", help="only these, separated by commas")
+    parser.add_argument("--cancel", action="store_true", help="how soon a job ends that is cancelled, too")
+    parser.add_argument("--json", help="write the figures here")
     asked = parser.parse_args()
+    rows = []
     with StrataServer() as server:
         model = server.import_model(read(asked.scan), os.path.basename(asked.scan), name="Model", unit=asked.unit)
         print(f"{asked.scan}: {model['triangles']} triangles, {asked.resolution}² texels")
         path = f"/models/{model['id']}"
         measure(server, "the first, uncounted", path + "/layers", {"name": "first", "resolution": asked.resolution, "compute": {"kind": "height"}})
-        kinds = [{"kind": kind} for kind in KINDS]
+        kinds = [{"kind": kind} for kind in (asked.kinds.split(",") if asked.kinds else KINDS)]
         if asked.other:
             other = server.import_model(read(asked.other), os.path.basename(asked.other), name="Other", unit=asked.unit)
             kinds.append({"kind": "model_distance", "model": str(other["id"])})
         for recipe in kinds:
-            measure(server, recipe["kind"], path + "/layers", {"name": recipe["kind"], "resolution": asked.resolution, "compute": recipe})
+            body = {"name": recipe["kind"], "resolution": asked.resolution, "compute": recipe}
+            figures, job = measure(server, recipe["kind"], path + "/layers", body)
+            if asked.cancel and job["state"] == "done":
+                times = [seconds_to_cancel(server, path + "/layers", {**body, "name": "never"}, share * figures["seconds"]) for share in CANCELLED_AFTER]
+                figures["cancel_s"] = max((t for t in times if t is not None), default=None)
+                print(f"{'':20} cancelled, it ended after " + ", ".join("(was done)" if t is None else f"{t:.1f} s" for t in times), flush=True)
+            for layer in job.get("layers", []):
+                server.ok("DELETE", f"{path}/layers/{layer}")  # so that each is measured beside the first alone
+            rows.append(figures)
         if asked.other:
             diagonal_mm = sum((high - low) ** 2 for low, high in zip(model["bounds"]["min"], model["bounds"]["max"])) ** 0.5 * {"mm": 1, "cm": 10, "m": 1000}[asked.unit]
-            job = measure(server, "transfer, one layer", f"/models/{other['id']}/transfer",
-                          {"from": str(model["id"]), "tolerance_mm": diagonal_mm / 500, "layers": ["first"]})
+            figures, job = measure(server, "transfer, one layer", f"/models/{other['id']}/transfer",
+                                   {"from": str(model["id"]), "tolerance_mm": diagonal_mm / 500, "layers": ["first"]})
             print(job.get("report"))
+            rows.append(figures)
+    if asked.json:
+        with open(asked.json, "w", encoding="utf-8") as file:
+            json.dump({"scan": os.path.basename(asked.scan), "triangles": model["triangles"], "resolution": asked.resolution, "results": rows}, file, indent=1)
+            file.write("\n")
 
 
 main()
