@@ -7,6 +7,8 @@
 
 namespace strata::mesh {
 
+inline int hardware_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+
 // Runs work(0) … work(count - 1) on up to `threads` threads (this one among them), each index once, in any order.
 template <class Work>
 void parallel_for(int threads, int count, Work&& work) {

@@ -44,6 +44,7 @@ SurfaceBake::SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& m
   claims_.resize(band_count());
   leftovers_.resize(band_count());
   overlaps_of_band_.assign(band_count(), 0);
+  parts_of_band_.resize(band_count());
 }
 
 void SurfaceBake::bin_triangles() {
@@ -203,7 +204,7 @@ void SurfaceBake::assign_slots(int threads) {
     }
   });
   map_.packed_box.resize(slots);
-  map_.bounds_8.resize(slots);
+  map_.bounds_of_slot.resize(slots);
   box_of_slot_.resize(slots);
 }
 

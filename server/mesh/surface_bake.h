@@ -32,6 +32,7 @@ class SurfaceBake {
   void credit_leftovers();         // after credit_areas of all bands
   void pack_slots(int band);       // packed positions and bounds; after share_grids
   void bound_tiles();              // after pack_slots of all bands
+  void plant_tree(int threads);    // after pack_slots of all bands
 
   // What place_surface and place_gutter found, for those who paint by triangle.
   struct Placement {
@@ -90,6 +91,7 @@ class SurfaceBake {
     glm::vec3 low{INFINITY}, high{-INFINITY};
   };
   std::vector<Box> box_of_slot_;
+  std::vector<std::vector<BoundedPart>> parts_of_band_;
 };
 
 }  // namespace strata::mesh

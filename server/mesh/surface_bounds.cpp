@@ -8,8 +8,13 @@
 namespace strata::mesh {
 namespace {
 
-// Room for the rounding of whoever unpacks positions in float.
+// Room for the rounding of whoever unpacks positions in float; of the model's diagonal.
 constexpr float kSlack = 1e-6f;
+
+// Texels of a block that lie further apart than so many mean texels with none between are of different places.
+constexpr double kLeastGap_texels = 4;
+
+float slack_of(const Geometry& geometry) { return kSlack * glm::length(geometry.box_max - geometry.box_min); }
 
 }  // namespace
 
@@ -51,7 +56,9 @@ void SurfaceBake::share_grids() {
 }
 
 void SurfaceBake::pack_slots(int band) {
-  const float slack = kSlack * glm::length(geometry_.box_max - geometry_.box_min);
+  const float slack = slack_of(geometry_);
+  const double texel_area = map_.area_total / static_cast<double>(std::max<std::uint64_t>(map_.surface_texels, 1));
+  const auto least_gap = static_cast<float>(kLeastGap_texels * std::sqrt(texel_area));
   for_each_slot(band, [&](std::uint32_t slot, std::uint64_t owned) {
     const glm::vec3* positions = position_.get() + std::size_t{slot} * 64;
     auto& packed_box = map_.packed_box[slot];
@@ -64,50 +71,45 @@ void SurfaceBake::pack_slots(int band) {
     for (int i = 0; i < 3; ++i)
       packed_box.min[i] =
           static_cast<float>(std::floor(double{box.low[i]} / double{packed_box.step[i]}) * double{packed_box.step[i]});
-    auto& bounds = map_.bounds_8[slot];
-    bounds.center = (box.low + box.high) * 0.5f;
-    float farthest = 0;
     for (std::uint64_t rest = owned; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       map_.packed_position[std::size_t{slot} * 64 + i] = pack_position(positions[i], packed_box);
-      const glm::vec3 d = positions[i] - bounds.center;
-      farthest = std::max(farthest, glm::dot(d, d));
     }
-    bounds.radius = std::sqrt(farthest) + slack;
+    map_.bounds_of_slot[slot] = bounds_of(positions, owned, slack);
+    add_parts_of_block({slot, map_.block_of_slot[slot], 0}, positions, owned, least_gap, slack, parts_of_band_[band]);
   });
 }
 
 void SurfaceBake::bound_tiles() {
-  const int blocks = map_.blocks_per_side;
-  const float slack = kSlack * glm::length(geometry_.box_max - geometry_.box_min);
-  const auto merge = [&](int blocks_a_group, std::vector<SurfaceMap::Bounds>& groups) {
-    const int side = blocks / blocks_a_group;
-    groups.assign(static_cast<std::size_t>(side) * side, {});
-    for (int gy = 0; gy < side; ++gy)
-      for (int gx = 0; gx < side; ++gx) {
-        glm::vec3 low(INFINITY), high(-INFINITY);
-        const auto for_each_part = [&](auto&& visit) {
-          for (int by = gy * blocks_a_group; by < (gy + 1) * blocks_a_group; ++by)
-            for (int bx = gx * blocks_a_group; bx < (gx + 1) * blocks_a_group; ++bx)
-              if (const auto slot = map_.slot_of_block[static_cast<std::size_t>(by) * blocks + bx]; slot != kNoSlot)
-                visit(map_.bounds_8[slot], box_of_slot_[slot]);
-        };
-        for_each_part([&](const SurfaceMap::Bounds&, const Box& box) {
-          low = glm::min(low, box.low);
-          high = glm::max(high, box.high);
-        });
-        if (low.x > high.x) continue;
-        auto& bounds = groups[static_cast<std::size_t>(gy) * side + gx];
-        bounds.center = (low + high) * 0.5f;
-        float radius = 0;
-        for_each_part([&](const SurfaceMap::Bounds& part, const Box&) {
-          radius = std::max(radius, glm::length(part.center - bounds.center) + part.radius);
-        });
-        bounds.radius = std::min(radius, glm::length(high - low) * 0.5f + 4 * slack);
-      }
+  const std::size_t per_side = static_cast<std::size_t>(map_.resolution / kTileSize),
+                    blocks_a_tile = kTileSize / kBlockSize;
+  const float slack = slack_of(geometry_);
+  const auto tile_of = [&](std::size_t slot) {
+    const std::size_t block = map_.block_of_slot[slot], blocks = static_cast<std::size_t>(map_.blocks_per_side);
+    return block / blocks / blocks_a_tile * per_side + block % blocks / blocks_a_tile;
   };
-  merge(32 / kBlockSize, map_.bounds_32);
-  merge(kTileSize / kBlockSize, map_.bounds_128);
+  std::vector<Box> boxes(per_side * per_side);
+  for (std::size_t slot = 0; slot < box_of_slot_.size(); ++slot) {
+    Box& box = boxes[tile_of(slot)];
+    box.low = glm::min(box.low, box_of_slot_[slot].low);
+    box.high = glm::max(box.high, box_of_slot_[slot].high);
+  }
+  for (const Box& box : boxes) {
+    if (box.low.x > box.high.x)
+      map_.bounds_of_tile.emplace_back();
+    else
+      map_.bounds_of_tile.push_back({(box.low + box.high) * 0.5f, glm::length(box.high - box.low) * 0.5f + 4 * slack});
+  }
+}
+
+void SurfaceBake::plant_tree(int threads) {
+  std::vector<BoundedPart> parts;
+  parts.reserve(map_.block_of_slot.size());
+  for (auto& band : parts_of_band_) {
+    parts.insert(parts.end(), band.begin(), band.end());
+    band = {};
+  }
+  map_.tree = build_block_tree(std::move(parts), slack_of(geometry_), threads);
 }
 
 }  // namespace strata::mesh

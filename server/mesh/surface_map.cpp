@@ -28,7 +28,7 @@ float SurfaceMap::area_of(TileAddress tile, int texel) const {
 std::size_t SurfaceMap::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return of(slot_of_block) + of(block_of_slot) + of(packed_position) + of(packed_box) + of(surface_mask) + of(area) +
-         of(bounds_8) + of(bounds_32) + of(bounds_128);
+         of(bounds_of_slot) + of(bounds_of_tile) + tree.bytes();
 }
 
 }  // namespace strata::mesh

@@ -6,6 +6,7 @@
 
 #include "core/progress.h"
 #include "core/tile.h"
+#include "mesh/block_tree.h"
 #include "mesh/geometry.h"
 
 namespace strata::mesh {
@@ -38,13 +39,9 @@ struct SurfaceMap {
   std::vector<std::uint64_t> surface_mask;  // a slot: bit (y*8+x) set where the texel is surface (not gutter)
   std::vector<float> area;                  // 64 a slot, unit²; 0 on gutter
 
-  struct Bounds {
-    glm::vec3 center{0};
-    float radius = -1;  // -1: empty
-  };
-  std::vector<Bounds> bounds_8;    // a slot
-  std::vector<Bounds> bounds_32;   // (resolution/32)²
-  std::vector<Bounds> bounds_128;  // (resolution/128)²: one a tile
+  std::vector<BoundingSphere> bounds_of_slot;
+  std::vector<BoundingSphere> bounds_of_tile;  // (resolution/128)², row-major
+  BlockTree tree;
 
   std::uint64_t surface_texels = 0;
   std::uint64_t gutter_texels = 0;

@@ -39,6 +39,7 @@ Result<SurfaceMap> bake_surface_map(const Geometry& geometry, int resolution, Pr
   run(&SurfaceBake::pack_slots, 0.98);
   if (progress.cancelled()) return cancelled_problem();
   bake.bound_tiles();
+  bake.plant_tree(threads);
   progress.report(1, "Surface map ready");
   return map;
 }

@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
+#include <utility>
 
+#include "mesh/parallel.h"
 #include "shared/depth_probe.h"
 
 namespace strata::render {
@@ -31,42 +34,27 @@ double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
   return glm::length(point - (a + along * t));
 }
 
-// The sides of the tool's box in the window as planes through the eye. Spheres beyond one are left out by a tenth of what their
-// exact box costs: most of those that a small tool is tested against.
-class BoxPlanes {
- public:
-  BoxPlanes(const glm::dmat4& clip, int width, int height, const PixelBox& tool) {
-    const glm::dmat4 rows = glm::transpose(clip);
-    // Window x · w is linear in the position, and w is above 0 where anything is painted.
-    const glm::dvec4 x = 0.5 * width * (rows[0] + rows[3]), y = 0.5 * height * (rows[1] + rows[3]), w = rows[3];
-    planes_ = {x - (std::max(tool.x0, 0.0) - kMargin_px) * w, (std::min(tool.x1, double(width)) + kMargin_px) * w - x,
-               y - (std::max(tool.y0, 0.0) - kMargin_px) * w, (std::min(tool.y1, double(height)) + kMargin_px) * w - y};
-    for (auto& plane : planes_) {
-      const double length = glm::length(glm::dvec3(plane));
-      plane = length > 0 ? plane / length : glm::dvec4(0, 0, 0, 1);
-    }
-  }
-  bool leave_out(const mesh::SurfaceMap::Bounds& bounds) const {
-    const glm::dvec4 center(glm::dvec3(bounds.center), 1);
-    const double reach = -bounds.radius * (1 + kMarginRadius);
-    return glm::dot(planes_[0], center) < reach || glm::dot(planes_[1], center) < reach ||
-           glm::dot(planes_[2], center) < reach || glm::dot(planes_[3], center) < reach;
-  }
+// Where so many subtrees of this level pass, threads share them.
+constexpr std::size_t kSharedLevel = 3;
+constexpr std::size_t kSubtreesForThreads = 32;
 
- private:
-  std::array<glm::dvec4, 4> planes_;
-};
+// Under a large tool most blocks are taken by the eight: to test each costs as much as to paint it.
+constexpr std::size_t kWholeLevel = 1;
 
-// Neighbouring blocks mostly share their list.
-std::uint32_t list_of(const std::vector<std::uint32_t>& segments, Candidates& candidates) {
-  auto& lists = candidates.segment_lists;
-  auto& last_list = candidates.last_list;
-  const std::span<const std::uint32_t> last(lists.data() + last_list, lists.size() - last_list);
-  if (lists.empty() || !std::equal(last.begin(), last.end(), segments.begin(), segments.end())) {
-    last_list = lists.size();
-    lists.insert(lists.end(), segments.begin(), segments.end());
+// The sides of the tool's box in the window as planes through the eye; a sphere beyond one is left out by a tenth of what its
+// exact box costs.
+std::array<glm::dvec4, 4> sides_of(const PixelBox& tool, const glm::dmat4& clip, int width, int height) {
+  const glm::dmat4 rows = glm::transpose(clip);
+  // Window x · w is linear in the position, and w is above 0 where anything is painted.
+  const glm::dvec4 x = 0.5 * width * (rows[0] + rows[3]), y = 0.5 * height * (rows[1] + rows[3]), w = rows[3];
+  std::array planes = {
+      x - (std::max(tool.x0, 0.0) - kMargin_px) * w, (std::min(tool.x1, double(width)) + kMargin_px) * w - x,
+      y - (std::max(tool.y0, 0.0) - kMargin_px) * w, (std::min(tool.y1, double(height)) + kMargin_px) * w - y};
+  for (auto& plane : planes) {
+    const double length = glm::length(glm::dvec3(plane));
+    plane = length > 0 ? plane / length : glm::dvec4(0, 0, 0, 1);
   }
-  return static_cast<std::uint32_t>(last_list);
+  return planes;
 }
 
 }  // namespace
@@ -103,61 +91,167 @@ std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int w
       w - w_reach};
 }
 
-std::vector<BlockCuller::Tile> BlockCuller::tiles() const {
-  const int per_side = map_.resolution / kTileSize;
-  const BoxPlanes planes(clip_, width_, height_, path_.box);
-  std::vector<Tile> found;
-  for (int y = 0; y < per_side; ++y) {
-    for (int x = 0; x < per_side; ++x) {
-      const auto& bounds = map_.bounds_128[static_cast<std::size_t>(y * per_side + x)];
-      if (bounds.radius < 0 || planes.leave_out(bounds)) continue;
-      const auto box = project(bounds);
-      if (!box) continue;
-      auto segments = segments_under(*box);
-      if (segments.empty() || is_hidden(*box)) continue;
-      found.push_back({{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}, std::move(segments)});
+BlockCuller::BlockCuller(const mesh::SurfaceMap& map, const glm::dmat4& clip_from_model, int width, int height,
+                         const ToolPath& path, const DepthBias& bias, const DepthGrid& grid)
+    : map_(map),
+      clip_(clip_from_model),
+      width_(width),
+      height_(height),
+      path_(path),
+      bias_(bias),
+      grid_(grid),
+      tool_planes_(sides_of(path.box, clip_from_model, width, height)) {}
+
+// take(level, index, under) of the subtrees that pass, each as soon as it is of `stop_level` or wholly in the tool.
+template <class Take>
+void BlockCuller::descend(std::size_t level, std::size_t first, std::size_t last, const Under& parent,
+                          std::size_t stop_level, Scratch& scratch, Take&& take) const {
+  Under& under = scratch[level];
+  for (std::size_t i = first; i < last; ++i) {
+    const auto& bounds = map_.tree.levels[level][i];
+    if (leaves_out(bounds) || !passes(bounds, parent, under)) continue;
+    if (level == stop_level || (level <= kWholeLevel && under.all_of_it)) {
+      take(level, i, under);
+    } else {
+      const std::size_t child = i * mesh::BlockTree::kChildren;
+      descend(level - 1, child, std::min(child + mesh::BlockTree::kChildren, map_.tree.levels[level - 1].size()), under,
+              stop_level, scratch, take);
     }
   }
+}
+
+std::vector<BlockCuller::Subtree> BlockCuller::find_subtrees() const {
+  const auto& levels = map_.tree.levels;
+  if (levels.empty()) return {};
+  Under all;
+  all.segments.resize(path_.segments.size());
+  std::iota(all.segments.begin(), all.segments.end(), 0u);
+  Scratch scratch;
+  std::vector<Subtree> found;
+  const std::size_t top = levels.size() - 1;
+  descend(top, 0, 1, all, std::min(top, kSharedLevel), scratch,
+          [&](std::size_t level, std::size_t index, const Under& under) {
+            found.push_back({level, index, under});
+          });
   return found;
 }
 
-Candidates BlockCuller::all() const {
-  Candidates candidates;
-  for (const Tile& tile : tiles()) add_blocks(tile, candidates);
-  return candidates;
+std::vector<TouchedParts::Part> BlockCuller::find_parts(const Subtree& subtree, SegmentLists& lists) const {
+  const auto& levels = map_.tree.levels;
+  std::vector<TouchedParts::Part> found;
+  const auto take = [&](std::size_t level, std::size_t index, const Under& under) {
+    const auto list = lists.add(under.segments);
+    const auto count = static_cast<std::uint32_t>(under.segments.size());
+    std::size_t first = index, last = index + 1;
+    for (; level > 0; --level) first *= mesh::BlockTree::kChildren, last *= mesh::BlockTree::kChildren;
+    for (last = std::min(last, levels[0].size()); first < last; ++first)
+      found.push_back({static_cast<std::uint32_t>(first), list, count, 0, under.all_of_it});
+  };
+  if (subtree.level == 0 || (subtree.level <= kWholeLevel && subtree.under.all_of_it)) {
+    take(subtree.level, subtree.index, subtree.under);
+    return found;
+  }
+  Scratch scratch;
+  const std::size_t child = subtree.index * mesh::BlockTree::kChildren, level = subtree.level - 1;
+  descend(level, child, std::min(child + mesh::BlockTree::kChildren, levels[level].size()), subtree.under, 0, scratch,
+          take);
+  return found;
 }
 
-void BlockCuller::add_blocks(const Tile& tile, Candidates& candidates) const {
-  const int per_side_32 = map_.resolution / 32;
-  const BoxPlanes planes(clip_, width_, height_, path_.box);
-  Under under_32, under_block;
-  for (int i = 0; i < 16; ++i) {
-    const int x = tile.address.x * 4 + i % 4, y = tile.address.y * 4 + i / 4;
-    const auto& bounds_32 = map_.bounds_32[static_cast<std::size_t>(y * per_side_32 + x)];
-    if (planes.leave_out(bounds_32) || !passes(bounds_32, tile.segments, under_32)) continue;
-    for (int k = 0; k < 16; ++k) {
-      const int block_x = x * 4 + k % 4, block_y = y * 4 + k / 4;
-      const auto slot = map_.slot_of_block[static_cast<std::size_t>(block_y * map_.blocks_per_side + block_x)];
-      if (slot == mesh::kNoSlot) continue;
-      // Under a large tool most blocks are taken by the sixteen: to test each costs as much as to paint it.
-      if (!under_32.all_of_it &&
-          (planes.leave_out(map_.bounds_8[slot]) || !passes(map_.bounds_8[slot], under_32.segments, under_block)))
-        continue;
-      const Under& under = under_32.all_of_it ? under_32 : under_block;
-      const auto place = static_cast<std::uint32_t>((block_x & 15) | (block_y & 15) << 4);
-      candidates.blocks.push_back({slot, tile.address, place, list_of(under.segments, candidates),
-                                   static_cast<std::uint32_t>(under.segments.size()), under.all_of_it});
+std::size_t BlockCuller::tile_of(std::uint32_t part) const {
+  constexpr std::uint32_t kBlocksPerTile = kTileSize / kBlockSize;
+  const std::uint32_t block = map_.tree.parts[part].block, blocks = static_cast<std::uint32_t>(map_.blocks_per_side);
+  return std::size_t{block / blocks / kBlocksPerTile} * (blocks / kBlocksPerTile) + block % blocks / kBlocksPerTile;
+}
+
+TouchedParts BlockCuller::find(int threads) const {
+  const auto subtrees = find_subtrees();
+  TouchedParts touched;
+  touched.segment_lists.resize(subtrees.size());
+  std::vector<std::vector<TouchedParts::Part>> found(subtrees.size());
+  mesh::parallel_for(subtrees.size() < kSubtreesForThreads ? 1 : threads, static_cast<int>(subtrees.size()),
+                     [&](int number) {
+                       const auto i = static_cast<std::size_t>(number);
+                       found[i] = find_parts(subtrees[i], touched.segment_lists[i]);
+                       for (auto& part : found[i]) part.subtree = static_cast<std::uint16_t>(i);
+                     });
+
+  const std::size_t per_side = static_cast<std::size_t>(map_.resolution / kTileSize);
+  std::vector<std::uint32_t> end(per_side * per_side, 0);
+  for (const auto& parts : found)
+    for (const auto& part : parts) ++end[tile_of(part.part)];
+  std::size_t count = 0;
+  for (std::size_t tile = 0; tile < end.size(); ++tile) {
+    if (end[tile] == 0) continue;
+    const auto x = static_cast<std::uint16_t>(tile % per_side), y = static_cast<std::uint16_t>(tile / per_side);
+    touched.tiles.push_back({{x, y}, count, end[tile]});
+    count += std::exchange(end[tile], static_cast<std::uint32_t>(count));
+  }
+  touched.parts.resize(count);
+  for (const auto& parts : found)
+    for (const auto& part : parts) touched.parts[end[tile_of(part.part)]++] = part;
+  return touched;
+}
+
+void BlockCuller::add_blocks(const TouchedParts& touched, const TouchedParts::Tile& tile,
+                             Candidates& candidates) const {
+  constexpr std::uint32_t kBlocksPerTile = kTileSize / kBlockSize, kNone = 0xffffffffu;
+  const auto parts = std::span(touched.parts).subspan(tile.first, tile.count);
+  // The parts of each block as a chain.
+  std::array<std::uint32_t, std::size_t{kBlocksPerTile} * kBlocksPerTile> first;
+  first.fill(kNone);
+  std::vector<std::uint32_t> next(parts.size());
+  for (std::size_t i = parts.size(); i-- > 0;) {
+    const std::uint32_t block = map_.tree.parts[parts[i].part].block,
+                        side = static_cast<std::uint32_t>(map_.blocks_per_side);
+    auto& head = first[block / side % kBlocksPerTile * kBlocksPerTile + block % kBlocksPerTile];
+    next[i] = std::exchange(head, static_cast<std::uint32_t>(i));
+  }
+  std::vector<std::uint32_t> segments;
+  for (std::uint32_t place = 0; place < first.size(); ++place) {
+    if (first[place] == kNone) continue;
+    const TouchedParts::Part& part = parts[first[place]];
+    const auto list_of = [&](const TouchedParts::Part& of) {
+      return touched.segment_lists[of.subtree].at(of.segments, of.segment_count);
+    };
+    const mesh::BlockTree::Part& in_tree = map_.tree.parts[part.part];
+    CandidateBlock block{in_tree.slot, tile.address, place, 0, part.segment_count, part.part, part.in_tool};
+    if (in_tree.shares_block) block.in_tool = false;  // other parts may lie elsewhere
+    if (next[first[place]] == kNone) {
+      block.segments = candidates.segment_lists.add(list_of(part));
+    } else {
+      segments.clear();
+      for (std::uint32_t i = first[place]; i != kNone; i = next[i]) {
+        const auto list = list_of(parts[i]);
+        segments.insert(segments.end(), list.begin(), list.end());
+      }
+      std::ranges::sort(segments);
+      segments.erase(std::ranges::unique(segments).begin(), segments.end());
+      block.segments = candidates.segment_lists.add(segments);
+      block.segment_count = static_cast<std::uint32_t>(segments.size());
+      block.part = CandidateBlock::kManyParts;
     }
+    candidates.blocks.push_back(block);
   }
 }
 
-bool BlockCuller::passes(const mesh::SurfaceMap::Bounds& bounds, const std::vector<std::uint32_t>& parent,
-                         Under& under) const {
-  if (bounds.radius < 0) return false;
+Candidates BlockCuller::all(int threads) const {
+  const TouchedParts touched = find(threads);
+  Candidates candidates;
+  for (const auto& tile : touched.tiles) add_blocks(touched, tile, candidates);
+  return candidates;
+}
+
+bool BlockCuller::passes(const mesh::BoundingSphere& bounds, const Under& parent, Under& under) const {
   const auto box = project(bounds);
   if (!box) return false;
+  if (parent.all_of_it) {
+    if (is_hidden(*box)) return false;
+    under = parent;
+    return true;
+  }
   under.segments.clear();
-  for (const auto segment : parent) {
+  for (const auto segment : parent.segments) {
     if (lies_under(*box, segment)) under.segments.push_back(segment);
   }
   if (under.segments.empty() || is_hidden(*box)) return false;
@@ -165,7 +259,14 @@ bool BlockCuller::passes(const mesh::SurfaceMap::Bounds& bounds, const std::vect
   return true;
 }
 
-std::optional<WindowBox> BlockCuller::project(const mesh::SurfaceMap::Bounds& bounds) const {
+bool BlockCuller::leaves_out(const mesh::BoundingSphere& bounds) const {
+  const glm::dvec4 center(glm::dvec3(bounds.center), 1);
+  const double reach = -bounds.radius * (1 + kMarginRadius);
+  return glm::dot(tool_planes_[0], center) < reach || glm::dot(tool_planes_[1], center) < reach ||
+         glm::dot(tool_planes_[2], center) < reach || glm::dot(tool_planes_[3], center) < reach;
+}
+
+std::optional<WindowBox> BlockCuller::project(const mesh::BoundingSphere& bounds) const {
   const double radius = bounds.radius * (1 + kMarginRadius);
   auto found = project_sphere(clip_, width_, height_, glm::dvec3(bounds.center), radius);
   if (!found) return found;
@@ -173,19 +274,6 @@ std::optional<WindowBox> BlockCuller::project(const mesh::SurfaceMap::Bounds& bo
   box = {box.x0 - kMargin_px, box.y0 - kMargin_px, box.x1 + kMargin_px, box.y1 + kMargin_px};
   if (box.x1 < 0 || box.y1 < 0 || box.x0 > width_ || box.y0 > height_ || !box.overlaps(path_.box)) return std::nullopt;
   return found;
-}
-
-std::vector<std::uint32_t> BlockCuller::segments_under(const WindowBox& box) const {
-  std::vector<std::uint32_t> list;
-  for (std::size_t group = 0; group < path_.group_boxes.size(); ++group) {
-    if (!path_.group_boxes[group].overlaps(box.box)) continue;
-    const std::size_t first = group * ToolPath::kSegmentsPerGroup;
-    const std::size_t last = std::min(first + ToolPath::kSegmentsPerGroup, path_.segments.size());
-    for (std::size_t i = first; i < last; ++i) {
-      if (lies_under(box, static_cast<std::uint32_t>(i))) list.push_back(static_cast<std::uint32_t>(i));
-    }
-  }
-  return list;
 }
 
 // The circle around the box against the segment's axis: long slanted segments have boxes much larger than they are.

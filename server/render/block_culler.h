@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/tile.h"
 #include "mesh/surface_map.h"
+#include "render/segment_lists.h"
 #include "render/tool_path.h"
 
 namespace strata::render {
@@ -28,14 +30,37 @@ struct CandidateBlock {
   std::uint32_t block_in_tile;  // x | y << 4
   std::uint32_t segments;       // first in `segment_lists`
   std::uint32_t segment_count;
-  bool in_tool;  // all of it lies under the one segment of its list
+  std::uint32_t part;  // of the tree that may be touched; kManyParts: several of this block
+  bool in_tool;        // all of it lies under the one segment of its list
+
+  static constexpr std::uint32_t kManyParts = 0xffffffffu;
+  const mesh::BoundingSphere& bounds(const mesh::SurfaceMap& map) const {
+    return part == kManyParts ? map.bounds_of_slot[slot] : map.tree.levels[0][part];
+  }
 };
 struct Candidates {
   std::vector<CandidateBlock> blocks;  // all blocks of a tile together
-  std::vector<std::uint32_t> segment_lists;
-  std::size_t last_list = 0;  // where the list that was added last begins
+  SegmentLists segment_lists;
 
   std::size_t count_tiles() const;
+};
+
+// Parts of the tree that a stroke may touch, by tile.
+struct TouchedParts {
+  struct Part {
+    std::uint32_t part;
+    std::uint32_t segments;  // first in the lists of its subtree
+    std::uint32_t segment_count;
+    std::uint16_t subtree;
+    bool in_tool;
+  };
+  struct Tile {
+    TileAddress address;
+    std::size_t first, count;  // in `parts`
+  };
+  std::vector<Part> parts;
+  std::vector<Tile> tiles;                  // row-major
+  std::vector<SegmentLists> segment_lists;  // a subtree
 };
 
 // Exact window box of a sphere (`z0`: nearest window depth, `w0`: smallest w); empty when it is behind the eye; the whole
@@ -47,33 +72,40 @@ struct WindowBox {
 std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int width, int height,
                                         const glm::dvec3& center, double radius);
 
-// Blocks of the surface map that a stroke may touch: bounds of 128, 32 and 8 texels are projected to the window and tested
+// Blocks of the surface map that a stroke may touch: spheres around ever fewer of them are projected to the window and tested
 // against the window, the tool's segments and the depth grid. Conservative: never leaves out a texel that the edit would
 // write. Each block gets the list of segments it may lie under. What it is made of must outlive it; const functions may run
 // on several threads.
 class BlockCuller {
  public:
-  struct Tile {
-    TileAddress address;
-    std::vector<std::uint32_t> segments;  // it may lie under
-  };
-
   BlockCuller(const mesh::SurfaceMap& map, const glm::dmat4& clip_from_model, int width, int height,
-              const ToolPath& path, const DepthBias& bias, const DepthGrid& grid)
-      : map_(map), clip_(clip_from_model), width_(width), height_(height), path_(path), bias_(bias), grid_(grid) {}
+              const ToolPath& path, const DepthBias& bias, const DepthGrid& grid);
 
-  std::vector<Tile> tiles() const;
-  void add_blocks(const Tile& tile, Candidates& candidates) const;
-  Candidates all() const;  // of all tiles
+  // On up to `threads` threads where there is much to find.
+  TouchedParts find(int threads) const;
+  // The blocks of a tile, row-major.
+  void add_blocks(const TouchedParts& touched, const TouchedParts::Tile& tile, Candidates& candidates) const;
+  Candidates all(int threads) const;  // of all tiles
 
  private:
   struct Under {
     std::vector<std::uint32_t> segments;
     bool all_of_it = false;  // under the one segment that is left
   };
-  bool passes(const mesh::SurfaceMap::Bounds& bounds, const std::vector<std::uint32_t>& parent, Under& under) const;
-  std::optional<WindowBox> project(const mesh::SurfaceMap::Bounds& bounds) const;
-  std::vector<std::uint32_t> segments_under(const WindowBox& box) const;
+  struct Subtree {
+    std::size_t level, index;
+    Under under;
+  };
+  using Scratch = std::array<Under, 16>;  // one a level of the tree
+  template <class Take>
+  void descend(std::size_t level, std::size_t first, std::size_t last, const Under& parent, std::size_t stop_level,
+               Scratch& scratch, Take&& take) const;
+  std::vector<Subtree> find_subtrees() const;
+  std::vector<TouchedParts::Part> find_parts(const Subtree& subtree, SegmentLists& lists) const;
+  std::size_t tile_of(std::uint32_t part) const;
+  bool passes(const mesh::BoundingSphere& bounds, const Under& parent, Under& under) const;
+  std::optional<WindowBox> project(const mesh::BoundingSphere& bounds) const;
+  bool leaves_out(const mesh::BoundingSphere& bounds) const;
   bool lies_under(const WindowBox& window, std::uint32_t segment) const;
   bool keep_covering(const WindowBox& window, std::vector<std::uint32_t>& list) const;
   bool is_hidden(const WindowBox& window) const;
@@ -84,6 +116,7 @@ class BlockCuller {
   const ToolPath& path_;
   const DepthBias bias_;
   const DepthGrid grid_;
+  std::array<glm::dvec4, 4> tool_planes_;
 };
 
 }  // namespace strata::render

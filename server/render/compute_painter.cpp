@@ -4,6 +4,7 @@
 #include <chrono>
 #include <limits>
 
+#include "mesh/parallel.h"
 #include "shared/pages.h"
 
 namespace strata::render {
@@ -74,7 +75,8 @@ Result<void> ComputePainter::dispatch(GpuScene& scene, const PaintTarget& target
   DepthGrid grid;
   if (!stroke_.through) grid = {depth_->grid.data(), depth_->grid_width, depth_->grid_height};
   auto candidates =
-      BlockCuller(target.map.map(), clip_from_model(geometry), camera.width, camera.height, path_, bias, grid).all();
+      BlockCuller(target.map.map(), clip_from_model(geometry), camera.width, camera.height, path_, bias, grid)
+          .all(mesh::hardware_threads());
   outcome_.cull_ms = elapsed_ms();
   if (const std::size_t tiles = candidates.count_tiles(); tiles > 0) {
     auto room = scene.tile_reader().make_room(target.layer.pool(), tiles);
@@ -109,7 +111,7 @@ void ComputePainter::collect_rows(GpuScene& scene, const PaintTarget& target) {
       written = (mask->second.words[texel / 64] >> (texel % 64) & 0xffu) != 0;
     }
     if (!written) continue;
-    const auto& bounds = map.bounds_8[block.slot];
+    const auto& bounds = block.bounds(map);
     low = glm::min(low, bounds.center - bounds.radius);
     high = glm::max(high, bounds.center + bounds.radius);
   }

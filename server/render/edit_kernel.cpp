@@ -32,20 +32,21 @@ void put(std::uint64_t bits, std::uint32_t block_in_tile, TileMask& mask) {
 
 KernelResult run_edit_kernel(const mesh::SurfaceMap& map, const BlockCuller& culler, const BlockTest& test,
                              TestBlock test_block, int threads) {
-  const auto tiles = culler.tiles();
+  const TouchedParts touched = culler.find(threads);
+  const auto& tiles = touched.tiles;
   std::vector<TileResult> results(tiles.size());
   const auto test_tile = [&](std::size_t index) {
     Candidates candidates;
-    culler.add_blocks(tiles[index], candidates);
+    culler.add_blocks(touched, tiles[index], candidates);
     TileResult& result = results[index];
     result.tested_blocks = candidates.blocks.size();
     for (const CandidateBlock& block : candidates.blocks) {
-      const std::span segments(candidates.segment_lists.data() + block.segments, block.segment_count);
+      const auto segments = candidates.segment_lists.at(block.segments, block.segment_count);
       const std::uint64_t bits = test_block(test, map.packed_position.data() + std::size_t{block.slot} * 64,
                                             map.packed_box[block.slot], segments, block.in_tool);
       if (bits == 0) continue;
       put(bits, block.block_in_tile, result.written);
-      const auto& bounds = map.bounds_8[block.slot];
+      const auto& bounds = block.bounds(map);
       result.low = glm::min(result.low, bounds.center - bounds.radius);
       result.high = glm::max(result.high, bounds.center + bounds.radius);
       result.any = true;

@@ -128,13 +128,13 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
   for (auto sent :
        {uniforms_.replace(std::span(&uniforms, 1)), blocks_.replace(std::span<const shader::EditBlock>(blocks)),
         segments_.replace(std::span<const shader::EditSegment>(path.segments)),
-        lists_.replace(std::span<const std::uint32_t>(candidates.segment_lists))}) {
+        lists_.replace(std::span<const std::uint32_t>(candidates.segment_lists.numbers()))}) {
     if (!sent) return give_up(sent.error());
   }
 
   edit.bytes_up = sizeof uniforms + blocks.size() * sizeof(shader::EditBlock) +
                   path.segments.size() * sizeof(shader::EditSegment) +
-                  candidates.segment_lists.size() * sizeof(std::uint32_t);
+                  candidates.segment_lists.numbers().size() * sizeof(std::uint32_t);
 
   const bool has_shape = stroke.shape == ToolShape::texture;
   const gl::Program& program = (has_shape ? shape_programs_ : programs_).of(layer.pool().texel_bytes());

@@ -2,15 +2,13 @@
 
 #include <cassert>
 #include <chrono>
-#include <thread>
 
+#include "mesh/parallel.h"
 #include "render/tile_bytes.h"
 #include "shared/pages.h"
 
 namespace strata::render {
 namespace {
-
-int thread_count() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
 
 DepthGrid grid_of(const DepthCopy& depth) {
   return {depth.grid.data(), depth_cells(depth.width), depth_cells(depth.height)};
@@ -26,7 +24,7 @@ Result<Step> KernelPainter::step(GpuScene& scene, const PaintTarget& target) {
       return Step::more;
     case Stage::depth_drawn:
       if (!drawn_.passed()) return Step::waiting;
-      if (depth_ && !depth_->copy) DepthBuffers::copy_to_memory(*depth_, thread_count());
+      if (depth_ && !depth_->copy) DepthBuffers::copy_to_memory(*depth_, mesh::hardware_threads());
       stage_ = Stage::paint;
       return Step::more;
     case Stage::paint: break;
@@ -70,7 +68,7 @@ KernelResult KernelPainter::find_written(const PaintTarget& target) {
   const BlockCuller culler(target.map.map(), clip_from_model(geometry), test.width, test.height, path, test.bias,
                            test.depth ? grid_of(*test.depth) : DepthGrid{});
   static const TestBlock test_block = test_block_on(best_vector_unit());
-  return run_edit_kernel(target.map.map(), culler, test, test_block, thread_count());
+  return run_edit_kernel(target.map.map(), culler, test, test_block, mesh::hardware_threads());
 }
 
 Result<std::vector<PageId>> KernelPainter::find_pages(const KernelResult& written, LayerTextures& layer) const {

@@ -58,8 +58,6 @@ ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii
   for (std::size_t i = 0; i < path.segments.size(); ++i) {
     path.boxes.push_back(box_of(path.segments[i]));
     const PixelBox& box = path.boxes.back();
-    if (i % ToolPath::kSegmentsPerGroup == 0) path.group_boxes.push_back(box);
-    path.group_boxes.back() = join(path.group_boxes.back(), box);
     path.box = i == 0 ? box : join(path.box, box);
   }
   return path;

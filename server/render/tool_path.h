@@ -20,13 +20,10 @@ struct PixelBox {  // window pixels, origin lower left
 // A stroke's path as segments in window pixels, with the boxes that cull by them.
 struct ToolPath {
   std::vector<shader::EditSegment> segments;
-  std::vector<PixelBox> boxes;        // of each segment with its tool
-  std::vector<PixelBox> group_boxes;  // of each run of kSegmentsPerGroup segments
-  PixelBox box;                       // of all
+  std::vector<PixelBox> boxes;  // of each segment with its tool
+  PixelBox box;                 // of all
   double inner_radius =
       1;  // of the disc about the tool's centre that lies in the tool wholly, as a share of its radius
-
-  static constexpr std::size_t kSegmentsPerGroup = 32;
 };
 
 // `radii_px` is one a point. Points that do not move are joined.

@@ -50,7 +50,7 @@ std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& c
                                 glm::vec3(std::numeric_limits<float>::lowest())};
   const int tiles_per_side = map.resolution / kTileSize;
   for (const TileChange& change : changes) {
-    const auto& bounds = map.bounds_128[std::size_t(change.address.y) * tiles_per_side + change.address.x];
+    const auto& bounds = map.bounds_of_tile[std::size_t(change.address.y) * tiles_per_side + change.address.x];
     if (bounds.radius < 0) continue;
     box.min = glm::min(box.min, bounds.center - bounds.radius);
     box.max = glm::max(box.max, bounds.center + bounds.radius);

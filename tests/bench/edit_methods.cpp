@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstring>
 #include <numeric>
-#include <thread>
 
 #include "bench/peers/octree_edit.h"
 #include "bench/peers/paper.h"
@@ -19,8 +18,6 @@ namespace {
 
 constexpr std::uint8_t kValue = 200;
 constexpr std::uint32_t kColor = 0xff2080c8;
-
-int thread_count() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
 
 std::uint64_t mesh_bytes(const mesh::Geometry& geometry) {
   return geometry.vertices.size() * sizeof(mesh::Vertex) + geometry.indices.size() * sizeof(std::uint32_t);
@@ -73,7 +70,7 @@ class SceneDepth {
       render::MeshProgress progress;
       while (!must(depths_->draw_slice(buffer_, *mesh, scene.camera, progress))) {
       }
-      render::DepthBuffers::copy_to_memory(*buffer_, thread_count());
+      render::DepthBuffers::copy_to_memory(*buffer_, mesh::hardware_threads());
     });
   }
   ~SceneDepth() {
@@ -107,7 +104,7 @@ class TilesMethod : public EditMethod {
     creation_.structure_s += (now_ms() - start) / 1000;
     creation_.model_bytes = mesh_bytes(*scene_.mesh.geometry);
     creation_.structure_bytes = map_->bytes();
-    for (const auto& bounds : map_->bounds_128) creation_.layer_bytes += bounds.radius < 0 ? 0 : kTexelsPerTile * 2;
+    for (const auto& bounds : map_->bounds_of_tile) creation_.layer_bytes += bounds.radius < 0 ? 0 : kTexelsPerTile * 2;
   }
   ~TilesMethod() override { renderer_.remove_layer(layer_); }
 
@@ -192,7 +189,7 @@ class EditMethods::Tree {
   static Result<std::shared_ptr<Tree>> create(render::Renderer& renderer, const EditScene& scene,
                                               std::shared_ptr<const SceneDepth> depth, int levels) {
     const double start = now_ms();
-    auto tree = Octree::build(*scene.mesh.geometry, levels, thread_count());
+    auto tree = Octree::build(*scene.mesh.geometry, levels, mesh::hardware_threads());
     if (!tree) return tl::unexpected(tree.error());
     auto made = std::make_shared<Tree>(renderer, scene, std::move(depth), std::move(*tree));
     made->creation_.structure_s = (now_ms() - start) / 1000;
@@ -220,7 +217,7 @@ class EditMethods::Tree {
     renderer_.run_on_gpu_thread_for_test([&] {
       const double start = now_ms();
       if (fair) {
-        cost.cells = paint_by_descent(tree_, dab, depth_->copy(), thread_count(), layer_);
+        cost.cells = paint_by_descent(tree_, dab, depth_->copy(), mesh::hardware_threads(), layer_);
         cost.bytes_up = upload_dirty();
       } else {
         cost.cells = paint_by_rays(tree_, dab, layer_);
@@ -301,7 +298,7 @@ EditMethods::EditMethods(render::Renderer& renderer, const EditScene& scene, int
       Progress progress;
       const double start = now_ms();
       map_ = std::make_shared<const mesh::SurfaceMap>(
-          must(mesh::bake_surface_map(*scene.mesh.geometry, texture, progress, thread_count())));
+          must(mesh::bake_surface_map(*scene.mesh.geometry, texture, progress, mesh::hardware_threads())));
       methods_.push_back(std::make_unique<TilesMethod>(renderer, scene, map_, (now_ms() - start) / 1000));
     } else if (name == "paper" || name == "paper-compute") {
       if (!paper_) paper_ = std::make_shared<Paper>(renderer, scene, depth_of_scene(), texture);
@@ -368,7 +365,7 @@ double copy_bandwidth(render::Renderer& renderer) {
   constexpr int kRuns = 7;
   Samples samples;
   if (renderer.info().software) {
-    const int threads = thread_count();
+    const int threads = mesh::hardware_threads();
     std::vector<std::byte> from(kBytes, std::byte{1}), to(kBytes);
     for (int run = 0; run < kRuns; ++run) {
       const double start = now_ms();

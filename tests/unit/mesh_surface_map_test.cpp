@@ -256,7 +256,7 @@ TEST_P(EveryGeometry, gives_gutter_texels_the_position_of_the_nearest_surface_te
 
 TEST_P(EveryGeometry, stores_only_blocks_that_hold_something) {
   const SurfaceMap map = bake(geometry());
-  ASSERT_EQ(map.block_of_slot.size(), map.bounds_8.size());
+  ASSERT_EQ(map.block_of_slot.size(), map.bounds_of_slot.size());
   for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
     ASSERT_EQ(map.slot_of_block[map.block_of_slot[slot]], slot);
     const auto first = map.packed_position.begin() + std::ptrdiff_t{slot} * 64;
@@ -316,26 +316,52 @@ TEST_P(EveryGeometry, bakes_the_same_on_any_number_of_threads) {
     EXPECT_EQ(one.surface_mask, many.surface_mask);
     EXPECT_EQ(one.area, many.area);
     EXPECT_EQ(one.overlap_texels, many.overlap_texels);
+    ASSERT_EQ(one.tree.parts.size(), many.tree.parts.size());
+    for (std::size_t i = 0; i < one.tree.parts.size(); ++i) {
+      ASSERT_EQ(one.tree.parts[i].slot, many.tree.parts[i].slot);
+      ASSERT_EQ(one.tree.levels[0][i].center, many.tree.levels[0][i].center);
+    }
   }
+}
+
+bool holds(const BoundingSphere& bounds, const glm::vec3& position) {
+  return glm::length(position - bounds.center) <= bounds.radius;
 }
 
 TEST_P(EveryGeometry, bounds_contain_the_positions_of_surface_and_gutter) {
   const SurfaceMap map = bake(geometry());
-  std::set<std::size_t> full_32, full_128;
+  std::vector<std::vector<std::uint32_t>> parts_of_slot(map.block_of_slot.size());
+  for (std::uint32_t part = 0; part < map.tree.parts.size(); ++part) {
+    const BlockTree::Part& in_tree = map.tree.parts[part];
+    ASSERT_EQ(map.block_of_slot[in_tree.slot], in_tree.block);
+    parts_of_slot[in_tree.slot].push_back(part);
+  }
+  ASSERT_EQ(map.tree.levels.back().size(), 1u);
+  std::set<std::size_t> full_tiles;
   for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
     const std::size_t bx = map.block_of_slot[slot] % map.blocks_per_side,
                       by = map.block_of_slot[slot] / map.blocks_per_side;
-    const std::size_t in_32 = by / 4 * (kResolution / 32) + bx / 4, in_128 = by / 16 * (kResolution / 128) + bx / 16;
-    full_32.insert(in_32), full_128.insert(in_128);
+    const std::size_t tile = by / 16 * (kResolution / 128) + bx / 16;
+    full_tiles.insert(tile);
+    for (const auto part : parts_of_slot[slot])
+      ASSERT_EQ(map.tree.parts[part].shares_block != 0, parts_of_slot[slot].size() > 1);
     for (int i = 0; i < 64; ++i) {
       if (map.packed_position[std::size_t{slot} * 64 + i] == kNoPosition) continue;
-      for (const auto& bounds : {map.bounds_8[slot], map.bounds_32[in_32], map.bounds_128[in_128]})
-        ASSERT_LE(glm::length(map.position(slot, i) - bounds.center), bounds.radius);
+      const glm::vec3 position = map.position(slot, i);
+      ASSERT_TRUE(holds(map.bounds_of_slot[slot], position));
+      ASSERT_TRUE(holds(map.bounds_of_tile[tile], position));
+      const auto part = std::ranges::find_if(parts_of_slot[slot],
+                                             [&](std::uint32_t p) { return holds(map.tree.levels[0][p], position); });
+      ASSERT_NE(part, parts_of_slot[slot].end());
+      std::size_t node = *part;
+      for (const auto& level : map.tree.levels) {
+        ASSERT_TRUE(holds(level[node], position));
+        node /= BlockTree::kChildren;
+      }
     }
   }
-  for (std::size_t i = 0; i < map.bounds_32.size(); ++i) EXPECT_EQ(map.bounds_32[i].radius < 0, !full_32.contains(i));
-  for (std::size_t i = 0; i < map.bounds_128.size(); ++i)
-    EXPECT_EQ(map.bounds_128[i].radius < 0, !full_128.contains(i));
+  for (std::size_t i = 0; i < map.bounds_of_tile.size(); ++i)
+    EXPECT_EQ(map.bounds_of_tile[i].radius < 0, !full_tiles.contains(i));
 }
 
 TEST_P(EveryGeometry, tiles_show_what_the_slots_hold) {

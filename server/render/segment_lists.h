@@ -1,0 +1,32 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace strata::render {
+
+// Lists of numbers of a path's segments, end to end. Neighbouring blocks mostly share theirs.
+class SegmentLists {
+ public:
+  // Where the list begins: the last one again if it is the same.
+  std::uint32_t add(std::span<const std::uint32_t> list) {
+    const auto last = std::span(numbers_).subspan(last_list_);
+    if (numbers_.empty() || !std::ranges::equal(last, list)) {
+      last_list_ = numbers_.size();
+      numbers_.insert(numbers_.end(), list.begin(), list.end());
+    }
+    return static_cast<std::uint32_t>(last_list_);
+  }
+  std::span<const std::uint32_t> at(std::uint32_t first, std::uint32_t count) const {
+    return std::span(numbers_).subspan(first, count);
+  }
+  const std::vector<std::uint32_t>& numbers() const { return numbers_; }
+
+ private:
+  std::vector<std::uint32_t> numbers_;
+  std::size_t last_list_ = 0;
+};
+
+}  // namespace strata::render
