@@ -20,8 +20,8 @@ double inside_unit(float value) { return value >= 0 ? std::min(double{value}, 1.
 
 }  // namespace
 
-SurfaceBake::SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map)
-    : geometry_(geometry), map_(map), resolution_(resolution) {
+SurfaceBake::SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map, BakeFor purpose)
+    : geometry_(geometry), map_(map), resolution_(resolution), purpose_(purpose) {
   map.resolution = resolution;
   map.blocks_per_side = resolution / kBlockSize;
   snapped_.reserve(geometry.vertices.size());
@@ -194,15 +194,19 @@ void SurfaceBake::assign_slots(int threads) {
   const std::size_t slots = map_.block_of_slot.size();
   // Touching new memory costs as much as the baking itself: on all threads at once.
   parallel_for(threads, 2, [&](int half) {
+    if (half == 0)
+      owner_.assign(slots * 64, kNobody);
+    else if (purpose_ == BakeFor::owners)
+      weights_.assign(slots * 64, 0);
+    if (purpose_ == BakeFor::owners) return;
     if (half == 0) {
+      map_.area.assign(slots * 64, 0.f);
+    } else {
       map_.packed_position.assign(slots * 64, kNoPosition);
       position_.reset(new glm::vec3[slots * 64]);
-    } else {
-      map_.area.assign(slots * 64, 0.f);
-      owner_.reset(new std::uint32_t[slots * 64]);
-      std::fill_n(owner_.get(), slots * 64, kNobody);
     }
   });
+  if (purpose_ == BakeFor::owners) return;
   map_.packed_box.resize(slots);
   map_.bounds_of_slot.resize(slots);
   box_of_slot_.resize(slots);
@@ -237,6 +241,14 @@ class PositionPlane {
     return {b1, b2};
   }
 
+  std::uint32_t packed_weights(double x, double y) const {
+    const auto part = [](double weight) {
+      return static_cast<std::uint32_t>(std::lround(std::min(weight, 1.0) * 65535.0));
+    };
+    const glm::dvec2 b = weights(x, y);
+    return part(b.x) | part(b.y) << 16;
+  }
+
   // At the point of the triangle that has these weights.
   glm::dvec3 at(double x, double y) const {
     const glm::dvec2 b = weights(x, y);
@@ -251,15 +263,6 @@ class PositionPlane {
 
 }  // namespace
 
-SurfaceBake::Placement SurfaceBake::placement_of(std::uint32_t slot, int texel) const {
-  const std::uint32_t block = map_.block_of_slot[slot];
-  const int x = static_cast<int>(block % map_.blocks_per_side) * kBlockSize + texel % kBlockSize;
-  const int y = static_cast<int>(block / map_.blocks_per_side) * kBlockSize + texel / kBlockSize;
-  const std::uint32_t t = owner_[std::size_t{slot} * 64 + texel];
-  const PositionPlane plane({texels_at(t, 0), texels_at(t, 1), texels_at(t, 2)}, {});
-  return {t, plane.weights(x + 0.5, y + 0.5)};
-}
-
 void SurfaceBake::place_surface(int band) {
   const int y_low = first_row(band), y_high = first_row(band + 1);
   const auto plane_of = [&](std::uint32_t t) {
@@ -271,6 +274,13 @@ void SurfaceBake::place_surface(int band) {
     }
     return PositionPlane(uv, corners);
   };
+  const auto place = [&](std::size_t texel, std::uint32_t t, const PositionPlane& plane, int x, int y) {
+    owner_[texel] = t;
+    if (purpose_ == BakeFor::owners)
+      weights_[texel] = plane.packed_weights(x + 0.5, y + 0.5);
+    else
+      position_[texel] = plane.at(x + 0.5, y + 0.5);
+  };
   std::vector<std::uint32_t> shared;
   for (auto i = band_first_[band]; i < band_first_[band + 1]; ++i) {
     const auto t = band_triangles_[i];
@@ -281,13 +291,12 @@ void SurfaceBake::place_surface(int band) {
       if (!plane) plane = plane_of(t);
       for (int x = x0; x < x1; ++x) {
         const std::size_t texel = texel_index(x, y);
-        auto& present = owner_[texel];
+        const auto present = owner_[texel];
         if (present != kNobody) {
           shared.push_back(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(resolution_) + x);
           if (triangle_area_[present] >= triangle_area_[t]) continue;
         }
-        present = t;
-        position_[texel] = plane->at(x + 0.5, y + 0.5);
+        place(texel, t, *plane, x, y);
       }
       return true;
     });
@@ -296,9 +305,7 @@ void SurfaceBake::place_surface(int band) {
   overlaps_of_band_[band] = std::unique(shared.begin(), shared.end()) - shared.begin();
   for (const Claim& claim : claims_[band]) {
     const int x = static_cast<int>(claim.texel % resolution_), y = static_cast<int>(claim.texel / resolution_);
-    const std::size_t texel = texel_index(x, y);
-    owner_[texel] = claim.triangle;
-    position_[texel] = plane_of(claim.triangle).at(x + 0.5, y + 0.5);
+    place(texel_index(x, y), claim.triangle, plane_of(claim.triangle), x, y);
   }
 }
 
@@ -311,8 +318,9 @@ void SurfaceBake::place_gutter(int band) {
         const int i = std::countr_zero(rest), x = bx * 8 + i % 8, y = by * 8 + i / 8;
         for (const TexelOffset o : kGutterRingOffsets) {
           if (!is_surface(x + o.x, y + o.y)) continue;
-          const Borrowed borrowed{texel_index(x, y), texel_index(x + o.x, y + o.y)};
-          position_[borrowed.gutter] = position_[borrowed.owner];
+          const Borrowed borrowed{static_cast<std::uint32_t>(texel_index(x, y)),
+                                  static_cast<std::uint32_t>(texel_index(x + o.x, y + o.y))};
+          if (purpose_ == BakeFor::map) position_[borrowed.gutter] = position_[borrowed.owner];
           borrowed_[band].push_back(borrowed);
           break;
         }

@@ -13,11 +13,15 @@
 
 namespace strata::mesh {
 
+// What is kept of each texel: its position and area, or its triangle and its place there.
+enum class BakeFor { map, owners };
+
 // The steps of a surface map's baking. Work is cut into horizontal bands of the atlas, always the same ones, so that
 // the result does not depend on which thread does which. Within a band triangles come in ascending order.
+// For owners the steps end with place_gutter, and the map's positions and areas stay empty.
 class SurfaceBake {
  public:
-  SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map);
+  SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map, BakeFor purpose = BakeFor::map);
 
   int band_count() const { return static_cast<int>(band_first_.size()) - 1; }
 
@@ -34,14 +38,12 @@ class SurfaceBake {
   void bound_tiles();              // after pack_slots of all bands
   void plant_tree(int threads);    // after pack_slots of all bands
 
-  // What place_surface and place_gutter found, for those who paint by triangle.
-  struct Placement {
-    std::uint32_t triangle;
-    glm::dvec2 weights;  // of its second and third corner, none negative
-  };
-  Placement placement_of(std::uint32_t slot, int texel) const;  // of a surface texel
+  // What place_surface and place_gutter found, for those who paint by triangle: 64 a slot, of surface texels only. Weights are of
+  // the second corner and << 16 of the third, in 1/65535. To be asked for once, at the end.
+  std::vector<std::uint32_t> take_owners() { return std::move(owner_); }
+  std::vector<std::uint32_t> take_weights() { return std::move(weights_); }
   struct Borrowed {  // a gutter texel that has the position of a surface texel; indices into the per-slot arrays
-    std::size_t gutter, owner;
+    std::uint32_t gutter, owner;
   };
   const std::vector<Borrowed>& borrowed_in(int band) const { return borrowed_[band]; }
 
@@ -76,6 +78,7 @@ class SurfaceBake {
   const Geometry& geometry_;
   SurfaceMap& map_;
   const int resolution_;
+  const BakeFor purpose_;
   std::vector<SnappedPoint> snapped_;
   std::vector<float> triangle_area_;
   UvIslands islands_;
@@ -85,8 +88,9 @@ class SurfaceBake {
   std::vector<std::vector<Borrowed>> borrowed_;
   std::vector<std::vector<Leftover>> leftovers_;
   std::vector<std::uint64_t> overlaps_of_band_;
-  std::unique_ptr<std::uint32_t[]> owner_;  // 64 a slot
-  std::unique_ptr<glm::vec3[]> position_;   // 64 a slot, until they are packed; undefined where nothing is owned
+  std::vector<std::uint32_t> owner_;       // 64 a slot
+  std::vector<std::uint32_t> weights_;     // 64 a slot, for owners only
+  std::unique_ptr<glm::vec3[]> position_;  // 64 a slot, until they are packed; undefined where nothing is owned
   struct Box {
     glm::vec3 low{INFINITY}, high{-INFINITY};
   };

@@ -1,8 +1,7 @@
 #include "mesh/texel_owners.h"
 
-#include <algorithm>
+#include <atomic>
 #include <bit>
-#include <cmath>
 #include <mutex>
 #include <unordered_map>
 
@@ -14,13 +13,6 @@ namespace {
 
 constexpr int kBlocksPerTileSide = kTileSize / kBlockSize;
 constexpr const char* kLocating = "Locating texels on the surface";
-
-std::uint32_t pack_weights(const glm::dvec2& w) {
-  const auto part = [](double value) {
-    return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, 1.0) * 65535.0));
-  };
-  return part(w.x) | part(w.y) << 16;
-}
 
 // What was worked out for the texels of all slots, as tiles.
 class TileSorter {
@@ -66,45 +58,34 @@ Result<TexelOwners> bake_texel_owners(const Geometry& geometry, int resolution, 
   if (auto possible = check_map_resolution(resolution); !possible) return tl::unexpected(possible.error());
   SurfaceMap map;
   progress.report(0, kLocating);
-  SurfaceBake bake(geometry, resolution, map);
-  const auto on_bands = [&](double fraction_after, auto work) {
-    if (progress.cancelled()) return;
+  SurfaceBake bake(geometry, resolution, map, BakeFor::owners);
+  const auto on_bands = [&](double from, double to, auto work) {
+    std::atomic<int> done{0};
     parallel_for(threads, bake.band_count(), [&](int band) {
-      if (!progress.cancelled()) work(band);
+      if (progress.cancelled()) return;
+      work(band);
+      progress.report(from + (to - from) * ++done / bake.band_count(), kLocating);
     });
-    progress.report(fraction_after, kLocating);
+    return !progress.cancelled();
   };
-  on_bands(0.2, [&](int band) { bake.mark_surface(band); });
-  on_bands(0.3, [&](int band) { bake.mark_gutter(band); });
-  if (progress.cancelled()) return cancelled_problem();
+  if (!on_bands(0.1, 0.3, [&](int band) { bake.mark_surface(band); })) return cancelled_problem();
+  if (!on_bands(0.3, 0.4, [&](int band) { bake.mark_gutter(band); })) return cancelled_problem();
   bake.assign_slots(threads);
-  on_bands(0.7, [&](int band) { bake.place_surface(band); });
-  on_bands(0.8, [&](int band) { bake.place_gutter(band); });
-  if (progress.cancelled()) return cancelled_problem();
+  if (!on_bands(0.45, 0.9, [&](int band) { bake.place_surface(band); })) return cancelled_problem();
+  if (!on_bands(0.9, 1, [&](int band) { bake.place_gutter(band); })) return cancelled_problem();
 
   TexelOwners owners;
   owners.resolution = resolution;
   owners.blocks_per_side = map.blocks_per_side;
-  owners.block_of_slot = map.block_of_slot;
-  owners.surface_mask = map.surface_mask;
-  const auto slots = static_cast<std::uint32_t>(owners.block_of_slot.size());
-  owners.triangle.resize(std::size_t{slots} * 64);
-  owners.weights.resize(std::size_t{slots} * 64);
+  owners.block_of_slot = std::move(map.block_of_slot);
+  owners.surface_mask = std::move(map.surface_mask);
+  owners.triangle = bake.take_owners();
+  owners.weights = bake.take_weights();
+  std::size_t gutter = 0;
+  for (int band = 0; band < bake.band_count(); ++band) gutter += bake.borrowed_in(band).size();
+  owners.gutter.reserve(gutter);
   for (int band = 0; band < bake.band_count(); ++band)
-    for (const auto& [gutter, owner] : bake.borrowed_in(band))
-      owners.gutter.push_back({static_cast<std::uint32_t>(gutter), static_cast<std::uint32_t>(owner)});
-  constexpr std::uint32_t kSlotsAtOnce = 4096;
-  parallel_for(threads, static_cast<int>((slots + kSlotsAtOnce - 1) / kSlotsAtOnce), [&](int part) {
-    const std::uint32_t first = part * kSlotsAtOnce, last = std::min(slots, first + kSlotsAtOnce);
-    for (std::uint32_t slot = first; slot < last && !progress.cancelled(); ++slot)
-      for (std::uint64_t left = owners.surface_mask[slot]; left; left &= left - 1) {
-        const int i = std::countr_zero(left);
-        const auto [triangle, weights] = bake.placement_of(slot, i);
-        owners.triangle[std::size_t{slot} * 64 + i] = triangle;
-        owners.weights[std::size_t{slot} * 64 + i] = pack_weights(weights);
-      }
-  });
-  if (progress.cancelled()) return cancelled_problem();
+    for (const auto& [texel, owner] : bake.borrowed_in(band)) owners.gutter.push_back({texel, owner});
   progress.report(1, kLocating);
   return owners;
 }
