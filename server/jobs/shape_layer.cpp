@@ -23,6 +23,7 @@ using SurfaceValue = std::function<double(std::uint32_t triangle, const glm::vec
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 // Share of the whole: measuring dominates where rays or neighbourhoods are asked for.
 constexpr double kMeasured = 0.7;
+constexpr double kPrepared = 0.15;  // where samples or rays are made first
 // A surface that is flatter than this faces no way in particular.
 constexpr float kFlat = 0.02f;
 
@@ -133,8 +134,11 @@ class Measure {
 
   Result<SurfaceValue> fitted() {
     const auto radius = static_cast<float>(in_units(*recipe_.radius_mm));
-    progress_.report(0, "Sampling the surface");
-    const mesh::SurfaceSamples samples(*geometry_, radius);
+    progress_.begin_stage(0, kPrepared);
+    const auto made = mesh::SurfaceSamples::make(*geometry_, radius, progress_);
+    if (!made) return tl::unexpected(made.error());
+    const mesh::SurfaceSamples& samples = *made;
+    progress_.begin_stage(kPrepared, kMeasured);
     const auto curvature = [&](auto part) {
       return [&samples, part](const glm::vec3& p, const glm::vec3& n) {
         const auto c = mesh::curvature_at(samples, p, n);
@@ -157,9 +161,11 @@ class Measure {
   }
 
   Result<SurfaceValue> openness() {
-    progress_.report(0, "Preparing rays");
-    auto rays = mesh::Openness::make(geometry_, static_cast<float>(in_units(*recipe_.distance_mm)), *recipe_.rays);
+    progress_.begin_stage(0, kPrepared);
+    auto rays =
+        mesh::Openness::make(geometry_, static_cast<float>(in_units(*recipe_.distance_mm)), *recipe_.rays, progress_);
     if (!rays) return tl::unexpected(rays.error());
+    progress_.begin_stage(kPrepared, kMeasured);
     return sampled(even_spacing(5e5), [&](const glm::vec3& p, const glm::vec3& n) { return (*rays)->at(p, n); });
   }
 

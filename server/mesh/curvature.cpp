@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "mesh/tangent_frame.h"
 
@@ -46,29 +47,34 @@ std::optional<Curvature> curvature_at(const SurfaceSamples& samples, const glm::
     const double inside = 1 - squared / (radius * radius);
     return inside * inside;
   };
+  struct Weighted {
+    const SurfaceSamples::Sample* sample;
+    double weight;
+  };
+  // Kept by each thread from one point to the next: to look for neighbours takes longer than to use them.
+  thread_local std::vector<Weighted> neighbours;
+  neighbours.clear();
   glm::dvec3 mean_normal(0);
-  int count = 0;
   samples.near(point, normal, [&](const SurfaceSamples::Sample& sample, float squared) {
-    mean_normal += nearness(squared) * sample.area * glm::dvec3(sample.normal);
-    ++count;
+    neighbours.push_back({&sample, nearness(squared) * sample.area});
+    mean_normal += neighbours.back().weight * glm::dvec3(sample.normal);
   });
   const double length = glm::length(mean_normal);
-  if (count < kTerms + 2 || !(length > 0)) return std::nullopt;
+  if (neighbours.size() < kTerms + 2 || !(length > 0)) return std::nullopt;
 
   // In units of the radius, so that the equations are well scaled.
   const TangentFrame frame(mean_normal / length);
   Normals a{};
   Terms b{};
-  samples.near(point, normal, [&](const SurfaceSamples::Sample& sample, float squared) {
-    const double weight = nearness(squared) * sample.area;
-    const glm::dvec3 offset = (glm::dvec3(sample.position) - glm::dvec3(point)) / radius;
+  for (const auto& [sample, weight] : neighbours) {
+    const glm::dvec3 offset = (glm::dvec3(sample->position) - glm::dvec3(point)) / radius;
     const double x = glm::dot(offset, frame.x), y = glm::dot(offset, frame.y), z = glm::dot(offset, frame.z);
     const Terms terms{1, x, y, x * x / 2, x * y, y * y / 2};
     for (int i = 0; i < kTerms; ++i) {
       b[i] += weight * terms[i] * z;
       for (int j = 0; j <= i; ++j) a[i][j] += weight * terms[i] * terms[j];
     }
-  });
+  }
   if (!solve(a, b)) return std::nullopt;
   // The fundamental forms of z = f(x, y) at x = y = 0; heights fall away from a bulge, hence the minus.
   const double fx = b[1], fy = b[2], root = std::sqrt(1 + fx * fx + fy * fy);

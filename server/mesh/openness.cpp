@@ -81,9 +81,19 @@ class RayOpenness final : public Openness {
   std::vector<glm::vec3> directions_;
 };
 
+constexpr const char* kPreparing = "Preparing rays";
+
+// What the ray tracer asks while it makes its tree.
+bool goes_on(void* progress, double done) {
+  auto& watched = *static_cast<Progress*>(progress);
+  watched.report(done, kPreparing);
+  return !watched.cancelled();
+}
+
 }  // namespace
 
-Result<std::unique_ptr<Openness>> Openness::make(std::shared_ptr<const Geometry> geometry, float distance, int rays) {
+Result<std::unique_ptr<Openness>> Openness::make(std::shared_ptr<const Geometry> geometry, float distance, int rays,
+                                                 Progress& progress) {
   const auto refused = [] {
     return fail(507, "Not enough memory", "The ray tracer could not be set up for a model of this size.");
   };
@@ -99,7 +109,11 @@ Result<std::unique_ptr<Openness>> Openness::make(std::shared_ptr<const Geometry>
   rtcCommitGeometry(triangles);
   rtcAttachGeometry(scene.get(), triangles);
   rtcReleaseGeometry(triangles);
+  progress.report(0, kPreparing);
+  rtcSetSceneProgressMonitorFunction(scene.get(), goes_on, &progress);
   rtcCommitScene(scene.get());
+  if (progress.cancelled()) return cancelled_problem();
+  rtcSetSceneProgressMonitorFunction(scene.get(), nullptr, nullptr);
   if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) return refused();
   return std::make_unique<RayOpenness>(std::move(geometry), std::move(device), std::move(scene), distance, rays);
 }

@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 
+#include "core/progress.h"
 #include "mesh/geometry.h"
 
 namespace strata::mesh {
@@ -13,8 +14,9 @@ namespace strata::mesh {
 // the place: neighbours differ by noise of about 0.4 / √rays, and every run gives the same. Model space. Thread-safe.
 class Openness {
  public:
-  // Refused (507) where there is not the memory for the ray tracer's tree, some 100 bytes a triangle.
-  static Result<std::unique_ptr<Openness>> make(std::shared_ptr<const Geometry> geometry, float distance, int rays);
+  // Refused (507) where there is not the memory for the ray tracer's tree, some 100 bytes a triangle, and when cancelled.
+  static Result<std::unique_ptr<Openness>> make(std::shared_ptr<const Geometry> geometry, float distance, int rays,
+                                                Progress& progress);
   virtual ~Openness() = default;
   virtual float at(const glm::vec3& position, const glm::vec3& normal) const = 0;
 };

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/progress.h"
 #include "mesh/geometry.h"
 
 namespace strata::mesh {
@@ -24,7 +25,9 @@ class SurfaceSamples {
   // The smallest radius that can be had of a mesh of that area (unit²) and box: below it there would be tens of millions of samples.
   static double least_radius(double area, const glm::dvec3& extent);
 
-  SurfaceSamples(const Geometry& geometry, float radius);  // radius ≥ least_radius
+  // radius ≥ least_radius. Refused when cancelled. The result does not depend on the number of threads; beside it some 60 bytes a
+  // piece of the bands that are worked on are needed, and 4 a triangle.
+  static Result<SurfaceSamples> make(const Geometry& geometry, float radius, Progress& progress, int threads = 2);
 
   float radius() const { return radius_; }
   std::size_t size() const { return samples_.size(); }
@@ -45,6 +48,9 @@ class SurfaceSamples {
   }
 
  private:
+  friend class SampleBands;
+  SurfaceSamples(const glm::vec3& low, float radius) : radius_(radius), low_(low) {}
+
   glm::ivec3 cell_of(const glm::vec3& point) const { return glm::ivec3(glm::floor((point - low_) / radius_)) + 1; }
   static std::uint64_t key_of(const glm::ivec3& cell) {
     return std::uint64_t(std::uint32_t(cell.x) & 0x1fffff) | std::uint64_t(std::uint32_t(cell.y) & 0x1fffff) << 21 |
@@ -55,8 +61,9 @@ class SurfaceSamples {
   float radius_;
   glm::vec3 low_;
   std::vector<Sample> samples_;  // those of a cell of the radius's size together
+  static constexpr std::uint32_t kUnplaced = 0xffffffffu;
   struct Range {
-    std::uint32_t first, count;
+    std::uint32_t first = kUnplaced, count = 0;
   };
   std::unordered_map<std::uint64_t, Range> cells_;
 };

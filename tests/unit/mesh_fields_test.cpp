@@ -35,9 +35,16 @@ TriangleMesh height_field(int cells, Height height, double noise = 0) {
   return mesh;
 }
 
+SurfaceSamples samples_of(const Geometry& geometry, float radius, int threads = 2) {
+  Progress progress;
+  auto samples = SurfaceSamples::make(geometry, radius, progress, threads);
+  EXPECT_TRUE(samples);
+  return std::move(*samples);
+}
+
 Curvature curvature_near_origin(const TriangleMesh& mesh, float radius) {
   const auto geometry = geometry_of(mesh);
-  const SurfaceSamples samples(*geometry, radius);
+  const SurfaceSamples samples = samples_of(*geometry, radius);
   const SurfaceNormals normals(geometry);
   std::uint32_t nearest = 0;
   const auto distance = [&](std::uint32_t i) { return glm::length(geometry->positions[i]); };
@@ -51,7 +58,7 @@ Curvature curvature_near_origin(const TriangleMesh& mesh, float radius) {
 
 TEST(Curvature, of_a_sphere_is_one_over_its_radius_everywhere_and_positive) {
   const auto geometry = geometry_of(test::transformed(test::sphere(160), 5, {100, 0, 0}));  // radius 5
-  const SurfaceSamples samples(*geometry, 0.8f);
+  const SurfaceSamples samples = samples_of(*geometry, 0.8f);
   const SurfaceNormals normals(geometry);
   for (std::uint32_t i = 0; i < geometry->positions.size(); i += 97) {
     const auto c = curvature_at(samples, glm::vec3(geometry->positions[i] - geometry->origin), normals.at_position(i));
@@ -87,7 +94,7 @@ TEST(Curvature, of_a_saddle_has_both_signs) {
 
 TEST(Curvature, of_a_torus_follows_the_formula_around_the_tube) {
   const auto geometry = geometry_of(test::torus(320));  // radii 1 and 0.4
-  const SurfaceSamples samples(*geometry, 0.08f);
+  const SurfaceSamples samples = samples_of(*geometry, 0.08f);
   const SurfaceNormals normals(geometry);
   for (std::uint32_t i = 0; i < geometry->positions.size(); i += 211) {
     const glm::dvec3 p = geometry->positions[i];
@@ -121,16 +128,75 @@ TEST(Curvature, is_none_where_a_strip_has_no_width) {
   sliver.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1e-6, 0}};
   sliver.triangles = {0, 1, 2};
   const auto geometry = geometry_of(sliver);
-  const SurfaceSamples samples(*geometry, 0.1f);
+  const SurfaceSamples samples = samples_of(*geometry, 0.1f);
   EXPECT_FALSE(curvature_at(samples, {0, 0, 0}, {0, 0, 1}));
   EXPECT_FALSE(roughness_at(samples, {0, 0, 0}, {0, 0, 1}));
   EXPECT_FALSE(curvature_at(samples, {50, 0, 0}, {0, 0, 1}));
 }
 
+// Every sample that is near one of the points, once.
+std::vector<std::array<float, 7>> samples_near(const SurfaceSamples& samples, const std::vector<glm::vec3>& points) {
+  std::vector<std::array<float, 7>> all;
+  for (const glm::vec3& point : points)
+    for (const float sign : {1.0f, -1.0f})
+      for (int axis = 0; axis < 3; ++axis) {
+        glm::vec3 way(0);
+        way[axis] = sign;
+        samples.near(point, way, [&](const SurfaceSamples::Sample& s, float) {
+          all.push_back({s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y, s.normal.z, s.area});
+        });
+      }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+TEST(SurfaceSamples, stand_for_all_of_the_surface_however_long_its_triangles_are) {
+  TriangleMesh sheet = test::open_grid(2, 0);  // 8 triangles, each across many bands of cells
+  for (auto& p : sheet.positions) p.y *= 3;
+  for (const double turned : {0.0, 0.3, 1.2})
+    for (int axis = 0; axis < 3; ++axis) {
+      for (auto& p : sheet.positions) p = {p.y, p.z, p.x};
+      TriangleMesh mesh = sheet;
+      for (auto& p : mesh.positions)
+        p = {std::cos(turned) * p.x - std::sin(turned) * p.y, std::sin(turned) * p.x + std::cos(turned) * p.y, p.z};
+      const auto geometry = geometry_of(mesh);
+      std::vector<glm::vec3> points;
+      for (std::size_t t = 0; t < geometry->triangle_count(); ++t)
+        for (int i = 0; i <= 40; ++i)
+          for (int j = 0; i + j <= 40; ++j) {
+            const auto at = [&](int k) { return geometry->vertices[geometry->indices[3 * t + k]].position; };
+            points.push_back(at(0) + (at(1) - at(0)) * (float(i) / 40) + (at(2) - at(0)) * (float(j) / 40));
+          }
+      double area = 0;
+      const auto all = samples_near(samples_of(*geometry, 0.1f), points);
+      for (const auto& sample : all) area += sample[6];
+      EXPECT_NEAR(area, 3, 1e-4) << turned << " " << axis;
+    }
+}
+
+TEST(SurfaceSamples, do_not_depend_on_the_number_of_threads) {
+  const auto geometry = geometry_of(test::sphere(60));
+  std::vector<glm::vec3> points;
+  for (const Vertex& vertex : geometry->vertices) points.push_back(vertex.position);
+  const auto one = samples_of(*geometry, 0.1f, 1), three = samples_of(*geometry, 0.1f, 3);
+  EXPECT_EQ(one.size(), three.size());
+  EXPECT_EQ(samples_near(one, points), samples_near(three, points));
+  EXPECT_GE(samples_near(one, points).size(), one.size() * 9 / 10);
+}
+
+TEST(SurfaceSamples, can_be_cancelled) {
+  Progress progress;
+  progress.cancel();
+  const auto cancelled = SurfaceSamples::make(*geometry_of(test::sphere(24)), 0.1f, progress);
+  ASSERT_FALSE(cancelled);
+  EXPECT_EQ(cancelled.error().status, 499);
+}
+
 TEST(Roughness, is_the_distance_of_a_bump_to_the_plane_around_it) {
   const auto bump = [](double x, double y) { return std::hypot(x, y) < 0.03 ? 0.02 : 0.0; };
   const auto geometry = geometry_of(height_field(160, bump));
-  const SurfaceSamples samples(*geometry, 0.4f);
+  const SurfaceSamples samples = samples_of(*geometry, 0.4f);
   const auto at = [&](const glm::dvec3& p) {
     return roughness_at(samples, glm::vec3(p - geometry->origin), {0, 0, 1}).value_or(-1);
   };
@@ -141,7 +207,7 @@ TEST(Roughness, is_the_distance_of_a_bump_to_the_plane_around_it) {
 
 TEST(Roughness, does_not_see_the_slope_of_a_plane) {
   const auto geometry = geometry_of(height_field(60, [](double x, double y) { return 3 * x - y; }));
-  const SurfaceSamples samples(*geometry, 0.3f);
+  const SurfaceSamples samples = samples_of(*geometry, 0.3f);
   const glm::vec3 normal = glm::normalize(glm::vec3(-3, 1, 1));
   for (std::size_t i = 0; i < geometry->positions.size(); i += 37)
     EXPECT_NEAR(roughness_at(samples, glm::vec3(geometry->positions[i] - geometry->origin), normal).value_or(-1), 0,
@@ -150,7 +216,8 @@ TEST(Roughness, does_not_see_the_slope_of_a_plane) {
 
 TEST(Openness, is_one_on_a_ball_and_none_inside_it) {
   const auto ball = geometry_of(test::sphere(48));
-  const auto openness = Openness::make(ball, 10, 64);
+  Progress progress;
+  const auto openness = Openness::make(ball, 10, 64, progress);
   ASSERT_TRUE(openness);
   for (const Vertex& v : ball->vertices) {
     const glm::vec3 out = glm::normalize(v.position);
@@ -159,11 +226,20 @@ TEST(Openness, is_one_on_a_ball_and_none_inside_it) {
   }
 }
 
+TEST(Openness, can_be_cancelled_while_its_tree_is_made) {
+  Progress progress;
+  progress.cancel();
+  const auto openness = Openness::make(geometry_of(test::sphere(200)), 10, 64, progress);
+  ASSERT_FALSE(openness);
+  EXPECT_EQ(openness.error().status, 499);
+}
+
 TEST(Openness, at_the_foot_of_a_wall_is_a_half) {
   TriangleMesh corner;  // a floor and a wall that meet along y, both far larger than the distance
   corner.positions = {{0, -100, 0}, {100, -100, 0}, {100, 100, 0}, {0, 100, 0}, {0, -100, 100}, {0, 100, 100}};
   corner.triangles = {0, 1, 2, 0, 2, 3, 0, 3, 5, 0, 5, 4};
-  const auto openness = Openness::make(geometry_of(corner), 50, 1024);
+  Progress progress;
+  const auto openness = Openness::make(geometry_of(corner), 50, 1024, progress);
   ASSERT_TRUE(openness);
   const glm::vec3 origin = geometry_of(corner)->origin;
   EXPECT_NEAR((*openness)->at(glm::vec3(0.01f, 0, 0) - origin, {0, 0, 1}), 0.5, 0.02);
