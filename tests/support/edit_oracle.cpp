@@ -1,5 +1,7 @@
 #include "support/edit_oracle.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -8,6 +10,7 @@
 #include <limits>
 
 #include "render/edit_pass.h"
+#include "render/tool_path.h"
 
 namespace strata::test {
 namespace {
@@ -176,6 +179,16 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
   return kept && !inside && margin_px > 0 && depth_margin >= 0 && faces;
 }
 
+// In window pixels, one a path point.
+std::vector<double> radii_of(const StrokeBatch& stroke, const std::vector<float>& depth) {
+  if (stroke.radius_px > 0) return std::vector<double>(stroke.path.size(), stroke.radius_px);
+  std::vector<float> depths;
+  for (const auto& point : stroke.path)
+    depths.push_back(depth[std::size_t(stroke.camera.height - 1 - int(point.y)) * std::size_t(stroke.camera.width) +
+                           std::size_t(point.x)]);
+  return render::radii_from_depths(stroke, depths, 1);
+}
+
 }  // namespace
 
 OracleResult oracle_edit(const Scene& scene, const StrokeBatch& stroke, const std::vector<double>& radii_px,
@@ -224,6 +237,18 @@ Difference compare(const OracleResult& expected, const render::StrokeOutcome& ou
     }
   }
   return difference;
+}
+
+void expect_as_oracle(TestRenderer& renderer, const Scene& scene, const StrokeBatch& stroke, OracleBounds bounds,
+                      std::optional<render::ModelHandle> model) {
+  if (!model) model = renderer.add(scene);
+  const auto outcome = renderer.paint(renderer.add_layer(*model, ValueType::u8, scene.map->resolution), stroke);
+  const auto depth = renderer.depth(scene, stroke.camera);
+  const auto expected = oracle_edit(scene, stroke, radii_of(stroke, depth), depth);
+  const auto difference = compare(expected, outcome);
+  EXPECT_GE(expected.count, bounds.at_least) << "the stroke must hit something for the test to mean anything";
+  EXPECT_EQ(difference.surface, 0) << "of " << difference.compared;
+  EXPECT_LE(difference.undecided, 2 + difference.compared / bounds.undecided_one_in);
 }
 
 int written_texels(const render::StrokeOutcome& outcome) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 
 #include "support/gl_scene.h"
 
@@ -23,6 +24,16 @@ struct Difference {
   int compared = 0;   // written by either
 };
 Difference compare(const OracleResult& expected, const render::StrokeOutcome& outcome);
+
+// What a comparison allows: the oracle must write `at_least` texels for it to mean anything, and of those that are compared one in
+// `undecided_one_in`, and two more, may differ within rounding. No other may.
+struct OracleBounds {
+  int at_least = 0;
+  int undecided_one_in = 10'000;
+};
+// Paints the stroke on a new layer, of a new model of the scene unless one is given, and expects what the oracle says.
+void expect_as_oracle(TestRenderer& renderer, const Scene& scene, const StrokeBatch& stroke, OracleBounds bounds,
+                      std::optional<render::ModelHandle> model = {});
 
 int written_texels(const render::StrokeOutcome& outcome);  // of all tiles
 
