@@ -126,7 +126,7 @@ TEST(Models, every_field_comes_back) {
   m.triangles = 10'000'000'000ULL;
   m.vertices = 5;
   m.area = 0.1 + 0.2;
-  m.atlas = {"made", 4096, 246, 0.61, 0.0006, 1.25, 3.5, 1e-9};
+  m.atlas = {"made", 4096, 246, 0.61, 0.0006, 1.25, 3.5, 1e-9, {{4096, 0.1, 1.0 / 3}, {8192, 1e-300, 0.2}}};
   m.repairs = {{"dropped degenerate faces", 12}, {"welded", 7}};
   m.default_resolution = 8192;
   m.inventory_number = "ÄM 21300";

@@ -258,7 +258,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadGltf{"points", [](auto& j) { j["meshes"][0]["primitives"][0]["mode"] = 0; }, "points or lines"},
         BadGltf{"text_for_a_matrix", [](auto& j) { j["nodes"][0]["matrix"] = "unit"; }, "\"matrix\""},
         BadGltf{"zeros", [](auto& j) { j["accessors"][0].erase("bufferView"); }, "area"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& bad) { return bad.param.name; });
 
 TEST(MeshGltf, a_file_that_is_cut_anywhere_is_refused) {
   const std::string whole = square().glb();
