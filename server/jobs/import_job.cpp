@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "core/filename.h"
 #include "core/picture.h"
 #include "core/slug.h"
 #include "jobs/model_geometry.h"
@@ -20,7 +21,6 @@ namespace {
 constexpr int kLowestResolution = 2048;
 constexpr int kHighestResolution = 16384;
 constexpr std::size_t kLongestName = 200;
-constexpr std::size_t kLongestFilename = 255;
 
 // Shares of the whole import, as measured on scans of 100 000 to 1 000 000 triangles.
 constexpr double kRead = 0.15, kUnfolded = 0.7, kPainted = 0.77, kBuilt = 0.85;
@@ -80,17 +80,6 @@ Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair
 }
 
 }  // namespace
-
-std::string base_filename(std::string_view path) {
-  const auto slash = path.find_last_of("/\\");
-  if (slash != std::string_view::npos) path.remove_prefix(slash + 1);
-  std::string out;
-  for (const char c : path)
-    if (static_cast<unsigned char>(c) >= 32 && c != 127) out += c;
-  if (out == "." || out == "..") out.clear();
-  if (out.size() > kLongestFilename) out.erase(0, out.size() - kLongestFilename);  // the end holds the extension
-  return out;
-}
 
 Result<void> check(const ImportRequest& request) {
   if (request.name.size() > kLongestName) return fail(422, "Name too long", "A name has at most 200 bytes.", "name");

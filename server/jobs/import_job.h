@@ -30,9 +30,6 @@ struct ImportRequest {
 // files' names are looked at.
 Result<void> check(const ImportRequest& request);
 
-// The last part of a user's path, which may come from any system, without control characters; at most 255 bytes.
-std::string base_filename(std::string_view path);
-
 // Files → mesh → atlas → geometry → one transaction, which also keeps the caller's answer. Everything or nothing: a bad file or a
 // cancel leaves nothing behind.
 Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,

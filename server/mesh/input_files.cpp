@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/utf8.h"
 #include "mesh/load_formats.h"
 #include "mesh/unpack.h"
 
@@ -138,8 +139,10 @@ Result<InputFiles> InputFiles::of(std::vector<Entry> entries, const std::filesys
 const InputFiles::Entry* InputFiles::find(std::string_view reference) const {
   const Entry* best = nullptr;
   int most = 0;
+  // A file may call another one in an encoding in which its name did not come through.
+  const std::string wanted = mended_utf8(reference);
   for (const Entry& entry : entries_) {
-    const int common = common_parts(entry.name, reference);
+    const int common = common_parts(mended_utf8(entry.name), wanted);
     if (common <= most) continue;
     most = common;
     best = &entry;

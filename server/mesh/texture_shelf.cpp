@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/picture.h"
+#include "core/utf8.h"
 #include "mesh/load_formats.h"
 
 namespace strata::mesh {
@@ -16,7 +17,7 @@ constexpr std::size_t kMostNotes = 200;
 std::string printable(std::string_view text) {
   std::string result;
   for (const char c : text.substr(0, 200)) result += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
-  return result;
+  return mended_utf8(result);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "core/utf8.h"
 #include "mesh/load_formats.h"
 
 namespace strata::mesh {
@@ -89,7 +90,7 @@ class Unpacker {
       progress_.report(0, "Unpacking");
       const char* name = zip_get_name(archive_.get(), static_cast<zip_uint64_t>(i), 0);
       if (name == nullptr || is_hidden(name) || !wanted_(name)) continue;
-      auto entry = unpack(static_cast<zip_uint64_t>(i), name);
+      auto entry = unpack(static_cast<zip_uint64_t>(i), mended_utf8(name));
       if (!entry) return tl::unexpected(entry.error());
       entries.push_back(std::move(*entry));
     }

@@ -1,5 +1,6 @@
 #include "net/http_types.h"
 
+#include "core/utf8.h"
 #include "protocol/parse.h"
 
 #include <algorithm>
@@ -201,6 +202,7 @@ Result<void> parse_target(std::string_view target, Request& request) {
   }
   auto decoded = percent_decode(path, false);
   if (!decoded) return wrong("The path has a percent escape that is not one.");
+  if (!is_utf8(*decoded)) return wrong("The path is not UTF-8.");
   request.path = std::move(*decoded);
   if (question == std::string_view::npos) return {};
   const std::string_view query = target.substr(question + 1);
@@ -213,6 +215,7 @@ Result<void> parse_target(std::string_view target, Request& request) {
     auto key = percent_decode(pair.substr(0, equals), true);
     auto value = percent_decode(equals == std::string_view::npos ? std::string_view() : pair.substr(equals + 1), true);
     if (!key || !value) return wrong("The query has a percent escape that is not one.");
+    if (!is_utf8(*key) || !is_utf8(*value)) return wrong("The query is not UTF-8.");
     if (!request.query.emplace(*key, std::move(*value)).second)
       return fail(400, "Query parameter given twice", "Give '" + *key + "' once.", *key);
   }
@@ -246,8 +249,10 @@ Result<Page> page_of(const Request& request) {
 }
 
 void add_page_links(Response& response, const Request& request, const Page& page, std::int64_t total) {
+  std::string path;  // encoded anew: as sent it may hold bytes that a header may not
+  for (const auto& segment : request.segments) path += "/" + percent_encode(segment);
   auto link = [&](int offset, const char* relation) {
-    std::string target = request.target.substr(0, request.target.find('?')) + "?";
+    std::string target = path + "?";
     for (const auto& [key, value] : request.query)
       if (key != "limit" && key != "offset") target += percent_encode(key) + "=" + percent_encode(value) + "&";
     return "<" + target + "limit=" + std::to_string(page.limit) + "&offset=" + std::to_string(offset) + ">; rel=\"" +

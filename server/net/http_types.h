@@ -94,7 +94,7 @@ class Respond {
   std::shared_ptr<State> state_;
 };
 
-// Splits and decodes a request target. Refused: bad percent escapes, NUL, a query parameter given twice.
+// Splits and decodes a request target. Refused: bad percent escapes, NUL, what is not UTF-8, a query parameter given twice.
 Result<void> parse_target(std::string_view target, Request& request);
 std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space);
 std::string percent_encode(std::string_view text);

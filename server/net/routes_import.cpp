@@ -1,6 +1,7 @@
 #include <charconv>
 #include <memory>
 
+#include "core/filename.h"
 #include "core/log.h"
 #include "core/uuid.h"
 #include "jobs/import_job.h"
@@ -62,7 +63,7 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
   if (strict != "true" && strict != "false")
     return fail(422, "Neither true nor false", "`strict` is true or false.", "strict");
   asked.strict = strict == "true";
-  asked.files.push_back({jobs::base_filename(request.query_or("filename", {})), {}});
+  asked.files.push_back({base_filename(request.query_or("filename", {})), {}});
   return asked;
 }
 

@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/camera.h"
+#include "core/filename.h"
 #include "core/palette.h"
 #include "core/slug.h"
+#include "core/utf8.h"
 #include "core/uuid.h"
 #include "core/value_type.h"
 
@@ -142,6 +144,40 @@ TEST(Uuid, reads_what_it_writes_and_nothing_else) {
   EXPECT_NE(random_uuid(), uuid);
   for (const char* bad : {"", "123", "00000000-0000-0000-0000-00000000000g", "000000000000-0000-0000-0000-00000000"})
     EXPECT_FALSE(parse_uuid(bad)) << bad;
+}
+
+TEST(Filename, loses_its_folders) {
+  EXPECT_EQ(base_filename("../../etc/pot.ply"), "pot.ply");
+  EXPECT_EQ(base_filename("C:\\scans\\pot.ply"), "pot.ply");
+  EXPECT_EQ(base_filename(".."), "");
+  EXPECT_EQ(base_filename("a\r\nb.ply"), "ab.ply");
+  EXPECT_EQ(base_filename(std::string(300, 'x') + ".ply").size(), 255u);
+}
+
+TEST(Filename, is_utf8_whatever_it_was) {
+  EXPECT_EQ(base_filename("Gr\xf6\xdf.shp"), "Gr\ufffd\ufffd.shp");
+  std::string many;
+  for (int i = 0; i < 100; ++i) many += "ö€";
+  const std::string cut = base_filename(many + ".shp");
+  EXPECT_TRUE(is_utf8(cut)) << cut;
+  EXPECT_TRUE(cut.ends_with("ö€.shp"));
+  EXPECT_GT(cut.size(), 250u);
+  EXPECT_LE(cut.size(), 255u);
+}
+
+TEST(Utf8, is_what_the_rfc_says) {
+  for (const std::string_view good :
+       {"", "a\x7f", "é", "\u0800", "\ud7ff", "\ue000", "\uffff", "\U00010000", "\U0010ffff"}) {
+    EXPECT_TRUE(is_utf8(good)) << good;
+    EXPECT_EQ(mended_utf8(good), good);
+  }
+  for (const std::string_view bad : {"\x80", "\xc3", "\xc0\x80", "\xe0\x9f\xbf", "\xed\xa0\x80", "\xf0\x8f\xbf\xbf",
+                                     "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xe2\x82", "\xff"}) {
+    EXPECT_FALSE(is_utf8(bad));
+    EXPECT_FALSE(is_utf8("a" + std::string(bad) + "b"));
+    EXPECT_TRUE(is_utf8(mended_utf8(bad)));
+  }
+  EXPECT_EQ(mended_utf8("a\xe2\x82 \xff€"), "a\ufffd\ufffd \ufffd€");
 }
 
 }  // namespace

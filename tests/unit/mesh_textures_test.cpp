@@ -72,6 +72,17 @@ TEST(ObjMaterials, pictures_that_are_missing_or_no_pictures_are_named) {
               HasSubstr("texture not read: text.png: The picture is neither a JPEG nor a PNG"));
 }
 
+TEST(ObjMaterials, names_in_another_encoding_are_found_and_told_as_utf8) {
+  const auto loaded =
+      load_texts({{"pot.obj", kVertices + kTwoFaces},
+                  {"pot.mtl", "newmtl left\nmap_Kd Gr\xfcn.png\nnewmtl right side\nmap_Kd Wei\xdf.png\n"},
+                  {"Gr\ufffdn.png", kBlue}});  // as it came through a form
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  ASSERT_EQ(loaded->mesh.textures.size(), 1u);
+  EXPECT_EQ(loaded->mesh.textures[0].name, "Gr\ufffdn.png");
+  EXPECT_EQ(count_of(loaded->repairs, "texture not among the files: Wei\ufffd.png"), 1u);
+}
+
 TEST(ObjMaterials, the_only_picture_is_taken_where_nothing_names_one) {
   const auto loaded = load_texts({{"pot.obj", kVertices + "f 1/1 2/2 3/3\n"}, {"photo.png", kRed}});
   ASSERT_TRUE(loaded);

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include "net/byte_budget.h"
 #include "net/digest.h"
 #include "net/docs_page.h"
+#include "net/form_files.h"
 #include "net/http_types.h"
 #include "net/metrics.h"
 #include "net/origin.h"
@@ -65,7 +67,8 @@ TEST(Target, path_and_query_are_decoded) {
 }
 
 TEST(Target, what_is_not_an_address_is_refused) {
-  for (const char* target : {"", "models", "/a%2", "/a%zz", "/a%00", "/a?b=%", "/a?b=%00", "*"}) {
+  for (const char* target :
+       {"", "models", "/a%2", "/a%zz", "/a%00", "/a?b=%", "/a?b=%00", "*", "/a/%ff", "/a?b=%c3", "/a?%80=b"}) {
     Request request;
     const auto result = parse_target(target, request);
     ASSERT_FALSE(result) << target;
@@ -95,6 +98,9 @@ TEST(Page, limits_out_of_range_are_refused_and_links_lead_on) {
   Response last;
   add_page_links(last, request, *page, 30);
   EXPECT_EQ(last.header("Link"), "</a?project=x&limit=10&offset=10>; rel=\"prev\"");
+  Response named;
+  add_page_links(named, parsed("/b%20c/%E2%98\x83/?offset=10"), {10, 10}, 20);
+  EXPECT_EQ(named.header("Link"), "</b%20c/%E2%98%83/?limit=10&offset=0>; rel=\"prev\"") << "whatever was sent, ASCII";
 }
 
 // --- answers
@@ -357,10 +363,34 @@ TEST(Upload, the_files_of_a_scan_come_together_with_their_folders) {
   const auto before = files_there();
   EXPECT_EQ(take(part("a.obj", "1") + part("a.obj", "2") + "--X--\r\n").error().status, 422);
   std::string many;
-  for (std::size_t i = 0; i <= kMostUploadFiles; ++i) many += part("f" + std::to_string(i), "x");
+  for (std::size_t i = 0; i <= kMostFormFiles; ++i) many += part("f" + std::to_string(i), "x");
   EXPECT_EQ(take(many + "--X--\r\n").error().status, 413);
   EXPECT_EQ(take("--X\r\nContent-Disposition: form-data; name=\"f\"\r\n\r\nv\r\n--X--\r\n").error().status, 415);
   EXPECT_EQ(files_there(), before) << "what was refused left nothing behind";
+}
+
+TEST(Upload, a_file_is_named_by_its_own_part_alone) {
+  const auto names = [](const std::string& parts) {
+    std::vector<std::string> found;
+    const std::string body = parts + "--X--\r\n";
+    const auto files = files_of_form("multipart/form-data; charset=x; boundary=\"X\"", body);
+    EXPECT_TRUE(files) << parts;
+    if (files)
+      for (const auto& file : *files) found.push_back(file.filename);
+    return found;
+  };
+  const std::string note = "Content-Disposition: form-data; name=\"note\"\r\n", text = "\r\ntext; filename=no.ply\r\n";
+  const std::string file = "content-disposition: form-data ; name=f; FileName = \"a;b.ply\" ; size=3\r\n";
+  EXPECT_THAT(names("--X\r\n" + text + "--X\r\n" + file + text), testing::ElementsAre("a;b.ply")) << "an empty head";
+  EXPECT_THAT(names("--X\r\n" + note + "X-Other: a; filename=\"no.ply\"\r\n" + text), testing::IsEmpty());
+  EXPECT_THAT(names("--X\r\nContent-Disposition: form-data; name=\"a; filename=no.ply\"\r\n" + text),
+              testing::IsEmpty());
+  EXPECT_THAT(names("--X\r\nContent-Disposition: form-data; filename=\"open.ply\r\n" + text),
+              testing::ElementsAre("open.ply"));
+  EXPECT_THAT(names("--X\r\nContent-Disposition: form-data; filename=Gr\xf6\xdf/a.ply\r\n" + text),
+              testing::ElementsAre("Gr\ufffd\ufffd/a.ply"));
+  EXPECT_THAT(names("--X\r\nContent-Disposition: form-data; filename*=UTF-8''a; filename=\r\n" + text),
+              testing::IsEmpty());
 }
 
 TEST(Upload, a_zip_is_known_by_its_type) {
