@@ -9,7 +9,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.maps import dbf, form, packed, shp, square, tiff
 from support.meshes import folded_grid
 from support.pictures import pixels, png
-from support.strata_server import StrataServer
+from support.strata_server import StrataServer, wait_for
 
 M = "/models/sheet"  # x and y from 0 to 100, seen whole from above
 POLYGONS = [[square(10, 10, 20)], [square(50, 10, 20), square(55, 15, 5)], [square(10, 60, 30)]]
@@ -66,6 +66,11 @@ def check_shapefile(server):
     zipped = packed(**{"survey/units_shp": files["units_shp"], "survey/read_me": b"", "__MACOSX/units_shp": b"x"})
     server.ok("POST", query(units + "/polygons", value=7), zipped, headers={"Content-Type": "application/zip"})
     assert values(server, units, *places) == [7, 7, None, 7, None]
+
+    # Names of files in no encoding that we know go into the journal like others.
+    body, headers = form(**files)
+    server.ok("POST", query(units + "/polygons", value=8), body.replace(b"units.", b"Gr\xf6\xdfe."), headers=headers)
+    assert values(server, units, *places) == [8, 8, None, 8, None]
 
     states = layer(server, "States", palette={"mode": "categorical", "points": [{"at": 4, "color": "#112233", "label": "crack"}]})
     server.ok("POST", query(states + "/polygons", attribute="STATE"), body, headers=headers)
@@ -265,6 +270,23 @@ def check_orthophoto(server):
     return job["look"], wanted[0]
 
 
+def check_cancelled_orthophoto(server):
+    """Cancelled while it runs: neither a look nor a file is left, and the same name can be made after it."""
+    things = lambda: ([look["slug"] for look in server.get(M + "/looks").json()["looks"]], os.listdir(os.path.join(server.data, "uploads")))
+    before = things()
+    picture, asked = png(64, 64, lambda x, y: (x, y, 99)), {"name": "Never", "world": "2,0,0,-2,1,99"}
+    job = server.ok("POST", query(M + "/orthophotos", resolution=8192, **asked), picture, expect=(202,)).json()["id"]
+    wait_for(lambda: server.get(f"/jobs/{job}").json()["state"] == "running", "the job to run")
+    server.ok("DELETE", f"/jobs/{job}")
+    over = server.wait_for_job(job)
+    assert over["state"] == "cancelled" and "look" not in over, over
+    wait_for(lambda: things() == before, f"nothing to be left: {before} {things()}")
+    assert server.request("DELETE", f"/jobs/{job}").status == 409, "it is over"
+    again = server.wait_for_job(server.ok("POST", query(M + "/orthophotos", resolution=2048, **asked), picture, expect=(202,)).json()["id"])
+    assert server.get(f"{M}/looks/{again['look']}").json()["slug"] == "never", again
+    print("cancelled orthophoto: ok", flush=True)
+
+
 def main():
     with StrataServer() as server:
         server.import_model(folded_grid(fold=0.01), "sheet.ply", name="Sheet", unit="mm")
@@ -273,6 +295,7 @@ def main():
         check_raster(server)
         check_colors(server)
         look, color = check_orthophoto(server)
+        check_cancelled_orthophoto(server)
         server.kill()
         server.start()
         assert values(server, states, *places) == [1, 4, None, 1, 9], "it survives the end of the server"
