@@ -39,6 +39,11 @@ void read_body(const nlohmann::json& json) {
   demand(again.has_value() && *again == *body);
 }
 
+template <class... Bodies>
+void read_bodies(const nlohmann::json& json) {
+  (read_body<Bodies>(json), ...);
+}
+
 void read_frame(std::span<const std::uint8_t> bytes) {
   const auto header = decode_frame_header(bytes);
   if (!header) return;
@@ -63,13 +68,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text = unwrap_fixture({reinterpret_cast<const char*>(data), size});
   read_client_message(text);
   if (const auto json = parse_json(text)) {
-    read_body<Edit>(*json);
-    read_body<LayerCreate>(*json);
-    read_body<LayerPatch>(*json);
-    read_body<ModelPatch>(*json);
-    read_body<ProjectCreate>(*json);
-    read_body<FrameRequest>(*json);
-    read_body<PositionsRequest>(*json);
+    read_bodies<Edit, Empty, FrameRequest, LayerCreate, LayerPatch, Login, LookPatch, ModelPatch, PickRequest,
+                PositionsRequest, ProjectCreate, ProjectPatch, Restore, ToolPatch, Transfer>(*json);
     (void)parse_server_message(text);
   }
   return 0;

@@ -2,6 +2,7 @@
 import io
 import struct
 import zipfile
+import zlib
 
 
 def square(x, y, size):
@@ -55,7 +56,7 @@ def form(**files):
     return body + b"--XyZ--\r\n", {"Content-Type": "multipart/form-data; boundary=XyZ"}
 
 
-def tiff(width, height, value, kind="f", samples=1, nodata=None, scale=None, origin=None, epsg=None):
+def tiff(width, height, value, kind="f", samples=1, nodata=None, scale=None, origin=None, epsg=None, deflated=False):
     """Row by row from the top; `kind` is a struct letter, `value(x, y)` a number or as many as there are samples."""
     bits = 8 * struct.calcsize(kind)
     pixels = b""
@@ -63,7 +64,9 @@ def tiff(width, height, value, kind="f", samples=1, nodata=None, scale=None, ori
         for x in range(width):
             numbers = value(x, y)
             pixels += struct.pack(f"<{samples}{kind}", *(numbers if samples > 1 else (numbers,)))
-    tags = [(256, 4, [width]), (257, 4, [height]), (258, 3, [bits] * samples), (259, 3, [1]), (262, 3, [2 if samples > 2 else 1]),
+    if deflated:
+        pixels = zlib.compress(pixels)
+    tags = [(256, 4, [width]), (257, 4, [height]), (258, 3, [bits] * samples), (259, 3, [8 if deflated else 1]), (262, 3, [2 if samples > 2 else 1]),
             (273, 4, [0]), (277, 3, [samples]), (278, 4, [height]), (279, 4, [len(pixels)]), (284, 3, [1])]
     if samples == 4:
         tags.append((338, 3, [2]))

@@ -4,8 +4,8 @@ import zlib
 
 
 def png(width, height, color):
-    """A picture with the colour that `color(x, y)` gives: (r, g, b) or (r, g, b, a)."""
-    kind = {3: 2, 4: 6}[len(color(0, 0))]
+    """A picture with the colour that `color(x, y)` gives: (r, g, b), (r, g, b, a) or (grey, a)."""
+    kind = {2: 4, 3: 2, 4: 6}[len(color(0, 0))]
     rows = b"".join(b"\0" + b"".join(bytes(color(x, y)) for x in range(width)) for y in range(height))
 
     def part(name, data):

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the seeds of the mesh and map fuzzers beside itself: one small file per feature of the formats."""
+"""Writes the seeds of the fuzzers beside itself: one small file per feature of the formats."""
+import base64
 import io
 import json
 import pathlib
@@ -10,6 +11,7 @@ import zipfile
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "e2e"))
 from support import maps  # noqa: E402
+from support.pictures import png  # noqa: E402
 
 
 def ply(name, order, elements, rows):
@@ -23,6 +25,18 @@ def ply(name, order, elements, rows):
     (HERE / "ply" / name).write_bytes(head.encode() + body)
 
 
+# 8 × 8 pixels: grey; and colours, 4:2:0, progressive.
+GREY_JPEG = (
+    "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDABsSFBcUERsXFhceHBsgKEIrKCUlKFE6PTBCYFVlZF9VXVtqeJmBanGQc1tdhbWGkJ6jq62rZ4C8ybqmx5moq6T/"
+    "wAALCAAIAAgBAREA/8QAFAABAAAAAAAAAAAAAAAAAAAAAf/EABkQAQEAAwEAAAAAAAAAAAAAAAECAAMRBf/aAAgBAQAAPwA8PXMSXaTMnVXgGf/Z")
+PROGRESSIVE_JPEG = (
+    "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDABsSFBcUERsXFhceHBsgKEIrKCUlKFE6PTBCYFVlZF9VXVtqeJmBanGQc1tdhbWGkJ6jq62rZ4C8ybqmx5moq6T/"
+    "2wBDARweHigjKE4rK06kbl1upKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKT/wgARCAAIAAgDASIAAhEBAxEB/8QA"
+    "FAABAAAAAAAAAAAAAAAAAAAAAP/EABQBAQAAAAAAAAAAAAAAAAAAAAL/2gAMAwEAAhADEAAAAQK//8QAFhAAAwAAAAAAAAAAAAAAAAAAAQMh/9oACAEBAAEF"
+    "Akwf/8QAFhEBAQEAAAAAAAAAAAAAAAAAAgAR/9oACAEDAQE/ASdv/8QAFREBAQAAAAAAAAAAAAAAAAAAAAH/2gAIAQIBAT8Br//EABUQAQEAAAAAAAAAAAAA"
+    "AAAAAAAR/9oACAEBAAY/Aq//xAAXEAEBAQEAAAAAAAAAAAAAAAABEQAx/9oACAEBAAE/ISUcC7//2gAMAwEAAgADAAAAEP8A/8QAFhEBAQEAAAAAAAAAAAAA"
+    "AAAAAQAh/9oACAEDAQE/ECG3/8QAGBEAAgMAAAAAAAAAAAAAAAAAAAERQZH/2gAIAQIBAT8QV04w/8QAGBABAAMBAAAAAAAAAAAAAAAAAQARIVH/2gAIAQEA"
+    "AT8QV42jwJ//2Q==")
 XYZ = ["property float x", "property float y", "property float z"]
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.5)]
 for tag, order in (("ascii", ""), ("little", "<"), ("big", ">")):
@@ -167,7 +181,47 @@ MAP = {
     "colours.tif": maps.tiff(3, 2, lambda x, y: (255, x, y, 255 * (x > 0)), kind="B", samples=4),
     "areas.geojson": json.dumps(AREAS).encode(),
 }
-for folder, seeds in (("stl", STL), ("gltf", GLTF), ("mtl", MTL), ("zip", ZIP), ("map", MAP)):
+FORM_TYPE = b"multipart/form-data; boundary=XyZ\n"
+FORM = {
+    "files": FORM_TYPE + maps.form(**{"scan/a_obj": b"v 0 0 0", "scan/../b_mtl": b"", "c_png": b"\r\n--Xy\r\n"})[0],
+    "field": b'multipart/form-data; charset=x; boundary="a b"\n--a b\r\n\r\nno head\r\n--a b\r\ncontent-disposition: form-data; '
+             b'name="f; filename=x"; filename="C:\\d\\e;.ply"; size=1\r\nX: y\r\n\r\nply\r\n--a b--\r\n',
+    "twice": FORM_TYPE + maps.form(a_obj=b"1")[0].replace(b"--XyZ--", b"--XyZ\r\nContent-Disposition: a;filename=a.obj\r\n\r\n\r\n--XyZ--"),
+}
+TEXT = {
+    "target": b"/api/v1/models/a%20b/layers/%E2%98%83?limit=10&offset=20&name=M%C3%BCll+1&empty",
+    "cookie": b'theme=dark; strata_session="0123456789abcdef"; other=',
+    "origins": b"https://site.example:8443site.example:8443",
+    "point": b"POINT Z(1.5 -2e3 +.25)",
+    "uuid": b"123e4567-e89b-12d3-a456-426614174000",
+    "world": b"0.5\n0\n0\n-0.5\n4000000.25\n8e5\n",
+    "colors": b'{"#c02020": 1, "#2040c0ff": 2.5}',
+    "readings_comma.csv": b"x,y,z,value\n1,2,3,4\n-1e3,+.5,0,1e-9\n",
+    "readings_quoted.csv": b'\xef\xbb\xbf"Value";"Z";"note";"Y";"X"\r\n"1";2;"a";3;4\r\n\r\n5;6;;7;8',
+}
+EXPRESSION = {
+    "condition": b'0.3 <= depth * 2 and not (valid("2020 survey") or salt-2 <> 4e-1)',
+    "number": b"if(a > 1 or true, max(a, -b, .5), abs(a - b / 3)) + min(a, 2)",
+    "names": b'A == "and" AND b_1-c != 2',
+}
+PICTURE = {
+    "rgba.png": png(5, 3, lambda x, y: (40 * x, 80 * y, 9, 60 * x)),
+    "rgb.png": png(2, 7, lambda x, y: (255 * x, 30 * y, 0)),
+    "grey.jpg": base64.b64decode(GREY_JPEG),
+    "progressive.jpg": base64.b64decode(PROGRESSIVE_JPEG),
+}
+stripes = lambda x, y: (x, (y // 40) % 2)
+numpy_head = b"{'descr': [('value', '<f4'), ('valid', '|b1')], 'fortran_order': False, 'shape': (128, 128), }\n"
+RASTER = {  # the layer's type, then the file
+    "u8.tif": b"\0" + maps.tiff(128, 128, stripes, kind="B", samples=2, deflated=True),
+    "i16.tif": b"\4" + maps.tiff(128, 128, stripes, kind="h", samples=2, deflated=True),
+    "f32.tif": b"\7" + maps.tiff(128, 128, stripes, kind="f", samples=2, deflated=True),
+    "u8.png": b"\0" + png(128, 128, lambda x, y: (x, 255 * (y % 2))),
+    "f32.npy": b"\7\x93NUMPY\1\0" + struct.pack("<H", len(numpy_head)) + numpy_head + struct.pack("<fB", 1.5, 1),
+}
+REVISION = {"u8": b"\0\1\0\xff", "f32": b"\7" + struct.pack("<2f", 1, -2.5), "stored": b"\3\1\1(\xb5/\xfd\x20\x04\x21\0\0abcd"}
+for folder, seeds in (("stl", STL), ("gltf", GLTF), ("mtl", MTL), ("zip", ZIP), ("map", MAP), ("form", FORM), ("text", TEXT),
+                      ("expression", EXPRESSION), ("picture", PICTURE), ("raster", RASTER), ("revision", REVISION)):
     (HERE / folder).mkdir(exist_ok=True)
     for name, content in seeds.items():
         (HERE / folder / name).write_bytes(content)

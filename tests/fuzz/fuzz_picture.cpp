@@ -1,0 +1,45 @@
+// Pictures of looks, orthophotos and tool shapes: what is read has the size that its header says, and a shape is the same after
+// it was sent as the picture that the page shows.
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+
+#include "core/picture.h"
+#include "core/shape_texture.h"
+
+namespace {
+
+constexpr int kLargestSide = 512;  // larger ones only take longer
+
+void demand(bool holds) {
+  if (!holds) std::abort();
+}
+
+void check_shape(const strata::Picture& picture) {
+  for (const auto part : {strata::ShapePart::opaque, strata::ShapePart::light, strata::ShapePart::dark}) {
+    const auto bits = strata::shape_of(picture, part);
+    if (!bits) continue;
+    const strata::ShapeTexture texture(*bits);
+    demand(texture.inner_radius() >= 0 && texture.inner_radius() <= 1);
+    for (int i = 0; i < strata::kShapeSide * strata::kShapeSide; i += 97)
+      demand((texture.distances()[static_cast<std::size_t>(i)] == 0) ==
+             texture.is_set(i % strata::kShapeSide, i / strata::kShapeSide));
+    const auto again = strata::shape_of(strata::picture_of(*bits), strata::ShapePart::opaque);
+    demand(again.has_value() && *again == *bits);
+    return;  // one is enough: making it ready takes longer than all else
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::span<const std::uint8_t> bytes(data, size);
+  const auto info = strata::inspect_picture(bytes, kLargestSide);
+  const auto picture = strata::decode_picture(bytes, kLargestSide);
+  if (!picture) return 0;
+  demand(info.has_value() && info->width == picture->width && info->height == picture->height);
+  demand(picture->rgba.size() ==
+         4 * static_cast<std::size_t>(picture->width) * static_cast<std::size_t>(picture->height));
+  check_shape(*picture);
+  return 0;
+}

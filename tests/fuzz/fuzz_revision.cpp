@@ -1,0 +1,57 @@
+// Tiles and revisions as they are stored: they come back from a database that others can write to. The first byte is the layer's
+// type. What follows is tried as it is, and as the content of a frame that is whole: a fuzzer hardly makes one of the right size.
+#include <zstd.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+#include <vector>
+
+#include "core/revision.h"
+
+namespace {
+
+using namespace strata;
+
+void demand(bool holds) {
+  if (!holds) std::abort();
+}
+
+void decode(ValueType type, std::span<const std::uint8_t> bytes) {
+  if (const auto tile = decode_tile(type, bytes)) {
+    const auto again = decode_tile(type, encode_tile(*tile));
+    demand(again.has_value() && *again == *tile);
+  }
+  const TileAddress address{3, 4};
+  if (const auto revision = decode_revision(address, type, bytes)) {
+    const auto again = decode_revision(address, type, encode_revision(*revision));
+    demand(again.has_value() && *again == *revision);
+    TileData tile(type);
+    apply(*revision, tile);
+    apply(*revision, tile);
+    demand(tile == TileData(type));
+  }
+}
+
+void decode_framed(ValueType type, std::uint8_t version, std::size_t planes, std::span<const std::uint8_t> bytes) {
+  std::vector<std::uint8_t> raw(planes * sizeof(TileMask::words) + TileData(type).values.size());
+  for (std::size_t i = 0; i < raw.size() && !bytes.empty(); ++i) raw[i] = bytes[i % bytes.size()];
+  std::vector<std::uint8_t> framed{version, static_cast<std::uint8_t>(bytes_per_texel(type))};
+  framed.resize(2 + ZSTD_compressBound(raw.size()));
+  const std::size_t frame = ZSTD_compress(framed.data() + 2, framed.size() - 2, raw.data(), raw.size(), 1);
+  demand(!ZSTD_isError(frame));
+  framed.resize(2 + frame);
+  decode(type, framed);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size < 2) return 0;
+  const auto type = static_cast<ValueType>(data[0] % 8);
+  const std::span<const std::uint8_t> bytes(data + 1, size - 1);
+  decode(type, bytes);
+  decode_framed(type, 1, 2, bytes);
+  decode_framed(type, 129, 1, bytes);
+  return 0;
+}
