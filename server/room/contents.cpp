@@ -1,5 +1,7 @@
 #include "room/contents.h"
 
+#include <future>
+
 #include "room/await.h"
 #include "room/tile_changes.h"
 
@@ -29,25 +31,41 @@ Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id,
   return contents;
 }
 
+namespace {
+
+using Level = std::shared_ptr<const mesh::Geometry>;
+
+Result<Level> decode(std::span<const std::uint8_t> bytes) {
+  auto geometry = mesh::decode_geometry(bytes);
+  if (!geometry) return tl::unexpected(geometry.error());
+  return std::make_shared<const mesh::Geometry>(std::move(*geometry));
+}
+
+Result<std::vector<Level>> read_coarser_levels(store::Store& store, std::int64_t model_id) {
+  auto stored = store.detail_levels(model_id);
+  if (!stored) return tl::unexpected(stored.error());
+  std::vector<Level> levels;
+  for (auto& bytes : *stored) {
+    auto level = decode(bytes);
+    if (!level) return tl::unexpected(level.error());
+    levels.push_back(std::move(*level));
+    bytes = {};
+  }
+  return levels;
+}
+
+}  // namespace
+
 Result<render::ModelGeometry> read_geometry(store::Store& store, std::int64_t model_id) {
-  const auto decode = [](std::span<const std::uint8_t> bytes) -> Result<std::shared_ptr<const mesh::Geometry>> {
-    auto geometry = mesh::decode_geometry(bytes);
-    if (!geometry) return tl::unexpected(geometry.error());
-    return std::make_shared<const mesh::Geometry>(std::move(*geometry));
-  };
+  // Together the coarser levels are about as much work as the full one.
+  auto coarser_later = std::async(std::launch::async, [&] { return read_coarser_levels(store, model_id); });
   auto bytes = store.geometry(model_id);
   if (!bytes) return tl::unexpected(bytes.error());
   auto full = decode(*bytes);
   if (!full) return tl::unexpected(full.error());
-  render::ModelGeometry geometry{std::move(*full), {}};
-  auto levels = store.detail_levels(model_id);
-  if (!levels) return tl::unexpected(levels.error());
-  for (const auto& level : *levels) {
-    auto coarser = decode(level);
-    if (!coarser) return tl::unexpected(coarser.error());
-    geometry.coarser.push_back(std::move(*coarser));
-  }
-  return geometry;
+  auto coarser = coarser_later.get();
+  if (!coarser) return tl::unexpected(coarser.error());
+  return render::ModelGeometry{std::move(*full), std::move(*coarser)};
 }
 
 Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model,

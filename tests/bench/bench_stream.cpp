@@ -4,8 +4,10 @@
 #include <deque>
 #include <future>
 #include <iostream>
+#include <map>
 #include <random>
 #include <thread>
+#include <utility>
 
 #include "bench/bench_commands.h"
 #include "bench/bench_mesh.h"
@@ -60,146 +62,181 @@ class Client {
   std::deque<Arrival> arrivals_;
 };
 
-int run(const Options& options) {
-  Site site;
-  Progress progress;
-  // Imported through the store like any model, from a PLY the bench writes when it is the generated pot.
-  const BenchMesh bench = must(load_bench_mesh(options.model, {options.cache}));
-  store::Store::NewModel made;
-  made.model.name = made.model.slug = "bench";
-  made.model.project_id = must(site.store->project("default")).id;
-  made.model.origin = bench.geometry->origin;
-  made.model.triangles = bench.geometry->triangle_count();
-  made.model.vertices = bench.geometry->positions.size();
-  made.model.bounds_min = bench.geometry->origin + glm::dvec3(bench.geometry->box_min);
-  made.model.bounds_max = bench.geometry->origin + glm::dvec3(bench.geometry->box_max);
-  made.model.area = bench.area;
-  made.geometry = mesh::encode_geometry(*bench.geometry);
-  const Model model = must(site.store->create_model(made, [] { return false; }));
-  auto room = must(site.rooms->open(model.slug));
-  std::vector<Layer> layers;
-  for (int i = 0; i < options.layers; ++i) {
+class Stream {
+ public:
+  explicit Stream(const Options& options) : options_(options) {
+    // Imported through the store like any model, from a PLY the bench writes when it is the generated pot.
+    store::Store::NewModel made;
+    made.model.name = made.model.slug = "bench";
+    made.model.project_id = must(site_.store->project("default")).id;
+    made.model.origin = bench_.geometry->origin;
+    made.model.triangles = bench_.geometry->triangle_count();
+    made.model.vertices = bench_.geometry->positions.size();
+    made.model.bounds_min = bench_.geometry->origin + glm::dvec3(bench_.geometry->box_min);
+    made.model.bounds_max = bench_.geometry->origin + glm::dvec3(bench_.geometry->box_max);
+    made.model.area = bench_.area;
+    made.geometry = mesh::encode_geometry(*bench_.geometry);
+    model_ = must(site_.store->create_model(made, [] { return false; }));
+    room_ = must(site_.rooms->open(model_.slug));
+    for (int i = 0; i < options.layers; ++i) add_filled_layer(i);
+    member_ = room_->join("bench", nullptr, [&](stream::FrameBytes frame) { client_.receive(std::move(frame)); });
+    member_->camera(0, ++camera_number_, still_, false);
+    client_.wait_for(*member_,
+                     [&](const auto& a) { return a.header.still && a.header.camera_seq == camera_number_.load(); });
+  }
+
+  // To changed pixels, with a still camera.
+  nlohmann::json strokes() {
+    Samples to_pixels, to_durable;
+    std::uint64_t changed_bytes = 0;
+    for (int i = 0; i < options_.strokes + 20; ++i) {
+      const glm::dvec2 from = on_the_model();
+      const double start = now_ms();
+      std::atomic<double> durable{0};
+      auto request =
+          stroke_request(layers_.back(), still_, {from, from + glm::dvec2(12, 5)}, options_.radius, 1 + i % 200);
+      std::promise<std::int64_t> sequence;
+      auto sequence_known = sequence.get_future();
+      std::promise<void> saved;
+      room_->edit(
+          std::move(request), [&](const room::EditAnswer& answer) { sequence.set_value(answer.sequence); },
+          [&](Result<room::EditAnswer> answer) {
+            must(std::move(answer));
+            durable = now_ms() - start;
+            saved.set_value();
+          });
+      const std::int64_t wanted = sequence_known.get();
+      const auto arrival =
+          client_.wait_for(*member_, [&](const auto& a) { return std::int64_t(a.header.scene_sequence) >= wanted; });
+      saved.get_future().get();
+      if (i < 20) continue;  // warm
+      to_pixels.add(arrival.at_ms - start);
+      to_durable.add(durable);
+      changed_bytes += arrival.bytes;
+    }
+    std::printf("stroke → changed pixels leave: p50 %.1f ms, p95 %.1f ms; durable p50 %.1f ms; %.1f KB a stroke\n",
+                to_pixels.median(), to_pixels.quantile(0.95), to_durable.median(),
+                double(changed_bytes) / options_.strokes / 1e3);
+    return {
+        {"radius", options_.radius}, {"stroke_to_pixels", to_pixels.json()}, {"stroke_to_durable", to_durable.json()}};
+  }
+
+  // A new camera every 16 ms, as a browser's animation frames send them, whatever has arrived.
+  nlohmann::json moving_camera() {
+    Samples frame_ms, latency_ms;
+    std::uint64_t bytes = 0;
+    std::atomic<bool> moving{true};
+    std::mutex sent_mutex;
+    std::map<std::uint64_t, double> sent_ms;  // of a camera's number
+    const std::uint64_t last_still = camera_number_;
+    std::thread hand([&] {
+      for (int i = 1; moving; ++i) {
+        const std::uint64_t number = ++camera_number_;
+        {
+          std::lock_guard lock(sent_mutex);
+          sent_ms[number] = now_ms();
+        }
+        member_->camera(0, number, camera_at(0.7 + i * 0.008), true);
+        std::this_thread::sleep_for(std::chrono::milliseconds(16));
+      }
+    });
+    const double start =
+        client_.wait_for(*member_, [&](const auto& a) { return a.header.camera_seq > last_still; }).at_ms;
+    double last = start;
+    for (int i = 0; i < options_.frames; ++i) {
+      const auto arrival = client_.wait_for(*member_, [&](const auto& a) { return a.header.last; });
+      frame_ms.add(arrival.at_ms - std::exchange(last, arrival.at_ms));
+      bytes += arrival.bytes;
+      std::lock_guard lock(sent_mutex);
+      latency_ms.add(arrival.at_ms - sent_ms.at(arrival.header.camera_seq));
+    }
+    const double fps = options_.frames / (last - start) * 1000;
+    moving = false;
+    hand.join();
+    std::printf(
+        "moving camera: %.1f frames/s, one each %.1f ms (p95 %.1f); camera → last byte p50 %.1f ms, p95 %.1f ms; %.0f KB "
+        "a frame\n",
+        fps, frame_ms.median(), frame_ms.quantile(0.95), latency_ms.median(), latency_ms.quantile(0.95),
+        double(bytes) / options_.frames / 1e3);
+    return {{"moving_fps", fps}, {"moving_frame", frame_ms.json()}, {"camera_to_last_byte", latency_ms.json()}};
+  }
+
+  // A batch each 30 ms is what a client sends; the bytes kept do not depend on how fast we replay it.
+  nlohmann::json steady_painting() {
+    const auto bytes_before = must(site_.store->revision_bytes(model_.id));
+    constexpr int kBatches = 400;
+    glm::dvec2 at{640, 360};
+    double heading = 0;
+    for (int i = 0; i < kBatches; ++i) {
+      heading += std::uniform_real_distribution<double>(-0.6, 0.6)(random_);
+      glm::dvec2 next = at + 12.0 * glm::dvec2(std::cos(heading), std::sin(heading));  // 400 px/s
+      if (next.x < 440 || next.x > 840 || next.y < 200 || next.y > 520) {
+        heading += 2.5;
+        next = glm::clamp(next, glm::dvec2(440, 200), glm::dvec2(840, 520));
+      }
+      edit_and_wait(*room_, stroke_request(layers_[0], still_, {at, next}, options_.radius, 1 + (i / 50) % 100));
+      at = next;
+    }
+    const double mb_per_hour =
+        double(must(site_.store->revision_bytes(model_.id)) - bytes_before) / kBatches * (3600 / 0.03) / 1e6;
+    std::printf("steady painting keeps %.0f MB per hour\n", mb_per_hour);
+    return {{"revision_mb_per_hour", mb_per_hour}};
+  }
+
+  std::size_t triangles() const { return bench_.geometry->triangle_count(); }
+  auto gpu() const { return site_.renderer->info(); }
+
+ private:
+  Camera camera_at(double angle) const {
+    return look_at(*bench_.geometry, {std::cos(angle), std::sin(angle), 0.4}, 1280, 720);
+  }
+  void add_filled_layer(int number) {
     Layer layer;
-    layer.name = layer.slug = "layer-" + std::to_string(i);
+    layer.name = layer.slug = "layer-" + std::to_string(number);
     layer.type = ValueType::u8;
     layer.resolution = 4096;
     layer.palette = default_palette(layer.type, false);
     layer.opacity = 0.6;
-    layer.order = i;
-    layers.push_back(must(room->create_layer(layer)));
-    edit_and_wait(*room, {random_uuid(),
-                          "bench",
-                          layers.back().id,
-                          room::FillEdit{false, std::uint32_t(10 + 20 * i)},
-                          {{"op", "fill"}}});
+    layer.order = number;
+    layers_.push_back(must(room_->create_layer(layer)));
+    edit_and_wait(*room_, {random_uuid(),
+                           "bench",
+                           layers_.back().id,
+                           room::FillEdit{false, std::uint32_t(10 + 20 * number)},
+                           {{"op", "fill"}}});
   }
-
-  Client client;
-  auto member = room->join("bench", nullptr, [&](stream::FrameBytes frame) { client.receive(std::move(frame)); });
-  std::atomic<std::uint64_t> seq{0};
-  auto camera_at = [&](double angle) {
-    return look_at(*bench.geometry, {std::cos(angle), std::sin(angle), 0.4}, 1280, 720);
-  };
-  const Camera still = camera_at(0.7);
-  member->camera(0, ++seq, still, false);
-  client.wait_for(*member, [&](const auto& a) { return a.header.still && a.header.camera_seq == seq.load(); });
-
-  // Stroke to changed pixels, still camera.
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> x(440, 840), y(200, 520);
-  Samples to_pixels, to_durable;
-  std::uint64_t changed_bytes = 0;
-  const auto on_the_model = [&] {
+  glm::dvec2 on_the_model() {
+    std::uniform_real_distribution<double> x(440, 840), y(200, 520);
     while (true) {
-      const glm::dvec2 point{x(random), y(random)};
-      if (must(room->pick(still, point.x, point.y, {})).hit) return point;
+      const glm::dvec2 point{x(random_), y(random_)};
+      if (must(room_->pick(still_, point.x, point.y, {})).hit) return point;
     }
-  };
-  for (int i = 0; i < options.strokes + 20; ++i) {
-    const glm::dvec2 from = on_the_model();
-    const double start = now_ms();
-    std::atomic<double> durable{0};
-    auto request = stroke_request(layers.back(), still, {from, from + glm::dvec2(12, 5)}, options.radius, 1 + i % 200);
-    std::promise<std::int64_t> sequence;
-    auto sequence_known = sequence.get_future();
-    std::promise<void> saved;
-    room->edit(
-        std::move(request), [&](const room::EditAnswer& answer) { sequence.set_value(answer.sequence); },
-        [&](Result<room::EditAnswer> answer) {
-          must(std::move(answer));
-          durable = now_ms() - start;
-          saved.set_value();
-        });
-    const std::int64_t wanted = sequence_known.get();
-    const auto arrival =
-        client.wait_for(*member, [&](const auto& a) { return std::int64_t(a.header.scene_sequence) >= wanted; });
-    saved.get_future().get();
-    if (i < 20) continue;  // warm
-    to_pixels.add(arrival.at_ms - start);
-    to_durable.add(durable);
-    changed_bytes += arrival.bytes;
   }
 
-  // Moving camera: a new one every 16 ms, as a browser's animation frames send them, whatever has arrived.
-  Samples frame_ms;
-  std::uint64_t moving_bytes = 0;
-  std::atomic<bool> moving{true};
-  std::thread hand([&] {
-    for (int i = 1; moving; ++i) {
-      member->camera(0, ++seq, camera_at(0.7 + i * 0.008), true);
-      std::this_thread::sleep_for(std::chrono::milliseconds(16));
-    }
-  });
-  double last = client.wait_for(*member, [&](const auto&) { return true; }).at_ms;
-  const double moving_start = last;
-  for (int i = 0; i < options.frames; ++i) {
-    const auto arrival = client.wait_for(*member, [&](const auto& a) { return a.header.last; });
-    frame_ms.add(arrival.at_ms - last);
-    last = arrival.at_ms;
-    moving_bytes += arrival.bytes;
-  }
-  const double fps = options.frames / (last - moving_start) * 1000;
-  moving = false;
-  hand.join();
+  const Options& options_;
+  Site site_;
+  const BenchMesh bench_ = must(load_bench_mesh(options_.model, {options_.cache}));
+  const Camera still_ = camera_at(0.7);
+  Model model_;
+  std::shared_ptr<room::Room> room_;
+  std::vector<Layer> layers_;
+  Client client_;
+  std::shared_ptr<room::Member> member_;
+  std::atomic<std::uint64_t> camera_number_{0};
+  std::mt19937 random_{7};
+};
 
-  // Steady painting: a batch each 30 ms is what a client sends; the bytes do not depend on how fast we replay it.
-  const auto bytes_before = must(site.store->revision_bytes(model.id));
-  constexpr int kBatches = 400;
-  glm::dvec2 at{640, 360};
-  double heading = 0;
-  for (int i = 0; i < kBatches; ++i) {
-    heading += std::uniform_real_distribution<double>(-0.6, 0.6)(random);
-    glm::dvec2 next = at + 12.0 * glm::dvec2(std::cos(heading), std::sin(heading));  // 400 px/s
-    if (next.x < 440 || next.x > 840 || next.y < 200 || next.y > 520) {
-      heading += 2.5;
-      next = glm::clamp(next, glm::dvec2(440, 200), glm::dvec2(840, 520));
-    }
-    edit_and_wait(*room, stroke_request(layers[0], still, {at, next}, options.radius, 1 + (i / 50) % 100));
-    at = next;
-  }
-  const double mb_per_hour =
-      double(must(site.store->revision_bytes(model.id)) - bytes_before) / kBatches * (3600 / 0.03) / 1e6;
-
-  const auto gpu = site.renderer->info();
+int run(const Options& options) {
+  Stream stream(options);
+  const auto gpu = stream.gpu();
   std::printf("%s, %zu triangles, %d layers of 4096², 1280 × 720, r = %.0f px\n", options.model.c_str(),
-              bench.geometry->triangle_count(), options.layers, options.radius);
-  std::printf("stroke → changed pixels leave: p50 %.1f ms, p95 %.1f ms; durable p50 %.1f ms; %.1f KB a stroke\n",
-              to_pixels.median(), to_pixels.quantile(0.95), to_durable.median(),
-              double(changed_bytes) / options.strokes / 1e3);
-  std::printf("moving camera: %.1f frames/s, frame p50 %.1f ms, p95 %.1f ms, %.0f KB a frame\n", fps, frame_ms.median(),
-              frame_ms.quantile(0.95), double(moving_bytes) / options.frames / 1e3);
-  std::printf("steady painting keeps %.0f MB per hour\n", mb_per_hour);
-  write_result(options.json, machine(&gpu),
-               nlohmann::json::array({{{"method", "stream"},
-                                       {"model", options.model},
-                                       {"triangles", bench.geometry->triangle_count()},
-                                       {"layers", options.layers},
-                                       {"radius", options.radius},
-                                       {"stroke_to_pixels", to_pixels.json()},
-                                       {"stroke_to_durable", to_durable.json()},
-                                       {"moving_fps", fps},
-                                       {"moving_frame", frame_ms.json()},
-                                       {"revision_mb_per_hour", mb_per_hour}}}));
+              stream.triangles(), options.layers, options.radius);
+  nlohmann::json result{
+      {"method", "stream"}, {"model", options.model}, {"triangles", stream.triangles()}, {"layers", options.layers}};
+  if (options.layers > 0) result.update(stream.strokes());
+  result.update(stream.moving_camera());
+  if (options.layers > 0) result.update(stream.steady_painting());
+  write_result(options.json, machine(&gpu), nlohmann::json::array({result}));
   return 0;
 }
 
@@ -210,8 +247,9 @@ Command add_stream(CLI::App& app) {
   auto options = std::make_shared<Options>();
   command->add_option("--model", options->model, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or a file")
       ->capture_default_str();
-  command->add_option("--layers", options->layers, "Filled layers shown; the strokes go to the topmost")
-      ->check(CLI::Range(1, 64))
+  command
+      ->add_option("--layers", options->layers, "Filled layers shown; the strokes go to the topmost (0: none are made)")
+      ->check(CLI::Range(0, 64))
       ->capture_default_str();
   command->add_option("--radius", options->radius, "Brush radius in pixels")->capture_default_str();
   command->add_option("--strokes", options->strokes)->capture_default_str();
