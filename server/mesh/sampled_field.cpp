@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh/parallel.h"
-
 namespace strata::mesh {
 namespace {
 

@@ -9,6 +9,7 @@
 
 #include "core/progress.h"
 #include "mesh/geometry.h"
+#include "mesh/parallel.h"
 #include "mesh/surface_normals.h"
 
 namespace strata::mesh {
@@ -22,7 +23,8 @@ class SampledField {
  public:
   // Refused when cancelled. `spacing` > 0; it is widened where the grids would have more than four million points.
   static Result<SampledField> make(std::shared_ptr<const Geometry> geometry, const SurfaceNormals& normals,
-                                   float spacing, const PointFunction& function, Progress& progress, int threads = 2);
+                                   float spacing, const PointFunction& function, Progress& progress,
+                                   int threads = background_threads());
 
   // Corners without a value are left out of the mean; NaN where none has one.
   float at(std::uint32_t triangle, const glm::vec3& weights) const;

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "mesh/parallel.h"
-
 namespace strata::mesh {
 namespace {
 

@@ -8,6 +8,7 @@
 
 #include "core/progress.h"
 #include "mesh/geometry.h"
+#include "mesh/parallel.h"
 
 namespace strata::mesh {
 
@@ -27,7 +28,8 @@ class SurfaceSamples {
 
   // radius ≥ least_radius. Refused when cancelled. The result does not depend on the number of threads; beside it some 60 bytes a
   // piece of the bands that are worked on are needed, and 4 a triangle.
-  static Result<SurfaceSamples> make(const Geometry& geometry, float radius, Progress& progress, int threads = 2);
+  static Result<SurfaceSamples> make(const Geometry& geometry, float radius, Progress& progress,
+                                     int threads = background_threads());
 
   float radius() const { return radius_; }
   std::size_t size() const { return samples_.size(); }

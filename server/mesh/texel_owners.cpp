@@ -5,7 +5,6 @@
 #include <mutex>
 #include <unordered_map>
 
-#include "mesh/parallel.h"
 #include "mesh/surface_bake.h"
 
 namespace strata::mesh {

@@ -9,6 +9,7 @@
 #include "core/progress.h"
 #include "core/tile_mirror.h"
 #include "mesh/geometry.h"
+#include "mesh/parallel.h"
 
 namespace strata::mesh {
 
@@ -35,19 +36,20 @@ struct TexelOwners {
 };
 
 // Refused when cancelled, and for a resolution that is no multiple of 128 in 128…16384.
-Result<TexelOwners> bake_texel_owners(const Geometry& geometry, int resolution, Progress& progress, int threads = 2);
+Result<TexelOwners> bake_texel_owners(const Geometry& geometry, int resolution, Progress& progress,
+                                      int threads = background_threads());
 
 // Calls `visit(texel)` for every surface texel (its index of the 64 a slot), on several threads at once, and reports `message`.
 // Texels of one range of kTexelsAtOnce (from a multiple of it) are visited in order by one thread. Refused when cancelled.
 constexpr std::size_t kTexelsAtOnce = 256 * 64;
 using TexelVisit = std::function<void(std::size_t texel)>;
 Result<void> for_each_texel(const TexelOwners& owners, const TexelVisit& visit, const char* message, Progress& progress,
-                            int threads = 2);
+                            int threads = background_threads());
 
 // Paints the surface: each texel gets the bits of the layer's value that `bits_at` gives for it, or nothing; gutter texels follow
 // their owners. Called like `visit` above.
 using TexelBits = std::function<std::optional<std::uint32_t>(std::size_t texel)>;
 Result<TileMap> paint_texels(const TexelOwners& owners, ValueType type, const TexelBits& bits_at, Progress& progress,
-                             int threads = 2);
+                             int threads = background_threads());
 
 }  // namespace strata::mesh
