@@ -12,6 +12,7 @@ is started again and cancelled when a quarter, half and most of that time has pa
 import argparse
 import json
 import os
+import subprocess
 import sys
 import time
 
@@ -26,6 +27,13 @@ LONG_S = 3600
 def read(path):
     with open(path, "rb") as file:
         return file.read()
+
+
+def machine():
+    with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
+        cpu = next((line.split(":", 1)[1].strip() for line in file if line.startswith("model name")), "unknown")
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
+    return {"cpu": cpu, "cores": os.cpu_count(), "commit": commit}
 
 
 def processor_seconds(server):
@@ -82,6 +90,8 @@ def seconds_to_cancel(server, path, body, after):
     asked = time.monotonic()
     server.request("DELETE", f"/jobs/{job_id}")
     job, _ = follow(server, job_id, "the end of a cancelled job")
+    for layer in job.get("layers", []):
+        server.ok("DELETE", f"{path}/{layer}")
     return time.monotonic() - asked if job["state"] == "cancelled" else None
 
 
@@ -123,7 +133,7 @@ def main():
             rows.append(figures)
     if asked.json:
         with open(asked.json, "w", encoding="utf-8") as file:
-            json.dump({"scan": os.path.basename(asked.scan), "triangles": model["triangles"], "resolution": asked.resolution, "results": rows}, file, indent=1)
+            json.dump({"machine": machine(), "scan": os.path.basename(asked.scan), "triangles": model["triangles"], "resolution": asked.resolution, "results": rows}, file, indent=1)
             file.write("\n")
 
 
