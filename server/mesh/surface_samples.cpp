@@ -27,7 +27,7 @@ struct Piece {
 std::uint64_t facing(const glm::vec3& n) {
   const glm::vec3 size = glm::abs(n);
   const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
-  return static_cast<std::uint64_t>(2 * axis + (n[axis] < 0 ? 1 : 0));
+  return std::uint64_t{2} * static_cast<std::uint64_t>(axis) + (n[axis] < 0 ? 1u : 0u);
 }
 
 }  // namespace
