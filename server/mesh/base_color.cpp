@@ -44,9 +44,9 @@ class Baker {
 
  private:
   const Material& material_of(std::size_t triangle) const {
-    static const Material kPlain;
+    static const Material plain;
     const std::uint16_t material = mesh_.triangle_materials.empty() ? kNoMaterial : mesh_.triangle_materials[triangle];
-    return material == kNoMaterial ? kPlain : mesh_.materials[material];
+    return material == kNoMaterial ? plain : mesh_.materials[material];
   }
 
   void look_at_materials() {

@@ -15,7 +15,7 @@ struct ColorTables {
 };
 
 inline const ColorTables& color_tables() {
-  static const ColorTables kTables = [] {
+  static const ColorTables made = [] {
     ColorTables tables;
     for (int i = 0; i < 256; ++i)
       tables.linear[i] = static_cast<std::uint16_t>(std::lround(65535 * linear_of_srgb(i / 255.0)));
@@ -23,7 +23,7 @@ inline const ColorTables& color_tables() {
       tables.srgb[i] = static_cast<std::uint8_t>(std::lround(255 * srgb_of_linear(i / 65535.0)));
     return tables;
   }();
-  return kTables;
+  return made;
 }
 
 }  // namespace strata::mesh

@@ -65,9 +65,9 @@ std::string text_of(const json& object, const char* name) {
 }
 
 const json& object_in(const json& object, const char* name) {
-  static const json kEmpty = json::object();
+  static const json empty = json::object();
   const auto found = object.find(name);
-  return found != object.end() && found->is_object() ? *found : kEmpty;
+  return found != object.end() && found->is_object() ? *found : empty;
 }
 
 Result<GltfDocument> GltfDocument::open(const InputFiles& files) {

@@ -20,7 +20,7 @@ float squared_distance(const Lab& x, const Lab& y) {
 }
 
 Lab lab_of(const std::uint8_t* rgb) {
-  static const std::array<float, 256> kLight = [] {
+  static const std::array<float, 256> light_of_srgb = [] {
     std::array<float, 256> light{};
     for (std::size_t i = 0; i < light.size(); ++i) {
       const double srgb = static_cast<double>(i) / 255;
@@ -28,7 +28,7 @@ Lab lab_of(const std::uint8_t* rgb) {
     }
     return light;
   }();
-  const float r = kLight[rgb[0]], g = kLight[rgb[1]], b = kLight[rgb[2]];
+  const float r = light_of_srgb[rgb[0]], g = light_of_srgb[rgb[1]], b = light_of_srgb[rgb[2]];
   const auto root = [](float t) { return t > 0.008856f ? std::cbrt(t) : 7.787f * t + 16.0f / 116; };
   const float x = root((0.4124f * r + 0.3576f * g + 0.1805f * b) / 0.9505f);
   const float y = root(0.2126f * r + 0.7152f * g + 0.0722f * b);

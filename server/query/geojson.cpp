@@ -40,9 +40,9 @@ class Reader {
 
  private:
   static const json& member(const json& node, const char* name) {
-    static const json kNothing;
+    static const json nothing;
     const auto found = node.find(name);
-    return found == node.end() ? kNothing : *found;
+    return found == node.end() ? nothing : *found;
   }
 
   Result<void> each(const json& node, const char* name, const std::string& where, int depth) {

@@ -15,8 +15,8 @@ std::string text_of(const MapValue& value) {
 }
 
 const MapValue& value_in(const MapFeature& feature, std::size_t column) {
-  static const MapValue kNothing;
-  return column < feature.values.size() ? feature.values[column] : kNothing;
+  static const MapValue nothing;
+  return column < feature.values.size() ? feature.values[column] : nothing;
 }
 
 Result<std::size_t> column_named(const FeatureMap& map, const std::string& name, const char* field) {

@@ -95,11 +95,11 @@ strata::query::LayerView layer(const std::string& slug) {
 }
 
 void evaluate(const Expression& condition) {
-  static const strata::mesh::SurfaceMap kMap = one_block();
+  static const strata::mesh::SurfaceMap map = one_block();
   std::vector<strata::query::LayerView> layers;
   for (const auto& slug : strata::layers_of(condition)) layers.push_back(layer(slug));
-  const auto selection = strata::query::select_where(condition, layers, kMap, "where", 1);
-  demand(selection.has_value() && (selection->at(0) & ~kMap.surface_mask[0]) == 0);
+  const auto selection = strata::query::select_where(condition, layers, map, "where", 1);
+  demand(selection.has_value() && (selection->at(0) & ~map.surface_mask[0]) == 0);
 }
 
 }  // namespace

@@ -210,18 +210,18 @@ TEST(Edit, a_radius_far_beyond_the_window_paints_all_that_is_seen) {
 class MapRefusal {
  public:
   explicit MapRefusal(int granted) : real_(epoxy_glMapNamedBufferRange) {
-    granted_left = granted;
-    next_call = real_;
+    granted_left_ = granted;
+    next_call_ = real_;
     epoxy_glMapNamedBufferRange = [](GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access) -> void* {
-      return granted_left-- == 0 ? nullptr : next_call(buffer, offset, length, access);
+      return granted_left_-- == 0 ? nullptr : next_call_(buffer, offset, length, access);
     };
   }
   ~MapRefusal() { epoxy_glMapNamedBufferRange = real_; }
 
  private:
   const PFNGLMAPNAMEDBUFFERRANGEPROC real_;
-  static inline PFNGLMAPNAMEDBUFFERRANGEPROC next_call;
-  static inline int granted_left;
+  static inline PFNGLMAPNAMEDBUFFERRANGEPROC next_call_;
+  static inline int granted_left_;
 };
 
 TEST(Edit, a_stroke_that_is_refused_for_want_of_memory_has_painted_nothing) {

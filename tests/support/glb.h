@@ -18,11 +18,11 @@ class GltfBuilder {
 
   template <class Number>
   int add(const std::vector<Number>& numbers, int component_type, const std::string& type, bool normalized = false) {
-    static const std::map<std::string, int> kComponents{{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
+    static const std::map<std::string, int> components{{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
     const int view = add_view(numbers.data(), numbers.size() * sizeof(Number));
     json["accessors"].push_back({{"bufferView", view},
                                  {"componentType", component_type},
-                                 {"count", numbers.size() / kComponents.at(type)},
+                                 {"count", numbers.size() / components.at(type)},
                                  {"type", type},
                                  {"normalized", normalized}});
     return static_cast<int>(json["accessors"].size()) - 1;

@@ -24,10 +24,8 @@ struct NamedMesh {
   std::string name;
   mesh::TriangleMesh mesh;
 };
-inline void PrintTo(const NamedMesh& named,
-                    std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest looks for it
-  *out << named.name;
-}
+// NOLINTNEXTLINE(readability-identifier-naming): GoogleTest looks for it
+inline void PrintTo(const NamedMesh& named, std::ostream* out) { *out << named.name; }
 std::vector<NamedMesh> mesh_classes();  // all of the above, at sizes that tests can check by brute force
 
 }  // namespace strata::test

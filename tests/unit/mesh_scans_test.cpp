@@ -203,7 +203,7 @@ class MeshScans : public testing::Test {
   }
 
   static const std::vector<std::pair<std::string, std::string>>& refused() {
-    static const std::vector<std::pair<std::string, std::string>> kRefused{
+    static const std::vector<std::pair<std::string, std::string>> scans{
         {"nasty/n05_nan_inf_vertices.ply",
          "2 vertices that triangles use have a coordinate that is not a finite number"},
         {"nasty/n10b_utm_float32_ruined.ply", "5312 of 5616 triangles have no area"},
@@ -215,7 +215,7 @@ class MeshScans : public testing::Test {
         {"nasty/n23_bad_index.ply", "Face 5"},
         {"nasty/n24_zero_bytes.glb", "empty"},
         {"nasty/n25_bad_glb_length.glb", "cut short"}};
-    return kRefused;
+    return scans;
   }
 
   static inline json facts_;

@@ -175,10 +175,8 @@ struct Case {
   std::string name;
   Geometry geometry;
 };
-void PrintTo(const Case& instance,
-             std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest looks for it
-  *out << instance.name;
-}
+// NOLINTNEXTLINE(readability-identifier-naming): GoogleTest looks for it
+void PrintTo(const Case& instance, std::ostream* out) { *out << instance.name; }
 
 std::vector<Case> cases() {
   std::vector<Case> all;
