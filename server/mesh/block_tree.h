@@ -19,8 +19,9 @@ struct BlockTree {
 
   struct Part {
     std::uint32_t slot = 0;
-    std::uint32_t block : 31 = 0;        // y * blocks_per_side + x
-    std::uint32_t shares_block : 1 = 0;  // with other parts
+    std::uint16_t tile = 0;     // row-major
+    std::uint8_t place = 0;     // of the block in its tile: x | y << 4
+    bool shares_block = false;  // with other parts
   };
   std::vector<Part> parts;
   // levels[0] bounds a part each, levels[i] each run of eight of levels[i - 1]; the last has one, or none where there is no part.

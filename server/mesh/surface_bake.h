@@ -68,6 +68,7 @@ class SurfaceBake {
   template <class Visit>
   void for_each_slot(int band, Visit visit);
 
+  BlockTree::Part part_of(std::uint32_t slot) const;  // as if the block were one
   std::uint64_t block_mask(const std::vector<std::uint64_t>& masks, int block_x, int block_y) const;
   bool is_surface(int x, int y) const;
   std::size_t texel_index(int x, int y) const;  // into the per-slot arrays; the block must have a slot

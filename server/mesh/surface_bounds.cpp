@@ -76,21 +76,24 @@ void SurfaceBake::pack_slots(int band) {
       map_.packed_position[std::size_t{slot} * 64 + i] = pack_position(positions[i], packed_box);
     }
     map_.bounds_of_slot[slot] = bounds_of(positions, owned, slack);
-    add_parts_of_block({slot, map_.block_of_slot[slot], 0}, positions, owned, least_gap, slack, parts_of_band_[band]);
+    add_parts_of_block(part_of(slot), positions, owned, least_gap, slack, parts_of_band_[band]);
   });
 }
 
+BlockTree::Part SurfaceBake::part_of(std::uint32_t slot) const {
+  constexpr std::uint32_t kBlocks = kTileSize / kBlockSize;  // a side
+  const std::uint32_t block = map_.block_of_slot[slot], per_side = static_cast<std::uint32_t>(map_.blocks_per_side);
+  const std::uint32_t x = block % per_side, y = block / per_side;
+  return {slot, static_cast<std::uint16_t>(y / kBlocks * (per_side / kBlocks) + x / kBlocks),
+          static_cast<std::uint8_t>(y % kBlocks * kBlocks + x % kBlocks), false};
+}
+
 void SurfaceBake::bound_tiles() {
-  const std::size_t per_side = static_cast<std::size_t>(map_.resolution / kTileSize),
-                    blocks_a_tile = kTileSize / kBlockSize;
+  const std::size_t per_side = static_cast<std::size_t>(map_.resolution / kTileSize);
   const float slack = slack_of(geometry_);
-  const auto tile_of = [&](std::size_t slot) {
-    const std::size_t block = map_.block_of_slot[slot], blocks = static_cast<std::size_t>(map_.blocks_per_side);
-    return block / blocks / blocks_a_tile * per_side + block % blocks / blocks_a_tile;
-  };
   std::vector<Box> boxes(per_side * per_side);
-  for (std::size_t slot = 0; slot < box_of_slot_.size(); ++slot) {
-    Box& box = boxes[tile_of(slot)];
+  for (std::uint32_t slot = 0; slot < box_of_slot_.size(); ++slot) {
+    Box& box = boxes[part_of(slot).tile];
     box.low = glm::min(box.low, box_of_slot_[slot].low);
     box.high = glm::max(box.high, box_of_slot_[slot].high);
   }

@@ -27,6 +27,8 @@ std::pair<double, double> ratio_bounds(double a, double b, double radius, double
   return {(qb - root) / qa, (qb + root) / qa};
 }
 
+double half_diagonal(const PixelBox& box) { return glm::length(glm::dvec2(box.x1 - box.x0, box.y1 - box.y0)) / 2; }
+
 double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
   const glm::dvec2 a{s.ends.x, s.ends.y}, along = glm::dvec2(s.ends.z, s.ends.w) - a;
   const double squared = glm::dot(along, along);
@@ -158,12 +160,6 @@ std::vector<TouchedParts::Part> BlockCuller::find_parts(const Subtree& subtree, 
   return found;
 }
 
-std::size_t BlockCuller::tile_of(std::uint32_t part) const {
-  constexpr std::uint32_t kBlocksPerTile = kTileSize / kBlockSize;
-  const std::uint32_t block = map_.tree.parts[part].block, blocks = static_cast<std::uint32_t>(map_.blocks_per_side);
-  return std::size_t{block / blocks / kBlocksPerTile} * (blocks / kBlocksPerTile) + block % blocks / kBlocksPerTile;
-}
-
 TouchedParts BlockCuller::find(int threads) const {
   const auto subtrees = find_subtrees();
   TouchedParts touched;
@@ -179,7 +175,7 @@ TouchedParts BlockCuller::find(int threads) const {
   const std::size_t per_side = static_cast<std::size_t>(map_.resolution / kTileSize);
   std::vector<std::uint32_t> end(per_side * per_side, 0);
   for (const auto& parts : found)
-    for (const auto& part : parts) ++end[tile_of(part.part)];
+    for (const auto& part : parts) ++end[map_.tree.parts[part.part].tile];
   std::size_t count = 0;
   for (std::size_t tile = 0; tile < end.size(); ++tile) {
     if (end[tile] == 0) continue;
@@ -189,7 +185,7 @@ TouchedParts BlockCuller::find(int threads) const {
   }
   touched.parts.resize(count);
   for (const auto& parts : found)
-    for (const auto& part : parts) touched.parts[end[tile_of(part.part)]++] = part;
+    for (const auto& part : parts) touched.parts[end[map_.tree.parts[part.part].tile]++] = part;
   return touched;
 }
 
@@ -202,9 +198,7 @@ void BlockCuller::add_blocks(const TouchedParts& touched, const TouchedParts::Ti
   first.fill(kNone);
   std::vector<std::uint32_t> next(parts.size());
   for (std::size_t i = parts.size(); i-- > 0;) {
-    const std::uint32_t block = map_.tree.parts[parts[i].part].block,
-                        side = static_cast<std::uint32_t>(map_.blocks_per_side);
-    auto& head = first[block / side % kBlocksPerTile * kBlocksPerTile + block % kBlocksPerTile];
+    auto& head = first[map_.tree.parts[parts[i].part].place];
     next[i] = std::exchange(head, static_cast<std::uint32_t>(i));
   }
   std::vector<std::uint32_t> segments;
@@ -282,7 +276,7 @@ bool BlockCuller::lies_under(const WindowBox& window, std::uint32_t segment) con
   if (!path_.boxes[segment].overlaps(box)) return false;
   const auto& s = path_.segments[segment];
   const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};
-  const double around = std::hypot(box.x1 - box.x0, box.y1 - box.y0) / 2;
+  const double around = half_diagonal(box);
   const double reach = std::max(s.tool.x, s.tool.y) * std::sqrt(2.0) + around;  // √2: squares reach that far
   return distance_to_axis(s, center) <= reach;
 }
@@ -291,7 +285,7 @@ bool BlockCuller::lies_under(const WindowBox& window, std::uint32_t segment) con
 bool BlockCuller::keep_covering(const WindowBox& window, std::vector<std::uint32_t>& list) const {
   const PixelBox& box = window.box;
   const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};
-  const double around = std::hypot(box.x1 - box.x0, box.y1 - box.y0) / 2 + kMargin_px;
+  const double around = half_diagonal(box) + kMargin_px;
   for (const auto segment : list) {
     const auto& s = path_.segments[segment];
     if (distance_to_axis(s, center) + around < path_.inner_radius * std::min(s.tool.x, s.tool.y)) {

@@ -102,7 +102,6 @@ class BlockCuller {
                Scratch& scratch, Take&& take) const;
   std::vector<Subtree> find_subtrees() const;
   std::vector<TouchedParts::Part> find_parts(const Subtree& subtree, SegmentLists& lists) const;
-  std::size_t tile_of(std::uint32_t part) const;
   bool passes(const mesh::BoundingSphere& bounds, const Under& parent, Under& under) const;
   std::optional<WindowBox> project(const mesh::BoundingSphere& bounds) const;
   bool leaves_out(const mesh::BoundingSphere& bounds) const;

@@ -37,6 +37,7 @@ KernelResult run_edit_kernel(const mesh::SurfaceMap& map, const BlockCuller& cul
   std::vector<TileResult> results(tiles.size());
   const auto test_tile = [&](std::size_t index) {
     Candidates candidates;
+    candidates.blocks.reserve(tiles[index].count);
     culler.add_blocks(touched, tiles[index], candidates);
     TileResult& result = results[index];
     result.tested_blocks = candidates.blocks.size();

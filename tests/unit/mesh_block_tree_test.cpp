@@ -23,7 +23,7 @@ std::array<glm::vec3, 64> flat_block(const glm::vec3& corner) {
 
 std::vector<BoundedPart> parts_of(const std::array<glm::vec3, 64>& positions, std::uint64_t owned) {
   std::vector<BoundedPart> parts;
-  add_parts_of_block({7, 21, 0}, positions.data(), owned, kGap, 1e-6f, parts);
+  add_parts_of_block({7, 3, 21, false}, positions.data(), owned, kGap, 1e-6f, parts);
   return parts;
 }
 
@@ -33,7 +33,8 @@ TEST(PartsOfABlock, are_one_where_the_surface_is_one) {
     const auto parts = parts_of(block, owned);
     ASSERT_EQ(parts.size(), 1u);
     EXPECT_EQ(parts[0].part.slot, 7u);
-    EXPECT_EQ(parts[0].part.block, 21u);
+    EXPECT_EQ(parts[0].part.tile, 3u);
+    EXPECT_EQ(parts[0].part.place, 21u);
     EXPECT_FALSE(parts[0].part.shares_block);
   }
 }
@@ -83,7 +84,7 @@ TEST_P(TreeOfMany, holds_every_part_once_under_bounds_that_hold_it) {
   std::uniform_real_distribution<float> place(-50, 50);
   std::vector<BoundedPart> parts;
   for (std::uint32_t i = 0; i < GetParam(); ++i)
-    parts.push_back({{i, i, 0}, {{place(random), place(random), place(random)}, 0.1f}});
+    parts.push_back({{i, 0, 0, false}, {{place(random), place(random), place(random)}, 0.1f}});
   const auto tree = build_block_tree(parts, 1e-5f, 3);
   ASSERT_EQ(tree.parts.size(), parts.size());
   std::set<std::uint32_t> seen;
@@ -109,7 +110,8 @@ INSTANTIATE_TEST_SUITE_P(Sizes, TreeOfMany, testing::Values(0, 1, 7, 8, 9, 64, 6
 // Of points in a cube of 16³ a run of eight neighbours fills about a cube of 2³, not a slice of the whole.
 TEST(BlockTree, keeps_neighbours_in_space_together) {
   std::vector<BoundedPart> parts;
-  for (std::uint32_t i = 0; i < 4096; ++i) parts.push_back({{i, i, 0}, {glm::vec3(i % 16, i / 16 % 16, i / 256), 0}});
+  for (std::uint32_t i = 0; i < 4096; ++i)
+    parts.push_back({{i, 0, 0, false}, {glm::vec3(i % 16, i / 16 % 16, i / 256), 0}});
   std::shuffle(parts.begin(), parts.end(), std::mt19937(3));
   const auto tree = build_block_tree(parts, 0, 2);
   ASSERT_EQ(tree.levels.size(), 5u);
