@@ -40,6 +40,8 @@ double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
 constexpr std::size_t kSharedLevel = 3;
 constexpr std::size_t kSubtreesForThreads = 32;
 
+constexpr std::size_t kPartsForThreads = 8192;
+
 // Under a large tool most blocks are taken by the eight: to test each costs as much as to paint it.
 constexpr std::size_t kWholeLevel = 1;
 
@@ -231,8 +233,22 @@ void BlockCuller::add_blocks(const TouchedParts& touched, const TouchedParts::Ti
 
 Candidates BlockCuller::all(int threads) const {
   const TouchedParts touched = find(threads);
-  Candidates candidates;
-  for (const auto& tile : touched.tiles) add_blocks(touched, tile, candidates);
+  const int groups = touched.parts.size() < kPartsForThreads ? 1 : threads;
+  std::vector<Candidates> of_group(static_cast<std::size_t>(groups));
+  mesh::parallel_for(groups, groups, [&](int group) {
+    const std::size_t tiles = touched.tiles.size(), count = static_cast<std::size_t>(groups),
+                      number = static_cast<std::size_t>(group);
+    for (std::size_t i = number * tiles / count; i < (number + 1) * tiles / count; ++i)
+      add_blocks(touched, touched.tiles[i], of_group[number]);
+  });
+  Candidates candidates = std::move(of_group.front());
+  for (std::size_t i = 1; i < of_group.size(); ++i) {
+    const std::uint32_t offset = candidates.segment_lists.append(of_group[i].segment_lists);
+    for (CandidateBlock& block : of_group[i].blocks) {
+      block.segments += offset;
+      candidates.blocks.push_back(block);
+    }
+  }
   return candidates;
 }
 

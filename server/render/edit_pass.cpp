@@ -114,8 +114,7 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, const glm::
     const PageId page = layer.page(block.tile);
     return page == shader::kNoPage ? 0u : page >> shader::kPageChunkShift;
   };
-  std::stable_sort(edit.blocks.begin(), edit.blocks.end(),
-                   [&](const CandidateBlock& a, const CandidateBlock& b) { return chunk_of(a) < chunk_of(b); });
+  if (!std::ranges::is_sorted(edit.blocks, {}, chunk_of)) std::ranges::stable_sort(edit.blocks, {}, chunk_of);
   std::vector<shader::EditBlock> blocks;
   blocks.reserve(edit.blocks.size());
   for (const CandidateBlock& block : edit.blocks) {

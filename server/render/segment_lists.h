@@ -19,6 +19,13 @@ class SegmentLists {
     }
     return static_cast<std::uint32_t>(last_list_);
   }
+  // Where the first of the others' lists begins among these from now on.
+  std::uint32_t append(const SegmentLists& others) {
+    const std::size_t begin = numbers_.size();
+    last_list_ = begin + others.last_list_;
+    numbers_.insert(numbers_.end(), others.numbers_.begin(), others.numbers_.end());
+    return static_cast<std::uint32_t>(begin);
+  }
   std::span<const std::uint32_t> at(std::uint32_t first, std::uint32_t count) const {
     return std::span(numbers_).subspan(first, count);
   }
