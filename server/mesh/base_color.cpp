@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
 #include <string>
 
+#include "mesh/buckets.h"
 #include "mesh/color_math.h"
 #include "mesh/gutter_fill.h"
 #include "mesh/load_formats.h"
@@ -127,31 +127,28 @@ class Baker {
     std::vector<PictureInfo> infos(textures);
     for (std::size_t i = 0; i < textures; ++i)
       if (const auto info = inspect_picture(mesh_.textures[i].bytes); info) infos[i] = *info;
-    // Triangles in the order of their textures; those without come first.
-    std::vector<std::uint32_t> begin(textures + 2, 0);
     std::vector<Share> shares(textures + 1);
     for (std::size_t t = 0; t < mesh_.triangle_count(); ++t) {
       const int texture = material_of(t).texture;
-      ++begin[texture + 2];
       Share& share = shares[texture + 1];
       share.atlas += uv_area(t, &Baker::atlas_uv);
       if (texture >= 0)
         share.texture_pixels +=
             uv_area(t, &Baker::texture_uv) * double(infos[texture].width) * double(infos[texture].height);
     }
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<std::uint32_t> order(mesh_.triangle_count());
-    {
-      auto cursor = begin;
-      for (std::uint32_t t = 0; t < order.size(); ++t) order[cursor[material_of(t).texture + 1]++] = t;
-    }
+    // Triangles by their textures; those without come first.
+    const auto place_of = [&](std::uint32_t t) { return material_of(t).texture + 1; };
+    const Buckets by_texture(static_cast<int>(textures) + 1, static_cast<std::uint32_t>(mesh_.triangle_count()),
+                             [&](std::uint32_t t) {
+                               return std::pair{place_of(t), place_of(t)};
+                             });
     const int side = resolution_for(shares);
     picture_.width = picture_.height = side;
     picture_.rgba.assign(std::size_t(side) * side * 4, 0);
     for (std::size_t i = 0; i <= textures; ++i) {
       progress_.report(0.7 * double(i) / double(textures + 1), "Painting the base colour");
       if (progress_.cancelled()) return cancelled_problem();
-      const std::span<const std::uint32_t> triangles(order.data() + begin[i], begin[i + 1] - begin[i]);
+      const auto triangles = by_texture[static_cast<int>(i)];
       if (triangles.empty()) continue;
       Picture source;
       if (i > 0) source = decoded(mesh_.textures[i - 1], shares[i], side);

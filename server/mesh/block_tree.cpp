@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/longest_axis.h"
 #include "mesh/parallel.h"
 
 namespace strata::mesh {
@@ -22,10 +23,6 @@ struct Box {
     low = glm::min(low, center - radius);
     high = glm::max(high, center + radius);
   }
-  int longest_axis() const {
-    const glm::vec3 extent = high - low;
-    return extent.x >= extent.y ? (extent.x >= extent.z ? 0 : 2) : (extent.y >= extent.z ? 1 : 2);
-  }
 };
 
 Box box_of(const glm::vec3* positions, std::uint64_t texels) {
@@ -37,7 +34,7 @@ Box box_of(const glm::vec3* positions, std::uint64_t texels) {
 // The texels on the lower side of the widest gap along the box's longest axis, if that is wide enough; else all.
 std::uint64_t below_gap(const glm::vec3* positions, std::uint64_t texels, float least_gap) {
   const Box box = box_of(positions, texels);
-  const int axis = box.longest_axis();
+  const int axis = longest_axis(box.high - box.low);
   const float extent = box.high[axis] - box.low[axis];
   if (!(extent > least_gap)) return texels;
   std::array<std::uint64_t, kBins> bins{};
@@ -86,7 +83,7 @@ std::size_t halve(std::vector<BoundedPart>& parts, Range range) {
   const std::size_t middle = range.first + subtrees / 2 * subtree;
   Box box;
   for (std::size_t i = range.first; i < range.last; ++i) box.add(parts[i].bounds.center);
-  const int axis = box.longest_axis();
+  const int axis = longest_axis(box.high - box.low);
   const auto at = [&](std::size_t i) { return parts.begin() + static_cast<std::ptrdiff_t>(i); };
   std::nth_element(at(range.first), at(middle), at(range.last), [axis](const BoundedPart& a, const BoundedPart& b) {
     return a.bounds.center[axis] < b.bounds.center[axis];
@@ -135,12 +132,16 @@ BoundingSphere bounds_of(const glm::vec3* positions, std::uint64_t owned, float 
   return bounds;
 }
 
-void add_parts_of_block(BlockTree::Part whole, const glm::vec3* positions, std::uint64_t owned, float least_gap,
+void add_parts_of_block(BoundedPart whole, const glm::vec3* positions, std::uint64_t owned, float least_gap,
                         float slack, std::vector<BoundedPart>& parts) {
   std::vector<std::uint64_t> found;
   cut(positions, owned, least_gap, kMostCuts, found);
-  whole.shares_block = found.size() > 1;
-  for (const std::uint64_t texels : found) parts.push_back({whole, bounds_of(positions, texels, slack)});
+  if (found.size() == 1) {
+    parts.push_back(whole);
+    return;
+  }
+  whole.part.shares_block = true;
+  for (const std::uint64_t texels : found) parts.push_back({whole.part, bounds_of(positions, texels, slack)});
 }
 
 BlockTree build_block_tree(std::vector<BoundedPart> parts, float slack, int threads) {

@@ -37,9 +37,9 @@ struct BoundedPart {
 };
 BlockTree build_block_tree(std::vector<BoundedPart> parts, float slack, int threads);
 
-// Adds the parts of a block: texels between which there is nothing for `least_gap` are apart. `positions` are its 64, of which
-// those in `owned` count; every bound is wider by `slack`.
-void add_parts_of_block(BlockTree::Part whole, const glm::vec3* positions, std::uint64_t owned, float least_gap,
+// Adds the parts of a block, `whole` where it is one: texels between which there is nothing for `least_gap` are apart.
+// `positions` are its 64, of which those in `owned` count; every bound is wider by `slack`.
+void add_parts_of_block(BoundedPart whole, const glm::vec3* positions, std::uint64_t owned, float least_gap,
                         float slack, std::vector<BoundedPart>& parts);
 
 // Around the texels of `owned`.

@@ -10,8 +10,7 @@ void SurfaceBake::credit_areas(int band) {
   const int y_low = first_row(band), y_high = first_row(band + 1);
   auto& leftovers = leftovers_[band];
   TexelPieces pieces;
-  for (auto i = band_first_[band]; i < band_first_[band + 1]; ++i) {
-    const auto t = band_triangles_[i];
+  for (const std::uint32_t t : triangles_of_band_[band]) {
     if (triangle_area_[t] <= 0) continue;
     const auto island = islands_.of_triangle[t];
     const auto credit = [&](int x, int y, double area) {

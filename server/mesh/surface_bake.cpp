@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <thread>
 
@@ -21,7 +20,11 @@ double inside_unit(float value) { return value >= 0 ? std::min(double{value}, 1.
 }  // namespace
 
 SurfaceBake::SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map, BakeFor purpose)
-    : geometry_(geometry), map_(map), resolution_(resolution), purpose_(purpose) {
+    : geometry_(geometry),
+      map_(map),
+      resolution_(resolution),
+      purpose_(purpose),
+      band_count_(std::min(kMostBands, resolution / kBlockSize)) {
   map.resolution = resolution;
   map.blocks_per_side = resolution / kBlockSize;
   snapped_.reserve(geometry.vertices.size());
@@ -39,7 +42,7 @@ SurfaceBake::SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& m
   const auto blocks = static_cast<std::size_t>(map.blocks_per_side) * map.blocks_per_side;
   surface_of_block_.assign(blocks, 0);
   gutter_of_block_.assign(blocks, 0);
-  bin_triangles();
+  triangles_of_band_ = triangles_by_band();
   borrowed_.resize(band_count());
   claims_.resize(band_count());
   leftovers_.resize(band_count());
@@ -47,32 +50,18 @@ SurfaceBake::SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& m
   parts_of_band_.resize(band_count());
 }
 
-void SurfaceBake::bin_triangles() {
-  const int bands = std::min(kMostBands, map_.blocks_per_side);
-  band_first_.assign(bands + 1, 0);
+Buckets SurfaceBake::triangles_by_band() const {
   std::vector<std::uint8_t> band_of_row(resolution_);
-  for (int band = 0; band < bands; ++band)
+  for (int band = 0; band < band_count_; ++band)
     std::fill(band_of_row.begin() + first_row(band), band_of_row.begin() + first_row(band + 1),
               static_cast<std::uint8_t>(band));
-  const auto bands_of = [&](std::uint32_t t) {
-    const int a = snapped_[vertex(t, 0)].y, b = snapped_[vertex(t, 1)].y, c = snapped_[vertex(t, 2)].y;
-    // One subtexel wider, as areas are clipped at the exact coordinates.
-    const int low = std::clamp((std::min({a, b, c}) - 1) >> 8, 0, resolution_ - 1);
-    const int high = std::clamp((std::max({a, b, c}) + 1) >> 8, 0, resolution_ - 1);
-    return std::pair{band_of_row[low], band_of_row[high]};
-  };
-  const auto count = static_cast<std::uint32_t>(geometry_.triangle_count());
-  for (std::uint32_t t = 0; t < count; ++t) {
-    const auto [low, high] = bands_of(t);
-    for (int band = low; band <= high; ++band) ++band_first_[band + 1];
-  }
-  std::partial_sum(band_first_.begin(), band_first_.end(), band_first_.begin());
-  band_triangles_.resize(band_first_.back());
-  auto cursor = band_first_;
-  for (std::uint32_t t = 0; t < count; ++t) {
-    const auto [low, high] = bands_of(t);
-    for (int band = low; band <= high; ++band) band_triangles_[cursor[band]++] = t;
-  }
+  return {band_count_, static_cast<std::uint32_t>(geometry_.triangle_count()), [&](std::uint32_t t) {
+            const int a = snapped_[vertex(t, 0)].y, b = snapped_[vertex(t, 1)].y, c = snapped_[vertex(t, 2)].y;
+            // One subtexel wider, as areas are clipped at the exact coordinates.
+            const int low = std::clamp((std::min({a, b, c}) - 1) >> 8, 0, resolution_ - 1);
+            const int high = std::clamp((std::max({a, b, c}) + 1) >> 8, 0, resolution_ - 1);
+            return std::pair{band_of_row[low], band_of_row[high]};
+          }};
 }
 
 glm::dvec2 SurfaceBake::texels_at(std::uint32_t triangle, int k) const {
@@ -113,9 +102,8 @@ std::uint32_t SurfaceBake::owner(int x, int y) const {
 
 void SurfaceBake::mark_surface(int band) {
   const int y_low = first_row(band), y_high = first_row(band + 1);
-  const auto begin = band_first_[band], end = band_first_[band + 1];
-  for (auto i = begin; i < end; ++i)
-    raster_of(band_triangles_[i]).for_each_span(0, resolution_, y_low, y_high, [&](int y, int x0, int x1) {
+  for (const std::uint32_t t : triangles_of_band_[band])
+    raster_of(t).for_each_span(0, resolution_, y_low, y_high, [&](int y, int x0, int x1) {
       std::uint64_t* row = surface_of_block_.data() + static_cast<std::size_t>(y >> 3) * map_.blocks_per_side;
       for (int x = x0; x < x1;) {
         const int next = std::min(x1, (x | 7) + 1);
@@ -127,8 +115,7 @@ void SurfaceBake::mark_surface(int band) {
     });
   // Triangles between the centres: they get the texel of their centroid where no other triangle owns it.
   auto& claims = claims_[band];
-  for (auto i = begin; i < end; ++i) {
-    const auto t = band_triangles_[i];
+  for (const std::uint32_t t : triangles_of_band_[band]) {
     if (triangle_area_[t] <= 0) continue;
     const auto texel = centroid_texel(t);
     const int x = static_cast<int>(texel % resolution_), y = static_cast<int>(texel / resolution_);
@@ -282,8 +269,7 @@ void SurfaceBake::place_surface(int band) {
       position_[texel] = plane.at(x + 0.5, y + 0.5);
   };
   std::vector<std::uint32_t> shared;
-  for (auto i = band_first_[band]; i < band_first_[band + 1]; ++i) {
-    const auto t = band_triangles_[i];
+  for (const std::uint32_t t : triangles_of_band_[band]) {
     const CoverageRaster raster = raster_of(t);
     // Most triangles of a dense scan cover little; the plane is worked out when the first texel asks for it.
     std::optional<PositionPlane> plane;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "mesh/buckets.h"
 #include "mesh/geometry.h"
 #include "mesh/surface_map.h"
 #include "mesh/texel_raster.h"
@@ -23,7 +24,7 @@ class SurfaceBake {
  public:
   SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map, BakeFor purpose = BakeFor::map);
 
-  int band_count() const { return static_cast<int>(band_first_.size()) - 1; }
+  int band_count() const { return band_count_; }
 
   void mark_surface(int band);     // which texels are surface, into masks of all blocks
   void mark_gutter(int band);      // after mark_surface of all bands
@@ -64,7 +65,7 @@ class SurfaceBake {
   std::uint32_t centroid_texel(std::uint32_t triangle) const;  // y * resolution + x
   int first_block_row(int band) const { return band * map_.blocks_per_side / band_count(); }
   int first_row(int band) const { return first_block_row(band) * kBlockSize; }
-  void bin_triangles();
+  Buckets triangles_by_band() const;
   template <class Visit>
   void for_each_slot(int band, Visit visit);
 
@@ -80,10 +81,11 @@ class SurfaceBake {
   SurfaceMap& map_;
   const int resolution_;
   const BakeFor purpose_;
+  const int band_count_;
   std::vector<SnappedPoint> snapped_;
   std::vector<float> triangle_area_;
   UvIslands islands_;
-  std::vector<std::uint32_t> band_first_, band_triangles_;
+  Buckets triangles_of_band_;
   std::vector<std::uint64_t> surface_of_block_, gutter_of_block_;
   std::vector<std::vector<Claim>> claims_;
   std::vector<std::vector<Borrowed>> borrowed_;

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numeric>
+#include <utility>
+
+#include "mesh/buckets.h"
+#include "mesh/longest_axis.h"
 
 namespace strata::mesh {
 namespace {
@@ -26,7 +29,7 @@ struct Piece {
 // Which of the six axis directions a normal is nearest to.
 std::uint64_t facing(const glm::vec3& n) {
   const glm::vec3 size = glm::abs(n);
-  const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
+  const int axis = longest_axis(size);
   return std::uint64_t{2} * static_cast<std::uint64_t>(axis) + (n[axis] < 0 ? 1u : 0u);
 }
 
@@ -38,10 +41,10 @@ class SampleBands {
   SampleBands(const Geometry& geometry, SurfaceSamples& samples)
       : geometry_(geometry), samples_(samples), cell_(samples.radius_ / kCellsPerRadius) {
     const glm::vec3 extent = geometry.box_max - geometry.box_min;
-    axis_ = extent.x >= extent.y ? (extent.x >= extent.z ? 0 : 2) : (extent.y >= extent.z ? 1 : 2);
+    axis_ = longest_axis(extent);
     cells_ = static_cast<int>(std::min(std::floor(extent[axis_] / cell_) + 1.0f, static_cast<float>(kMostCells)));
     bands_.resize(std::min(kMostBands, cells_));
-    bin_triangles();
+    triangles_of_band_ = triangles_by_band();
   }
 
   int count() const { return static_cast<int>(bands_.size()); }
@@ -51,8 +54,9 @@ class SampleBands {
     Band& band = bands_[which];
     const int first_cell = first_cell_of(which), end_cell = first_cell_of(which + 1);
     std::vector<Piece> pieces;
-    pieces.reserve(2 * (first_[which + 1] - first_[which]));
-    for (std::uint32_t i = first_[which]; i < first_[which + 1]; ++i) cut(triangles_[i], first_cell, end_cell, pieces);
+    const auto triangles = triangles_of_band_[which];
+    pieces.reserve(2 * triangles.size());
+    for (const std::uint32_t t : triangles) cut(t, first_cell, end_cell, pieces);
     std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& p, const Piece& q) { return p.group < q.group; });
 
     struct Keyed {
@@ -129,26 +133,15 @@ class SampleBands {
     return geometry_.vertices[geometry_.indices[3 * std::size_t{triangle} + k]].position;
   }
 
-  void bin_triangles() {
-    const auto bands_of = [&](std::uint32_t t) {
-      const float a = corner(t, 0)[axis_], b = corner(t, 1)[axis_], c = corner(t, 2)[axis_];
-      // A cell wider, for what rounding moves.
-      const auto cell_at = [&](float at) { return static_cast<int>(std::floor((at - samples_.low_[axis_]) / cell_)); };
-      return std::pair{band_of(cell_at(std::min({a, b, c})) - 1), band_of(cell_at(std::max({a, b, c})) + 1)};
-    };
-    const auto triangles = static_cast<std::uint32_t>(geometry_.triangle_count());
-    first_.assign(bands_.size() + 1, 0);
-    for (std::uint32_t t = 0; t < triangles; ++t) {
-      const auto [low, high] = bands_of(t);
-      for (int band = low; band <= high; ++band) ++first_[band + 1];
-    }
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    triangles_.resize(first_.back());
-    auto cursor = first_;
-    for (std::uint32_t t = 0; t < triangles; ++t) {
-      const auto [low, high] = bands_of(t);
-      for (int band = low; band <= high; ++band) triangles_[cursor[band]++] = t;
-    }
+  Buckets triangles_by_band() const {
+    return {count(), static_cast<std::uint32_t>(geometry_.triangle_count()), [&](std::uint32_t t) {
+              const float a = corner(t, 0)[axis_], b = corner(t, 1)[axis_], c = corner(t, 2)[axis_];
+              // A cell wider, for what rounding moves.
+              const auto cell_at = [&](float at) {
+                return static_cast<int>(std::floor((at - samples_.low_[axis_]) / cell_));
+              };
+              return std::pair{band_of(cell_at(std::min({a, b, c})) - 1), band_of(cell_at(std::max({a, b, c})) + 1)};
+            }};
   }
 
   // Appends the pieces of a triangle that lie in cells [first, end) along the axis.
@@ -195,7 +188,7 @@ class SampleBands {
   const float cell_;
   int axis_ = 0, cells_ = 1;
   std::vector<Band> bands_;
-  std::vector<std::uint32_t> first_, triangles_;  // those of a band, in ascending order
+  Buckets triangles_of_band_;
 };
 
 double SurfaceSamples::least_radius(double area, const glm::dvec3& extent) {

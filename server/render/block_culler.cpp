@@ -40,6 +40,7 @@ double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
 constexpr std::size_t kSharedLevel = 3;
 constexpr std::size_t kSubtreesForThreads = 32;
 
+// So many parts are worth the start of threads that make their list of blocks.
 constexpr std::size_t kPartsForThreads = 8192;
 
 // Under a large tool most blocks are taken by the eight: to test each costs as much as to paint it.
@@ -106,78 +107,64 @@ BlockCuller::BlockCuller(const mesh::SurfaceMap& map, const glm::dmat4& clip_fro
       grid_(grid),
       tool_planes_(sides_of(path.box, clip_from_model, width, height)) {}
 
-// take(level, index, under) of the subtrees that pass, each as soon as it is of `stop_level` or wholly in the tool.
+// take(level, index, under) of the subtrees below one that passed, each as soon as it is of `stop_level` or wholly in the tool.
 template <class Take>
-void BlockCuller::descend(std::size_t level, std::size_t first, std::size_t last, const Under& parent,
-                          std::size_t stop_level, Scratch& scratch, Take&& take) const {
-  Under& under = scratch[level];
-  for (std::size_t i = first; i < last; ++i) {
-    const auto& bounds = map_.tree.levels[level][i];
-    if (leaves_out(bounds) || !passes(bounds, parent, under)) continue;
-    if (level == stop_level || (level <= kWholeLevel && under.all_of_it)) {
-      take(level, i, under);
-    } else {
-      const std::size_t child = i * mesh::BlockTree::kChildren;
-      descend(level - 1, child, std::min(child + mesh::BlockTree::kChildren, map_.tree.levels[level - 1].size()), under,
-              stop_level, scratch, take);
-    }
+void BlockCuller::descend(std::size_t level, std::size_t index, const Under& under, std::size_t stop_level,
+                          Scratch& scratch, Take&& take) const {
+  if (level == stop_level || (level <= kWholeLevel && under.all_of_it)) {
+    take(level, index, under);
+    return;
   }
+  const auto& children = map_.tree.levels[level - 1];
+  const std::size_t first = index * mesh::BlockTree::kChildren;
+  Under& under_child = scratch[level - 1];
+  for (std::size_t child = first; child < std::min(first + mesh::BlockTree::kChildren, children.size()); ++child)
+    if (passes(children[child], under, under_child)) descend(level - 1, child, under_child, stop_level, scratch, take);
 }
 
 std::vector<BlockCuller::Subtree> BlockCuller::find_subtrees() const {
   const auto& levels = map_.tree.levels;
   if (levels.empty()) return {};
-  Under all;
+  Under all, under;
   all.segments.resize(path_.segments.size());
   std::iota(all.segments.begin(), all.segments.end(), 0u);
+  const std::size_t top = levels.size() - 1;
+  if (!passes(levels[top].front(), all, under)) return {};
   Scratch scratch;
   std::vector<Subtree> found;
-  const std::size_t top = levels.size() - 1;
-  descend(top, 0, 1, all, std::min(top, kSharedLevel), scratch,
-          [&](std::size_t level, std::size_t index, const Under& under) {
-            found.push_back({level, index, under});
+  descend(top, 0, under, std::min(top, kSharedLevel), scratch,
+          [&](std::size_t level, std::size_t index, const Under& of_it) {
+            found.push_back({level, index, of_it});
           });
   return found;
 }
 
-std::vector<TouchedParts::Part> BlockCuller::find_parts(const Subtree& subtree, SegmentLists& lists) const {
-  const auto& levels = map_.tree.levels;
-  std::vector<TouchedParts::Part> found;
+BlockCuller::Found BlockCuller::find_parts(const Subtree& subtree) const {
+  Found found;
   const auto take = [&](std::size_t level, std::size_t index, const Under& under) {
-    const auto list = lists.add(under.segments);
+    const auto list = found.segment_lists.add(under.segments);
     const auto count = static_cast<std::uint32_t>(under.segments.size());
     std::size_t first = index, last = index + 1;
     for (; level > 0; --level) first *= mesh::BlockTree::kChildren, last *= mesh::BlockTree::kChildren;
-    for (last = std::min(last, levels[0].size()); first < last; ++first)
-      found.push_back({static_cast<std::uint32_t>(first), list, count, 0, under.all_of_it});
+    for (last = std::min(last, map_.tree.parts.size()); first < last; ++first)
+      found.parts.push_back({static_cast<std::uint32_t>(first), list, count, under.all_of_it});
   };
-  if (subtree.level == 0 || (subtree.level <= kWholeLevel && subtree.under.all_of_it)) {
-    take(subtree.level, subtree.index, subtree.under);
-    return found;
-  }
   Scratch scratch;
-  const std::size_t child = subtree.index * mesh::BlockTree::kChildren, level = subtree.level - 1;
-  descend(level, child, std::min(child + mesh::BlockTree::kChildren, levels[level].size()), subtree.under, 0, scratch,
-          take);
+  descend(subtree.level, subtree.index, subtree.under, 0, scratch, take);
   return found;
 }
 
 TouchedParts BlockCuller::find(int threads) const {
   const auto subtrees = find_subtrees();
-  TouchedParts touched;
-  touched.segment_lists.resize(subtrees.size());
-  std::vector<std::vector<TouchedParts::Part>> found(subtrees.size());
+  std::vector<Found> found(subtrees.size());
   mesh::parallel_for(subtrees.size() < kSubtreesForThreads ? 1 : threads, static_cast<int>(subtrees.size()),
-                     [&](int number) {
-                       const auto i = static_cast<std::size_t>(number);
-                       found[i] = find_parts(subtrees[i], touched.segment_lists[i]);
-                       for (auto& part : found[i]) part.subtree = static_cast<std::uint16_t>(i);
-                     });
+                     [&](int i) { found[i] = find_parts(subtrees[i]); });
 
+  TouchedParts touched;
   const std::size_t per_side = static_cast<std::size_t>(map_.resolution / kTileSize);
   std::vector<std::uint32_t> end(per_side * per_side, 0);
-  for (const auto& parts : found)
-    for (const auto& part : parts) ++end[map_.tree.parts[part.part].tile];
+  for (const Found& of_subtree : found)
+    for (const auto& part : of_subtree.parts) ++end[map_.tree.parts[part.part].tile];
   std::size_t count = 0;
   for (std::size_t tile = 0; tile < end.size(); ++tile) {
     if (end[tile] == 0) continue;
@@ -186,8 +173,13 @@ TouchedParts BlockCuller::find(int threads) const {
     count += std::exchange(end[tile], static_cast<std::uint32_t>(count));
   }
   touched.parts.resize(count);
-  for (const auto& parts : found)
-    for (const auto& part : parts) touched.parts[end[map_.tree.parts[part.part].tile]++] = part;
+  for (const Found& of_subtree : found) {
+    const std::uint32_t offset = touched.segment_lists.append(of_subtree.segment_lists);
+    for (auto part : of_subtree.parts) {
+      part.segments += offset;
+      touched.parts[end[map_.tree.parts[part.part].tile]++] = part;
+    }
+  }
   return touched;
 }
 
@@ -208,7 +200,7 @@ void BlockCuller::add_blocks(const TouchedParts& touched, const TouchedParts::Ti
     if (first[place] == kNone) continue;
     const TouchedParts::Part& part = parts[first[place]];
     const auto list_of = [&](const TouchedParts::Part& of) {
-      return touched.segment_lists[of.subtree].at(of.segments, of.segment_count);
+      return touched.segment_lists.at(of.segments, of.segment_count);
     };
     const mesh::BlockTree::Part& in_tree = map_.tree.parts[part.part];
     CandidateBlock block{in_tree.slot, tile.address, place, 0, part.segment_count, part.part, part.in_tool};
@@ -253,6 +245,7 @@ Candidates BlockCuller::all(int threads) const {
 }
 
 bool BlockCuller::passes(const mesh::BoundingSphere& bounds, const Under& parent, Under& under) const {
+  if (leaves_out(bounds)) return false;
   const auto box = project(bounds);
   if (!box) return false;
   if (parent.all_of_it) {

@@ -49,9 +49,8 @@ struct Candidates {
 struct TouchedParts {
   struct Part {
     std::uint32_t part;
-    std::uint32_t segments;  // first in the lists of its subtree
+    std::uint32_t segments;  // first in `segment_lists`
     std::uint32_t segment_count;
-    std::uint16_t subtree;
     bool in_tool;
   };
   struct Tile {
@@ -59,8 +58,8 @@ struct TouchedParts {
     std::size_t first, count;  // in `parts`
   };
   std::vector<Part> parts;
-  std::vector<Tile> tiles;                  // row-major
-  std::vector<SegmentLists> segment_lists;  // a subtree
+  std::vector<Tile> tiles;  // row-major
+  SegmentLists segment_lists;
 };
 
 // Exact window box of a sphere (`z0`: nearest window depth, `w0`: smallest w); empty when it is behind the eye; the whole
@@ -92,16 +91,20 @@ class BlockCuller {
     std::vector<std::uint32_t> segments;
     bool all_of_it = false;  // under the one segment that is left
   };
-  struct Subtree {
+  struct Subtree {  // that passed
     std::size_t level, index;
     Under under;
   };
+  struct Found {  // in a subtree
+    std::vector<TouchedParts::Part> parts;
+    SegmentLists segment_lists;
+  };
   using Scratch = std::array<Under, 16>;  // one a level of the tree
   template <class Take>
-  void descend(std::size_t level, std::size_t first, std::size_t last, const Under& parent, std::size_t stop_level,
-               Scratch& scratch, Take&& take) const;
+  void descend(std::size_t level, std::size_t index, const Under& under, std::size_t stop_level, Scratch& scratch,
+               Take&& take) const;
   std::vector<Subtree> find_subtrees() const;
-  std::vector<TouchedParts::Part> find_parts(const Subtree& subtree, SegmentLists& lists) const;
+  Found find_parts(const Subtree& subtree) const;
   bool passes(const mesh::BoundingSphere& bounds, const Under& parent, Under& under) const;
   std::optional<WindowBox> project(const mesh::BoundingSphere& bounds) const;
   bool leaves_out(const mesh::BoundingSphere& bounds) const;

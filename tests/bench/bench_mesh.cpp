@@ -89,14 +89,11 @@ Result<std::vector<std::string>> all_meshes() {
     if (entry.is_regular_file() && mesh::input_kind(plain_name(entry.path())) != mesh::InputKind::companion)
       names.push_back(entry.path().string());
   if (error) return fail(404, "No data folder", "There is no data folder at " + data.string() + ".");
-  // The scans first, the broken ones after them.
-  std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
-    const auto is_nasty = [](const std::string& name) { return name.find("/nasty/") != std::string::npos; };
-    return is_nasty(a) != is_nasty(b) ? is_nasty(b) : a < b;
-  });
-  names.insert(std::find_if(names.begin(), names.end(),
-                            [](const std::string& name) { return name.find("/nasty/") != std::string::npos; }),
-               kPresets.begin(), kPresets.end());
+  // The scans first, the presets, then the broken ones.
+  std::sort(names.begin(), names.end());
+  const auto nasty = std::stable_partition(
+      names.begin(), names.end(), [](const std::string& name) { return name.find("/nasty/") == std::string::npos; });
+  names.insert(nasty, kPresets.begin(), kPresets.end());
   return names;
 }
 

@@ -23,7 +23,8 @@ std::array<glm::vec3, 64> flat_block(const glm::vec3& corner) {
 
 std::vector<BoundedPart> parts_of(const std::array<glm::vec3, 64>& positions, std::uint64_t owned) {
   std::vector<BoundedPart> parts;
-  add_parts_of_block({7, 3, 21, false}, positions.data(), owned, kGap, 1e-6f, parts);
+  const BoundingSphere bounds = bounds_of(positions.data(), owned, 1e-6f);
+  add_parts_of_block({{7, 3, 21, false}, bounds}, positions.data(), owned, kGap, 1e-6f, parts);
   return parts;
 }
 
