@@ -220,8 +220,21 @@ RASTER = {  # the layer's type, then the file
     "f32.npy": b"\7\x93NUMPY\1\0" + struct.pack("<H", len(numpy_head)) + numpy_head + struct.pack("<fB", 1.5, 1),
 }
 REVISION = {"u8": b"\0\1\0\xff", "f32": b"\7" + struct.pack("<2f", 1, -2.5), "stored": b"\3\1\1(\xb5/\xfd\x20\x04\x21\0\0abcd"}
+CSV = {
+    "comma": b"\xef\xbb\xbfkey,name\r\n1,\"a \"\"b\"\"\nc\"\r\n\r\n2,\r\n",
+    "semicolon": b"sep=;\nkey;depth\n1;3,5\n2;'=1+1",
+    "tab": b"key\tname\r1\t\"x\"\r",
+}
+EDTF = {name: text.encode() for name, text in {
+    "day": "1560-04-12?", "season": "2001-21~", "digits": "156X", "month": "1560-02-XX", "far": "Y-17000%", "range": "-0043~/0100-12?",
+    "open": "../1560"}.items()}
+COLUMN_VALUE = {name: bytes((kind, flags)) + text.encode() for name, kind, flags, text in (
+    ("text", 0, 0, '"\'=1+1"'), ("integer", 1, 1, "-42"), ("numeric", 2, 2, "3,5"), ("boolean", 3, 0, "Yes"), ("date", 4, 0, "2024-02-29"),
+    ("timestamp", 5, 0, "2024-02-29 12:30:15.123-01:30"), ("period", 6, 0, "1560~/.."), ("choice", 7, 1, '"=b"'),
+    ("url", 8, 0, "https://example.org/"), ("term", 9, 0, "4294967295"), ("relation", 10, 0, "[3, 1, 3]"), ("keys", 10, 1, "3; 1 2"))}
 for folder, seeds in (("stl", STL), ("gltf", GLTF), ("mtl", MTL), ("zip", ZIP), ("map", MAP), ("form", FORM), ("text", TEXT),
-                      ("expression", EXPRESSION), ("picture", PICTURE), ("raster", RASTER), ("revision", REVISION)):
+                      ("expression", EXPRESSION), ("picture", PICTURE), ("raster", RASTER), ("revision", REVISION),
+                      ("csv", CSV), ("edtf", EDTF), ("column_value", COLUMN_VALUE)):
     (HERE / folder).mkdir(exist_ok=True)
     for name, content in seeds.items():
         (HERE / folder / name).write_bytes(content)

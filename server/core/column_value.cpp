@@ -1,0 +1,318 @@
+#include "core/column_value.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "core/csv.h"
+#include "core/edtf.h"
+#include "core/utf8.h"
+
+namespace strata {
+namespace {
+
+using nlohmann::json;
+
+tl::unexpected<Problem> refuse(const Column& column, const std::string& what, const std::string& field) {
+  return fail(422, "Bad value", "\"" + column.name + "\" holds " + what + ".", field);
+}
+
+std::string number_text(double number) {
+  char text[40];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+Result<json> check_limits(const Column& column, double number, json value, const std::string& field) {
+  if (column.minimum && number < *column.minimum)
+    return fail(422, "Value out of range", "\"" + column.name + "\" is at least " + number_text(*column.minimum) + ".",
+                field);
+  if (column.maximum && number > *column.maximum)
+    return fail(422, "Value out of range", "\"" + column.name + "\" is at most " + number_text(*column.maximum) + ".",
+                field);
+  return value;
+}
+
+Result<json> check_integer(const Column& column, const json& value, const std::string& field) {
+  // A whole number written as 3.0 or 1e3 is one.
+  const double number = value.is_number() ? value.get<double>() : NAN;
+  if (!(std::abs(number) <= static_cast<double>(kGreatestInteger)) || std::trunc(number) != number)
+    return refuse(column, "whole numbers of at most 2^53", field);
+  return check_limits(column, number, static_cast<std::int64_t>(number), field);
+}
+
+Result<json> check_numeric(const Column& column, const json& value, const std::string& field) {
+  const double number = value.is_number() ? value.get<double>() : NAN;
+  if (!std::isfinite(number)) return refuse(column, "finite numbers", field);
+  return check_limits(column, number, number == 0 ? 0.0 : number, field);  // no -0, which is 0 in a text
+}
+
+Result<std::string> check_text(const Column& column, const json& value, const char* what, const std::string& field) {
+  if (!value.is_string()) return refuse(column, what, field);
+  const auto& text = value.get_ref<const std::string&>();
+  if (text.size() > kLongestText || !is_utf8(text) || text.find('\0') != std::string::npos)
+    return refuse(column, "UTF-8 of at most " + std::to_string(kLongestText) + " bytes, without U+0000", field);
+  return text;
+}
+
+std::optional<int> two_digits(std::string_view text, std::size_t at) {
+  if (at + 2 > text.size()) return std::nullopt;
+  const char tens = text[at], ones = text[at + 1];
+  if (tens < '0' || tens > '9' || ones < '0' || ones > '9') return std::nullopt;
+  return (tens - '0') * 10 + ones - '0';
+}
+
+// YYYY-MM-DD from year 1 on: what calendars of databases and spreadsheets have in common. Earlier days are periods.
+std::optional<std::int64_t> day_of(std::string_view text) {
+  if (text.size() != 10 || text[4] != '-' || text[7] != '-') return std::nullopt;
+  const auto century = two_digits(text, 0), of_century = two_digits(text, 2), month = two_digits(text, 5),
+             day = two_digits(text, 8);
+  if (!century || !of_century || !month || !day) return std::nullopt;
+  const int year = *century * 100 + *of_century;
+  if (year < 1 || *month < 1 || *month > 12 || *day < 1 || *day > days_in_month(year, *month)) return std::nullopt;
+  return day_number(year, *month, *day);
+}
+
+struct CivilDate {
+  int year = 0, month = 0, day = 0;
+};
+// Howard Hinnant's inverse of day_number, for days from year 0 on.
+CivilDate civil_date(std::int64_t day) {
+  day += 719468;
+  const std::int64_t era = day / 146097;
+  const std::int64_t of_era = day - era * 146097;
+  const std::int64_t year_of_era = (of_era - of_era / 1460 + of_era / 36524 - of_era / 146096) / 365;
+  const std::int64_t of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+  const std::int64_t shifted = (5 * of_year + 2) / 153;
+  const int month = static_cast<int>(shifted < 10 ? shifted + 3 : shifted - 9);
+  return {static_cast<int>(year_of_era + era * 400 + (month <= 2 ? 1 : 0)), month,
+          static_cast<int>(of_year - (153 * shifted + 2) / 5 + 1)};
+}
+
+// RFC 3339 (also with a space for the T, without seconds, and a mere day, which is its midnight in UTC); milliseconds are kept.
+// Without a zone it is UTC. Nothing where it leaves the years 1 to 9999.
+std::optional<std::string> utc_timestamp(std::string_view text) {
+  const auto day = day_of(text.substr(0, 10));
+  if (!day) return std::nullopt;
+  std::int64_t milliseconds = *day * 86'400'000;
+  text.remove_prefix(10);
+  if (!text.empty()) {
+    const auto hour = two_digits(text, 1), minute = two_digits(text, 4);
+    if ((text[0] != 'T' && text[0] != 't' && text[0] != ' ') || !hour || !minute || text[3] != ':' || *hour > 23 ||
+        *minute > 59)
+      return std::nullopt;
+    milliseconds += (*hour * 60 + *minute) * 60'000;
+    text.remove_prefix(6);
+    if (text.starts_with(':')) {
+      const auto second = two_digits(text, 1);
+      if (!second || *second > 59) return std::nullopt;
+      milliseconds += *second * 1000;
+      text.remove_prefix(3);
+      if (text.starts_with('.')) {
+        text.remove_prefix(1);
+        int worth = 100;
+        std::size_t digits = 0;
+        for (; digits < text.size() && text[digits] >= '0' && text[digits] <= '9'; ++digits, worth /= 10)
+          milliseconds += (text[digits] - '0') * worth;
+        if (digits == 0 || digits > 9) return std::nullopt;
+        text.remove_prefix(digits);
+      }
+    }
+    if (text.starts_with('+') || text.starts_with('-')) {
+      const auto hours = two_digits(text, 1), minutes = two_digits(text, 4);
+      if (text.size() != 6 || text[3] != ':' || !hours || !minutes || *hours > 23 || *minutes > 59) return std::nullopt;
+      milliseconds -= (text[0] == '+' ? 1 : -1) * (*hours * 60 + *minutes) * 60'000;
+    } else if (!text.empty() && text != "Z" && text != "z") {
+      return std::nullopt;
+    }
+  }
+  const std::int64_t first = day_number(1, 1, 1) * 86'400'000, end = day_number(10000, 1, 1) * 86'400'000;
+  if (milliseconds < first || milliseconds >= end) return std::nullopt;
+  const std::int64_t since = milliseconds - first;  // not negative
+  const CivilDate date = civil_date(since / 86'400'000 + first / 86'400'000);
+  const int of_day = static_cast<int>(since % 86'400'000);
+  char out[40];
+  std::snprintf(out, sizeof out, "%04d-%02d-%02dT%02d:%02d:%02d.%03dZ", date.year, date.month, date.day,
+                of_day / 3'600'000, of_day / 60'000 % 60, of_day / 1000 % 60, of_day % 1000);
+  return out;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+Result<json> check_url(const Column& column, const std::string& text, const std::string& field) {
+  // Only what a browser opens without running it.
+  const bool known = text.starts_with("https://") || text.starts_with("http://") || text.starts_with("mailto:") ||
+                     text.starts_with("urn:") || text.starts_with("doi:");
+  const bool clean = std::none_of(text.begin(), text.end(), [](char c) {
+    return static_cast<unsigned char>(c) <= ' ' || c == 127 || c == '<' || c == '>' || c == '"' || c == '\\';
+  });
+  if (!known || !clean || text.back() == ':' || text.ends_with("://"))
+    return refuse(column, "addresses that begin with https://, http://, mailto:, urn: or doi:, without spaces", field);
+  return json(text);
+}
+
+std::optional<std::int64_t> key_of(const json& value) {
+  const double number = value.is_number() ? value.get<double>() : NAN;
+  if (!(number >= 0 && number <= static_cast<double>(kHighestKey)) || std::trunc(number) != number) return std::nullopt;
+  return static_cast<std::int64_t>(number);
+}
+
+Result<json> check_relation(const Column& column, const json& value, const std::string& field) {
+  if (!value.is_array()) return refuse(column, "a list of keys", field);
+  if (value.size() > kMostRelated)
+    return refuse(column, "at most " + std::to_string(kMostRelated) + " keys in a record", field);
+  std::vector<std::int64_t> keys;
+  for (const json& item : value) {
+    const auto key = key_of(item);
+    if (!key) return refuse(column, "a list of keys, each from 0 to 4294967295", field);
+    keys.push_back(*key);
+  }
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  if (keys.empty()) return json();
+  return json(keys);
+}
+
+Result<json> check_present(const Column& column, const json& value, const std::string& field) {
+  switch (column.kind) {
+    case ColumnKind::integer: return check_integer(column, value, field);
+    case ColumnKind::numeric: return check_numeric(column, value, field);
+    case ColumnKind::boolean: return value.is_boolean() ? Result<json>(value) : refuse(column, "true or false", field);
+    case ColumnKind::term: {
+      const auto key = key_of(value);
+      return key ? Result<json>(*key) : refuse(column, "the key of a record, from 0 to 4294967295", field);
+    }
+    case ColumnKind::relation: return check_relation(column, value, field);
+    default: break;
+  }
+  auto text = check_text(column, value, "text", field);
+  if (!text) return tl::unexpected(text.error());
+  if (trimmed(*text).empty()) return json();
+  switch (column.kind) {
+    case ColumnKind::date:
+      return day_of(*text) ? Result<json>(*text) : refuse(column, "dates as 2024-02-29, from year 1 on", field);
+    case ColumnKind::timestamp: {
+      auto utc = utc_timestamp(*text);
+      return utc ? Result<json>(std::move(*utc)) : refuse(column, "times as 2024-02-29T12:00:00Z", field);
+    }
+    case ColumnKind::period: {
+      auto period = parse_edtf(*text);
+      if (period) return json(std::move(*text));
+      period.error().field = field;
+      return tl::unexpected(period.error());
+    }
+    case ColumnKind::enumeration: {
+      if (std::find(column.choices.begin(), column.choices.end(), *text) != column.choices.end()) return json(*text);
+      std::string choices;
+      for (const auto& choice : column.choices) {
+        if (choices.size() > 200) {
+          choices += ", …";
+          break;
+        }
+        choices += (choices.empty() ? "" : ", ") + choice;
+      }
+      return refuse(column, "one of: " + choices, field);
+    }
+    case ColumnKind::url: return check_url(column, *text, field);
+    default: return json(std::move(*text));
+  }
+}
+
+std::optional<double> parse_number(std::string_view text, bool decimal_comma) {
+  std::string plain(text);
+  if (plain.starts_with('+')) plain.erase(0, 1);
+  if (decimal_comma && plain.find('.') == std::string::npos && std::count(plain.begin(), plain.end(), ',') == 1)
+    plain[plain.find(',')] = '.';
+  double number = 0;
+  const auto [end, error] = std::from_chars(plain.data(), plain.data() + plain.size(), number);
+  if (error != std::errc() || end != plain.data() + plain.size() || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+std::optional<bool> parse_boolean(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (lower == "true" || lower == "yes" || lower == "1") return true;
+  if (lower == "false" || lower == "no" || lower == "0") return false;
+  return std::nullopt;
+}
+
+std::string plain_text(const json& value) {
+  if (value.is_null()) return {};
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
+  if (value.is_number_float()) return number_text(value.get<double>());
+  if (value.is_number()) return std::to_string(value.get<std::int64_t>());
+  std::string keys;
+  for (const json& key : value) keys += (keys.empty() ? "" : " ") + std::to_string(key.get<std::int64_t>());
+  return keys;
+}
+
+bool is_free_text(ColumnKind kind) {
+  return kind == ColumnKind::text || kind == ColumnKind::enumeration || kind == ColumnKind::url;
+}
+
+}  // namespace
+
+Result<json> check_value(const Column& column, const json& value, const std::string& field) {
+  Result<json> checked = value.is_null() ? Result<json>(json()) : check_present(column, value, field);
+  if (checked && checked->is_null() && column.required)
+    return fail(422, "Value missing", "\"" + column.name + "\" must have a value.", field);
+  return checked;
+}
+
+Result<json> parse_value(const Column& column, std::string_view text, bool decimal_comma, const std::string& field) {
+  const std::string_view bare = trimmed(text);
+  if (bare.empty()) return check_value(column, json(), field);
+  switch (column.kind) {
+    case ColumnKind::integer:
+    case ColumnKind::numeric:
+    case ColumnKind::term: {
+      const auto number = parse_number(bare, decimal_comma);
+      return check_value(column, number ? json(*number) : json(std::string(bare)), field);
+    }
+    case ColumnKind::boolean: {
+      const auto truth = parse_boolean(bare);
+      return check_value(column, truth ? json(*truth) : json(std::string(bare)), field);
+    }
+    case ColumnKind::relation: {
+      json keys = json::array();
+      for (std::size_t at = 0; at < bare.size();) {
+        const std::size_t end = std::min(bare.find_first_of(" ;", at), bare.size());
+        if (end > at) {
+          const auto number = parse_number(bare.substr(at, end - at), false);
+          keys.push_back(number ? json(*number) : json(std::string(bare.substr(at, end - at))));
+        }
+        at = end + 1;
+      }
+      return check_value(column, keys, field);
+    }
+    default: break;
+  }
+  return check_value(column, is_free_text(column.kind) ? unguard_formula(std::string(text)) : std::string(bare), field);
+}
+
+std::string print_value(const Column& column, const json& value) {
+  return is_free_text(column.kind) ? guard_formula(plain_text(value)) : plain_text(value);
+}
+
+Result<json> convert_value(const Column& from, const Column& to, const json& value, const std::string& field) {
+  if (value.is_null()) return check_value(to, value, field);
+  if (from.kind == ColumnKind::timestamp && (to.kind == ColumnKind::date || to.kind == ColumnKind::period))
+    return check_value(to, value.get_ref<const std::string&>().substr(0, 10), field);
+  // The keys of one table mean nothing in another.
+  const bool from_keys = from.target.has_value(), to_keys = to.target.has_value();
+  if (from_keys && to_keys && from.target != to.target)
+    return refuse(to, "keys of another table than \"" + from.name + "\"", field);
+  const std::string text = plain_text(value);
+  if (is_free_text(to.kind)) return check_value(to, text, field);
+  return parse_value(to, text, false, field);
+}
+
+}  // namespace strata

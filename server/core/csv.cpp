@@ -1,0 +1,156 @@
+#include "core/csv.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/utf8.h"
+
+namespace strata {
+namespace {
+
+constexpr std::array kSeparators = {',', ';', '\t'};
+
+bool ends_row(char c) { return c == '\n' || c == '\r'; }
+
+char guess_separator(std::string_view text) {
+  std::array<int, kSeparators.size()> count{};
+  bool quoted = false;
+  for (const char c : text) {
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (ends_row(c)) break;
+    for (std::size_t i = 0; i < kSeparators.size(); ++i) count[i] += c == kSeparators[i];
+  }
+  return kSeparators[static_cast<std::size_t>(std::max_element(count.begin(), count.end()) - count.begin())];
+}
+
+class Reader {
+ public:
+  Reader(std::string_view text, const CsvLimits& limits) : rest_(text), limits_(limits) {}
+
+  Result<CsvText> read() {
+    if (rest_.starts_with("\xff\xfe") || rest_.starts_with("\xfe\xff"))
+      return fail(422, "Not UTF-8", "The text is UTF-16. Save it as \"CSV UTF-8\".", "body");
+    if (rest_.starts_with(kUtf8Mark)) rest_.remove_prefix(kUtf8Mark.size());
+    if (rest_.size() >= 5 && rest_.starts_with("sep=") && (rest_.size() == 5 || ends_row(rest_[5]))) {
+      out_.separator = rest_[4];
+      rest_.remove_prefix(5);
+      take_row_end();
+    } else {
+      out_.separator = guess_separator(rest_);
+    }
+    if (std::find(kSeparators.begin(), kSeparators.end(), out_.separator) == kSeparators.end())
+      return refuse("Cells are separated by comma, semicolon or tab");
+    while (!rest_.empty())
+      if (auto good = read_row(); !good) return tl::unexpected(good.error());
+    return std::move(out_);
+  }
+
+ private:
+  tl::unexpected<Problem> refuse(const std::string& why) const {
+    return fail(422, "Not CSV", why + " (line " + std::to_string(line_) + ").", "body");
+  }
+
+  void take_row_end() {
+    if (rest_.empty()) return;
+    const bool two = rest_.starts_with("\r\n");
+    rest_.remove_prefix(two ? 2 : 1);
+    ++line_;
+  }
+
+  Result<void> read_row() {
+    CsvRow row{line_, {}};
+    for (bool more = true; more;) {
+      if (row.cells.size() == limits_.columns)
+        return refuse("A row has at most " + std::to_string(limits_.columns) + " cells");
+      auto cell = rest_.starts_with('"') ? quoted_cell() : bare_cell();
+      if (!cell) return tl::unexpected(cell.error());
+      if (!is_utf8(*cell)) return refuse("A cell is not UTF-8; save the text as \"CSV UTF-8\"");
+      if (cell->find('\0') != std::string::npos) return refuse("A cell holds U+0000");
+      row.cells.push_back(std::move(*cell));
+      more = rest_.starts_with(out_.separator);
+      if (more) rest_.remove_prefix(1);
+    }
+    take_row_end();
+    if (std::all_of(row.cells.begin(), row.cells.end(), [](const auto& cell) { return cell.empty(); })) return {};
+    if (out_.rows.size() == limits_.rows) return refuse("A text has at most " + std::to_string(limits_.rows) + " rows");
+    out_.rows.push_back(std::move(row));
+    return {};
+  }
+
+  Result<std::string> bare_cell() {
+    std::size_t end = 0;
+    while (end < rest_.size() && rest_[end] != out_.separator && !ends_row(rest_[end])) ++end;
+    std::string cell(rest_.substr(0, end));
+    rest_.remove_prefix(end);
+    return cell;
+  }
+
+  Result<std::string> quoted_cell() {
+    std::string cell;
+    rest_.remove_prefix(1);
+    for (;;) {
+      const std::size_t quote = rest_.find('"');
+      if (quote == std::string_view::npos) return refuse("A quoted cell does not end");
+      const std::string_view part = rest_.substr(0, quote);
+      for (std::size_t i = 0; i < part.size(); ++i)
+        line_ += part[i] == '\n' || (part[i] == '\r' && (i + 1 == part.size() || part[i + 1] != '\n'));
+      cell += part;
+      rest_.remove_prefix(quote + 1);
+      if (!rest_.starts_with('"')) break;
+      cell += '"';
+      rest_.remove_prefix(1);
+    }
+    if (!rest_.empty() && rest_[0] != out_.separator && !ends_row(rest_[0]))
+      return refuse("Text follows the end of a quoted cell; a quote within one is written twice");
+    return cell;
+  }
+
+  std::string_view rest_;
+  const CsvLimits limits_;
+  int line_ = 1;
+  CsvText out_;
+};
+
+// Of apostrophes followed by what begins a formula: where that is.
+bool begins_formula(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of('\''), text.size()));
+  return !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
+}
+
+}  // namespace
+
+Result<CsvText> parse_csv(std::string_view text, const CsvLimits& limits) { return Reader(text, limits).read(); }
+
+std::string csv_line(const std::vector<std::string>& cells, char separator) {
+  std::string line;
+  for (const std::string& cell : cells) {
+    if (&cell != cells.data()) line += separator;
+    // A lone empty cell would be an empty row, which readers leave out.
+    const bool quoted = cell.find_first_of("\",;\t\r\n") != std::string::npos || (cell.empty() && cells.size() == 1) ||
+                        cell.starts_with(' ') || cell.ends_with(' ');
+    if (!quoted) {
+      line += cell;
+      continue;
+    }
+    line += '"';
+    for (const char c : cell) {
+      if (c == '"') line += '"';
+      line += c;
+    }
+    line += '"';
+  }
+  return line + "\r\n";
+}
+
+std::string guard_formula(std::string text) {
+  if (begins_formula(text)) text.insert(text.begin(), '\'');
+  return text;
+}
+
+std::string unguard_formula(std::string text) {
+  if (text.starts_with('\'') && begins_formula(text)) text.erase(text.begin());
+  return text;
+}
+
+}  // namespace strata

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/problem.h"
+
+namespace strata {
+
+struct CsvLimits {
+  std::size_t rows = 1'000'000;
+  std::size_t columns = 1000;  // of a row
+};
+
+struct CsvRow {
+  int line = 0;  // where it begins in the text, from 1; a quoted cell may hold more lines
+  std::vector<std::string> cells;
+};
+
+struct CsvText {
+  char separator = ',';
+  std::vector<CsvRow> rows;  // the first one names the columns; rows without anything are left out
+};
+
+// Reads RFC 4180 as it is met: UTF-8 with or without a byte order mark; rows end with LF, CRLF or CR; cells are separated by
+// comma, semicolon or tab, whichever stands most often in the first row outside of quotes, or is named by a first row `sep=;` as
+// Excel writes it. A Problem (422) names the line: bytes that are not UTF-8, a quote that does not end, text behind one.
+Result<CsvText> parse_csv(std::string_view text, const CsvLimits& limits = {});
+
+inline constexpr std::string_view kUtf8Mark =
+    "\xef\xbb\xbf";  // without it, Excel takes UTF-8 for the machine's old encoding
+
+// One row with CRLF at its end; cells are quoted where they must be.
+std::string csv_line(const std::vector<std::string>& cells, char separator);
+
+// Spreadsheets run a text that begins with = + - @ as a formula. `guard_formula` puts an apostrophe before such a text, which they
+// show as text, and before one that has such an apostrophe already; `unguard_formula` takes it away, so that texts come back
+// as they were.
+std::string guard_formula(std::string text);
+std::string unguard_formula(std::string text);
+
+}  // namespace strata

@@ -1,0 +1,161 @@
+#include "core/table.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "core/column_value.h"
+#include "core/slug.h"
+#include "core/utf8.h"
+
+namespace strata {
+namespace {
+
+constexpr std::array<std::string_view, 11> kKindNames = {
+    "text", "integer", "numeric", "boolean", "date", "timestamp", "period", "enumeration", "url", "term", "relation"};
+
+bool is_number(ColumnKind kind) { return kind == ColumnKind::integer || kind == ColumnKind::numeric; }
+bool names_records(ColumnKind kind) { return kind == ColumnKind::term || kind == ColumnKind::relation; }
+
+bool is_language_tag(std::string_view tag) {
+  if (tag.empty() || tag.size() > 35 || tag.front() == '-' || tag.back() == '-') return false;
+  return std::all_of(tag.begin(), tag.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+  });
+}
+
+Result<void> check_short(const std::string& text, const std::string& field) {
+  if (text.size() <= kLongestColumnText && is_utf8(text) && text.find('\0') == std::string::npos) return {};
+  return fail(
+      422, "Bad text",
+      "`" + field + "` must be UTF-8 of at most " + std::to_string(kLongestColumnText) + " bytes, without U+0000.",
+      field);
+}
+
+Result<void> check_choices(const Column& column) {
+  if (column.kind != ColumnKind::enumeration) {
+    if (column.choices.empty()) return {};
+    return fail(422, "Choices without enumeration", "Only columns of kind `enumeration` have choices.", "choices");
+  }
+  if (column.choices.empty() || column.choices.size() > kMostChoices)
+    return fail(422, "Bad choices", "An enumeration has 1 to " + std::to_string(kMostChoices) + " choices.", "choices");
+  std::set<std::string> known;
+  for (const std::string& choice : column.choices) {
+    if (auto good = check_short(choice, "choices"); !good) return good;
+    if (choice.empty() || !known.insert(choice).second)
+      return fail(422, "Bad choices", "Choices must not be empty and must differ: \"" + choice + "\".", "choices");
+  }
+  return {};
+}
+
+Result<void> check_limits(const Column& column) {
+  if (!is_number(column.kind)) {
+    if (!column.unit.empty()) return fail(422, "Unit without number", "Only numbers have a unit.", "unit");
+    if (column.minimum) return fail(422, "Limit without number", "Only numbers have a minimum.", "minimum");
+    if (column.maximum) return fail(422, "Limit without number", "Only numbers have a maximum.", "maximum");
+    return {};
+  }
+  if (column.minimum && column.maximum && *column.minimum > *column.maximum)
+    return fail(422, "Limits cross", "`minimum` must not be greater than `maximum`.", "minimum");
+  return {};
+}
+
+Result<void> check_kind(const Column& column) {
+  if (names_records(column.kind) != column.target.has_value())
+    return names_records(column.kind)
+               ? fail(422, "Target missing", "A column of this kind names a table of the project as `target`.",
+                      "target")
+               : fail(422, "Target without relation", "Only columns of kind `term` or `relation` have a target.",
+                      "target");
+  if (column.unique && (column.kind == ColumnKind::relation || column.kind == ColumnKind::boolean))
+    return fail(422, "Cannot be unique",
+                "Columns of kind `" + std::string(name(column.kind)) + "` hold the same value in many records.",
+                "unique");
+  if (column.unique && !column.default_value.is_null())
+    return fail(422, "Default of a unique column", "A second record could not have the default, too.", "default");
+  return {};
+}
+
+}  // namespace
+
+std::string_view name(ColumnKind kind) { return kKindNames[static_cast<std::size_t>(kind)]; }
+
+std::optional<ColumnKind> parse_column_kind(std::string_view name) {
+  const auto found = std::find(kKindNames.begin(), kKindNames.end(), name);
+  if (found == kKindNames.end()) return std::nullopt;
+  return static_cast<ColumnKind>(found - kKindNames.begin());
+}
+
+Result<void> check_labels(const Labels& labels, const std::string& field) {
+  if (labels.size() > 100) return fail(422, "Too many labels", "A thing has at most 100 labels.", field);
+  for (const auto& [tag, label] : labels) {
+    if (!is_language_tag(tag))
+      return fail(422, "Bad language", "\"" + mended_utf8(tag) + "\" is no language tag such as `es` or `pt-BR`.",
+                  field);
+    if (auto good = check_short(label, field + "/" + tag); !good) return good;
+  }
+  return {};
+}
+
+Result<void> check_column(Column& column) {
+  if (column.name.empty())
+    return fail(422, "Bad name", "A column has a name of 1 to " + std::to_string(kLongestColumnText) + " bytes.",
+                "name");
+  if (auto good = check_short(column.name, "name"); !good) return good;
+  if (auto good = check_short(column.unit, "unit"); !good) return good;
+  if (auto good = check_short(column.comment, "comment"); !good) return good;
+  if (auto good = check_labels(column.labels); !good) return good;
+  if (auto good = check_choices(column); !good) return good;
+  if (auto good = check_limits(column); !good) return good;
+  if (auto good = check_kind(column); !good) return good;
+  if (column.default_value.is_null()) return {};
+  auto value = check_value(column, column.default_value, "default");
+  if (!value) return tl::unexpected(value.error());
+  column.default_value = std::move(*value);
+  return {};
+}
+
+nlohmann::json to_json(const Column& column) {
+  nlohmann::json json{{"id", column.id},         {"name", column.name},       {"slug", column.slug},
+                      {"labels", column.labels}, {"kind", name(column.kind)}, {"required", column.required},
+                      {"unique", column.unique}, {"comment", column.comment}, {"order", column.order}};
+  if (is_number(column.kind)) json["unit"] = column.unit;
+  if (!column.default_value.is_null()) json["default"] = column.default_value;
+  if (column.kind == ColumnKind::enumeration) json["choices"] = column.choices;
+  if (column.target) json["target"] = *column.target;
+  if (column.minimum) json["minimum"] = *column.minimum;
+  if (column.maximum) json["maximum"] = *column.maximum;
+  return json;
+}
+
+nlohmann::json to_json(const Table& table) {
+  nlohmann::json columns = nlohmann::json::array();
+  for (const Column& column : table.columns) columns.push_back(to_json(column));
+  return {{"id", table.id},
+          {"project", table.project_id},
+          {"name", table.name},
+          {"slug", table.slug},
+          {"labels", table.labels},
+          {"description", table.description},
+          {"columns", std::move(columns)},
+          {"records", table.records},
+          {"sequence", table.sequence}};
+}
+
+nlohmann::json to_json(const Record& record, const std::vector<Column>& columns) {
+  nlohmann::json values = nlohmann::json::object();
+  for (const Column& column : columns) {
+    const auto found = record.values.find(column.id);
+    values[column.slug] = found == record.values.end() ? nlohmann::json() : found->second;
+  }
+  return {{"key", record.key}, {"version", record.version}, {"values", std::move(values)}};
+}
+
+const Column* find_column(const std::vector<Column>& columns, const std::string& ref) {
+  const bool by_id = is_all_digits(ref);
+  for (const Column& column : columns)
+    if (by_id ? std::to_string(column.id) == ref : column.slug == ref) return &column;
+  return nullptr;
+}
+
+}  // namespace strata

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/problem.h"
+
+namespace strata {
+
+// What people call a thing, by language tag (BCP 47: "es", "pt-BR").
+using Labels = std::map<std::string, std::string>;
+
+enum class ColumnKind {
+  text,
+  integer,
+  numeric,
+  boolean,
+  date,         // YYYY-MM-DD
+  timestamp,    // RFC 3339, kept in UTC
+  period,       // EDTF (core/edtf)
+  enumeration,  // one of `choices`
+  url,
+  term,      // the key of a record of `target`
+  relation,  // keys of records of `target`: "above", "cuts", "same as"
+};
+std::string_view name(ColumnKind kind);
+std::optional<ColumnKind> parse_column_kind(std::string_view name);
+
+// A column of a project's table. Its id is given once and never again.
+struct Column {
+  std::int64_t id = 0;
+  std::string name;
+  std::string slug;  // unique among the table's columns that are not hidden; never all digits
+  Labels labels;
+  ColumnKind kind = ColumnKind::text;
+  std::string unit;  // integer and numeric
+  bool required = false;
+  bool unique = false;
+  nlohmann::json default_value;  // null: none. New records get it where they say nothing of the column.
+  std::string comment;
+  std::vector<std::string> choices;        // enumeration: at least one
+  std::optional<std::int64_t> target;      // term and relation: a table of the project
+  std::optional<double> minimum, maximum;  // integer and numeric
+  int order = 0;
+  bool hidden = false;  // dropped: its values stay for undo and for reading the past
+};
+
+// A table of a project: what the keys of database layers stand for, on any of its models.
+struct Table {
+  std::int64_t id = 0;
+  std::int64_t project_id = 0;
+  std::string name;
+  std::string slug;  // unique in the project, never all digits
+  Labels labels;
+  std::string description;
+  std::vector<Column> columns;  // those that are not hidden, by order
+  std::int64_t records = 0;     // how many
+  std::int64_t sequence = 0;    // of the last change of records or columns
+  std::int64_t version = 1;     // of everything but the records, for ETag and If-Match
+};
+
+inline constexpr std::int64_t kHighestKey = 0xffffffff;
+inline constexpr int kMostColumns = 256;
+inline constexpr int kMostChoices = 1000;
+inline constexpr std::size_t kLongestColumnText = 2000;  // bytes of a unit, a choice, a label, a comment
+
+// A row: what a key stands for. `values` by column id; none where the column has none.
+struct Record {
+  std::int64_t key = 0;
+  std::int64_t version = 1;
+  std::map<std::int64_t, nlohmann::json> values;
+};
+
+// What a column says of itself fits together: choices, target and limits belong to its kind, the default is a value of it.
+// Puts the default into its canonical form. The field of a Problem is the column's own ("choices", "default").
+Result<void> check_column(Column& column);
+Result<void> check_labels(const Labels& labels, const std::string& field = "labels");
+
+nlohmann::json to_json(const Column& column);
+nlohmann::json to_json(const Table& table);
+// `{key, version, values: {slug: value}}`, with every column of `columns`.
+nlohmann::json to_json(const Record& record, const std::vector<Column>& columns);
+
+// By id or slug; null: there is none.
+const Column* find_column(const std::vector<Column>& columns, const std::string& ref);
+
+}  // namespace strata

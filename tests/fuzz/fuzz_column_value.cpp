@@ -1,0 +1,62 @@
+// The value of a table's cell, first as text and then as JSON: what a column takes it takes again, unchanged, from JSON and from its
+// own text; and nothing that another kind makes of it is a surprise to that kind.
+#include <cstdint>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "core/column_value.h"
+#include "core/utf8.h"
+
+namespace {
+
+using namespace strata;
+
+constexpr int kKinds = static_cast<int>(ColumnKind::relation) + 1;
+
+void demand(bool holds) {
+  if (!holds) std::abort();
+}
+
+Column column_of(int kind, bool required) {
+  Column column;
+  column.id = 1;
+  column.name = column.slug = "column";
+  column.kind = static_cast<ColumnKind>(kind);
+  column.required = required;
+  if (column.kind == ColumnKind::enumeration) column.choices = {"a", "=b", "1"};
+  if (column.kind == ColumnKind::term || column.kind == ColumnKind::relation) column.target = 2;
+  if (column.kind == ColumnKind::numeric) column.minimum = -1e6;
+  demand(check_column(column).has_value());
+  return column;
+}
+
+void check(const Column& column, const Result<nlohmann::json>& value) {
+  if (!value) {
+    demand(value.error().status == 422 && value.error().field == "field" && is_utf8(value.error().detail));
+    return;
+  }
+  demand(!value->is_null() || !column.required);
+  demand(check_value(column, *value, "field") == *value);
+  demand(parse_value(column, print_value(column, *value), true, "field") == *value);
+  for (int kind = 0; kind < kKinds; ++kind) {
+    const Column other = column_of(kind, false);
+    if (const auto converted = convert_value(column, other, *value, "field"))
+      demand(check_value(other, *converted, "field") == *converted);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size < 2) return 0;
+  const Column column = column_of(data[0] % kKinds, data[1] & 1);
+  const std::string_view text(reinterpret_cast<const char*>(data + 2), size - 2);
+  // Texts come from the CSV reader, which gives UTF-8 without U+0000.
+  if (is_utf8(text) && text.find('\0') == std::string_view::npos)
+    check(column, parse_value(column, text, data[1] & 2, "field"));
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_discarded()) check(column, check_value(column, json, "field"));
+  return 0;
+}
