@@ -1,17 +1,16 @@
 #version 450 core
 #include "shared/depth_probe.h"
-// Largest depth of each cell of a rectangle of the coarse grid: what lies behind it in the whole cell is hidden.
+// Largest depth of each cell of the coarse grid: what lies behind it in the whole cell is hidden.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D depth;
 layout(std430, binding = 0) writeonly buffer Cells { float cells[]; };
-layout(location = 0) uniform ivec2 first_cell;
-layout(location = 1) uniform ivec2 cell_count;
+layout(location = 0) uniform ivec2 cell_count;
 
 void main() {
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(cell, cell_count))) return;
   ivec2 size = textureSize(depth, 0);
-  ivec2 begin = (first_cell + cell) * int(kDepthCell);
+  ivec2 begin = cell * int(kDepthCell);
   ivec2 end = min(begin + int(kDepthCell), size);
   float deepest = 0.0;
   for (int y = begin.y; y < end.y; ++y)

@@ -1,17 +1,21 @@
 #version 450 core
 #include "shared/edit.h"
 #include "shared/pages.h"
-// Texture editing and padding in one dispatch: every texel of every candidate block is projected to the window and tested as
-// the paper's texture editing algorithm does; gutter texels carry their owner's position, so they follow it without a second
-// pass. One thread takes a row of 8 texels: it needs no shared memory, and rows of 8 are what one vector of a CPU holds.
+// Texture editing and padding in one dispatch: every texel of the blocks that edit_cull_pass.comp listed is projected to the window
+// and tested as the paper's texture editing algorithm does; gutter texels carry their owner's position, so they follow it without
+// a second pass. One thread takes a row of 8 texels. A block that is listed for several of its parts is written several times
+// with the same.
 // TEXEL_FORMAT is r8ui, r16ui or r32ui. With TOOL_TEXTURE the tool is a texture of how far the cells of its shape are.
 layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform EditUniformBlock { EditUniforms edit; };
-layout(std430, binding = 0) readonly buffer Blocks { EditBlock blocks[]; };
-layout(std430, binding = 1) readonly buffer Segments { EditSegment segments[]; };
-layout(std430, binding = 2) readonly buffer SegmentLists { uint segment_lists[]; };
-layout(std430, binding = 3) writeonly buffer WrittenRows { uint written_rows[]; };
+layout(std430, binding = 0) readonly buffer PageTables { uint page_tables[]; };
+layout(std430, binding = 1) readonly buffer Spheres { vec4 spheres[]; };  // a part: centre, radius
+layout(std430, binding = 2) readonly buffer Parts { EditPart parts[]; };
+layout(std430, binding = 3) readonly buffer Segments { EditSegment segments[]; };
 layout(std430, binding = 4) readonly buffer PackedBoxes { float packed_boxes[]; };  // a slot: min x y z, step x y z
+layout(std430, binding = 5) readonly buffer Touched { EditTiles tiles; };
+layout(std430, binding = 6) readonly buffer TouchedParts { TouchedPart touched[]; };
+layout(std430, binding = 7) buffer Edited { EditedTile edited[]; };  // by number of the tile
 layout(binding = 0) uniform usampler2DArray positions;
 layout(binding = 1) uniform sampler2D depth;
 #ifdef TOOL_TEXTURE
@@ -19,8 +23,11 @@ layout(binding = 2) uniform usampler2D shape_distances;
 #endif
 layout(TEXEL_FORMAT, binding = 0) uniform writeonly uimage2DArray values;
 layout(r8ui, binding = 1) uniform writeonly uimage2DArray valid;
-layout(location = 0) uniform uint first_block;
-layout(location = 1) uniform uint block_count;
+// Pages of one chunk are bound at a time. Blocks without a page go with the first.
+layout(location = 0) uniform uint chunk;
+layout(location = 1) uniform uint is_first_chunk;
+
+shared uint part_is_written[kEditPartsPerGroup];
 
 #ifdef TOOL_TEXTURE
 
@@ -105,9 +112,12 @@ bool in_segment(vec2 p, EditSegment s) { return (edit.flags & kEditSquare) != 0u
 
 #endif
 
-bool in_tool(vec2 p, uint first, uint count) {
-  for (uint i = first; i < first + count; ++i)
-    if (in_segment(p, segments[segment_lists[i]])) return true;
+bool in_tool(vec2 p, uint runs) {
+  for (; runs != 0u; runs &= runs - 1u) {
+    uint first = uint(findLSB(runs)) * edit.segments_per_bit, end = min(first + edit.segments_per_bit, edit.segment_count);
+    for (uint i = first; i < end; ++i)
+      if (in_segment(p, segments[i])) return true;
+  }
   return false;
 }
 
@@ -145,7 +155,7 @@ bool is_facing(ivec2 pixel, float here) {
   return here < 1.0 && along * along >= edit.facing[0].w * dot(normal, normal) * dot(ray, ray);
 }
 
-bool painted(uvec2 packed_position, vec3 box_min, vec3 box_step, uint first, uint count) {
+bool painted(uvec2 packed_position, vec3 box_min, vec3 box_step, uint runs) {
   vec3 q = vec3(packed_position.x & 0x1fffffu, (packed_position.x >> 21) | ((packed_position.y & 0x3ffu) << 11),
                 packed_position.y >> 10);
   vec3 position = box_min + q * box_step;
@@ -156,7 +166,7 @@ bool painted(uvec2 packed_position, vec3 box_min, vec3 box_step, uint first, uin
   vec3 ndc = clip.xyz / clip.w;
   vec2 window = (ndc.xy * 0.5 + 0.5) * edit.window.xy;
   if (any(lessThan(window, vec2(0.0))) || any(greaterThanEqual(window, edit.window.xy))) return false;
-  if (!in_tool(window, first, count)) return false;
+  if (!in_tool(window, runs)) return false;
   if ((edit.flags & kEditThrough) != 0u) return true;
   ivec2 pixel = ivec2(window);
   float here = texelFetch(depth, pixel, 0).r;
@@ -165,32 +175,67 @@ bool painted(uvec2 packed_position, vec3 box_min, vec3 box_step, uint first, uin
   return (edit.flags & kEditFacing) == 0u || is_facing(pixel, here);
 }
 
-void main() {
-  uint group = gl_WorkGroupID.y * kEditGroupsPerRow + gl_WorkGroupID.x;
-  uint number = group * kEditBlocksPerGroup + gl_LocalInvocationIndex / kEditRowsPerBlock;
-  if (number >= block_count) return;
-  uint row = gl_LocalInvocationIndex % kEditRowsPerBlock;
-  EditBlock block = blocks[first_block + number];
-
-  uint element = block.slot * 64u + row * 8u;
+// The texels of a row that are painted, lowest first. `page` may be none: erasing where nothing is stored only counts as written.
+uint paint_row(EditPart part, uint y, uint page, uint runs) {
+  uint element = part.slot * 64u + y * 8u;
   ivec3 source = ivec3(element & (kPositionRow - 1u), (element >> kPositionRowBits) & (kPositionRow - 1u),
                        element >> kPositionSliceBits);
-  ivec3 target = page_origin(block.page) + ivec3((block.place & 15u) * 8u, ((block.place >> 4) & 15u) * 8u + row, 0);
+  ivec3 target = page_origin(page) + ivec3(block_in_tile(part) * 8u + uvec2(0u, y), 0);
   uint value = (edit.flags & kEditErase) != 0u ? 0u : edit.value;
   uint flag = (edit.flags & kEditErase) != 0u ? 0u : 1u;
-  uint box = block.slot * 6u;
+  uint box = part.slot * 6u;
   vec3 box_min = vec3(packed_boxes[box], packed_boxes[box + 1u], packed_boxes[box + 2u]);
   vec3 box_step = vec3(packed_boxes[box + 3u], packed_boxes[box + 4u], packed_boxes[box + 5u]);
   uint written = 0u;
   for (int x = 0; x < 8; ++x) {
     uvec2 position = texelFetch(positions, source + ivec3(x, 0, 0), 0).rg;
-    if (position != uvec2(0xffffffffu) && painted(position, box_min, box_step, block.segments, block.place >> 8)) {
-      if (block.page != kNoPage) {  // erasing where nothing is stored only counts as written
-        imageStore(values, target + ivec3(x, 0, 0), uvec4(value));
-        imageStore(valid, target + ivec3(x, 0, 0), uvec4(flag));
+    if (position == uvec2(0xffffffffu) || !painted(position, box_min, box_step, runs)) continue;
+    if (page != kNoPage) {
+      imageStore(values, target + ivec3(x, 0, 0), uvec4(value));
+      imageStore(valid, target + ivec3(x, 0, 0), uvec4(flag));
+    }
+    written |= 1u << x;
+  }
+  return written;
+}
+
+uint ordered(float value) {
+  uint bits = floatBitsToUint(value);
+  return (bits >> 31) != 0u ? ~bits : bits | 0x80000000u;
+}
+
+// Most parts of a tile are inside the box of those before them: to look first spares the atomic operations.
+void widen_box(uint tile, vec4 sphere) {
+  for (int i = 0; i < 3; ++i) {
+    uint low = ~ordered(sphere[i] - sphere.w), high = ordered(sphere[i] + sphere.w);
+    if (low > edited[tile].low[i]) atomicMax(edited[tile].low[i], low);
+    if (high > edited[tile].high[i]) atomicMax(edited[tile].high[i], high);
+  }
+}
+
+void main() {
+  uint group = gl_WorkGroupID.y * kEditGroupsPerRow + gl_WorkGroupID.x;
+  uint in_group = gl_LocalInvocationIndex / kEditRowsPerBlock, y = gl_LocalInvocationIndex % kEditRowsPerBlock;
+  uint number = group * kEditPartsPerGroup + in_group;
+  if (gl_LocalInvocationIndex < kEditPartsPerGroup) part_is_written[gl_LocalInvocationIndex] = 0u;
+  barrier();
+  TouchedPart it = TouchedPart(0u, 0u);
+  uint tile = 0u;
+  if (number < tiles.part_count) {
+    it = touched[number];
+    EditPart part = parts[it.part];
+    uint page = page_tables[edit.table_offset + tile_of(part)];
+    if (page == kNoPage ? is_first_chunk != 0u : page >> kPageChunkShift == chunk) {
+      tile = tiles.number_of_tile[tile_of(part)] - 1u;
+      uint written = paint_row(part, y, page, it.segments);
+      if (written != 0u) {
+        uvec2 block = block_in_tile(part);
+        uint texel = (block.y * 8u + y) * kTileTexels + block.x * 8u;
+        atomicOr(edited[tile].texels[texel / 32u], written << (texel % 32u));
+        atomicOr(part_is_written[in_group], 1u);
       }
-      written |= 1u << x;
     }
   }
-  written_rows[(first_block + number) * kEditRowsPerBlock + row] = written;
+  barrier();
+  if (y == 0u && part_is_written[in_group] != 0u) widen_box(tile, spheres[it.part]);
 }

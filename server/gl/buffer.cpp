@@ -34,6 +34,18 @@ void Buffer::upload(std::size_t offset, std::span<const std::byte> data) {
   glNamedBufferSubData(id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(data.size()), data.data());
 }
 
+void Buffer::clear(std::size_t offset, std::size_t bytes) const {
+  assert(offset + bytes <= size_);
+  if (bytes == 0) return;
+  glClearNamedBufferSubData(id(), GL_R32UI, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes),
+                            GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+}
+
+void Buffer::copy_to(const Buffer& target, std::size_t offset, std::size_t bytes) const {
+  assert(offset + bytes <= size_ && bytes <= target.size());
+  glCopyNamedBufferSubData(id(), target.id(), static_cast<GLintptr>(offset), 0, static_cast<GLsizeiptr>(bytes));
+}
+
 void Buffer::bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id()); }
 
 void Buffer::bind_uniform(GLuint binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, binding, id()); }

@@ -40,9 +40,6 @@ double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
 constexpr std::size_t kSharedLevel = 3;
 constexpr std::size_t kSubtreesForThreads = 32;
 
-// So many parts are worth the start of threads that make their list of blocks.
-constexpr std::size_t kPartsForThreads = 8192;
-
 // Under a large tool most blocks are taken by the eight: to test each costs as much as to paint it.
 constexpr std::size_t kWholeLevel = 1;
 
@@ -63,12 +60,6 @@ std::array<glm::dvec4, 4> sides_of(const PixelBox& tool, const glm::dmat4& clip,
 }
 
 }  // namespace
-
-std::size_t Candidates::count_tiles() const {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < blocks.size(); ++i) count += i == 0 || blocks[i].tile != blocks[i - 1].tile;
-  return count;
-}
 
 std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int width, int height,
                                         const glm::dvec3& center, double radius) {
@@ -221,27 +212,6 @@ void BlockCuller::add_blocks(const TouchedParts& touched, const TouchedParts::Ti
     }
     candidates.blocks.push_back(block);
   }
-}
-
-Candidates BlockCuller::all(int threads) const {
-  const TouchedParts touched = find(threads);
-  const int groups = touched.parts.size() < kPartsForThreads ? 1 : threads;
-  std::vector<Candidates> of_group(static_cast<std::size_t>(groups));
-  mesh::parallel_for(groups, groups, [&](int group) {
-    const std::size_t tiles = touched.tiles.size(), count = static_cast<std::size_t>(groups),
-                      number = static_cast<std::size_t>(group);
-    for (std::size_t i = number * tiles / count; i < (number + 1) * tiles / count; ++i)
-      add_blocks(touched, touched.tiles[i], of_group[number]);
-  });
-  Candidates candidates = std::move(of_group.front());
-  for (std::size_t i = 1; i < of_group.size(); ++i) {
-    const std::uint32_t offset = candidates.segment_lists.append(of_group[i].segment_lists);
-    for (CandidateBlock& block : of_group[i].blocks) {
-      block.segments += offset;
-      candidates.blocks.push_back(block);
-    }
-  }
-  return candidates;
 }
 
 bool BlockCuller::passes(const mesh::BoundingSphere& bounds, const Under& parent, Under& under) const {

@@ -7,6 +7,7 @@
 
 #include "core/tile.h"
 #include "mesh/surface_map.h"
+#include "render/depth_bias.h"
 #include "render/segment_lists.h"
 #include "render/tool_path.h"
 
@@ -16,12 +17,6 @@ namespace strata::render {
 struct DepthGrid {
   const float* cells = nullptr;  // null: nothing is hidden
   int width = 0, height = 0;     // cells
-};
-
-// How much nearer than the depth buffer a texel counts as: `fixed`, or (1 + slope_limit) · scale / w² at most.
-struct DepthBias {
-  std::optional<double> fixed;
-  double scale = 0, slope_factor = 0, slope_limit = 0;
 };
 
 struct CandidateBlock {
@@ -39,10 +34,8 @@ struct CandidateBlock {
   }
 };
 struct Candidates {
-  std::vector<CandidateBlock> blocks;  // all blocks of a tile together
+  std::vector<CandidateBlock> blocks;
   SegmentLists segment_lists;
-
-  std::size_t count_tiles() const;
 };
 
 // Parts of the tree that a stroke may touch, by tile.
@@ -84,7 +77,6 @@ class BlockCuller {
   TouchedParts find(int threads) const;
   // The blocks of a tile, row-major.
   void add_blocks(const TouchedParts& touched, const TouchedParts::Tile& tile, Candidates& candidates) const;
-  Candidates all(int threads) const;  // of all tiles
 
  private:
   struct Under {

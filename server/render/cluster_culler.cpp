@@ -23,14 +23,7 @@ Result<ClusterCuller> ClusterCuller::create(const std::filesystem::path& shader_
 
 Result<void> ClusterCuller::hide(const gl::Texture& depth, const MeshBuffers& mesh, const glm::mat4& clip_from_model,
                                  const gl::Buffer& commands, std::size_t first, std::size_t count) {
-  const auto cells = DepthGridPass::all_cells(depth);
-  if (cells_.size() < cells.bytes()) {
-    auto made = gl::Buffer::create(cells.bytes(), gl::Buffer::Use::fixed, "depth cells for culling");
-    if (!made) return tl::unexpected(made.error());
-    cells_ = std::move(*made);
-  }
-  grid_.run(depth, cells, cells_);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  if (auto made = grid_.run(depth, cells_); !made) return made;
   program_.use();
   glProgramUniformMatrix4fv(program_.id(), 0, 1, GL_FALSE, glm::value_ptr(clip_from_model));
   program_.set(1, depth.width(), depth.height());

@@ -1,10 +1,5 @@
 #include "render/compute_painter.h"
 
-#include <algorithm>
-#include <chrono>
-#include <limits>
-
-#include "mesh/parallel.h"
 #include "shared/pages.h"
 
 namespace strata::render {
@@ -20,14 +15,13 @@ Result<Step> ComputePainter::step(GpuScene& scene, const PaintTarget& target) {
     case Stage::radii:
       if (!path_depths_.ready()) return Step::waiting;
       collect_radii(target.mesh.geometry());
-      return go_to(Stage::grid, begin_grid(scene));
-    case Stage::grid:
-      if (!grid_.values.ready()) return Step::waiting;
-      if (depth_) DepthBuffers::finish_grid(*depth_, grid_);
-      return go_to(Stage::rows, dispatch(scene, target));
-    case Stage::rows:
-      if (!edit_.rows.ready()) return Step::waiting;
-      collect_rows(scene, target);
+      return go_to(Stage::culling, cull(scene, target));
+    case Stage::culling:
+      if (!touched_.ready()) return Step::waiting;
+      return go_to(Stage::editing, dispatch(scene, target));
+    case Stage::editing:
+      if (!edit_.edited.ready()) return Step::waiting;
+      collect_edited(scene, target);
       begin_tiles(scene, target);
       return go_to(Stage::tiles, {});
     case Stage::tiles:
@@ -56,71 +50,49 @@ void ComputePainter::collect_radii(const mesh::Geometry& geometry) {
   path_ = make_path(geometry, path_pixels_, depths);
 }
 
-Result<void> ComputePainter::begin_grid(GpuScene& scene) {
-  if (stroke_.through) return {};
-  auto grid = scene.depths().begin_grid(*depth_, path_.box);
-  if (!grid) return tl::unexpected(grid.error());
-  grid_ = std::move(*grid);
+Result<void> ComputePainter::cull(GpuScene& scene, const PaintTarget& target) {
+  begin_ = std::chrono::steady_clock::now();
+  if (!stroke_.through) {
+    if (auto made = scene.depths().make_grid(*depth_); !made) return made;
+  }
+  const mesh::Geometry& geometry = target.mesh.geometry();
+  auto touched = scene.edit_culler().dispatch(stroke_, geometry.origin, path_, depth_bias(geometry), target.map,
+                                              stroke_.through ? nullptr : &depth_->grid, target.layer);
+  if (!touched) return tl::unexpected(touched.error());
+  touched_ = std::move(*touched);
   return {};
 }
 
 Result<void> ComputePainter::dispatch(GpuScene& scene, const PaintTarget& target) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto elapsed_ms = [&] {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  };
-  const Camera& camera = stroke_.camera;
-  const mesh::Geometry& geometry = target.mesh.geometry();
-  const DepthBias bias = depth_bias(geometry);
-  DepthGrid grid;
-  if (!stroke_.through) grid = {depth_->grid.data(), depth_->grid_width, depth_->grid_height};
-  auto candidates =
-      BlockCuller(target.map.map(), clip_from_model(geometry), camera.width, camera.height, path_, bias, grid)
-          .all(mesh::hardware_threads());
-  outcome_.cull_ms = elapsed_ms();
-  if (const std::size_t tiles = candidates.count_tiles(); tiles > 0) {
-    auto room = scene.tile_reader().make_room(target.layer.pool(), tiles);
+  auto touched = EditCuller::touched(touched_, target.map.map().resolution);
+  outcome_.bytes_up = scene.edit_culler().bytes_up();
+  outcome_.bytes_down = touched_.size();
+  touched_ = {};
+  if (!touched.tiles.empty()) {
+    auto room = scene.tile_reader().make_room(target.layer.pool(), touched.tiles.size());
     if (!room) return tl::unexpected(room.error());
     tiles_ = std::move(*room);
   }
-  auto edit = scene.edit_pass().dispatch(stroke_, geometry.origin, path_, bias, std::move(candidates), target.map,
+  auto edit = scene.edit_pass().dispatch(stroke_, std::move(touched), scene.edit_culler(), target.map,
                                          depth_ ? &depth_->texture : nullptr, target.layer, scene.tables());
   if (!edit) return tl::unexpected(edit.error());
   edit_ = std::move(*edit);
-  outcome_.bytes_up = edit_.bytes_up;
-  outcome_.bytes_down = edit_.rows ? edit_.rows.size() : 0;
-  outcome_.dispatch_ms = elapsed_ms() - edit_.executed_ms;
+  outcome_.bytes_up += edit_.fresh_tiles.size() * sizeof(PageId);
+  outcome_.bytes_down += edit_.edited.size();
   return {};
 }
 
-void ComputePainter::collect_rows(GpuScene& scene, const PaintTarget& target) {
-  auto masks = EditPass::written_masks(edit_);
+void ComputePainter::collect_edited(GpuScene& scene, const PaintTarget& target) {
+  const EditedTiles edited = EditPass::edited(edit_);
+  outcome_.edit_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin_).count();
+  outcome_.gpu_ms = scene.edit_culler().gpu_ms() + (edit_.edited ? scene.edit_pass().gpu_ms() : 0);
   for (const TileAddress tile : edit_.fresh_tiles) {
-    if (!masks.contains(tile)) target.layer.free_page(tile);
+    if (!edited.masks.contains(tile)) target.layer.free_page(tile);
   }
-  if (!masks.empty()) outcome_.gpu_ms = std::max(scene.edit_pass().gpu_ms(), edit_.executed_ms);
-  glm::vec3 low(std::numeric_limits<float>::max()), high(-std::numeric_limits<float>::max());
-  const mesh::SurfaceMap& map = target.map.map();
-  for (const CandidateBlock& block : edit_.blocks) {
-    const auto mask = masks.find(block.tile);
-    if (mask == masks.end()) continue;
-    const auto first_texel = (block.block_in_tile >> 4) * 8 * kTileSize + (block.block_in_tile & 15) * 8;
-    bool written = false;
-    for (std::uint32_t row = 0; row < 8 && !written; ++row) {
-      const std::uint32_t texel = first_texel + row * kTileSize;
-      written = (mask->second.words[texel / 64] >> (texel % 64) & 0xffu) != 0;
-    }
-    if (!written) continue;
-    const auto& bounds = block.bounds(map);
-    low = glm::min(low, bounds.center - bounds.radius);
-    high = glm::max(high, bounds.center + bounds.radius);
-  }
-  if (!masks.empty()) {
-    outcome_.written_min = low;
-    outcome_.written_max = high;
-  }
-  for (auto& [tile, mask] : masks) outcome_.tiles.push_back({tile, mask, TileData(target.layer.type())});
-  edit_.rows = {};
+  outcome_.written_min = edited.written_min;
+  outcome_.written_max = edited.written_max;
+  for (const auto& [tile, mask] : edited.masks) outcome_.tiles.push_back({tile, mask, TileData(target.layer.type())});
+  edit_ = {};
 }
 
 void ComputePainter::begin_tiles(GpuScene& scene, const PaintTarget& target) {

@@ -5,13 +5,10 @@
 #include <cmath>
 #include <cstring>
 
-#include "shared/depth_probe.h"
-
 namespace strata::render {
 namespace {
 
 constexpr std::size_t kRecent = 4;
-constexpr int kCell = static_cast<int>(shader::kDepthCell);
 
 }  // namespace
 
@@ -22,7 +19,7 @@ DepthKey depth_key(std::uint64_t model, const Camera& camera, int width, int hei
 void DepthBuffer::start(const DepthKey& new_key) {
   key = new_key;
   complete = false;
-  std::fill(grid.begin(), grid.end(), -1.0f);
+  has_grid = false;
   copy.reset();
 }
 
@@ -58,10 +55,6 @@ Result<std::shared_ptr<DepthBuffer>> DepthBuffers::make(const DepthKey& key) {
   buffer->share = std::move(*share);
   buffer->texture = std::move(*texture);
   buffer->framebuffer = std::move(*framebuffer);
-  const auto cells = DepthGridPass::all_cells(buffer->texture);
-  buffer->grid_width = cells.width;
-  buffer->grid_height = cells.height;
-  buffer->grid.resize(static_cast<std::size_t>(buffer->grid_width) * static_cast<std::size_t>(buffer->grid_height));
   buffer->start(key);
   return buffer;
 }
@@ -124,40 +117,11 @@ void DepthBuffers::copy_to_memory(DepthBuffer& buffer, int threads) {
   buffer.copy = std::make_shared<const DepthCopy>(make_depth_copy(std::move(depth), width, height, threads));
 }
 
-Result<DepthBuffers::GridRead> DepthBuffers::begin_grid(const DepthBuffer& buffer, const PixelBox& box) {
-  // Clamped before the cast: a large tool near the eye reaches farther than an int.
-  const auto cell = [](double pixel, int count) {
-    return static_cast<int>(std::clamp(std::floor(pixel / kCell), 0.0, count - 1.0));
-  };
-  GridRead read;
-  auto& cells = read.cells;
-  cells.first_x = cell(box.x0, buffer.grid_width);
-  cells.first_y = cell(box.y0, buffer.grid_height);
-  cells.width = cell(box.x1, buffer.grid_width) - cells.first_x + 1;
-  cells.height = cell(box.y1, buffer.grid_height) - cells.first_y + 1;
-  bool known = true;
-  for (int y = cells.first_y; y < cells.first_y + cells.height && known; ++y) {
-    const auto row = buffer.grid.begin() + static_cast<std::ptrdiff_t>(y) * buffer.grid_width + cells.first_x;
-    known = std::all_of(row, row + cells.width, [](float depth) { return depth >= 0; });
-  }
-  if (known) return read;
-
-  auto values = readback_->begin(cells.bytes());
-  if (!values) return tl::unexpected(values.error());
-  grid_pass_.run(buffer.texture, cells, values->buffer());
-  values->submit();
-  read.values = std::move(*values);
-  return read;
-}
-
-void DepthBuffers::finish_grid(DepthBuffer& buffer, const GridRead& read) {
-  if (!read.values) return;
-  const auto& cells = read.cells;
-  const std::byte* source = read.values.data().data();
-  const std::size_t row_bytes = static_cast<std::size_t>(cells.width) * sizeof(float);
-  for (int y = cells.first_y; y < cells.first_y + cells.height; ++y, source += row_bytes) {
-    std::memcpy(&buffer.grid[static_cast<std::size_t>(y * buffer.grid_width + cells.first_x)], source, row_bytes);
-  }
+Result<void> DepthBuffers::make_grid(DepthBuffer& buffer) const {
+  if (buffer.has_grid) return {};
+  if (auto made = grid_pass_.run(buffer.texture, buffer.grid); !made) return made;
+  buffer.has_grid = true;
+  return {};
 }
 
 Result<gl::Readback> DepthBuffers::begin_gather(const DepthBuffer& buffer, std::span<const glm::ivec2> pixels) {

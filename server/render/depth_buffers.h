@@ -28,15 +28,15 @@ struct DepthKey {
 // Of a picture of width x height pixels, which the camera's window is scaled to.
 DepthKey depth_key(std::uint64_t model, const Camera& camera, int width, int height);
 
-// Depth of a mesh from one camera, with a coarse grid of largest depths that is filled where it is asked for.
+// Depth of a mesh from one camera; its coarse grid of largest depths and its copy are made when first asked for.
 struct DepthBuffer {
   DepthKey key;
   bool complete = false;  // every triangle was drawn
   gl::Texture texture;
   gl::Framebuffer framebuffer;
   GpuMemory::Share share;
-  int grid_width = 0, grid_height = 0;
-  std::vector<float> grid;                // row by row from below; negative: not known yet
+  gl::Buffer grid;
+  bool has_grid = false;
   std::shared_ptr<const DepthCopy> copy;  // null: nobody asked for it yet
 
   void start(const DepthKey& new_key);  // forgets what it holds
@@ -64,14 +64,8 @@ class DepthBuffers {
   // Makes `buffer.copy`, on `threads` threads. Waits for the GPU: a fence after the drawing tells when it does not.
   static void copy_to_memory(DepthBuffer& buffer, int threads);
 
-  // Cells of the grid on their way from the GPU; empty when all were known.
-  struct GridRead {
-    gl::Readback values;
-    DepthGridPass::Cells cells;
-  };
-  // Over a box of pixels, which may reach far out of the window.
-  Result<GridRead> begin_grid(const DepthBuffer& buffer, const PixelBox& box);
-  static void finish_grid(DepthBuffer& buffer, const GridRead& read);  // once `values` are ready
+  // Makes `buffer.grid` (see DepthGridPass).
+  Result<void> make_grid(DepthBuffer& buffer) const;
   // Depths under at most kMaxPathPoints pixels, which must lie inside the window.
   Result<gl::Readback> begin_gather(const DepthBuffer& buffer, std::span<const glm::ivec2> pixels);
   static std::vector<float> finish_gather(const gl::Readback& depths);

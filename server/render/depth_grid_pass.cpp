@@ -12,17 +12,25 @@ Result<DepthGridPass> DepthGridPass::create(const std::filesystem::path& shader_
   return pass;
 }
 
-DepthGridPass::Cells DepthGridPass::all_cells(const gl::Texture& depth) {
-  return {0, 0, depth_cells(depth.width()), depth_cells(depth.height())};
+std::size_t DepthGridPass::bytes(const gl::Texture& depth) {
+  return static_cast<std::size_t>(depth_cells(depth.width())) * static_cast<std::size_t>(depth_cells(depth.height())) *
+         sizeof(float);
 }
 
-void DepthGridPass::run(const gl::Texture& depth, const Cells& cells, const gl::Buffer& target) const {
+Result<void> DepthGridPass::run(const gl::Texture& depth, gl::Buffer& grid) const {
+  if (grid.size() < bytes(depth)) {
+    auto made = gl::Buffer::create(bytes(depth), gl::Buffer::Use::fixed, "depth grid");
+    if (!made) return tl::unexpected(made.error());
+    grid = std::move(*made);
+  }
+  const int width = depth_cells(depth.width()), height = depth_cells(depth.height());
   program_.use();
-  program_.set(0, cells.first_x, cells.first_y);
-  program_.set(1, cells.width, cells.height);
+  program_.set(0, width, height);
   depth.bind(0);
-  target.bind_storage(0);
-  glDispatchCompute(static_cast<GLuint>(cells.width + 7) / 8, static_cast<GLuint>(cells.height + 7) / 8, 1);
+  grid.bind_storage(0);
+  glDispatchCompute(static_cast<GLuint>(width + 7) / 8, static_cast<GLuint>(height + 7) / 8, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return {};
 }
 
 }  // namespace strata::render

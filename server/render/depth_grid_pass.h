@@ -12,17 +12,11 @@ namespace strata::render {
 // whole cell is hidden.
 class DepthGridPass {
  public:
-  struct Cells {
-    int first_x = 0, first_y = 0, width = 0, height = 0;
-    std::size_t bytes() const {
-      return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * sizeof(float);
-    }
-  };
   static Result<DepthGridPass> create(const std::filesystem::path& shader_dir);
-  static Cells all_cells(const gl::Texture& depth);
+  static std::size_t bytes(const gl::Texture& depth);  // a float a cell
 
-  // Row by row from below into `target`, which a reader must put a barrier before.
-  void run(const gl::Texture& depth, const Cells& cells, const gl::Buffer& target) const;
+  // Row by row from below into `grid`; made anew when it is too small.
+  Result<void> run(const gl::Texture& depth, gl::Buffer& grid) const;
 
  private:
   gl::Program program_;

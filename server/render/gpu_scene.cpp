@@ -91,6 +91,7 @@ Result<void> GpuScene::load() {
   const std::string& dir = options_.shader_dir;
   detail_budget_ = DetailBudget(info_.software);
   if (auto made = keep(depths_, DepthBuffers::create(dir, slice, memory_, readback_)); !made) return made;
+  if (auto made = keep(edit_culler_, EditCuller::create(dir, readback_)); !made) return made;
   if (auto made = keep(edit_pass_, EditPass::create(dir, readback_)); !made) return made;
   if (auto made = keep(tile_reader_, TileReader::create(dir, readback_)); !made) return made;
   if (auto made = keep(gbuffer_pass_, MeshPass::create(MeshPass::Kind::gbuffer, dir, slice)); !made) return made;

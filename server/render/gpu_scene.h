@@ -44,6 +44,7 @@ class GpuScene {
   gl::ReadbackPool& readback() { return readback_; }
   PageTables& tables() { return tables_; }
   DepthBuffers& depths() { return *depths_; }
+  EditCuller& edit_culler() { return *edit_culler_; }
   EditPass& edit_pass() { return *edit_pass_; }
   TileReader& tile_reader() { return *tile_reader_; }
   // Strokes are painted by KernelPainter, which needs no surface maps on the GPU.
@@ -93,6 +94,7 @@ class GpuScene {
   PagePool pool_1_, pool_2_, pool_4_;
   PageTables tables_;
   std::optional<DepthBuffers> depths_;
+  std::optional<EditCuller> edit_culler_;
   std::optional<EditPass> edit_pass_;
   std::optional<TileReader> tile_reader_;
   std::optional<MeshPass> gbuffer_pass_;

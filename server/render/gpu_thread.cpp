@@ -9,8 +9,8 @@
 namespace strata::render {
 namespace {
 
-// Polls this often without sleeping while the GPU works: a read-back is usually there within microseconds.
-constexpr int kBusyPolls = 64;
+// Polls so long without sleeping while the GPU works: what an edit reads back is usually there within microseconds.
+constexpr auto kBusyPolling = std::chrono::microseconds(200);
 constexpr auto kPollPause = std::chrono::microseconds(100);
 constexpr auto kRecoveryPause = std::chrono::seconds(1);
 // Frames that were drawn and wait for their read-back; more would only hold memory.
@@ -79,7 +79,7 @@ void GpuThread::wake() {
 }
 
 void GpuThread::run() {
-  int idle_polls = 0;
+  auto last_progress = Clock::now();
   for (;;) {
     run_replies();
     {
@@ -88,7 +88,7 @@ void GpuThread::run() {
     }
     if (broken_ ? Clock::now() >= next_recovery_ : hooks_.lost()) recover();
     if (!broken_ && run_some()) {
-      idle_polls = 0;
+      last_progress = Clock::now();
       continue;
     }
     if (broken_) abort_all(lost_problem());
@@ -99,7 +99,7 @@ void GpuThread::run() {
     };
     if (current_[0] || current_[1] || !frames_.empty()) {
       // Something waits for the GPU.
-      if (++idle_polls > kBusyPolls) changed_.wait_for(lock, kPollPause, has_news);
+      if (Clock::now() - last_progress > kBusyPolling) changed_.wait_for(lock, kPollPause, has_news);
     } else if (broken_) {
       changed_.wait_for(lock, kRecoveryPause, has_news);
     } else {

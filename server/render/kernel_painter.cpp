@@ -34,13 +34,14 @@ Result<Step> KernelPainter::step(GpuScene& scene, const PaintTarget& target) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   };
   const KernelResult written = find_written(target);
-  outcome_.cull_ms = outcome_.dispatch_ms = elapsed_ms();
+  const double found_ms = elapsed_ms();
   const auto pages = find_pages(written, target.layer);
   if (!pages) return tl::unexpected(pages.error());
   write(written, *pages, target.layer);
   [[maybe_unused]] const auto flushed = scene.tables().flush();
   assert(flushed);  // only a layer that is added makes the tables larger
-  outcome_.gpu_ms = elapsed_ms() - outcome_.dispatch_ms;
+  outcome_.edit_ms = elapsed_ms();
+  outcome_.gpu_ms = outcome_.edit_ms - found_ms;
   return Step::done;
 }
 

@@ -54,12 +54,10 @@ struct WrittenTile {
 struct StrokeOutcome {
   std::vector<WrittenTile> tiles;
   glm::vec3 written_min{0}, written_max{0};  // model-space box of the written blocks; for changed screen rectangles
-  // EditPath::compute:                                                             EditPath::kernel:
-  double gpu_ms = 0;       // the dispatch, by timer query; or the call, where the    tiles read, changed and uploaded
-                           // driver executes in it (on CPUs)
-  double cull_ms = 0;      // choosing the blocks, on the CPU                         with the test of their texels
-  double dispatch_ms = 0;  // from the start of culling until the commands were       the same
-                           // given, without the dispatch
+  double edit_ms =
+      0;  // from choosing the blocks until the texels are written; with EditPath::compute until that is known
+  double gpu_ms =
+      0;  // of it, EditPath::compute: both passes, by timer queries; kernel: tiles read, changed and uploaded
   std::size_t bytes_up = 0, bytes_down = 0;  // between CPU and GPU
 };
 

@@ -16,7 +16,13 @@ class StreamBuffer {
 
   template <class T>
   Result<void> replace(std::span<const T> values) {
-    const std::size_t needed = std::max<std::size_t>(values.size_bytes(), 4096);
+    if (auto room = make_room(values.size_bytes()); !room) return room;
+    buffer_.upload_values(0, values);
+    return {};
+  }
+  // Room for `bytes`, whose content is undefined.
+  Result<void> make_room(std::size_t bytes) {
+    const std::size_t needed = std::max<std::size_t>(bytes, 4096);
     if (buffer_.size() < needed) {
       auto buffer = gl::Buffer::create(std::bit_ceil(needed), gl::Buffer::Use::fixed, label_);
       if (!buffer) return tl::unexpected(buffer.error());
@@ -24,9 +30,9 @@ class StreamBuffer {
     } else {
       glInvalidateBufferData(buffer_.id());  // the driver need not wait for those who read the old content
     }
-    buffer_.upload_values(0, values);
     return {};
   }
+  const gl::Buffer& buffer() const { return buffer_; }
   void bind_storage(GLuint binding) const { buffer_.bind_storage(binding); }
   void bind_uniform(GLuint binding) const { buffer_.bind_uniform(binding); }
 

@@ -1,7 +1,10 @@
 #include "render/surface_map_textures.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstddef>
 
+#include "shared/edit.h"
 #include "shared/pages.h"
 
 namespace strata::render {
@@ -10,8 +13,23 @@ namespace {
 constexpr std::size_t kRow = shader::kPositionRow;
 constexpr std::size_t kRowsPerSlice = 2048;
 constexpr std::size_t kRowsPerUpload = 256;  // 4 MiB
-constexpr std::size_t kBoxesPerUpload = (4u << 20) / sizeof(mesh::SurfaceMap::PackedBox);
-static_assert(sizeof(mesh::SurfaceMap::PackedBox) == 24, "six floats, as shaders/edit_pass.comp reads them");
+constexpr std::size_t kBytesPerUpload = std::size_t{4} << 20;
+constexpr std::size_t kNodeLevel = 2;
+
+// As shaders/edit_pass.comp and edit_cull_pass.comp read them.
+static_assert(sizeof(mesh::SurfaceMap::PackedBox) == 6 * sizeof(float));
+static_assert(sizeof(mesh::BoundingSphere) == 4 * sizeof(float));
+static_assert(mesh::BlockTree::kChildren * mesh::BlockTree::kChildren == shader::kEditPartsPerNode);
+static_assert(sizeof(mesh::BlockTree::Part) == sizeof(shader::EditPart) && std::endian::native == std::endian::little);
+static_assert(offsetof(mesh::BlockTree::Part, tile) == 4 && offsetof(mesh::BlockTree::Part, place) == 6);
+
+std::array<std::span<const std::byte>, 4> buffer_contents(const mesh::SurfaceMap& map) {
+  const auto& levels = map.tree.levels;
+  if (levels.empty()) return {std::as_bytes(std::span(map.packed_box)), {}, {}, {}};
+  return {std::as_bytes(std::span(map.packed_box)),
+          std::as_bytes(std::span(levels[std::min(kNodeLevel, levels.size() - 1)])),
+          std::as_bytes(std::span(levels.front())), std::as_bytes(std::span(map.tree.parts))};
+}
 
 }  // namespace
 
@@ -23,16 +41,26 @@ Result<std::unique_ptr<SurfaceMapTextures>> SurfaceMapTextures::create(std::shar
   textures->total_rows_ = (texels + kRow - 1) / kRow;
   const std::size_t height = std::clamp<std::size_t>(textures->total_rows_, 1, kRowsPerSlice);
   const std::size_t layers = std::max<std::size_t>(1, (textures->total_rows_ + kRowsPerSlice - 1) / kRowsPerSlice);
-  const std::size_t box_bytes =
-      std::max<std::size_t>(1, textures->map_->packed_box.size()) * sizeof(mesh::SurfaceMap::PackedBox);
-  auto share = memory.reserve(kRow * height * layers * sizeof(std::uint64_t) + box_bytes, "a surface map");
+  const auto contents = buffer_contents(*textures->map_);
+  const auto room = [](std::size_t bytes) { return std::max<std::size_t>(bytes, 16); };  // no buffer is empty
+  const std::size_t touched_bytes = room(textures->map_->tree.parts.size() * sizeof(shader::TouchedPart));
+  std::size_t bytes = kRow * height * layers * sizeof(std::uint64_t) + touched_bytes;
+  for (const auto& content : contents) bytes += room(content.size());
+  auto share = memory.reserve(bytes, "a surface map");
   if (!share) return tl::unexpected(share.error());
   auto positions = gl::Texture::create_array(GL_RG32UI, static_cast<int>(kRow), static_cast<int>(height),
                                              static_cast<int>(layers), "surface positions");
   if (!positions) return tl::unexpected(positions.error());
-  auto boxes = gl::Buffer::create(box_bytes, gl::Buffer::Use::fixed, "surface position boxes");
-  if (!boxes) return tl::unexpected(boxes.error());
-  textures->boxes_ = std::move(*boxes);
+  constexpr std::array kLabels = {"surface position boxes", "block tree nodes", "block tree spheres",
+                                  "block tree parts"};
+  for (std::size_t i = 0; i < contents.size(); ++i) {
+    auto buffer = gl::Buffer::create(room(contents[i].size()), gl::Buffer::Use::fixed, kLabels[i]);
+    if (!buffer) return tl::unexpected(buffer.error());
+    textures->buffers_[i] = {std::move(*buffer), contents[i]};
+  }
+  auto touched = gl::Buffer::create(touched_bytes, gl::Buffer::Use::fixed, "touched parts");
+  if (!touched) return tl::unexpected(touched.error());
+  textures->touched_parts_ = std::move(*touched);
   textures->share_ = std::move(*share);
   textures->positions_ = std::move(*positions);
   return textures;
@@ -46,16 +74,28 @@ std::unique_ptr<SurfaceMapTextures> SurfaceMapTextures::on_cpu(std::shared_ptr<c
 
 bool SurfaceMapTextures::upload_slice() {
   if (complete()) return true;
-  if (const std::size_t left = map_->packed_box.size() - uploaded_boxes_; left > 0) {
-    const std::size_t count = std::min(left, kBoxesPerUpload);
-    boxes_.upload_values(uploaded_boxes_ * sizeof(mesh::SurfaceMap::PackedBox),
-                         std::span(map_->packed_box).subspan(uploaded_boxes_, count));
-    uploaded_boxes_ += count;
-    return complete();
+  if (upload_buffers()) upload_rows();
+  return complete();
+}
+
+// True when there was nothing left of them.
+bool SurfaceMapTextures::upload_buffers() {
+  while (next_buffer_ < buffers_.size() && uploaded_bytes_ == buffers_[next_buffer_].content.size()) {
+    ++next_buffer_;
+    uploaded_bytes_ = 0;
   }
+  if (next_buffer_ == buffers_.size()) return true;
+  auto& [buffer, content] = buffers_[next_buffer_];
+  const auto part = content.subspan(uploaded_bytes_, std::min(kBytesPerUpload, content.size() - uploaded_bytes_));
+  buffer.upload(uploaded_bytes_, part);
+  uploaded_bytes_ += part.size();
+  return false;
+}
+
+void SurfaceMapTextures::upload_rows() {
   const std::size_t row = uploaded_rows_ % kRowsPerSlice, layer = uploaded_rows_ / kRowsPerSlice;
   const std::size_t rows = std::min({kRowsPerUpload, kRowsPerSlice - row, total_rows_ - uploaded_rows_});
-  if (rows == 0) return true;
+  if (rows == 0) return;
   const auto& texels = map_->packed_position;
   const std::size_t first = uploaded_rows_ * kRow;
   const std::size_t whole_rows = std::min(rows, (texels.size() - first) / kRow);
@@ -70,7 +110,6 @@ bool SurfaceMapTextures::upload_slice() {
     upload(texels.size() - start, 1, row + whole_rows, texels.data() + start);
   }
   uploaded_rows_ += rows;
-  return complete();
 }
 
 }  // namespace strata::render

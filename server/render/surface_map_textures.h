@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <span>
 
 #include "gl/buffer.h"
 #include "gl/texture.h"
@@ -9,9 +11,9 @@
 
 namespace strata::render {
 
-// A surface map's packed positions on the GPU: 2048 x 2048 slices of RG32UI (a storage buffer would end at 128 MiB on some
-// drivers) and the boxes they are packed in, filled in slices. The block table and the bounds stay on the CPU, where edits are culled;
-// all of it does where they are painted there, too.
+// A surface map on the GPU, filled in slices: packed positions as 2048 x 2048 slices of RG32UI (a storage buffer would end at
+// 128 MiB on some drivers), the boxes they are packed in, and the block tree's parts with the spheres that cull them. Where edits
+// are painted on the CPU, nothing of it.
 class SurfaceMapTextures {
  public:
   static Result<std::unique_ptr<SurfaceMapTextures>> create(std::shared_ptr<const mesh::SurfaceMap> map,
@@ -21,21 +23,34 @@ class SurfaceMapTextures {
 
   // Uploads the next few megabytes; true when everything is there.
   bool upload_slice();
-  bool complete() const {
-    return !positions_ || (uploaded_rows_ == total_rows_ && uploaded_boxes_ == map_->packed_box.size());
-  }
+  bool complete() const { return !positions_ || (uploaded_rows_ == total_rows_ && next_buffer_ == buffers_.size()); }
   const mesh::SurfaceMap& map() const { return *map_; }
   const gl::Texture& positions() const { return positions_; }
-  const gl::Buffer& boxes() const { return boxes_; }
+  const gl::Buffer& boxes() const { return buffers_[0].buffer; }  // a slot: PackedBox
+  // Of the tree: centre and radius of each 64 parts' node and of each part, and the parts as EditPart.
+  const gl::Buffer& nodes() const { return buffers_[1].buffer; }
+  const gl::Buffer& spheres() const { return buffers_[2].buffer; }
+  const gl::Buffer& parts() const { return buffers_[3].buffer; }
+  const gl::Buffer& touched_parts() const {
+    return touched_parts_;
+  }  // room for TouchedPart of all, for the edit at work
 
  private:
+  struct Filled {
+    gl::Buffer buffer;
+    std::span<const std::byte> content;  // of the map
+  };
+  bool upload_buffers();
+  void upload_rows();
+
   std::shared_ptr<const mesh::SurfaceMap> map_;
   gl::Texture positions_;
-  gl::Buffer boxes_;
+  std::array<Filled, 4> buffers_;
+  gl::Buffer touched_parts_;
   GpuMemory::Share share_;
   std::size_t total_rows_ = 0;  // of 2048 texels
   std::size_t uploaded_rows_ = 0;
-  std::size_t uploaded_boxes_ = 0;
+  std::size_t next_buffer_ = 0, uploaded_bytes_ = 0;  // of that one
 };
 
 }  // namespace strata::render

@@ -9,13 +9,36 @@ struct EditSegment {
   vec4 tool;
 };
 
-// One 8 x 8 block to test. `segments` is an index into the list of segment numbers; `place` is block x | block y << 4 in the
-// tile, with the count of segments above bit 8.
-struct EditBlock {
+// A part of the block tree (mesh/block_tree.h): a block or some of its texels. `place` is the tile, row-major, with the block's x
+// above bit 16 and its y above bit 20.
+struct EditPart {
   uint slot;
-  uint page;
-  uint segments;
   uint place;
+};
+
+// A part that the stroke may touch. Bit i of `segments` stands for segments i * segments_per_bit and on.
+struct TouchedPart {
+  uint part;
+  uint segments;
+};
+
+const uint kEditMostTiles = 16384u;  // 16384 / 128 squared
+
+// How many parts and tiles the stroke may touch, and which tiles in no order. `number_of_tile` is 0 where it touches none, else
+// one above the tile's place in the list.
+struct EditTiles {
+  uint part_count;
+  uint tile_count;
+  uint tiles[kEditMostTiles];
+  uint number_of_tile[kEditMostTiles];
+};
+
+// What the edit wrote in a tile: 128 rows of texels, a bit each, lowest first; and the box around the spheres of the parts it
+// wrote in, as numbers that grow with the float (`low`: that shrink), 0 where it wrote nothing.
+struct EditedTile {
+  uint texels[512];
+  uint low[3];
+  uint high[3];
 };
 
 const uint kEditErase = 1u;
@@ -26,26 +49,43 @@ const uint kEditFacing = 16u;  // surfaces seen at too much of a slant are left 
 
 const uint kShapeCells = 256u;  // a side of the texture of a tool's shape
 
+// What follows the first 144 bytes is sent where it is used.
 struct EditUniforms {
   mat4 clip_from_model;
-  vec4 window;        // width, height in pixels; then 0
-  vec4 bias;          // fixed; scale of 1/w^2; slope factor; limit of the slope part, in units of the scaled part
+  vec4 window;    // width, height in pixels; then 0
+  vec4 tool_box;  // of all segments in window pixels: x0, y0, x1, y1
+  vec4 bias;      // fixed; scale of 1/w^2; slope factor; limit of the slope part, in units of the scaled part
   uint value;
   uint flags;
   uint section_count;
-  uint reserved;
+  uint segment_count;
+  uint segments_per_bit;
+  uint part_count;
+  uint table_offset;  // of the layer in the page tables
+  float inner_radius;  // share of the tool's radius that it fills wholly
+  vec4 facing[4];      // kEditFacing. render/facing_limit.h: rows x, y, w, far; the last number of the first is the limit
   vec4 section[kSectionPlanes];  // section_count are used
-  vec4 facing[4];                // render/facing_limit.h: rows x, y, w, far; the last number of the first is the limit
 };
 
+const uint kEditPartsPerNode = 64u;  // of a node of the tree's third level
 const uint kEditRowsPerBlock = 8u;   // one thread a row of 8 texels
-const uint kEditBlocksPerGroup = 8u;
+const uint kEditPartsPerGroup = 8u;
 const uint kEditGroupsPerRow = 32768u;  // below the 65 535 that every driver allows
+
+// Culling computes in floats; what they and packed positions round is far less.
+const float kCullMarginPx = 0.25;
+const float kCullMarginDepth = 4e-6;
+const float kCullMarginRadius = 1e-5;  // relative
 STRATA_SHARED_END
 #ifdef __cplusplus
 #include <cstddef>
 static_assert(sizeof(strata::shader::EditSegment) == 32);
-static_assert(sizeof(strata::shader::EditBlock) == 16);
-static_assert(sizeof(strata::shader::EditUniforms) == 272);
-static_assert(offsetof(strata::shader::EditUniforms, value) == 96);
+static_assert(sizeof(strata::shader::EditPart) == 8);
+static_assert(sizeof(strata::shader::TouchedPart) == 8);
+static_assert(sizeof(strata::shader::EditedTile) == 2072);
+static_assert(sizeof(strata::shader::EditUniforms) == 304);
+static_assert(offsetof(strata::shader::EditUniforms, facing) == 144);
+#else
+uint tile_of(EditPart part) { return part.place & 0xffffu; }
+uvec2 block_in_tile(EditPart part) { return uvec2(part.place >> 16, part.place >> 20) & 15u; }
 #endif

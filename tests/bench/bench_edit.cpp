@@ -30,7 +30,7 @@ constexpr std::size_t kCompared = 3;  // of them
 constexpr double kBytesPerTexel = 20;
 
 struct Measured {
-  Samples ms, to_memory;
+  Samples ms, to_memory, gpu;
   EditCost last;
 };
 
@@ -56,6 +56,7 @@ Case measure(EditMethods& methods, int radius, int repeats) {
         measured.last = method->edit(center, radius);
         measured.ms.add(measured.last.ms);
         if (measured.last.ms_to_memory > 0) measured.to_memory.add(measured.last.ms_to_memory);
+        if (measured.last.gpu_ms > 0) measured.gpu.add(measured.last.gpu_ms);
       }
       std::reverse(order.begin(), order.end());
     }
@@ -156,6 +157,7 @@ class Report {
                  {"bytes_up", measured.last.bytes_up},
                  {"bytes_down", measured.last.bytes_down}});
     if (!measured.to_memory.empty()) json["ms_to_main_memory_median"] = measured.to_memory.median();
+    if (!measured.gpu.empty()) json["gpu_ms_median"] = measured.gpu.median();
     if (method == "tiles") {
       json["floor_ms"] = floor_ms;
       if (const EditAgreement& agreement = found.agreement; agreement.compared > 0) {

@@ -20,6 +20,7 @@ struct EditScene {
 struct EditCost {
   double ms = 0;                               // until a frame may show the edit
   double ms_to_memory = 0;                     // until main memory has it, too; 0: not asked
+  double gpu_ms = 0;                           // of the GPU's own clock; 0: not known
   std::uint64_t cells = 0;                     // texels or leaves painted
   std::uint64_t bytes_up = 0, bytes_down = 0;  // between CPU and GPU
 };

@@ -31,6 +31,7 @@ const std::map<std::vector<std::string>, Variants> kPrograms{
     {{"cluster_cull_pass.comp"}, {{}}},
     {{"depth_grid_pass.comp"}, {{}}},
     {{"depth_gather_pass.comp"}, {{}}},
+    {{"edit_cull_pass.comp"}, {{}}},
     {{"edit_pass.comp"},
      {{"TEXEL_FORMAT r8ui"},
       {"TEXEL_FORMAT r16ui"},

@@ -244,7 +244,7 @@ TEST(Edit, a_stroke_that_is_refused_for_want_of_memory_has_painted_nothing) {
       EXPECT_TRUE(tile.after.valid == tile.written) << "refused at buffer " << refusals;
     }
   }
-  EXPECT_GE(refusals, 3) << "the depth grid, the rows and the tiles are read back";
+  EXPECT_GE(refusals, 2) << "what is touched and written, and the tiles, are read back";
 }
 
 TEST(Edit, erasing_clears_value_and_flag_and_tells_what_it_touched) {

@@ -9,7 +9,7 @@
 
 #include "bench/peers/paper.h"
 #include "mesh/load.h"
-#include "render/edit_pass.h"
+#include "render/depth_bias.h"
 #include "support/gl_scene.h"
 #include "support/shader_dirs.h"
 

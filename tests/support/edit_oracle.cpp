@@ -9,7 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
-#include "render/edit_pass.h"
+#include "render/depth_bias.h"
 #include "render/tool_path.h"
 
 namespace strata::test {
