@@ -1,151 +1,154 @@
 #include "query/statistics.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <unordered_map>
 
-#include "query/tile_table.h"
+#include "mesh/parallel.h"
+#include "query/pieces.h"
 
 namespace strata::query {
 namespace {
 
-constexpr int kBins = 64;
-constexpr std::size_t kMaxKeys = 4096;
-constexpr int kBlocksPerTile = kTileSize / kBlockSize;
-
-// Calls `visit(slot, texel in the block, bits)` for every valid surface texel, in the order of slots.
-template <class Visit>
-void for_each_texel(const TileTable& tiles, const mesh::SurfaceMap& map, Visit visit) {
-  for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
-    const std::uint64_t surface = map.surface_mask[slot];
-    if (surface == 0) continue;
-    const int bx = static_cast<int>(map.block_of_slot[slot] % map.blocks_per_side);
-    const int by = static_cast<int>(map.block_of_slot[slot] / map.blocks_per_side);
-    const TileData* tile = tiles.of_block(bx, by);
-    if (tile == nullptr) continue;
-    const int corner = (by % kBlocksPerTile) * kBlockSize * kTileSize + (bx % kBlocksPerTile) * kBlockSize;
-    for (std::uint64_t rest = surface; rest != 0; rest &= rest - 1) {
-      const int texel = std::countr_zero(rest);
-      const int in_tile = corner + texel / kBlockSize * kTileSize + texel % kBlockSize;
-      if (tile->valid.test(in_tile)) visit(slot, texel, tile->bits(in_tile));
-    }
-  }
-}
-
-// Sums per distinct value; gives up beyond kMaxKeys.
-class KeySums {
+class Counting {
  public:
-  KeySums(ValueType type, const mesh::SurfaceMap& map) : map_(map), active_(!is_float(type)) {
-    if (active_ && bytes_per_texel(type) <= 2) small_.assign(std::size_t{1} << (8 * bytes_per_texel(type)), kNone);
+  Counting(const LayerView& view, const mesh::SurfaceMap& map, const StatisticsRequest& request)
+      : type_(view.layer.type), map_(map), request_(request) {
+    for (const auto& [address, tile] : view.snapshot.tiles)
+      if (tile) tiles_.emplace_back(address, &tile);
+    // Sums of floats depend on their order: the same layer has the same statistics.
+    std::ranges::sort(tiles_, {}, [](const auto& tile) { return tile.first; });
   }
 
-  void add(std::uint32_t slot, int texel, std::uint32_t bits, double area) {
-    if (!active_) return;
-    const std::uint32_t index = index_of(bits);
-    if (index == kNone) return;
-    Sum& sum = sums_[index];
-    const glm::dvec3 position(map_.position(slot, texel));
-    ++sum.texels;
-    sum.area += area;
-    sum.weighted_position += area * position;
-    sum.lowest = glm::min(sum.lowest, position);
-    sum.highest = glm::max(sum.highest, position);
+  std::vector<std::shared_ptr<const TileSums>> sums() const {
+    std::vector<std::shared_ptr<const TileSums>> found(tiles_.size());
+    for_each_tile([&](std::size_t i, TileAddress address, const std::shared_ptr<const TileData>& tile) {
+      const auto make = [&] { return sum_tile(*tile, address, type_, map_, request_.within); };
+      found[i] = cache() ? cache()->sums(address, tile, make) : std::make_shared<const TileSums>(make());
+    });
+    return found;
   }
 
-  std::map<double, KeyStatistics> finish(ValueType type, const glm::dvec3& origin, double m2_per_unit2) const {
-    std::map<double, KeyStatistics> keys;
-    if (!active_) return keys;
-    for (const Sum& sum : sums_) {
-      const glm::dvec3 centroid = sum.area > 0 ? sum.weighted_position / sum.area : (sum.lowest + sum.highest) / 2.0;
-      keys[decode_value(type, sum.bits)] = {sum.texels, sum.area * m2_per_unit2, centroid + origin, sum.lowest + origin,
-                                            sum.highest + origin};
-    }
-    return keys;
+  TileHistogram histogram(double min, double max) const {
+    std::vector<std::shared_ptr<const TileHistogram>> found(tiles_.size());
+    for_each_tile([&](std::size_t i, TileAddress address, const std::shared_ptr<const TileData>& tile) {
+      const auto make = [&] { return count_tile(*tile, address, type_, map_, request_.within, min, max); };
+      found[i] =
+          cache() ? cache()->histogram(address, tile, min, max, make) : std::make_shared<const TileHistogram>(make());
+    });
+    TileHistogram all;
+    for (const auto& of_tile : found)
+      for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
+        all.texels[bin] += of_tile->texels[bin];
+        all.area[bin] += of_tile->area[bin];
+      }
+    return all;
   }
 
  private:
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-  struct Sum {
-    std::uint32_t bits = 0;
-    std::uint64_t texels = 0;
-    double area = 0;
-    glm::dvec3 weighted_position{0};
-    glm::dvec3 lowest{std::numeric_limits<double>::infinity()}, highest{-std::numeric_limits<double>::infinity()};
-  };
-
-  std::uint32_t index_of(std::uint32_t bits) {
-    if (bits == last_bits_ && last_index_ != kNone) return last_index_;
-    std::uint32_t& index = small_.empty() ? large_.try_emplace(bits, kNone).first->second : small_[bits];
-    if (index == kNone) {
-      if (sums_.size() == kMaxKeys) {
-        active_ = false;
-        return kNone;
-      }
-      index = static_cast<std::uint32_t>(sums_.size());
-      sums_.emplace_back().bits = bits;
-    }
-    last_bits_ = bits;
-    last_index_ = index;
-    return index;
+  TileSumsCache* cache() const { return request_.within ? nullptr : request_.cache; }
+  template <class Work>
+  void for_each_tile(Work work) const {
+    mesh::parallel_for(request_.threads, static_cast<int>(tiles_.size()), [&](int number) {
+      const auto i = static_cast<std::size_t>(number);
+      work(i, tiles_[i].first, *tiles_[i].second);
+    });
   }
 
+  const ValueType type_;
   const mesh::SurfaceMap& map_;
-  bool active_;
-  std::vector<std::uint32_t> small_;  // 8 and 16 bit: index by the bits themselves
-  std::unordered_map<std::uint32_t, std::uint32_t> large_;
-  std::vector<Sum> sums_;
-  std::uint32_t last_bits_ = 0, last_index_ = kNone;  // neighbours mostly share a value
+  const StatisticsRequest& request_;
+  std::vector<std::pair<TileAddress, const std::shared_ptr<const TileData>*>> tiles_;
 };
+
+TileSums join(const std::vector<std::shared_ptr<const TileSums>>& parts) {
+  TileSums all;
+  std::unordered_map<std::uint32_t, std::uint32_t> index;
+  for (const auto& part : parts) {
+    if (part->texels == 0) continue;
+    if (all.texels == 0) {
+      all.min = part->min;
+      all.max = part->max;
+    }
+    all.min = std::min(all.min, part->min);
+    all.max = std::max(all.max, part->max);
+    all.texels += part->texels;
+    if (all.area == 0) {
+      all.mean = part->mean;
+      all.squares = part->squares;
+      all.area = part->area;
+    } else if (part->area > 0) {
+      const double area = all.area + part->area, apart = part->mean - all.mean;
+      all.squares += part->squares + apart * apart * all.area * part->area / area;
+      all.mean += apart * part->area / area;
+      all.area = area;
+    }
+    all.too_many_keys |= part->too_many_keys;
+    if (all.too_many_keys) continue;
+    for (const auto& key : part->keys) {
+      const auto [found, fresh] = index.try_emplace(key.bits, static_cast<std::uint32_t>(all.keys.size()));
+      if (fresh)
+        all.keys.push_back(key);
+      else
+        all.keys[found->second].add(key);
+    }
+    all.too_many_keys = all.keys.size() > kMaxStatisticsKeys;
+  }
+  if (all.too_many_keys) all.keys.clear();
+  return all;
+}
 
 }  // namespace
 
 Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const glm::dvec3& origin,
-                      double metres_per_unit) {
+                      double metres_per_unit, const StatisticsRequest& request) {
   if (map.resolution != view.layer.resolution)
     throw std::invalid_argument("The surface map is of another resolution than the layer.");
   const ValueType type = view.layer.type;
   const double m2_per_unit2 = metres_per_unit * metres_per_unit;
-  const TileTable tiles(view.snapshot.tiles, map.resolution);
-
+  const Counting counting(view, map, request);
+  const TileSums sums = join(counting.sums());
   Statistics out;
-  KeySums keys(type, map);
-  double area = 0, weighted = 0;
-  out.min = std::numeric_limits<double>::infinity();
-  out.max = -out.min;
-  for_each_texel(tiles, map, [&](std::uint32_t slot, int texel, std::uint32_t bits) {
-    const double value = decode_value(type, bits);
-    const double texel_area = map.area[std::size_t(slot) * 64 + texel];
-    ++out.texels;
-    area += texel_area;
-    weighted += texel_area * value;
-    out.min = std::min(out.min, value);
-    out.max = std::max(out.max, value);
-    keys.add(slot, texel, bits, texel_area);
-  });
-  if (out.texels == 0) return {};
-  out.area_m2 = area * m2_per_unit2;
+  if (request.pieces) out.pieces = 0;
+  if (sums.texels == 0) return out;
+  out.texels = sums.texels;
+  out.area_m2 = sums.area * m2_per_unit2;
+  out.min = sums.min;
+  out.max = sums.max;
   // Rounding must not push the mean of a constant layer beyond its value.
-  out.mean = area > 0 ? std::clamp(weighted / area, out.min, out.max) : (out.min + out.max) / 2;
-  out.keys = keys.finish(type, origin, m2_per_unit2);
+  out.mean = sums.area > 0 ? std::clamp(sums.mean, out.min, out.max) : (out.min + out.max) / 2;
+  out.std = sums.area > 0 ? std::sqrt(sums.squares / sums.area) : 0;
+  for (const auto& key : sums.keys) {
+    const glm::dvec3 centroid = key.area > 0 ? key.weighted_position / key.area : (key.lowest + key.highest) / 2.0;
+    out.keys[decode_value(type, key.bits)] = {key.texels, key.area * m2_per_unit2, centroid + origin,
+                                              key.lowest + origin, key.highest + origin};
+  }
 
-  // The spread needs the mean and the bins need the limits: a second pass is exact where running sums are not.
+  TileHistogram histogram;
+  if (sums.keys.empty()) {
+    histogram = counting.histogram(out.min, out.max);
+  } else {
+    for (const auto& key : sums.keys) {
+      const auto bin = static_cast<std::size_t>(bin_of(decode_value(type, key.bits), out.min, out.max));
+      histogram.texels[bin] += key.texels;
+      histogram.area[bin] += key.area;
+    }
+  }
   const double range = out.max - out.min;
-  const int bins = range > 0 ? kBins : 1;
+  const int bins = range > 0 ? kHistogramBins : 1;
   for (int i = 0; i < bins; ++i)
-    out.histogram.push_back({out.min + range * i / bins, out.min + range * (i + 1) / bins, 0, 0});
-  double squares = 0;
-  for_each_texel(tiles, map, [&](std::uint32_t slot, int texel, std::uint32_t bits) {
-    const double value = decode_value(type, bits);
-    const double texel_area = map.area[std::size_t(slot) * 64 + texel];
-    squares += texel_area * (value - out.mean) * (value - out.mean);
-    auto& bin = out.histogram[bins == 1 ? 0 : std::min(bins - 1, static_cast<int>((value - out.min) / range * bins))];
-    ++bin.texels;
-    bin.area_m2 += texel_area * m2_per_unit2;
-  });
-  out.std = area > 0 ? std::sqrt(squares / area) : 0;
+    out.histogram.push_back({out.min + range * i / bins, out.min + range * (i + 1) / bins,
+                             histogram.texels[static_cast<std::size_t>(i)],
+                             histogram.area[static_cast<std::size_t>(i)] * m2_per_unit2});
+
+  if (request.quantiles) out.quantiles = quantiles(view, map, request.within, sums);
+  if (request.pieces) {
+    const PieceCounts counts = count_pieces(view, map, *request.pieces, request.within);
+    out.pieces = counts.all;
+    for (const auto& [bits, pieces] : counts.of_key)
+      if (const auto key = out.keys.find(decode_value(type, bits)); key != out.keys.end()) key->second.pieces = pieces;
+  }
   return out;
 }
 

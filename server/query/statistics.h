@@ -2,8 +2,12 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
+#include "mesh/texel_graph.h"
+#include "query/quantiles.h"
+#include "query/tile_sums.h"
 #include "query/values.h"
 
 namespace strata::query {
@@ -13,6 +17,7 @@ struct KeyStatistics {
   double area_m2 = 0;
   glm::dvec3 centroid{0};                   // world, weighted by area
   glm::dvec3 bounds_min{0}, bounds_max{0};  // world
+  std::optional<std::uint64_t> pieces{};    // where asked for: connected areas of this key
 };
 
 // Over valid surface texels (gutter excluded), weighted by true surface area.
@@ -28,9 +33,20 @@ struct Statistics {
   std::vector<Bin>
       histogram;  // 64 equal bins from min to max; one where all values are equal; empty where nothing is valid
   std::map<double, KeyStatistics> keys;  // integer layers with ≤ 4096 distinct values; otherwise empty
+  std::optional<Quantiles> quantiles;    // where asked for and something has an area
+  std::optional<std::uint64_t> pieces;   // where asked for: connected areas, of one value each in integer layers
 };
 
+struct StatisticsRequest {
+  const TexelSelection* within = nullptr;  // null: the whole surface
+  bool quantiles = false;
+  const mesh::TexelGraph* pieces = nullptr;  // null: not counted
+  TileSumsCache* cache = nullptr;            // of this layer; not used with `within`
+  int threads = 1;
+};
+
+// The map must be of the layer's resolution.
 Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const glm::dvec3& origin,
-                      double metres_per_unit);
+                      double metres_per_unit, const StatisticsRequest& request = {});
 
 }  // namespace strata::query

@@ -16,6 +16,9 @@
 #include "mesh/demo_pot.h"
 #include "mesh/texel_owners.h"
 #include "mesh/uv_islands.h"
+#include "query/pieces.h"
+#include "query/statistics.h"
+#include "query/tile_table.h"
 #include "support/meshes.h"
 
 namespace strata::query {
@@ -195,6 +198,47 @@ TEST(Flood, from_where_nothing_is_what_holds_nothing_is_connected) {
   // A ring of the torus is painted at x = 0 on both sides: what is bare falls into two halves.
   const auto rings = [](glm::vec3 p) { return std::abs(p.x) < 0.06f ? 1 : 0; };
   expect_connected(torus, rings, [](glm::vec3 p) { return p.x >= 0.06f; });
+}
+
+TEST(Flood, the_pieces_that_are_counted_are_those_that_a_flood_finds) {
+  for (const auto& [name, mesh] : test::mesh_classes()) {
+    SCOPED_TRACE(name);
+    const Surface surface = surface_of(name, mesh, kResolution);
+    const mesh::SurfaceMap& map = surface.map;
+    const glm::vec3 size = surface.geometry.box_max - surface.geometry.box_min;
+    const float cell = std::max({size.x, size.y, size.z}) / 3;
+    // Cells of space in three values, and one in four bare.
+    LayerView view;
+    view.layer.type = ValueType::u8;
+    view.layer.resolution = map.resolution;
+    view.snapshot.tiles = layer_of(map, [&](glm::vec3 p) {
+      const glm::ivec3 at(glm::floor((p - surface.geometry.box_min) / cell));
+      return (at.x + 2 * at.y + 3 * at.z) & 3;
+    });
+    const TileTable table(view.snapshot.tiles, map.resolution);
+    std::map<std::uint32_t, std::uint64_t> expected;
+    TexelSelection seen(map.block_of_slot.size(), 0);
+    std::uint64_t floods = 0;
+    for_each_surface_texel(map, [&](std::uint32_t texel) {
+      if (is_in(seen, texel) || floods > 300) return;
+      const auto block = static_cast<int>(map.block_of_slot[texel / 64]), i = static_cast<int>(texel % 64);
+      const int x = block % map.blocks_per_side * 8 + i % 8, y = block / map.blocks_per_side * 8 + i / 8;
+      const TileData* tile = table.of_texel(x, y);
+      const int in_tile = y % kTileSize * kTileSize + x % kTileSize;
+      if (tile == nullptr || !tile->valid.test(in_tile)) return;
+      ++floods;
+      ++expected[tile->bits(in_tile)];
+      const auto piece = select_connected(map, surface.graph, view.snapshot.tiles, texel);
+      for (std::size_t slot = 0; slot < seen.size(); ++slot) seen[slot] |= piece[slot];
+    });
+    if (floods > 300) continue;  // there are meshes of separate triangles only
+    const PieceCounts counts = count_pieces(view, map, surface.graph, nullptr);
+    EXPECT_EQ(counts.of_key, expected);
+    EXPECT_EQ(counts.all, floods);
+    const auto statistics = query::statistics(view, map, glm::dvec3(0), 1, {.pieces = &surface.graph});
+    EXPECT_EQ(statistics.pieces, floods);
+    for (const auto& [bits, pieces] : expected) EXPECT_EQ(statistics.keys.at(bits).pieces, pieces);
+  }
 }
 
 TEST(Flood, a_pot_is_one_piece_though_its_atlas_has_many) {

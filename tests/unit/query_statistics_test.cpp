@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <random>
 
@@ -147,6 +149,119 @@ TEST(QueryStatistics, they_agree_with_a_plain_sum_over_every_texel) {
       EXPECT_LT(glm::distance(mine.bounds_max, key.bounds_max), 1e-9);
     }
   }
+}
+
+// The same values with every texel of the area in order: what the quantiles must be.
+Quantiles quantiles_of(std::vector<Sample> all) {
+  std::ranges::sort(all, {}, &Sample::value);
+  double area = 0, sum = 0;
+  for (const auto& s : all) area += s.area;
+  Quantiles found{};
+  std::size_t next = 0;
+  for (const auto& s : all) {
+    sum += s.area;
+    while (next < found.size() && sum >= kQuantiles[next] * area) found[next++] = s.value;
+  }
+  return found;
+}
+
+TEST(QueryStatistics, quantiles_are_those_of_all_texels_in_order) {
+  const mesh::SurfaceMap map = make_map(512, 0.6, 5);
+  for (const auto type : {ValueType::u8, ValueType::i8, ValueType::u16, ValueType::i16, ValueType::u32, ValueType::i32,
+                          ValueType::f16, ValueType::f32}) {
+    for (const int distinct : {1, 2, 100, 60000}) {
+      if (distinct > highest_value(type)) continue;
+      SCOPED_TRACE(std::string(name(type)) + " of " + std::to_string(distinct));
+      const LayerView view = make_layer(type, map, distinct, 12);
+      const auto got = statistics(view, map, kOrigin, 0.01, {.quantiles = true});
+      ASSERT_TRUE(got.quantiles);
+      const Quantiles expected = quantiles_of(samples(view, map));
+      // Sums in another order may differ by rounding, so one value more or less is right, too.
+      const double step = is_float(type) ? 0.125 : 1.0;
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_NEAR((*got.quantiles)[i], expected[i], distinct > 1000 ? step : 0) << kQuantiles[i];
+    }
+  }
+  LayerView empty;
+  empty.layer.resolution = 512;
+  EXPECT_FALSE(statistics(empty, map, kOrigin, 1, {.quantiles = true}).quantiles);
+}
+
+TEST(QueryStatistics, within_a_selection_only_its_texels_count) {
+  const mesh::SurfaceMap map = make_map(512, 0.6, 7);
+  const LayerView view = make_layer(ValueType::u8, map, 20, 3);
+  std::mt19937_64 random(1);
+  TexelSelection within;
+  mesh::SurfaceMap smaller = map;  // the oracle: what is not selected is gutter
+  for (auto& surface : smaller.surface_mask) {
+    within.push_back(random() & random());
+    surface &= within.back();
+  }
+  TileSumsCache cache;
+  statistics(view, map, kOrigin, 1, {.cache = &cache});
+  const auto got = statistics(view, map, kOrigin, 1, {.within = &within, .quantiles = true, .cache = &cache});
+  const auto expected = statistics(view, smaller, kOrigin, 1, {.quantiles = true});
+  EXPECT_GT(got.texels, 1000u);
+  EXPECT_EQ(got.texels, expected.texels);
+  EXPECT_EQ(got.area_m2, expected.area_m2);
+  EXPECT_EQ(got.mean, expected.mean);
+  EXPECT_EQ(got.quantiles, expected.quantiles);
+  EXPECT_EQ(got.keys.size(), expected.keys.size());
+}
+
+void expect_same(const Statistics& a, const Statistics& b) {
+  EXPECT_EQ(a.texels, b.texels);
+  EXPECT_EQ(a.area_m2, b.area_m2);
+  EXPECT_EQ(a.min, b.min);
+  EXPECT_EQ(a.max, b.max);
+  EXPECT_EQ(a.mean, b.mean);
+  EXPECT_EQ(a.std, b.std);
+  ASSERT_EQ(a.histogram.size(), b.histogram.size());
+  for (std::size_t i = 0; i < a.histogram.size(); ++i) {
+    EXPECT_EQ(a.histogram[i].texels, b.histogram[i].texels);
+    EXPECT_EQ(a.histogram[i].area_m2, b.histogram[i].area_m2);
+  }
+  ASSERT_EQ(a.keys.size(), b.keys.size());
+  for (const auto& [value, key] : a.keys) {
+    EXPECT_EQ(key.texels, b.keys.at(value).texels);
+    EXPECT_EQ(key.area_m2, b.keys.at(value).area_m2);
+    EXPECT_EQ(key.centroid, b.keys.at(value).centroid);
+  }
+}
+
+TEST(QueryStatistics, tiles_that_stay_are_not_counted_again_and_the_sums_are_the_same) {
+  const mesh::SurfaceMap map = make_map(512, 0.6, 9);
+  for (const auto type : {ValueType::u8, ValueType::u16, ValueType::f32}) {
+    for (const int distinct : {30, 60000}) {
+      if (distinct > highest_value(type)) continue;
+      TileSumsCache cache;
+      LayerView view = make_layer(type, map, distinct, 13);
+      std::mt19937 random(3);
+      for (int stroke = 0; stroke < 6; ++stroke) {
+        SCOPED_TRACE(std::string(name(type)) + ", stroke " + std::to_string(stroke));
+        expect_same(statistics(view, map, kOrigin, 0.01, {.cache = &cache, .threads = 3}),
+                    statistics(view, map, kOrigin, 0.01));
+        auto tile = std::next(view.snapshot.tiles.begin(), static_cast<long>(random() % view.snapshot.tiles.size()));
+        auto changed = std::make_shared<TileData>(*tile->second);
+        for (int i = 0; i < 500; ++i) changed->write(static_cast<int>(random() % kTexelsPerTile), random() & 0x3fu);
+        tile->second = changed;
+        if (stroke == 3) view.snapshot.tiles.erase(view.snapshot.tiles.begin());
+      }
+    }
+  }
+}
+
+TEST(QueryStatistics, values_that_are_not_finite_do_not_count) {
+  const mesh::SurfaceMap map = make_map(256, 1.0, 3);
+  LayerView view = make_layer(ValueType::f32, map, 10, 1, true);
+  const auto before = statistics(view, map, kOrigin, 1);
+  auto& tile = view.snapshot.tiles.begin()->second;
+  auto changed = std::make_shared<TileData>(*tile);
+  for (int i = 0; i < kTexelsPerTile; ++i) changed->write(i, std::bit_cast<std::uint32_t>(INFINITY));
+  tile = changed;
+  const auto after = statistics(view, map, kOrigin, 1, {.quantiles = true});
+  EXPECT_LT(after.texels, before.texels);
+  EXPECT_TRUE(std::isfinite(after.mean));
 }
 
 TEST(QueryStatistics, gutter_texels_do_not_count) {
