@@ -45,7 +45,7 @@ Uuid edit_id(const Request& request, const Layer& layer, std::string_view operat
 }
 
 void apply_edit(const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room,
-                room::EditRequest edit, const Respond& respond) {
+                room::EditRequest edit, const Respond& respond, std::function<nlohmann::json(nlohmann::json)> body_of) {
   const bool keyed = !request.header("idempotency-key").empty();
   if (keyed)
     if (auto same = context.edit_book.begin(room->model().id, edit); !same) return respond(same.error());
@@ -54,15 +54,41 @@ void apply_edit(const RouteContext& context, const Request& request, const std::
       [&metrics = context.metrics](const room::EditAnswer& answer) {
         if (!answer.repeated) ++metrics.edits_applied;
       },
-      [&context, keyed, id = edit.id, respond](Result<room::EditAnswer> answer) {
+      [&context, keyed, id = edit.id, respond, body_of = std::move(body_of)](Result<room::EditAnswer> answer) {
         if (keyed) context.edit_book.end(id);
         if (!answer) {
           ++context.metrics.edits_refused;
           return respond(answer.error());
         }
         if (!answer->repeated) ++context.metrics.edits_saved;
-        respond(json_response(room::to_json(*answer)).with("Strata-Sequence", std::to_string(answer->sequence)));
+        respond(
+            json_response(body_of(room::to_json(*answer))).with("Strata-Sequence", std::to_string(answer->sequence)));
       });
+}
+
+Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,
+                                       const std::string& field) {
+  std::vector<Layer> layers;
+  for (const auto& ref : refs) {
+    auto layer = room.layer(ref);
+    if (!layer) {
+      Problem problem = layer.error();
+      problem.field = field;
+      return tl::unexpected(std::move(problem));
+    }
+    layers.push_back(std::move(*layer));
+  }
+  return layers;
+}
+
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (end > begin) parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
 }
 
 Response job_response(const RouteContext& context, std::int64_t job) {

@@ -45,6 +45,7 @@ void add_look_routes(Router& router, const RouteContext& context);
 void add_tool_routes(Router& router, const RouteContext& context);
 void add_edit_routes(Router& router, const RouteContext& context);
 void add_query_routes(Router& router, const RouteContext& context);
+void add_statistics_routes(Router& router, const RouteContext& context);
 void add_frame_routes(Router& router, const RouteContext& context);
 void add_texel_routes(Router& router, const RouteContext& context);
 void add_shape_routes(Router& router, const RouteContext& context);
@@ -73,8 +74,16 @@ void add_sequences(Response& response, std::int64_t shown, std::int64_t durable)
 // the kind of call; a layer is the same by whatever address it was reached.
 Uuid edit_id(const Request& request, const Layer& layer, std::string_view operation);
 // Hands the edit to the room and answers once it is durable or refused. A key of another edit is refused.
-void apply_edit(const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room,
-                room::EditRequest edit, const Respond& respond);
+// `body_of` makes the answer's body of the edit's.
+void apply_edit(
+    const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room,
+    room::EditRequest edit, const Respond& respond,
+    std::function<nlohmann::json(nlohmann::json)> body_of = [](nlohmann::json of_edit) { return of_edit; });
+
+// Layers by id or slug; the Problem of one that is not there names `field`.
+Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,
+                                       const std::string& field);
+std::vector<std::string> split_list(const std::string& text);  // at commas, without empty parts
 
 // 202 with the job and its address.
 Response job_response(const RouteContext& context, std::int64_t job);

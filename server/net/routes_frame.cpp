@@ -1,4 +1,5 @@
 #include "core/picture.h"
+#include "net/as_of.h"
 #include "net/routes.h"
 #include "net/wire.h"
 
@@ -14,7 +15,6 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   if (!room) return tl::unexpected(room.error());
   room::PictureRequest wanted;
   wanted.camera = asked->camera;
-  wanted.at = asked->at;
   if (asked->layers) {
     wanted.layers.emplace();
     for (std::size_t i = 0; i < asked->layers->size(); ++i) {
@@ -28,8 +28,9 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
     }
   }
   const auto sequence = (*room)->sequence();
-  if (asked->at && *asked->at > sequence)
-    return fail(422, "Not yet there", "The newest sequence of this model is " + std::to_string(sequence) + ".", "at");
+  const auto at = find_sequence(context, **room, asked->at);
+  if (!at) return tl::unexpected(at.error());
+  wanted.at = *at;
   if (asked->looks) {
     auto looks = look_views(**room, *asked->looks);
     if (!looks) return tl::unexpected(looks.error());
@@ -44,7 +45,7 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
       is_png ? bytes_response(encode_png(picture->pixels, picture->width, picture->height), "image/png")
              : bytes_response(encode_jpeg(picture->pixels, picture->width, picture->height, {kJpegQuality, true}),
                               "image/jpeg");
-  add_sequences(response, asked->at.value_or(sequence), (*room)->durable_sequence());
+  add_sequences(response, wanted.at.value_or(sequence), (*room)->durable_sequence());
   return response;
 }
 

@@ -1,3 +1,4 @@
+#include "net/as_of.h"
 #include "net/point_text.h"
 #include "net/routes.h"
 #include "net/wire.h"
@@ -9,31 +10,6 @@ std::vector<std::string> slugs_of(const std::vector<Layer>& layers) {
   std::vector<std::string> slugs;
   for (const auto& layer : layers) slugs.push_back(layer.slug);
   return slugs;
-}
-
-Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,
-                                       const std::string& field) {
-  std::vector<Layer> layers;
-  for (const auto& ref : refs) {
-    auto layer = room.layer(ref);
-    if (!layer) {
-      Problem problem = layer.error();
-      problem.field = field;
-      return tl::unexpected(std::move(problem));
-    }
-    layers.push_back(std::move(*layer));
-  }
-  return layers;
-}
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    if (end > begin) parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
 }
 
 constexpr const char* kCsvType = "text/csv; charset=utf-8";
@@ -48,12 +24,15 @@ Result<Response> position(const RouteContext& context, const Request& request) {
   if (!room) return tl::unexpected(room.error());
   std::vector<Layer> layers = (*room)->layers();
   if (auto named = request.query.find("parameter-name"); named != request.query.end()) {
-    auto found = find_layers(**room, split(named->second), "parameter-name");
+    auto found = find_layers(**room, split_list(named->second), "parameter-name");
     if (!found) return tl::unexpected(found.error());
     layers = std::move(*found);
   }
-  const auto sequence = (*room)->sequence();
-  auto point = (*room)->position(*coordinates, slugs_of(layers));
+  const auto asked = as_of(request);
+  const auto at = find_sequence(context, **room, asked);
+  if (!at) return tl::unexpected(at.error());
+  const auto sequence = at->value_or((*room)->sequence());
+  auto point = (*room)->position(*coordinates, slugs_of(layers), *at);
   if (!point) return tl::unexpected(point.error());
   Response response;
   if (format == "csv")
@@ -84,8 +63,10 @@ Result<Response> positions(const RouteContext& context, const Request& request) 
     layers = std::move(*found);
   }
   const std::vector<glm::dvec3> points(asked->points.begin(), asked->points.end());
-  const auto sequence = (*room)->sequence();
-  auto answers = (*room)->positions(points, slugs_of(layers));
+  const auto at = find_sequence(context, **room, asked->at);
+  if (!at) return tl::unexpected(at.error());
+  const auto sequence = at->value_or((*room)->sequence());
+  auto answers = (*room)->positions(points, slugs_of(layers), *at);
   if (!answers) return tl::unexpected(answers.error());
   Response response;
   if (request.header("accept").find("text/csv") != std::string_view::npos) {
@@ -106,26 +87,12 @@ Result<Response> pick(const RouteContext& context, const Request& request) {
   if (!asked) return tl::unexpected(asked.error());
   auto room = context.rooms.open(request.param("model"));
   if (!room) return tl::unexpected(room.error());
-  const auto sequence = (*room)->sequence();
-  auto point = (*room)->pick(asked->camera, asked->x, asked->y, slugs_of((*room)->layers()));
+  const auto at = find_sequence(context, **room, asked->at);
+  if (!at) return tl::unexpected(at.error());
+  const auto sequence = at->value_or((*room)->sequence());
+  auto point = (*room)->pick(asked->camera, asked->x, asked->y, slugs_of((*room)->layers()), *at);
   if (!point) return tl::unexpected(point.error());
   Response response = json_response(protocol::to_json(to_protocol(*point)));
-  add_sequences(response, sequence, (*room)->durable_sequence());
-  return response;
-}
-
-Result<Response> statistics(const RouteContext& context, const Request& request) {
-  if (auto include = request.query_or("include", {}); !include.empty())
-    return fail(422, "Not computed here", "pieces, perimeter and quantiles are not available; leave `include` out.",
-                "include");
-  auto room = context.rooms.open(request.param("model"));
-  if (!room) return tl::unexpected(room.error());
-  auto layer = (*room)->layer(request.param("layer"));
-  if (!layer) return tl::unexpected(layer.error());
-  const auto sequence = (*room)->sequence();
-  auto statistics = (*room)->statistics(layer->slug);
-  if (!statistics) return tl::unexpected(statistics.error());
-  Response response = json_response(to_json(*statistics));
   add_sequences(response, sequence, (*room)->durable_sequence());
   return response;
 }
@@ -136,7 +103,7 @@ void add_query_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/position",
               .handler = answering([&context](const Request& request) { return position(context, request); }),
-              .query = {"coords", "parameter-name", "f"}});
+              .query = {"coords", "parameter-name", "f", "at"}});
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/positions",
               .handler = answering([&context](const Request& request) { return positions(context, request); }),
@@ -147,10 +114,6 @@ void add_query_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context](const Request& request) { return pick(context, request); }),
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes});
-  router.add({.method = Method::get,
-              .pattern = "/api/v1/models/{model}/layers/{layer}/statistics",
-              .handler = answering([&context](const Request& request) { return statistics(context, request); }),
-              .query = {"include"}});
 }
 
 }  // namespace strata::net

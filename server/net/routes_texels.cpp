@@ -1,4 +1,5 @@
 #include "core/mapped_file.h"
+#include "net/as_of.h"
 #include "net/byte_budget.h"
 #include "net/digest.h"
 #include "net/routes.h"
@@ -38,15 +39,11 @@ Result<Response> read_texels(const RouteContext& context, ByteBudget& budget, co
   if (!room) return tl::unexpected(room.error());
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
-  std::optional<std::int64_t> at;
-  if (auto text = request.query.find("at"); text != request.query.end()) {
-    auto sequence = parse_integer(text->second, 0, (*room)->sequence(), "at");
-    if (!sequence) return tl::unexpected(sequence.error());
-    at = *sequence;
-  }
+  const auto at = find_sequence(context, **room, as_of(request));
+  if (!at) return tl::unexpected(at.error());
   auto held = budget.take(raster_bytes(*layer));
   if (!held) return tl::unexpected(held.error());
-  auto snapshot = (*room)->tiles(layer->slug, at);
+  auto snapshot = (*room)->tiles(layer->slug, *at);
   if (!snapshot) return tl::unexpected(snapshot.error());
   auto bytes = (*format)->encode(*layer, snapshot->tiles);
   if (!bytes) return tl::unexpected(bytes.error());
@@ -54,7 +51,7 @@ Result<Response> read_texels(const RouteContext& context, ByteBudget& budget, co
   response.held = std::move(*held);
   response.with("Content-Disposition",
                 "attachment; filename*=UTF-8''" + percent_encode(layer->slug + "." + (*format)->extension));
-  add_sequences(response, at.value_or(snapshot->sequence), (*room)->durable_sequence());
+  add_sequences(response, at->value_or(snapshot->sequence), (*room)->durable_sequence());
   return response;
 }
 

@@ -76,11 +76,7 @@ Result<room::FillEdit> fill_of(const protocol::EditFill& asked, const Layer& lay
     return fill;
   }
   if (!asked.at) return fail(422, "Member missing", "This mode needs a place where it begins.", "at");
-  room::Place place;
-  if (asked.at->point)
-    place = *asked.at->point;
-  else
-    place = room::PixelPlace{*asked.at->camera, *asked.at->x, *asked.at->y};
+  room::Place place = place_of(*asked.at);
   if (asked.mode == Mode::island)
     fill.region = room::FillEdit::Island{std::move(place)};
   else
@@ -105,8 +101,16 @@ std::string csv_field(const std::string& text) {
 }
 
 nlohmann::json vec3(const glm::dvec3& v) { return nlohmann::json::array({v.x, v.y, v.z}); }
+nlohmann::json bounds_json(const glm::dvec3& low, const glm::dvec3& high) {
+  return {{"min", vec3(low)}, {"max", vec3(high)}};
+}
 
 }  // namespace
+
+room::Place place_of(const protocol::SurfacePlace& place) {
+  if (place.point) return *place.point;
+  return room::PixelPlace{*place.camera, *place.x, *place.y};
+}
 
 bool names_tool(const protocol::Edit& edit) {
   const auto* stroke = std::get_if<protocol::EditStroke>(&edit);
@@ -136,7 +140,7 @@ Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& 
   if (const auto* polygon = std::get_if<protocol::EditPolygon>(&edit)) {
     auto bits = value_bits(layer, polygon->value, polygon->erase);
     if (!bits) return tl::unexpected(bits.error());
-    request.edit = room::PolygonEdit{polygon->erase, *bits, polygon->camera, polygon->path, polygon->through};
+    request.edit = room::PolygonEdit{polygon->erase, *bits, {polygon->camera, polygon->path, polygon->through}};
     return request;
   }
   auto fill = fill_of(std::get<protocol::EditFill>(edit), layer);
@@ -247,14 +251,60 @@ nlohmann::json to_json(const query::Statistics& statistics) {
     bins.push_back({{"from", bin.from}, {"to", bin.to}, {"texels", bin.texels}, {"area_m2", bin.area_m2}});
   json["histogram"] = std::move(bins);
   nlohmann::json keys = nlohmann::json::array();
-  for (const auto& [key, entry] : statistics.keys)
-    keys.push_back({{"key", static_cast<std::int64_t>(key)},  // integer layers only
-                    {"texels", entry.texels},
-                    {"area_m2", entry.area_m2},
-                    {"centroid", vec3(entry.centroid)},
-                    {"bounds", {{"min", vec3(entry.bounds_min)}, {"max", vec3(entry.bounds_max)}}}});
+  for (const auto& [key, entry] : statistics.keys) {
+    nlohmann::json of_key{{"key", static_cast<std::int64_t>(key)},  // integer layers only
+                          {"texels", entry.texels},
+                          {"area_m2", entry.area_m2},
+                          {"centroid", vec3(entry.centroid)},
+                          {"bounds", bounds_json(entry.bounds_min, entry.bounds_max)}};
+    if (entry.pieces) of_key["pieces"] = *entry.pieces;
+    keys.push_back(std::move(of_key));
+  }
   json["keys"] = std::move(keys);
+  if (statistics.pieces) json["pieces"] = *statistics.pieces;
+  if (statistics.quantiles) {
+    static constexpr std::array kNames = {"p5", "p25", "p50", "p75", "p95"};
+    static_assert(kNames.size() == query::kQuantiles.size());
+    for (std::size_t i = 0; i < kNames.size(); ++i) json["quantiles"][kNames[i]] = (*statistics.quantiles)[i];
+  }
   return json;
+}
+
+nlohmann::json to_json(const room::SelectedArea& area) {
+  nlohmann::json json{{"resolution", area.resolution},
+                      {"texels", area.texels},
+                      {"area_m2", area.area_m2},
+                      {"share", area.share},
+                      {"layers", nlohmann::json::object()}};
+  if (area.texels > 0) json["bounds"] = bounds_json(area.bounds_min, area.bounds_max);
+  for (const auto& [slug, statistics] : area.layers) json["layers"][slug] = to_json(statistics);
+  return json;
+}
+
+nlohmann::json to_json(const query::CrossTable& table) {
+  const auto keys = [](const std::vector<query::CrossTable::Key>& side) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const auto& key : side)
+      list.push_back(key ? nlohmann::json(static_cast<std::int64_t>(*key)) : nlohmann::json());
+    return list;
+  };
+  return {{"rows", keys(table.rows)},
+          {"columns", keys(table.columns)},
+          {"area_m2", table.area_m2},
+          {"texels", table.texels}};
+}
+
+std::string cross_table_csv(const query::CrossTable& table, const std::string& rows, const std::string& columns) {
+  const auto key_text = [](const query::CrossTable::Key& key) { return key ? number(*key) : std::string("-"); };
+  std::string text = csv_field(rows + " / " + columns);
+  for (const auto& column : table.columns) text += "," + key_text(column);
+  text += "\r\n";
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    text += key_text(table.rows[row]);
+    for (const double area : table.area_m2[row]) text += "," + number(area);
+    text += "\r\n";
+  }
+  return text;
 }
 
 nlohmann::json to_json(const jobs::JobStatus& job) {

@@ -41,6 +41,8 @@ Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& 
 room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n,
                                 const std::string& user);
 
+room::Place place_of(const protocol::SurfacePlace& place);
+
 // The looks that a view asks for; 404 or 422 with the field's name for one that is not there or comes twice.
 Result<std::vector<room::LookView>> look_views(const room::Room& room, const std::vector<protocol::LookShown>& asked);
 
@@ -50,6 +52,10 @@ std::optional<glm::dvec2> end_of_path(const nlohmann::json& record);
 protocol::SurfacePoint to_protocol(const query::SurfacePoint& point);
 protocol::Picked to_picked(const query::SurfacePoint& point, const std::optional<std::string>& id);
 nlohmann::json to_json(const query::Statistics& statistics);
+nlohmann::json to_json(const room::SelectedArea& area);
+nlohmann::json to_json(const query::CrossTable& table);
+// Areas in m²: a line a row's value, a column a column's, `-` where a layer has none; the corner names both layers.
+std::string cross_table_csv(const query::CrossTable& table, const std::string& rows, const std::string& columns);
 nlohmann::json to_json(const jobs::JobStatus& job);
 nlohmann::json to_json(const store::JournalRow& row);
 std::string utc_text(std::chrono::system_clock::time_point time);  // RFC 3339 with milliseconds

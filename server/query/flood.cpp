@@ -48,4 +48,11 @@ TexelSelection select_connected(const mesh::SurfaceMap& map, const mesh::TexelGr
   return flood(map, graph, start, [&](std::uint32_t texel) { return value_of(texel) == wanted; });
 }
 
+TexelSelection select_near(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph, std::uint32_t start,
+                           const glm::vec3& place, float radius) {
+  return flood(map, graph, start, [&](std::uint32_t texel) {
+    return glm::distance(map.position(texel / 64, static_cast<int>(texel % 64)), place) <= radius;
+  });
+}
+
 }  // namespace strata::query

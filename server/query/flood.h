@@ -15,4 +15,9 @@ TexelSelection select_piece(const mesh::SurfaceMap& map, const mesh::TexelGraph&
 TexelSelection select_connected(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph, const TileMap& tiles,
                                 std::uint32_t start);
 
+// What lies within `radius` (model units, straight) of `place` and is connected with `start`, which is there, within that distance: the
+// other side of a thin wall is not.
+TexelSelection select_near(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph, std::uint32_t start,
+                           const glm::vec3& place, float radius);
+
 }  // namespace strata::query

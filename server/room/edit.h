@@ -23,6 +23,11 @@ struct PixelPlace {  // what the camera shows there
   double x = 0, y = 0;
 };
 using Place = std::variant<PixelPlace, glm::dvec3>;  // or the surface point nearest to a point of the world
+struct Outline {                                     // what is seen inside it in the camera's window (even-odd rule)
+  Camera camera;
+  std::vector<glm::dvec2> path;  // window pixels, origin top left; 3…4096 points
+  bool through = false;          // what is hidden, too
+};
 struct FillEdit {
   bool erase = false;
   std::uint32_t value_bits = 0;
@@ -39,12 +44,10 @@ struct FillEdit {
   };
   std::variant<Everywhere, Where, Island, Connected> region = Everywhere{};
 };
-struct PolygonEdit {  // inside an outline in the camera's window (even-odd rule)
+struct PolygonEdit {
   bool erase = false;
   std::uint32_t value_bits = 0;
-  Camera camera;
-  std::vector<glm::dvec2> path;  // window pixels, origin top left; 3…4096 points
-  bool through = false;          // paint what is hidden, too
+  Outline outline;
 };
 struct ImportEdit {
   TileMap tiles;

@@ -4,6 +4,7 @@
 
 #include "core/layer.h"
 #include "core/tile_mirror.h"
+#include "query/tile_sums.h"
 #include "render/renderer.h"
 
 namespace strata::room {
@@ -14,6 +15,7 @@ struct LayerState {
   render::LayerHandle handle = 0;
   std::shared_ptr<TileMirror> mirror;
   std::shared_ptr<const Palette> palette;  // of `layer`, shared with the frames that use it
+  std::shared_ptr<query::TileSumsCache> sums = std::make_shared<query::TileSumsCache>();
 };
 
 }  // namespace strata::room

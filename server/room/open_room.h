@@ -47,15 +47,20 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer) override;
   Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) override;
   Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer) override;
-  Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers) override;
+  Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers, At at) override;
   Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
-                                                     const std::vector<std::string>& layers) override;
-  Result<query::SurfacePoint> pick(const Camera& camera, double x, double y,
-                                   const std::vector<std::string>& layers) override;
+                                                     const std::vector<std::string>& layers, At at) override;
+  Result<query::SurfacePoint> pick(const Camera& camera, double x, double y, const std::vector<std::string>& layers,
+                                   At at) override;
+  Result<query::Statistics> statistics(const std::string& layer, const Selection& selection,
+                                       StatisticsWanted wanted) override;
+  Result<SelectedArea> select(const Selection& selection, const std::vector<std::string>& layers,
+                              StatisticsWanted wanted) override;
+  Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
+                                        const Selection& selection) override;
   Result<TileMap> dabs(const Layer& layer, const std::vector<PlacedValue>& values, double radius,
                        double tolerance) override;
   Result<TileMap> project(const Layer& layer, const glm::dvec3& direction, const ValueAt& value_at) override;
-  Result<query::Statistics> statistics(const std::string& layer) override;
   Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) override;
   std::shared_ptr<const mesh::Geometry> geometry() const override { return geometry_; }
   std::shared_ptr<const mesh::SearchTree> search_tree() override { return surface_->tree(); }
@@ -118,8 +123,12 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void sort_layers_changed();
   std::uint64_t mirror_bytes() const;  // with `mutex_` held
   void tell_look(Listener::LayerChange change, const Look& look);
-  Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs) const;
   Result<LayerState> state(const std::string& ref) const;
+  // queries.cpp
+  Result<TileMirror::Snapshot> tiles_at(const LayerState& state, At at) const;
+  Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs, At at) const;
+  Result<std::optional<query::TexelSelection>> select_texels(const Selection& selection, const mesh::SurfaceMap& map);
+  Result<query::Statistics> count(const query::LayerView& view, const Selection& selection, StatisticsWanted wanted);
 
   const RoomParts parts_;
   const std::int64_t model_id_;

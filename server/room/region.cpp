@@ -24,22 +24,39 @@ glm::vec3 position_at(const mesh::SurfaceMap& map, TileAddress tile, int texel) 
   return map.position(place.slot, place.texel);
 }
 
-// The surface texel at a place; 64 * slot + texel.
-Result<std::uint32_t> texel_at(const Place& place, const RegionContext& context) {
-  const auto tree = context.surface.tree();
-  const glm::dvec3 origin = context.surface.geometry().origin;
+}  // namespace
+
+Result<PlaceOnSurface> find_place(const Place& place, const mesh::SurfaceMap& map, SurfaceLookup& surface,
+                                  const std::string& field) {
+  const auto tree = surface.tree();
+  const glm::dvec3 origin = surface.geometry().origin;
   const query::SurfacePoint point = std::visit(
       Overloaded{
           [&](const PixelPlace& pixel) { return query::pick(*tree, origin, pixel.camera, pixel.x, pixel.y, {}); },
           [&](const glm::dvec3& world) { return query::nearest_point(*tree, origin, world, {}); }},
       place);
   if (!point.hit)
-    return fail(422, "Not on the model", "There is no surface at this place; give one that is on the model.", "at");
-  if (const auto texel = mesh::surface_texel_at(context.map, point.uv)) return *texel;
-  return fail(422, "No texel there", "The surface at this place is too small to hold a texel of this layer.", "at");
+    return fail(422, "Not on the model", "There is no surface at this place; give one that is on the model.", field);
+  if (const auto texel = mesh::surface_texel_at(map, point.uv))
+    return PlaceOnSurface{*texel, glm::vec3(point.position - origin)};
+  return fail(422, "No texel there", "The surface at this place is too small to hold a texel of this layer.", field);
 }
 
-}  // namespace
+Result<TileMasks> texels_in(const Outline& outline, const mesh::SurfaceMap& map, const SurfaceLookup& surface,
+                            render::Renderer& renderer, render::ModelHandle model) {
+  const PolygonArea area({outline.path});
+  auto seen = seen_texels(renderer, model, map.resolution, outline.camera, area.low(), area.high(), outline.through);
+  if (!seen) return tl::unexpected(gpu_problem(seen.error()));
+  const WindowProjection window_of(outline.camera, surface.geometry().origin);
+  for (auto& [address, mask] : *seen) {
+    TileMask inside;
+    for_each_texel(mask, [&](int texel) {
+      if (area.contains(window_of(position_at(map, address, texel)))) inside.set(texel);
+    });
+    mask = inside;
+  }
+  return seen;
+}
 
 Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType type, const RegionContext& context) {
   using Changes = Result<std::vector<TileChange>>;
@@ -49,11 +66,11 @@ Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType typ
     return fill_selected(context.tiles, type, context.map, std::move(*selection), value);
   };
   const auto flooded = [&](const Place& at, auto flood) -> Changes {
-    const auto start = texel_at(at, context);
+    const auto start = find_place(at, context.map, context.surface, "at");
     if (!start) return tl::unexpected(start.error());
     const auto graph = context.surface.graph(context.map);
     if (!graph) return tl::unexpected(graph.error());
-    return selected(flood(**graph, *start));
+    return selected(flood(**graph, start->texel));
   };
   return std::visit(Overloaded{
                         [&](const FillEdit::Everywhere&) -> Changes {
@@ -78,19 +95,9 @@ Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType typ
 
 Result<std::vector<TileChange>> polygon_changes(const PolygonEdit& polygon, ValueType type,
                                                 const RegionContext& context) {
-  const PolygonArea area({polygon.path});
-  auto seen = seen_texels(context.renderer, context.model, context.map.resolution, polygon.camera, area.low(),
-                          area.high(), polygon.through);
-  if (!seen) return tl::unexpected(gpu_problem(seen.error()));
-  const WindowProjection window_of(polygon.camera, context.surface.geometry().origin);
-  for (auto& [address, mask] : *seen) {
-    TileMask inside;
-    for_each_texel(mask, [&](int texel) {
-      if (area.contains(window_of(position_at(context.map, address, texel)))) inside.set(texel);
-    });
-    mask = inside;
-  }
-  return fill_masks(context.tiles, type, context.map, *seen, written_value(polygon.erase, polygon.value_bits));
+  const auto inside = texels_in(polygon.outline, context.map, context.surface, context.renderer, context.model);
+  if (!inside) return tl::unexpected(inside.error());
+  return fill_masks(context.tiles, type, context.map, *inside, written_value(polygon.erase, polygon.value_bits));
 }
 
 }  // namespace strata::room

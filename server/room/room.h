@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "query/cross_table.h"
 #include "query/statistics.h"
 #include "query/values.h"
 #include "room/edit.h"
@@ -81,6 +82,27 @@ class Member {
   virtual void pointer(std::optional<glm::dvec3> world) = 0;
 };
 
+// A part of the surface, by what the layers held and where it lies.
+struct Selection {
+  std::optional<Expression> where{};  // a condition
+  struct Around {                     // connected with a place within a distance from it (query::select_near)
+    Place at;
+    double radius = 0;  // model units
+  };
+  std::optional<std::variant<Around, Outline>> within{};
+  std::optional<std::int64_t> at{};  // layers as they were after that sequence; absent: as they are
+};
+struct StatisticsWanted {  // that takes longer
+  bool quantiles = false, pieces = false;
+};
+struct SelectedArea {
+  int resolution = 0;  // of the texels that are counted
+  std::uint64_t texels = 0;
+  double area_m2 = 0, share = 0;                    // of the whole surface
+  glm::dvec3 bounds_min{0}, bounds_max{0};          // world, where there is a texel
+  std::map<std::string, query::Statistics> layers;  // by slug: what they hold there
+};
+
 struct PictureRequest {
   Camera camera;
   std::optional<std::vector<std::string>> layers{};  // by slug; nothing: those visible by default
@@ -117,12 +139,22 @@ class Room {
   virtual Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer = {}) = 0;
 
   // Queries; may take a while the first time (search tree, surface map), so call from a worker thread. Values of the given
-  // layers only.
-  virtual Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers) = 0;
+  // layers only, as they were after a sequence or as they are. Refused (422, `at`): a sequence that is not durable yet.
+  using At = std::optional<std::int64_t>;
+  virtual Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers,
+                                               At at = {}) = 0;
   virtual Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
-                                                             const std::vector<std::string>& layers) = 0;
+                                                             const std::vector<std::string>& layers, At at = {}) = 0;
   virtual Result<query::SurfacePoint> pick(const Camera& camera, double x, double y,
-                                           const std::vector<std::string>& layers) = 0;
+                                           const std::vector<std::string>& layers, At at = {}) = 0;
+  virtual Result<query::Statistics> statistics(const std::string& layer, const Selection& selection = {},
+                                               StatisticsWanted wanted = {}) = 0;
+  // Counts texels of the finest layer that is named or asked of; of the model's default where none is.
+  virtual Result<SelectedArea> select(const Selection& selection, const std::vector<std::string>& layers,
+                                      StatisticsWanted wanted = {}) = 0;
+  // What two layers of whole numbers hold together, at the finer one's texels.
+  virtual Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
+                                                const Selection& selection = {}) = 0;
   // What maps and measurements paint (query/flat_map, query/dabs), for an ImportEdit `over` the layer. Values are bits of its type.
   struct PlacedValue {
     glm::dvec3 world{0};
@@ -135,7 +167,6 @@ class Room {
   // The surface that is seen first along a direction, without perspective, by a function of its place in the world.
   using ValueAt = std::function<std::optional<std::uint32_t>(const glm::dvec3& world)>;
   virtual Result<TileMap> project(const Layer& layer, const glm::dvec3& direction, const ValueAt& value_at) = 0;
-  virtual Result<query::Statistics> statistics(const std::string& layer) = 0;
   virtual Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) = 0;
   // What the model is, for work that computes on the whole surface. The tree is built and the map baked when first asked for.
   virtual std::shared_ptr<const mesh::Geometry> geometry() const = 0;

@@ -85,6 +85,17 @@ Result<std::vector<std::int64_t>> Store::redoable(std::int64_t layer_id, const s
   });
 }
 
+Result<std::int64_t> Store::sequence_at(std::int64_t model_id, const std::string& utc) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
+    auto row = connection.query(  // Times are told in milliseconds: one that was read counts its own edit.
+        "SELECT coalesce(max(sequence), 0) FROM edits "
+        "WHERE model_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
+        Params().integer(model_id).text(utc));
+    if (!row) return tl::unexpected(row.error());
+    return row->integer(0, 0);
+  });
+}
+
 Result<std::int64_t> Store::last_sequence(std::int64_t model_id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
     auto row = connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));

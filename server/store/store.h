@@ -140,6 +140,8 @@ class Store {
   Result<std::vector<std::int64_t>> undoable(std::int64_t layer_id, const std::string& user);
   Result<std::vector<std::int64_t>> redoable(std::int64_t layer_id, const std::string& user);
   Result<std::int64_t> last_sequence(std::int64_t model_id);
+  // Of the last edit until a time (core/timestamp.h's text); 0 before the first.
+  Result<std::int64_t> sequence_at(std::int64_t model_id, const std::string& utc);
   Result<std::uint64_t> revision_bytes(std::int64_t model_id);
 
   // --- answers to changing HTTP calls, by Idempotency-Key; kept for 7 days

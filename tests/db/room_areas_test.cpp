@@ -82,9 +82,9 @@ class RoomAreas : public RoomTest {
   room::PolygonEdit polygon(std::vector<glm::dvec2> path, std::uint32_t value, bool through = false) const {
     room::PolygonEdit edit;
     edit.value_bits = value;
-    edit.camera = view();
-    edit.path = std::move(path);
-    edit.through = through;
+    edit.outline.camera = view();
+    edit.outline.path = std::move(path);
+    edit.outline.through = through;
     return edit;
   }
 

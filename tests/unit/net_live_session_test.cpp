@@ -87,17 +87,26 @@ class FakeRoom final : public room::Room {
   Result<Model> update_model(Model model, const store::FirstAnswer<Model>&) override { return model; }
   Result<TileMap> dabs(const Layer&, const std::vector<PlacedValue>&, double, double) override { return TileMap{}; }
   Result<TileMap> project(const Layer&, const glm::dvec3&, const ValueAt&) override { return TileMap{}; }
-  Result<query::SurfacePoint> position(const glm::dvec3&, const std::vector<std::string>&) override {
+  Result<query::SurfacePoint> position(const glm::dvec3&, const std::vector<std::string>&, At) override {
     return query::SurfacePoint{};
   }
-  Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>&,
-                                                     const std::vector<std::string>&) override {
+  Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>&, const std::vector<std::string>&,
+                                                     At) override {
     return std::vector<query::SurfacePoint>{};
   }
-  Result<query::SurfacePoint> pick(const Camera&, double, double, const std::vector<std::string>&) override {
+  Result<query::SurfacePoint> pick(const Camera&, double, double, const std::vector<std::string>&, At) override {
     return query::SurfacePoint{};
   }
-  Result<query::Statistics> statistics(const std::string&) override { return query::Statistics{}; }
+  Result<query::Statistics> statistics(const std::string&, const room::Selection&, room::StatisticsWanted) override {
+    return query::Statistics{};
+  }
+  Result<room::SelectedArea> select(const room::Selection&, const std::vector<std::string>&,
+                                    room::StatisticsWanted) override {
+    return room::SelectedArea{};
+  }
+  Result<query::CrossTable> cross_table(const std::string&, const std::string&, const room::Selection&) override {
+    return query::CrossTable{};
+  }
   Result<TileMirror::Snapshot> tiles(const std::string&, std::optional<std::int64_t>) override {
     return TileMirror::Snapshot{};
   }

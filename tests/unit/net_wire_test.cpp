@@ -153,8 +153,8 @@ TEST(Wire, a_polygon_becomes_an_edit) {
   ASSERT_TRUE(request);
   const auto& edit = std::get<room::PolygonEdit>(request->edit);
   EXPECT_EQ(edit.value_bits, 200u);
-  EXPECT_EQ(edit.path.size(), 3u);
-  EXPECT_TRUE(edit.through);
+  EXPECT_EQ(edit.outline.path.size(), 3u);
+  EXPECT_TRUE(edit.outline.through);
   EXPECT_EQ(request->record["op"], "polygon");
 }
 

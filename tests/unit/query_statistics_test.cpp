@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <random>
+#include <utility>
 
 #include "mesh/packed_position.h"
+#include "query/cross_table.h"
 
 namespace strata::query {
 namespace {
@@ -262,6 +265,73 @@ TEST(QueryStatistics, values_that_are_not_finite_do_not_count) {
   const auto after = statistics(view, map, kOrigin, 1, {.quantiles = true});
   EXPECT_LT(after.texels, before.texels);
   EXPECT_TRUE(std::isfinite(after.mean));
+}
+
+TEST(CrossTable, agrees_with_a_count_of_every_texel) {
+  const mesh::SurfaceMap map = make_map(512, 0.6, 21);
+  LayerView units = make_layer(ValueType::u16, map, 7, 5), states = make_layer(ValueType::i8, map, 4, 6);
+  std::mt19937_64 random(2);
+  TexelSelection half;
+  for (std::size_t slot = 0; slot < map.surface_mask.size(); ++slot) half.push_back(random());
+  for (const TexelSelection* within : {static_cast<const TexelSelection*>(nullptr), &std::as_const(half)}) {
+    const auto table = cross_tabulate(units, states, map, within, 0.01);
+    ASSERT_TRUE(table);
+    std::map<std::pair<CrossTable::Key, CrossTable::Key>, std::pair<std::uint64_t, double>> expected;
+    for (int y = 0; y < map.resolution; ++y)
+      for (int x = 0; x < map.resolution; ++x) {
+        const TileAddress address{static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)};
+        const auto slot = map.slot_of_block[std::size_t(y / 8) * std::size_t(map.blocks_per_side) + std::size_t(x / 8)];
+        const int i = y % 8 * 8 + x % 8;
+        if (slot == mesh::kNoSlot || !((map.surface_mask[slot] >> i) & 1)) continue;
+        if (within && !(((*within)[slot] >> i) & 1)) continue;
+        const auto key = [&](const LayerView& view) -> CrossTable::Key {
+          const auto tile = view.snapshot.tiles.find(address);
+          const int texel = y % kTileSize * kTileSize + x % kTileSize;
+          if (tile == view.snapshot.tiles.end() || !tile->second->valid.test(texel)) return std::nullopt;
+          return decode_value(view.layer.type, tile->second->bits(texel));
+        };
+        const std::pair pair{key(units), key(states)};
+        if (!pair.first && !pair.second) continue;
+        auto& [texels, area] = expected[pair];
+        ++texels;
+        area += double{map.area[std::size_t{slot} * 64 + std::size_t(i)]} * 1e-4;
+      }
+    EXPECT_EQ(table->rows.size(), 8u);
+    EXPECT_EQ(table->columns.size(), 5u);
+    EXPECT_EQ(table->rows.back(), std::nullopt);
+    EXPECT_TRUE(std::is_sorted(table->columns.begin(), table->columns.end() - 1));
+    std::size_t met = 0;
+    for (std::size_t row = 0; row < table->rows.size(); ++row)
+      for (std::size_t column = 0; column < table->columns.size(); ++column) {
+        const auto [texels, area] = expected[{table->rows[row], table->columns[column]}];
+        EXPECT_EQ(table->texels[row][column], texels);
+        EXPECT_NEAR(table->area_m2[row][column], area, 1e-9 * area);
+        met += texels > 0;
+      }
+    EXPECT_EQ(met, 39u) << "all pairs but that of nothing and nothing";
+  }
+}
+
+TEST(CrossTable, takes_layers_of_other_resolutions_by_the_texel_at_the_place) {
+  const mesh::SurfaceMap map = make_map(512, 1.0, 22);
+  mesh::SurfaceMap coarse_map = map;
+  coarse_map.resolution = 256;
+  const LayerView fine = make_layer(ValueType::u8, map, 1, 5, true);
+  LayerView coarse = make_layer(ValueType::u8, coarse_map, 2, 6, true);
+  const auto table = cross_tabulate(fine, coarse, map, nullptr, 1);
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->rows.size(), 1u);
+  EXPECT_EQ(table->columns.size(), 2u);
+  EXPECT_NEAR(table->area_m2[0][0] + table->area_m2[0][1], statistics(fine, map, kOrigin, 1).area_m2, 1e-6);
+}
+
+TEST(CrossTable, refuses_fractions_and_too_many_values) {
+  const mesh::SurfaceMap map = make_map(256, 1.0, 3);
+  const LayerView keys = make_layer(ValueType::u8, map, 3, 1), fractions = make_layer(ValueType::f32, map, 3, 1),
+                  many = make_layer(ValueType::u16, map, 60000, 1);
+  EXPECT_EQ(cross_tabulate(keys, fractions, map, nullptr, 1).error().field, "columns");
+  EXPECT_EQ(cross_tabulate(fractions, keys, map, nullptr, 1).error().field, "rows");
+  EXPECT_EQ(cross_tabulate(many, keys, map, nullptr, 1).error().field, "rows");
 }
 
 TEST(QueryStatistics, gutter_texels_do_not_count) {

@@ -947,11 +947,15 @@ export interface SurfacePoint {
   values?: SurfaceValues;
 }
 
+/** Sequence or time. Layers as they were after this sequence of the model, or after its last edit until this time (RFC 3339). */
+export type At = number | string;
+
 /** Values at many points. */
 export interface PositionsRequest {
   points: Point3[];
   /** Absent: all layers. */
   layers?: LayerRef[];
+  at?: At;
 }
 
 /** One entry per asked point, in their order. */
@@ -965,22 +969,42 @@ export interface PickRequest {
   camera: Camera;
   x: number;
   y: number;
+  at?: At;
 }
 
-/** One rendered picture. */
-export interface FrameRequest {
-  /** Its width × height is the size of the picture. */
-  camera: Camera;
-  /** Exactly these are drawn, bottom to top; absent: those visible by default. */
+/** Part of the surface. Around a place: what lies within `radius_mm` of it (straight) and is connected with it within that distance. Or what is seen inside an outline in a camera's window. */
+export interface Within {
+  at?: SurfacePlace;
+  /** Millimetres on the object. */
+  radius_mm?: number;
+  camera?: Camera;
+  path?: Outline;
+  /** What is hidden, too. */
+  through?: boolean;
+}
+
+/** What takes longer. */
+export type StatisticsPart = "pieces" | "quantiles";
+
+/** Paints what is selected. */
+export interface SelectInto {
+  layer: LayerRef;
+  /** In the layer's type; ignored when erasing. Default: 0. */
+  value?: number;
+  /** Default: false. */
+  erase?: boolean;
+}
+
+/** Where on the surface. Without `where` and `within`: everywhere. */
+export interface SelectRequest {
+  /** A condition over the layers, as a fill takes it. */
+  where?: string;
+  within?: Within;
+  at?: At;
+  /** Whose statistics there are asked for. */
   layers?: LayerRef[];
-  /** Exactly these, bottom to top; absent: those visible by default. */
-  looks?: LookShown[];
-  /** Absent: museum. */
-  light?: Light;
-  /** As of this sequence; absent: now. */
-  at?: number;
-  /** Default: "jpeg". */
-  format?: "jpeg" | "png";
+  include?: StatisticsPart[];
+  into?: SelectInto;
 }
 
 /** Bar of a histogram. Values from `from` (included) to `to`; the last bin includes `to`. */
@@ -998,6 +1022,17 @@ export interface KeyStatistics {
   area_m2: number;
   centroid: Point3;
   bounds: Bounds;
+  /** Where asked for: connected areas of this key. */
+  pieces?: number;
+}
+
+/** The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. Where asked for and something has an area. */
+export interface Quantiles {
+  p5: number;
+  p25: number;
+  p50: number;
+  p75: number;
+  p95: number;
 }
 
 /** Statistics of a layer, weighted by surface area. Of valid texels on the surface. `min`, `max`, `mean` and `std` are absent while the layer is empty; `keys` is empty for fractions and for more than 4096 different values. */
@@ -1008,8 +1043,62 @@ export interface Statistics {
   max?: number;
   mean?: number;
   std?: number;
+  /** Where asked for: connected areas, of one value each in layers of whole numbers. */
+  pieces?: number;
+  quantiles?: Quantiles;
   histogram: HistogramBin[];
   keys: KeyStatistics[];
+}
+
+/** What layers hold in a selection. By slug. */
+export type SelectedLayers = Record<string, Statistics>;
+
+/** Texels and area of a selection. */
+export interface SelectResponse {
+  /** Of the texels that are counted. */
+  resolution: number;
+  texels: number;
+  area_m2: number;
+  /** Of the whole surface. */
+  share: number;
+  bounds?: Bounds;
+  layers: SelectedLayers;
+  /** Of `into`. */
+  edit?: EditResult;
+}
+
+/** Two layers against each other. */
+export interface CrossTableRequest {
+  rows: LayerRef;
+  columns: LayerRef;
+  /** A condition over the layers, as a fill takes it. */
+  where?: string;
+  within?: Within;
+  at?: At;
+}
+
+/** Areas of pairs of values. Keys ascend; null, which comes last, stands for where the layer has no value. */
+export interface CrossTable {
+  rows: (number | null)[];
+  columns: (number | null)[];
+  /** A row's columns. */
+  area_m2: number[][];
+  texels: number[][];
+}
+
+/** One rendered picture. */
+export interface FrameRequest {
+  /** Its width × height is the size of the picture. */
+  camera: Camera;
+  /** Exactly these are drawn, bottom to top; absent: those visible by default. */
+  layers?: LayerRef[];
+  /** Exactly these, bottom to top; absent: those visible by default. */
+  looks?: LookShown[];
+  /** Absent: museum. */
+  light?: Light;
+  at?: At;
+  /** Default: "jpeg". */
+  format?: "jpeg" | "png";
 }
 
 /** Whether the server can work. */

@@ -251,6 +251,22 @@ void read(const nlohmann::json& json, HistoryEntryOp& value) {
 
 nlohmann::json to_json(const HistoryEntryOp& value) { return name(value); }
 
+std::string_view name(StatisticsPart value) {
+  switch (value) {
+    case StatisticsPart::pieces: return "pieces";
+    case StatisticsPart::quantiles: return "quantiles";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, StatisticsPart& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "pieces") value = StatisticsPart::pieces;
+  if (text == "quantiles") value = StatisticsPart::quantiles;
+}
+
+nlohmann::json to_json(const StatisticsPart& value) { return name(value); }
+
 std::string_view name(FrameRequestFormat value) {
   switch (value) {
     case FrameRequestFormat::jpeg: return "jpeg";
@@ -1440,12 +1456,14 @@ nlohmann::json to_json(const SurfacePoint& value) {
 void read(const nlohmann::json& json, PositionsRequest& value) {
   read_member(json, "points", value.points);
   read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "at", value.at);
 }
 
 nlohmann::json to_json(const PositionsRequest& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "points", value.points);
   write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "at", value.at);
   return json;
 }
 
@@ -1465,6 +1483,7 @@ void read(const nlohmann::json& json, PickRequest& value) {
   read_member(json, "camera", value.camera);
   read_member(json, "x", value.x);
   read_member(json, "y", value.y);
+  read_optional_member(json, "at", value.at);
 }
 
 nlohmann::json to_json(const PickRequest& value) {
@@ -1472,6 +1491,7 @@ nlohmann::json to_json(const PickRequest& value) {
   write_member(json, "camera", value.camera);
   write_member(json, "x", value.x);
   write_member(json, "y", value.y);
+  write_optional_member(json, "at", value.at);
   return json;
 }
 
@@ -1480,28 +1500,66 @@ Result<void> check(const PickRequest& value, const std::string& field) {
   return {};
 }
 
-void read(const nlohmann::json& json, FrameRequest& value) {
-  read_member(json, "camera", value.camera);
-  read_optional_member(json, "layers", value.layers);
-  read_optional_member(json, "looks", value.looks);
-  read_optional_member(json, "light", value.light);
+void read(const nlohmann::json& json, Within& value) {
   read_optional_member(json, "at", value.at);
-  read_optional_member(json, "format", value.format);
+  read_optional_member(json, "radius_mm", value.radius_mm);
+  read_optional_member(json, "camera", value.camera);
+  read_optional_member(json, "path", value.path);
+  read_optional_member(json, "through", value.through);
 }
 
-nlohmann::json to_json(const FrameRequest& value) {
+nlohmann::json to_json(const Within& value) {
   nlohmann::json json = nlohmann::json::object();
-  write_member(json, "camera", value.camera);
-  write_optional_member(json, "layers", value.layers);
-  write_optional_member(json, "looks", value.looks);
-  write_optional_member(json, "light", value.light);
   write_optional_member(json, "at", value.at);
-  write_member(json, "format", value.format);
+  write_optional_member(json, "radius_mm", value.radius_mm);
+  write_optional_member(json, "camera", value.camera);
+  write_optional_member(json, "path", value.path);
+  write_optional_member(json, "through", value.through);
   return json;
 }
 
-Result<void> check(const FrameRequest& value, const std::string& field) {
-  if (auto ok = strata::validate(value.camera, join_field(field, "camera")); !ok) return ok;
+Result<void> check(const Within& value, const std::string& field) {
+  if (auto ok = value.at ? check(*value.at, join_field(field, "at")) : Result<void>{}; !ok) return ok;
+  if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, SelectInto& value) {
+  read_member(json, "layer", value.layer);
+  read_optional_member(json, "value", value.value);
+  read_optional_member(json, "erase", value.erase);
+}
+
+nlohmann::json to_json(const SelectInto& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "layer", value.layer);
+  write_member(json, "value", value.value);
+  write_member(json, "erase", value.erase);
+  return json;
+}
+
+void read(const nlohmann::json& json, SelectRequest& value) {
+  read_optional_member(json, "where", value.where);
+  read_optional_member(json, "within", value.within);
+  read_optional_member(json, "at", value.at);
+  read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "include", value.include);
+  read_optional_member(json, "into", value.into);
+}
+
+nlohmann::json to_json(const SelectRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "where", value.where);
+  write_optional_member(json, "within", value.within);
+  write_optional_member(json, "at", value.at);
+  write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "include", value.include);
+  write_optional_member(json, "into", value.into);
+  return json;
+}
+
+Result<void> check(const SelectRequest& value, const std::string& field) {
+  if (auto ok = value.within ? check(*value.within, join_field(field, "within")) : Result<void>{}; !ok) return ok;
   return {};
 }
 
@@ -1527,6 +1585,7 @@ void read(const nlohmann::json& json, KeyStatistics& value) {
   read_member(json, "area_m2", value.area_m2);
   read_member(json, "centroid", value.centroid);
   read_member(json, "bounds", value.bounds);
+  read_optional_member(json, "pieces", value.pieces);
 }
 
 nlohmann::json to_json(const KeyStatistics& value) {
@@ -1536,6 +1595,25 @@ nlohmann::json to_json(const KeyStatistics& value) {
   write_member(json, "area_m2", value.area_m2);
   write_member(json, "centroid", value.centroid);
   write_member(json, "bounds", value.bounds);
+  write_optional_member(json, "pieces", value.pieces);
+  return json;
+}
+
+void read(const nlohmann::json& json, Quantiles& value) {
+  read_member(json, "p5", value.p5);
+  read_member(json, "p25", value.p25);
+  read_member(json, "p50", value.p50);
+  read_member(json, "p75", value.p75);
+  read_member(json, "p95", value.p95);
+}
+
+nlohmann::json to_json(const Quantiles& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "p5", value.p5);
+  write_member(json, "p25", value.p25);
+  write_member(json, "p50", value.p50);
+  write_member(json, "p75", value.p75);
+  write_member(json, "p95", value.p95);
   return json;
 }
 
@@ -1546,6 +1624,8 @@ void read(const nlohmann::json& json, Statistics& value) {
   read_optional_member(json, "max", value.max);
   read_optional_member(json, "mean", value.mean);
   read_optional_member(json, "std", value.std);
+  read_optional_member(json, "pieces", value.pieces);
+  read_optional_member(json, "quantiles", value.quantiles);
   read_member(json, "histogram", value.histogram);
   read_member(json, "keys", value.keys);
 }
@@ -1558,9 +1638,97 @@ nlohmann::json to_json(const Statistics& value) {
   write_optional_member(json, "max", value.max);
   write_optional_member(json, "mean", value.mean);
   write_optional_member(json, "std", value.std);
+  write_optional_member(json, "pieces", value.pieces);
+  write_optional_member(json, "quantiles", value.quantiles);
   write_member(json, "histogram", value.histogram);
   write_member(json, "keys", value.keys);
   return json;
+}
+
+void read(const nlohmann::json& json, SelectResponse& value) {
+  read_member(json, "resolution", value.resolution);
+  read_member(json, "texels", value.texels);
+  read_member(json, "area_m2", value.area_m2);
+  read_member(json, "share", value.share);
+  read_optional_member(json, "bounds", value.bounds);
+  read_member(json, "layers", value.layers);
+  read_optional_member(json, "edit", value.edit);
+}
+
+nlohmann::json to_json(const SelectResponse& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "resolution", value.resolution);
+  write_member(json, "texels", value.texels);
+  write_member(json, "area_m2", value.area_m2);
+  write_member(json, "share", value.share);
+  write_optional_member(json, "bounds", value.bounds);
+  write_member(json, "layers", value.layers);
+  write_optional_member(json, "edit", value.edit);
+  return json;
+}
+
+void read(const nlohmann::json& json, CrossTableRequest& value) {
+  read_member(json, "rows", value.rows);
+  read_member(json, "columns", value.columns);
+  read_optional_member(json, "where", value.where);
+  read_optional_member(json, "within", value.within);
+  read_optional_member(json, "at", value.at);
+}
+
+nlohmann::json to_json(const CrossTableRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "rows", value.rows);
+  write_member(json, "columns", value.columns);
+  write_optional_member(json, "where", value.where);
+  write_optional_member(json, "within", value.within);
+  write_optional_member(json, "at", value.at);
+  return json;
+}
+
+Result<void> check(const CrossTableRequest& value, const std::string& field) {
+  if (auto ok = value.within ? check(*value.within, join_field(field, "within")) : Result<void>{}; !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, CrossTable& value) {
+  read_member(json, "rows", value.rows);
+  read_member(json, "columns", value.columns);
+  read_member(json, "area_m2", value.area_m2);
+  read_member(json, "texels", value.texels);
+}
+
+nlohmann::json to_json(const CrossTable& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "rows", value.rows);
+  write_member(json, "columns", value.columns);
+  write_member(json, "area_m2", value.area_m2);
+  write_member(json, "texels", value.texels);
+  return json;
+}
+
+void read(const nlohmann::json& json, FrameRequest& value) {
+  read_member(json, "camera", value.camera);
+  read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "looks", value.looks);
+  read_optional_member(json, "light", value.light);
+  read_optional_member(json, "at", value.at);
+  read_optional_member(json, "format", value.format);
+}
+
+nlohmann::json to_json(const FrameRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "camera", value.camera);
+  write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "looks", value.looks);
+  write_optional_member(json, "light", value.light);
+  write_optional_member(json, "at", value.at);
+  write_member(json, "format", value.format);
+  return json;
+}
+
+Result<void> check(const FrameRequest& value, const std::string& field) {
+  if (auto ok = strata::validate(value.camera, join_field(field, "camera")); !ok) return ok;
+  return {};
 }
 
 void read(const nlohmann::json& json, Readiness& value) {

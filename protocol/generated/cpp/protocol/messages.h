@@ -131,13 +131,23 @@ enum class Schema {
   PositionsRequest,
   PositionsResponse,
   PickRequest,
+  At,
+  Within,
+  StatisticsPart,
+  SelectInto,
+  SelectRequest,
+  SelectedLayers,
+  SelectResponse,
+  CrossTableRequest,
+  CrossTable,
   FrameRequest,
   HistogramBin,
   KeyStatistics,
+  Quantiles,
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 111;
+constexpr int kSchemaCount = 121;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1136,10 +1146,14 @@ nlohmann::json to_json(const SurfacePoint& value);
 template <>
 inline constexpr Schema kSchemaOf<SurfacePoint> = Schema::SurfacePoint;
 
+// Sequence or time. Layers as they were after this sequence of the model, or after its last edit until this time (RFC 3339).
+using At = std::variant<std::int64_t, std::string>;
+
 // Values at many points.
 struct PositionsRequest {
   std::vector<glm::dvec3> points;
   std::optional<std::vector<LayerRef>> layers;  // Absent: all layers.
+  std::optional<At> at;
   bool operator==(const PositionsRequest&) const = default;
 };
 void read(const nlohmann::json& json, PositionsRequest& value);
@@ -1163,6 +1177,7 @@ struct PickRequest {
   strata::Camera camera;
   double x = 0;
   double y = 0;
+  std::optional<At> at;
   bool operator==(const PickRequest&) const = default;
 };
 void read(const nlohmann::json& json, PickRequest& value);
@@ -1171,26 +1186,54 @@ Result<void> check(const PickRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<PickRequest> = Schema::PickRequest;
 
-enum class FrameRequestFormat { jpeg, png };
-std::string_view name(FrameRequestFormat value);
-void read(const nlohmann::json& json, FrameRequestFormat& value);
-nlohmann::json to_json(const FrameRequestFormat& value);
-
-// One rendered picture.
-struct FrameRequest {
-  strata::Camera camera;  // Its width × height is the size of the picture.
-  std::optional<std::vector<LayerRef>> layers;  // Exactly these are drawn, bottom to top; absent: those visible by default.
-  std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top; absent: those visible by default.
-  std::optional<strata::Light> light;  // Absent: museum.
-  std::optional<std::int64_t> at;  // As of this sequence; absent: now.
-  FrameRequestFormat format = FrameRequestFormat::jpeg;
-  bool operator==(const FrameRequest&) const = default;
+// Part of the surface. Around a place: what lies within `radius_mm` of it (straight) and is connected with it within that distance. Or what is seen inside an outline in a camera's window.
+struct Within {
+  std::optional<SurfacePlace> at;
+  std::optional<double> radius_mm;  // Millimetres on the object.
+  std::optional<strata::Camera> camera;
+  std::optional<Outline> path;
+  std::optional<bool> through;  // What is hidden, too.
+  bool operator==(const Within&) const = default;
 };
-void read(const nlohmann::json& json, FrameRequest& value);
-nlohmann::json to_json(const FrameRequest& value);
-Result<void> check(const FrameRequest& value, const std::string& field);
+void read(const nlohmann::json& json, Within& value);
+nlohmann::json to_json(const Within& value);
+Result<void> check(const Within& value, const std::string& field);
 template <>
-inline constexpr Schema kSchemaOf<FrameRequest> = Schema::FrameRequest;
+inline constexpr Schema kSchemaOf<Within> = Schema::Within;
+
+// What takes longer.
+enum class StatisticsPart { pieces, quantiles };
+std::string_view name(StatisticsPart value);
+void read(const nlohmann::json& json, StatisticsPart& value);
+nlohmann::json to_json(const StatisticsPart& value);
+
+// Paints what is selected.
+struct SelectInto {
+  LayerRef layer;
+  double value = 0;  // In the layer's type; ignored when erasing.
+  bool erase = false;
+  bool operator==(const SelectInto&) const = default;
+};
+void read(const nlohmann::json& json, SelectInto& value);
+nlohmann::json to_json(const SelectInto& value);
+template <>
+inline constexpr Schema kSchemaOf<SelectInto> = Schema::SelectInto;
+
+// Where on the surface. Without `where` and `within`: everywhere.
+struct SelectRequest {
+  std::optional<std::string> where;  // A condition over the layers, as a fill takes it.
+  std::optional<Within> within;
+  std::optional<At> at;
+  std::optional<std::vector<LayerRef>> layers;  // Whose statistics there are asked for.
+  std::optional<std::vector<StatisticsPart>> include;
+  std::optional<SelectInto> into;
+  bool operator==(const SelectRequest&) const = default;
+};
+void read(const nlohmann::json& json, SelectRequest& value);
+nlohmann::json to_json(const SelectRequest& value);
+Result<void> check(const SelectRequest& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<SelectRequest> = Schema::SelectRequest;
 
 // Bar of a histogram. Values from `from` (included) to `to`; the last bin includes `to`.
 struct HistogramBin {
@@ -1212,12 +1255,27 @@ struct KeyStatistics {
   double area_m2 = 0;
   glm::dvec3 centroid{0};
   Bounds bounds;
+  std::optional<std::int64_t> pieces;  // Where asked for: connected areas of this key.
   bool operator==(const KeyStatistics&) const = default;
 };
 void read(const nlohmann::json& json, KeyStatistics& value);
 nlohmann::json to_json(const KeyStatistics& value);
 template <>
 inline constexpr Schema kSchemaOf<KeyStatistics> = Schema::KeyStatistics;
+
+// The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. Where asked for and something has an area.
+struct Quantiles {
+  double p5 = 0;
+  double p25 = 0;
+  double p50 = 0;
+  double p75 = 0;
+  double p95 = 0;
+  bool operator==(const Quantiles&) const = default;
+};
+void read(const nlohmann::json& json, Quantiles& value);
+nlohmann::json to_json(const Quantiles& value);
+template <>
+inline constexpr Schema kSchemaOf<Quantiles> = Schema::Quantiles;
 
 // Statistics of a layer, weighted by surface area. Of valid texels on the surface. `min`, `max`, `mean` and `std` are absent while the layer is empty; `keys` is empty for fractions and for more than 4096 different values.
 struct Statistics {
@@ -1227,6 +1285,8 @@ struct Statistics {
   std::optional<double> max;
   std::optional<double> mean;
   std::optional<double> std;
+  std::optional<std::int64_t> pieces;  // Where asked for: connected areas, of one value each in layers of whole numbers.
+  std::optional<Quantiles> quantiles;
   std::vector<HistogramBin> histogram;
   std::vector<KeyStatistics> keys;
   bool operator==(const Statistics&) const = default;
@@ -1235,6 +1295,71 @@ void read(const nlohmann::json& json, Statistics& value);
 nlohmann::json to_json(const Statistics& value);
 template <>
 inline constexpr Schema kSchemaOf<Statistics> = Schema::Statistics;
+
+// Texels and area of a selection.
+struct SelectResponse {
+  int resolution = 0;  // Of the texels that are counted.
+  std::int64_t texels = 0;
+  double area_m2 = 0;
+  double share = 0;  // Of the whole surface.
+  std::optional<Bounds> bounds;
+  nlohmann::json layers;
+  std::optional<EditResult> edit;  // Of `into`.
+  bool operator==(const SelectResponse&) const = default;
+};
+void read(const nlohmann::json& json, SelectResponse& value);
+nlohmann::json to_json(const SelectResponse& value);
+template <>
+inline constexpr Schema kSchemaOf<SelectResponse> = Schema::SelectResponse;
+
+// Two layers against each other.
+struct CrossTableRequest {
+  LayerRef rows;
+  LayerRef columns;
+  std::optional<std::string> where;  // A condition over the layers, as a fill takes it.
+  std::optional<Within> within;
+  std::optional<At> at;
+  bool operator==(const CrossTableRequest&) const = default;
+};
+void read(const nlohmann::json& json, CrossTableRequest& value);
+nlohmann::json to_json(const CrossTableRequest& value);
+Result<void> check(const CrossTableRequest& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<CrossTableRequest> = Schema::CrossTableRequest;
+
+// Areas of pairs of values. Keys ascend; null, which comes last, stands for where the layer has no value.
+struct CrossTable {
+  std::vector<std::optional<double>> rows;
+  std::vector<std::optional<double>> columns;
+  std::vector<std::vector<double>> area_m2;  // A row's columns.
+  std::vector<std::vector<std::int64_t>> texels;
+  bool operator==(const CrossTable&) const = default;
+};
+void read(const nlohmann::json& json, CrossTable& value);
+nlohmann::json to_json(const CrossTable& value);
+template <>
+inline constexpr Schema kSchemaOf<CrossTable> = Schema::CrossTable;
+
+enum class FrameRequestFormat { jpeg, png };
+std::string_view name(FrameRequestFormat value);
+void read(const nlohmann::json& json, FrameRequestFormat& value);
+nlohmann::json to_json(const FrameRequestFormat& value);
+
+// One rendered picture.
+struct FrameRequest {
+  strata::Camera camera;  // Its width × height is the size of the picture.
+  std::optional<std::vector<LayerRef>> layers;  // Exactly these are drawn, bottom to top; absent: those visible by default.
+  std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top; absent: those visible by default.
+  std::optional<strata::Light> light;  // Absent: museum.
+  std::optional<At> at;
+  FrameRequestFormat format = FrameRequestFormat::jpeg;
+  bool operator==(const FrameRequest&) const = default;
+};
+void read(const nlohmann::json& json, FrameRequest& value);
+nlohmann::json to_json(const FrameRequest& value);
+Result<void> check(const FrameRequest& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<FrameRequest> = Schema::FrameRequest;
 
 // Whether the server can work.
 struct Readiness {

@@ -1,0 +1,204 @@
+// Questions to an open model: they are answered from mirrors and maps in main memory, beside those who paint.
+#include <algorithm>
+
+#include "mesh/parallel.h"
+#include "mesh/slot_bits.h"
+#include "query/expression_evaluator.h"
+#include "query/flood.h"
+#include "query/texel_values.h"
+#include "room/open_room.h"
+#include "room/region.h"
+
+namespace strata::room {
+namespace {
+
+// A mask's surface texels, a word a slot.
+query::TexelSelection as_selection(const TileMasks& masks, const mesh::SurfaceMap& map) {
+  query::TexelSelection selection(map.block_of_slot.size(), 0);
+  for (const auto& [address, mask] : masks)
+    for (std::uint32_t by = 0; by < query::kBlocksPerTile; ++by)
+      for (std::uint32_t bx = 0; bx < query::kBlocksPerTile; ++bx) {
+        const auto slot = mesh::slot_at(map, static_cast<int>(address.x * query::kBlocksPerTile + bx),
+                                        static_cast<int>(address.y * query::kBlocksPerTile + by));
+        if (slot != mesh::kNoSlot)
+          selection[slot] =
+              query::block_bits(mask, static_cast<int>(bx), static_cast<int>(by)) & map.surface_mask[slot];
+      }
+  return selection;
+}
+
+void narrow(query::TexelSelection& selection, const query::TexelSelection& other) {
+  for (std::size_t slot = 0; slot < selection.size(); ++slot) selection[slot] &= other[slot];
+}
+
+}  // namespace
+
+Result<TileMirror::Snapshot> OpenRoom::tiles_at(const LayerState& state, At at) const {
+  if (!at) return state.mirror->snapshot();
+  if (*at > durable_)
+    return fail(422, "Sequence not reached",
+                "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
+  return parts_.store.load_tiles(state.layer, at);
+}
+
+Result<TileMirror::Snapshot> OpenRoom::tiles(const std::string& layer, At at) {
+  touch();
+  auto found = state(layer);
+  if (!found) return tl::unexpected(found.error());
+  return tiles_at(*found, at);
+}
+
+Result<std::vector<query::LayerView>> OpenRoom::layer_views(const std::vector<std::string>& refs, At at) const {
+  std::vector<query::LayerView> views;
+  for (const auto& ref : refs) {
+    auto found = state(ref);
+    if (!found) return tl::unexpected(found.error());
+    auto tiles = tiles_at(*found, at);
+    if (!tiles) return tl::unexpected(tiles.error());
+    views.push_back({found->layer, std::move(*tiles)});
+  }
+  return views;
+}
+
+Result<query::SurfacePoint> OpenRoom::position(const glm::dvec3& world, const std::vector<std::string>& layers, At at) {
+  touch();
+  auto views = layer_views(layers, at);
+  if (!views) return tl::unexpected(views.error());
+  return query::nearest_point(*surface_->tree(), geometry_->origin, world, *views);
+}
+
+Result<std::vector<query::SurfacePoint>> OpenRoom::positions(const std::vector<glm::dvec3>& world,
+                                                             const std::vector<std::string>& layers, At at) {
+  touch();
+  auto views = layer_views(layers, at);
+  if (!views) return tl::unexpected(views.error());
+  const auto tree = surface_->tree();
+  constexpr std::size_t kPointsAtOnce = 1024;
+  std::vector<query::SurfacePoint> points(world.size());
+  mesh::parallel_for(mesh::background_threads(), static_cast<int>((world.size() + kPointsAtOnce - 1) / kPointsAtOnce),
+                     [&](int part) {
+                       const std::size_t first = static_cast<std::size_t>(part) * kPointsAtOnce;
+                       for (std::size_t i = first; i < std::min(world.size(), first + kPointsAtOnce); ++i)
+                         points[i] = query::nearest_point(*tree, geometry_->origin, world[i], *views);
+                     });
+  return points;
+}
+
+Result<query::SurfacePoint> OpenRoom::pick(const Camera& camera, double x, double y,
+                                           const std::vector<std::string>& layers, At at) {
+  touch();
+  auto views = layer_views(layers, at);
+  if (!views) return tl::unexpected(views.error());
+  return query::pick(*surface_->tree(), geometry_->origin, camera, x, y, *views);
+}
+
+// Nothing where the whole surface is meant.
+Result<std::optional<query::TexelSelection>> OpenRoom::select_texels(const Selection& selection,
+                                                                     const mesh::SurfaceMap& map) {
+  std::optional<query::TexelSelection> selected;
+  if (selection.where) {
+    std::vector<std::string> slugs;
+    for (const auto& layer : layers()) slugs.push_back(layer.slug);
+    const std::vector<std::string> named = layers_of(*selection.where);
+    // Those that are not there are refused by the evaluator, with the field.
+    std::erase_if(slugs, [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
+    const auto views = layer_views(slugs, selection.at);
+    if (!views) return tl::unexpected(views.error());
+    auto holds = query::select_where(*selection.where, *views, map, "where", mesh::background_threads());
+    if (!holds) return tl::unexpected(holds.error());
+    selected = std::move(*holds);
+  }
+  if (!selection.within) return selected;
+  query::TexelSelection inside;
+  if (const auto* outline = std::get_if<Outline>(&*selection.within)) {
+    const auto masks = texels_in(*outline, map, *surface_, parts_.renderer, model_handle());
+    if (!masks) return tl::unexpected(masks.error());
+    inside = as_selection(*masks, map);
+  } else {
+    const auto& around = std::get<Selection::Around>(*selection.within);
+    const auto start = find_place(around.at, map, *surface_, "within.at");
+    if (!start) return tl::unexpected(start.error());
+    const auto graph = surface_->graph(map);
+    if (!graph) return tl::unexpected(graph.error());
+    inside = query::select_near(map, **graph, start->texel, start->position, static_cast<float>(around.radius));
+  }
+  if (selected)
+    narrow(*selected, inside);
+  else
+    selected = std::move(inside);
+  return selected;
+}
+
+Result<query::Statistics> OpenRoom::count(const query::LayerView& view, const Selection& selection,
+                                          StatisticsWanted wanted) {
+  const auto map = surface_map(view.layer.resolution);
+  if (!map) return tl::unexpected(map.error());
+  const auto selected = select_texels(selection, **map);
+  if (!selected) return tl::unexpected(selected.error());
+  query::StatisticsRequest request;
+  if (*selected) request.within = &**selected;
+  request.quantiles = wanted.quantiles;
+  request.threads = mesh::background_threads();
+  std::shared_ptr<const mesh::TexelGraph> graph;
+  if (wanted.pieces) {
+    auto found = surface_->graph(**map);
+    if (!found) return tl::unexpected(found.error());
+    graph = std::move(*found);
+    request.pieces = graph.get();
+  }
+  const auto found = state(view.layer.slug);
+  if (found && !selection.at) request.cache = found->sums.get();
+  return query::statistics(view, **map, geometry_->origin, model().metres(), request);
+}
+
+Result<query::Statistics> OpenRoom::statistics(const std::string& layer, const Selection& selection,
+                                               StatisticsWanted wanted) {
+  touch();
+  const auto views = layer_views({layer}, selection.at);
+  if (!views) return tl::unexpected(views.error());
+  return count(views->front(), selection, wanted);
+}
+
+Result<SelectedArea> OpenRoom::select(const Selection& selection, const std::vector<std::string>& layers,
+                                      StatisticsWanted wanted) {
+  touch();
+  const auto views = layer_views(layers, selection.at);
+  if (!views) return tl::unexpected(views.error());
+  SelectedArea area;
+  for (const auto& view : *views) area.resolution = std::max(area.resolution, view.layer.resolution);
+  if (selection.where)
+    for (const auto& slug : layers_of(*selection.where))
+      if (const auto found = state(slug)) area.resolution = std::max(area.resolution, found->layer.resolution);
+  if (area.resolution == 0) area.resolution = model().default_resolution;
+  const auto map = surface_map(area.resolution);
+  if (!map) return tl::unexpected(map.error());
+  const auto selected = select_texels(selection, **map);
+  if (!selected) return tl::unexpected(selected.error());
+  const double m2_per_unit2 = model().metres() * model().metres();
+  const auto extent = query::measure_selection(**map, *selected ? &**selected : nullptr);
+  area.texels = extent.texels;
+  area.area_m2 = extent.area * m2_per_unit2;
+  area.share = (*map)->area_total > 0 ? std::min(1.0, extent.area / (*map)->area_total) : 0;
+  area.bounds_min = glm::dvec3(extent.low) + geometry_->origin;
+  area.bounds_max = glm::dvec3(extent.high) + geometry_->origin;
+  for (const auto& view : *views) {
+    auto counted = count(view, selection, wanted);
+    if (!counted) return tl::unexpected(counted.error());
+    area.layers.emplace(view.layer.slug, std::move(*counted));
+  }
+  return area;
+}
+
+Result<query::CrossTable> OpenRoom::cross_table(const std::string& rows, const std::string& columns,
+                                                const Selection& selection) {
+  touch();
+  const auto views = layer_views({rows, columns}, selection.at);
+  if (!views) return tl::unexpected(views.error());
+  const auto map = surface_map(std::max((*views)[0].layer.resolution, (*views)[1].layer.resolution));
+  if (!map) return tl::unexpected(map.error());
+  const auto selected = select_texels(selection, **map);
+  if (!selected) return tl::unexpected(selected.error());
+  return query::cross_tabulate((*views)[0], (*views)[1], **map, *selected ? &**selected : nullptr, model().metres());
+}
+
+}  // namespace strata::room

@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Questions over HTTP: statistics with their parts, of the past, where a condition holds; selections, cross-tables, refusals."""
+import math
+import os
+import sys
+import urllib.parse
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.cameras import camera_from
+from support.meshes import folded_grid
+from support.strata_server import StrataServer
+
+M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
+
+
+def layer(server, name, kind="u8"):
+    return f"{M}/layers/" + server.ok("POST", M + "/layers", {"name": name, "type": kind, "resolution": 2048}).json()["slug"]
+
+
+def dab(server, path, value, x, y, radius):
+    """Paints a disc of `radius` mm around a place, as a reading."""
+    query = urllib.parse.urlencode({"radius_mm": radius})
+    return server.ok("POST", f"{path}/readings?{query}", f"x,y,z,value\n{x},{y},0,{value}\n", headers={"Content-Type": "text/csv"}).json()
+
+
+def near(a, b, share):
+    assert abs(a - b) <= share * abs(b), (a, b)
+
+
+def check_statistics(server, marks):
+    first = dab(server, marks, 3, 30, 30, 10)
+    told = server.get(marks + "/edits").json()["edits"][0]["time"]
+    dab(server, marks, 5, 70, 30, 5)
+    dab(server, marks, 5, 70, 70, 5)
+    now = server.get(marks + "/statistics?include=pieces,quantiles").json()
+    near(now["area_m2"], 150 * math.pi * 1e-6, 0.02)
+    assert now["pieces"] == 3 and {k["key"]: k["pieces"] for k in now["keys"]} == {3: 1, 5: 2}, now
+    assert (now["quantiles"]["p5"], now["quantiles"]["p50"], now["quantiles"]["p95"]) == (3, 3, 5), now["quantiles"]
+    assert "pieces" not in server.get(marks + "/statistics").json()
+
+    for at in (first["sequence"], told):
+        past = server.get(marks + "/statistics?" + urllib.parse.urlencode({"at": at}))
+        assert past.headers["Strata-Sequence"] == str(first["sequence"]), (at, past.headers)
+        assert [k["key"] for k in past.json()["keys"]] == [3], (at, past.json())
+    assert server.get(marks + "/statistics?at=1970-01-01").json()["texels"] == 0
+    where = server.get(marks + "/statistics?" + urllib.parse.urlencode({"where": "marks = 5"})).json()
+    assert where["texels"] == {k["key"]: k["texels"] for k in now["keys"]}[5]
+    for query, field in (("at=99999", "at"), ("at=soon", "at"), ("at=2026-02-30T00:00:00Z", "at"), ("at=-1", "at"), ("include=all", "include"),
+                         ("where=salt%3E1", "where"), ("where=marks%3E", "where")):
+        answer = server.get(f"{marks}/statistics?{query}")
+        assert answer.status == 422 and answer.json()["field"] == field, (query, answer)
+
+    point = "/position?" + urllib.parse.urlencode({"coords": "POINT Z(70 30 0)", "parameter-name": "marks"})
+    assert server.get(M + point).json()["values"]["marks"] == {"valid": True, "value": 5}
+    assert server.get(f"{M}{point}&at={first['sequence']}").json()["values"]["marks"]["valid"] is False
+    asked = {"points": [[70, 30, 0]], "layers": ["marks"], "at": told}
+    assert server.ok("POST", M + "/positions", asked).json()["positions"][0]["values"]["marks"]["valid"] is False
+
+
+def check_selections(server, marks, risk):
+    body = {"where": "marks = 5", "layers": ["marks"], "include": ["pieces"]}
+    selected = server.ok("POST", M + "/select", body).json()
+    near(selected["area_m2"], 50 * math.pi * 1e-6, 0.03)
+    near(selected["share"], selected["area_m2"] / server.get(M).json()["area_m2"], 1e-3)
+    assert selected["layers"]["marks"]["pieces"] == 2, selected
+    assert selected["bounds"]["min"][0] > 60 and selected["bounds"]["max"][1] < 80, selected["bounds"]
+
+    disc = server.ok("POST", M + "/select", {"within": {"at": {"point": [50, 50, 0]}, "radius_mm": 12}}).json()
+    near(disc["area_m2"], 144 * math.pi * 1e-6, 0.02)
+    half = server.ok("POST", M + "/select", {"within": {"at": {"point": [30, 30, 0]}, "radius_mm": 5}, "where": "marks = 3", "layers": ["marks"]}).json()
+    near(half["area_m2"], 25 * math.pi * 1e-6, 0.03)
+
+    camera = camera_from(server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
+    outline = {"camera": camera, "path": [[300, 200], [340, 200], [340, 280], [300, 280]]}
+    inside = server.ok("POST", M + "/select", {"within": outline}).json()
+    painted = server.ok("POST", risk + "/edits", {"op": "polygon", "value": 1, **outline}).json()
+    assert inside["texels"] == painted["texels_changed"], (inside, painted)
+    server.ok("POST", risk + "/undo")
+
+    into = {"where": "marks = 5", "into": {"layer": "risk", "value": 2}}
+    done = server.ok("POST", M + "/select", into, headers={"Idempotency-Key": "into-1"}).json()
+    assert done["edit"]["texels_changed"] == done["texels"] > 0, done
+    again = server.ok("POST", M + "/select", into, headers={"Idempotency-Key": "into-1"}).json()
+    assert again["edit"]["sequence"] == done["edit"]["sequence"], (again, done)
+    assert server.get(risk + "/statistics").json()["texels"] == done["texels"]
+    for body, field in (({"into": {"layer": "risk", "value": 2}}, "into"),
+                        ({"where": "true", "at": 1, "into": {"layer": "risk", "value": 2}}, "into"),
+                        ({"where": "true", "into": {"layer": "salt", "value": 2}}, "into.layer"),
+                        ({"where": "true", "into": {"layer": "risk", "value": 999}}, "value"),
+                        ({"layers": ["salt"]}, "layers"),
+                        ({"within": {"at": {"point": [0, 0, 0]}}}, "within"),
+                        ({"within": {"radius_mm": 3, "camera": camera, "path": [[0, 0], [1, 1], [2, 0]]}}, "within")):
+        answer = server.post(M + "/select", body)
+        assert answer.status in (404, 422) and answer.json()["field"].startswith(field), (body, answer)
+
+
+def check_cross_table(server, marks):
+    units = layer(server, "Units", "u16")
+    dab(server, units, 1000, 30, 30, 20)
+    dab(server, units, 1001, 70, 30, 20)
+    table = server.ok("POST", M + "/cross-table", {"rows": "units", "columns": "marks"}).json()
+    assert (table["rows"], table["columns"]) == ([1000, 1001, None], [3, 5, None]), table
+    area = table["area_m2"]
+    near(area[0][0], 100 * math.pi * 1e-6, 0.03)
+    near(area[1][1], 25 * math.pi * 1e-6, 0.03)
+    near(sum(area[0]), 400 * math.pi * 1e-6, 0.02)
+    assert area[0][1] == area[2][2] == 0 and area[2][1] > 0, table
+    csv = server.ok("POST", M + "/cross-table", {"rows": "units", "columns": "marks"}, headers={"Accept": "text/csv"})
+    lines = csv.body.decode().split("\r\n")
+    assert lines[0] == "units / marks,3,5,-" and lines[3].startswith("-,0,") and len(lines) == 5, lines
+    assert server.post(M + "/cross-table", {"rows": "units", "columns": "depth"}).json()["field"] == "columns"
+
+
+def main():
+    with StrataServer() as server:
+        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
+        marks, risk = layer(server, "Marks"), layer(server, "Risk")
+        layer(server, "Depth", "f32")
+        check_statistics(server, marks)
+        check_selections(server, marks, risk)
+        check_cross_table(server, marks)
+        assert server.stop() == 0
+        server.assert_clean_log()
+
+
+main()
