@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "mesh/parallel.h"
 #include "query/tile_table.h"
@@ -51,6 +52,7 @@ class Block {
     switch (e.op) {
       case Op::truth: return {e.number != 0 ? kAll : 0, kAll};
       case Op::valid: return {layer(e.layer, false).known, kAll};
+      case Op::known: return {numbers(e.parts[0]).known, kAll};
       case Op::negation: {
         const Truths inside = part(0);
         return {inside.known & ~inside.holds, inside.known};
@@ -100,8 +102,9 @@ class Block {
     switch (e.op) {
       case Op::number: {
         Numbers constant;
-        constant.value.fill(e.number);
-        constant.known = kAll;
+        const bool known = std::isfinite(e.number);
+        constant.value.fill(known ? e.number : 0);
+        constant.known = known ? kAll : 0;
         return constant;
       }
       case Op::layer: return layer(e.layer, true);
@@ -112,6 +115,24 @@ class Block {
       case Op::subtract: return folded(e, [](double x, double y) { return x - y; });
       case Op::multiply: return folded(e, [](double x, double y) { return x * y; });
       case Op::divide: return folded(e, [](double x, double y) { return x / y; });
+      case Op::power: return folded(e, [](double x, double y) { return std::pow(x, y); });
+      case Op::remainder: return folded(e, [](double x, double y) { return std::fmod(x, y); });
+      case Op::whole_division: return folded(e, [](double x, double y) { return std::trunc(x / y); });
+      case Op::square_root: return mapped(e, [](double x) { return std::sqrt(x); });
+      case Op::exponential: return mapped(e, [](double x) { return std::exp(x); });
+      case Op::natural_log: return mapped(e, [](double x) { return std::log(x); });
+      case Op::decimal_log: return mapped(e, [](double x) { return std::log10(x); });
+      case Op::floor: return mapped(e, [](double x) { return std::floor(x); });
+      case Op::ceiling: return mapped(e, [](double x) { return std::ceil(x); });
+      case Op::round: return mapped(e, [](double x) { return std::round(x); });
+      case Op::sine: return mapped(e, [](double x) { return std::sin(x); });
+      case Op::cosine: return mapped(e, [](double x) { return std::cos(x); });
+      case Op::tangent: return mapped(e, [](double x) { return std::tan(x); });
+      case Op::arc_sine: return mapped(e, [](double x) { return std::asin(x); });
+      case Op::arc_cosine: return mapped(e, [](double x) { return std::acos(x); });
+      case Op::arc_tangent: return mapped(e, [](double x) { return std::atan(x); });
+      case Op::radians: return mapped(e, [](double x) { return x * (std::numbers::pi / 180); });
+      case Op::degrees: return mapped(e, [](double x) { return x * (180 / std::numbers::pi); });
       case Op::least: return folded(e, [](double x, double y) { return std::min(x, y); });
       default: return folded(e, [](double x, double y) { return std::max(x, y); });
     }
@@ -130,7 +151,7 @@ class Block {
   Numbers mapped(const Expression& e, Function function) const {
     Numbers result = numbers(e.parts[0]);
     for (double& value : result.value) value = function(value);
-    return result;
+    return only_finite(std::move(result));
   }
 
   template <class Function>
@@ -141,7 +162,16 @@ class Block {
       for (int i = 0; i < kTexels; ++i) result.value[i] = function(result.value[i], next.value[i]);
       result.known &= next.known;
     }
-    result.known &= bits_where([&](int i) { return std::isfinite(result.value[i]); });
+    return only_finite(std::move(result));
+  }
+
+  // A number that is not known is 0, so that nothing that is computed from it is slow or traps.
+  static Numbers only_finite(Numbers result) {
+    const Bits finite = bits_where([&](int i) { return std::isfinite(result.value[i]); });
+    if (finite != kAll)
+      for (int i = 0; i < kTexels; ++i)
+        if (((finite >> i) & 1u) == 0) result.value[i] = 0;
+    result.known &= finite;
     return result;
   }
 

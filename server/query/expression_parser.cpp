@@ -1,8 +1,10 @@
 #include "query/expression_parser.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -23,7 +25,21 @@ struct Token {
   double number = 0;
 };
 
-constexpr std::array kKeywords{"and", "or", "not", "true", "false", "valid", "if", "min", "max", "abs"};
+constexpr std::array kKeywords{"and",  "or",   "not", "true", "false",   "valid", "if",   "case", "when",
+                               "then", "else", "end", "is",   "between", "in",    "null", "div"};
+
+// Of numbers; `least` and `greatest` take two or more.
+struct Function {
+  std::string_view name;
+  Op op;
+};
+constexpr std::array kFunctions{
+    Function{"min", Op::least},         Function{"max", Op::greatest},    Function{"abs", Op::absolute},
+    Function{"sqrt", Op::square_root},  Function{"exp", Op::exponential}, Function{"ln", Op::natural_log},
+    Function{"log10", Op::decimal_log}, Function{"floor", Op::floor},     Function{"ceil", Op::ceiling},
+    Function{"round", Op::round},       Function{"sin", Op::sine},        Function{"cos", Op::cosine},
+    Function{"tan", Op::tangent},       Function{"asin", Op::arc_sine},   Function{"acos", Op::arc_cosine},
+    Function{"atan", Op::arc_tangent},  Function{"radians", Op::radians}, Function{"degrees", Op::degrees}};
 
 struct Comparison {
   std::string_view symbol;
@@ -119,7 +135,7 @@ class Parser {
       if (comparison.symbol.size() == 2 && text_.substr(at_, 2) == comparison.symbol) length = 2;
     token_.text = std::string(text_.substr(at_, length));
     at_ += length;
-    if (length == 1 && std::string_view("()+-*/,<>=").find(token_.text) == std::string_view::npos)
+    if (length == 1 && std::string_view("()+-*/%^,<>=").find(token_.text) == std::string_view::npos)
       refuse("This character has no meaning in an expression");
   }
 
@@ -172,7 +188,45 @@ class Parser {
         if (is(next.symbol)) refuse("Only two numbers are compared at a time; join comparisons with 'and'");
       return make(each.op, at, std::move(left), std::move(right));
     }
-    return left;
+    if (is("is")) return null_test(numeric(std::move(left), at), at);
+    const bool negated = is("not");
+    if (!negated && !is("between") && !is("in")) return left;
+    left = numeric(std::move(left), at);
+    if (negated) advance();
+    Expression test = is("between") ? between(std::move(left), at)
+                      : is("in")    ? membership(std::move(left), at)
+                                    : refuse("Expected 'between' or 'in' instead of '" + token_.text + "'");
+    return negated ? make(Op::negation, at, std::move(test)) : test;
+  }
+
+  Expression null_test(Expression number, std::size_t at) {
+    advance();
+    const bool negated = take("not");
+    expect("null");
+    Expression known = make(Op::known, at, std::move(number));
+    return negated ? known : make(Op::negation, at, std::move(known));
+  }
+
+  // Both ends belong to it.
+  Expression between(Expression number, std::size_t at) {
+    advance();
+    const auto low_at = token_.at;
+    Expression low = numeric(sum(), low_at);
+    expect("and");
+    const auto high_at = token_.at;
+    Expression high = numeric(sum(), high_at);
+    Expression above = make(Op::greater_equal, at, number, std::move(low));
+    return make(Op::all, at, std::move(above), make(Op::less_equal, at, std::move(number), std::move(high)));
+  }
+
+  Expression membership(Expression number, std::size_t at) {
+    advance();
+    expect("(");
+    Expression any = make(Op::any, at);
+    do any.parts.push_back(make(Op::equal, at, number, argument()));
+    while (take(","));
+    expect(")");
+    return any;
   }
 
   Expression sum() {
@@ -185,9 +239,20 @@ class Parser {
 
   Expression product() {
     const auto at = token_.at;
+    Expression left = power();
+    for (;;) {
+      const Op op = is("*") ? Op::multiply : is("/") ? Op::divide : is("%") ? Op::remainder : Op::whole_division;
+      if (op == Op::whole_division && !is("div")) return left;
+      left = arithmetic(op, std::move(left), at, &Parser::power);
+    }
+  }
+
+  Expression power() {
+    const auto at = token_.at;
     Expression left = sign();
-    while (is("*") || is("/"))
-      left = arithmetic(is("*") ? Op::multiply : Op::divide, std::move(left), at, &Parser::sign);
+    if (!is("^")) return left;
+    left = arithmetic(Op::power, std::move(left), at, &Parser::sign);
+    if (is("^")) refuse("Powers of powers need parentheses");
     return left;
   }
 
@@ -235,25 +300,33 @@ class Parser {
     }
     if (is("valid")) return validity();
     if (is("if")) return choice();
-    if (is("min")) return extreme(Op::least);
-    if (is("max")) return extreme(Op::greatest);
-    if (is("abs")) return absolute();
-    if (is("and") || is("or") || is("not"))
-      return refuse("Expected a number, a layer or '(' instead of '" + token.text + "'");
+    if (is("case")) return cases();
+    if (take("null")) return unknown();
+    for (const Function& each : kFunctions)
+      if (is(each.name)) return function(each);
+    for (const char* keyword : kKeywords)
+      if (is(keyword)) return refuse("Expected a number, a layer or '(' instead of '" + token.text + "'");
     return layer();
   }
 
   Expression layer() {
-    for (const char* keyword : kKeywords)
-      if (token_.kind == Token::Kind::word && token_.text == keyword)
-        return refuse("'" + token_.text + "' is a word of the language; a layer of this name stands in double quotes");
+    const auto is_word_of_language = [&] {
+      return std::ranges::any_of(kKeywords, [&](const char* word) { return is(word); }) ||
+             std::ranges::any_of(kFunctions, [&](const Function& each) { return is(each.name); });
+    };
+    if (token_.kind == Token::Kind::word && is_word_of_language())
+      return refuse("'" + token_.text + "' is a word of the language; a layer of this name stands in double quotes");
     if (token_.kind != Token::Kind::word && token_.kind != Token::Kind::quoted)
       return refuse("Expected the name of a layer instead of '" + token_.text + "'");
     Expression expression;
     expression.op = Op::layer;
     expression.layer = token_.text;
     advance();
-    if (is("(")) refuse("There is no function '" + expression.layer + "'; there are valid, if, min, max and abs");
+    if (is("(")) {
+      std::string known = "valid, if";
+      for (const Function& each : kFunctions) known += ", " + std::string(each.name);
+      refuse("There is no function '" + expression.layer + "'; there are " + known);
+    }
     return expression;
   }
 
@@ -280,24 +353,42 @@ class Parser {
     return make(Op::choose, at, std::move(when), std::move(then), std::move(otherwise));
   }
 
-  Expression extreme(Op op) {
-    const auto at = token_.at;
-    advance();
-    expect("(");
-    Expression expression = make(op, at, argument());
-    if (!is(",")) refuse("At least two numbers are compared");
-    while (take(",")) expression.parts.push_back(argument());
-    expect(")");
-    return expression;
+  static Expression unknown() {
+    Expression number;
+    number.number = std::numeric_limits<double>::quiet_NaN();
+    return number;
   }
 
-  Expression absolute() {
+  // case when … then … else … end: choices in a chain.
+  Expression cases() {
+    const auto at = token_.at;
+    advance();
+    std::vector<std::pair<Expression, Expression>> branches;
+    if (!is("when")) return refuse("Expected 'when' instead of '" + token_.text + "'");
+    while (take("when")) {
+      const auto condition_at = token_.at;
+      Expression when = condition(disjunction(), condition_at);
+      expect("then");
+      branches.emplace_back(std::move(when), argument());
+    }
+    Expression chain = take("else") ? argument() : unknown();
+    expect("end");
+    for (auto branch = branches.rbegin(); branch != branches.rend(); ++branch)
+      chain = make(Op::choose, at, std::move(branch->first), std::move(branch->second), std::move(chain));
+    return chain;
+  }
+
+  Expression function(const Function& called) {
     const auto at = token_.at;
     advance();
     expect("(");
-    Expression part = argument();
+    Expression expression = make(called.op, at, argument());
+    if (called.op == Op::least || called.op == Op::greatest) {
+      if (!is(",")) refuse("At least two numbers are compared");
+      while (take(",")) expression.parts.push_back(argument());
+    }
     expect(")");
-    return make(Op::absolute, at, std::move(part));
+    return expression;
   }
 
   Expression argument() {

@@ -1,85 +1,257 @@
-// Values at points of a painted model, without the socket.
+// Questions to a painted model over HTTP, from this process to itself: idle, while somebody paints, many points, statistics.
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http.hpp>
 #include <iostream>
 #include <random>
+#include <thread>
 
 #include "bench/bench_commands.h"
 #include "bench/bench_mesh.h"
 #include "bench/harness.h"
 #include "jobs/import_job.h"
+#include "jobs/job_queue.h"
+#include "net/server.h"
 
 namespace strata::bench {
 namespace {
 
+constexpr int kResolution = 4096;
+
 struct Options {
   std::string model = "excavation", cache = "build/bench", json;
-  int points = 100'000;
+  int points = 100'000, requests = 2000;
+};
+
+namespace http = boost::beast::http;
+
+// One connection that is kept, as scripts have it.
+class Client {
+ public:
+  Client(std::uint16_t port, std::string token) : token_(std::move(token)), stream_(context_) {
+    stream_.connect({boost::asio::ip::make_address("127.0.0.1"), port});
+    stream_.socket().set_option(boost::asio::ip::tcp::no_delay(true));
+  }
+
+  // Milliseconds until the whole answer is there; ends the program on any but 200.
+  double get(const std::string& path) { return send(http::verb::get, path, {}, "application/json"); }
+  double post(const std::string& path, const std::string& body, const char* accept = "application/json") {
+    return send(http::verb::post, path, body, accept);
+  }
+
+ private:
+  double send(http::verb verb, const std::string& path, const std::string& body, const char* accept) {
+    http::request<http::string_body> request(verb, "/api/v1" + path, 11, body);
+    request.set(http::field::host, "127.0.0.1");
+    request.set(http::field::authorization, "Bearer " + token_);
+    request.set(http::field::accept, accept);
+    if (!body.empty()) request.set(http::field::content_type, "application/json");
+    request.prepare_payload();
+    http::response_parser<http::string_body> answer;
+    answer.body_limit(std::uint64_t{1} << 30);
+    const double start = now_ms();
+    http::write(stream_, request);
+    http::read(stream_, buffer_, answer);
+    const double elapsed = now_ms() - start;
+    if (answer.get().result() != http::status::ok) {
+      std::fprintf(stderr, "strata-bench: %s: %s\n", path.c_str(), answer.get().body().substr(0, 400).c_str());
+      std::exit(1);
+    }
+    return elapsed;
+  }
+
+  const std::string token_;
+  boost::asio::io_context context_;
+  boost::beast::tcp_stream stream_;
+  boost::beast::flat_buffer buffer_;
+};
+
+class Queries {
+ public:
+  explicit Queries(const Options& options) : options_(options), random_(1) {
+    jobs::ImportRequest request;
+    request.files = must(mesh_files(options.model, options.cache));
+    Progress progress;
+    model_ = must(jobs::import_model(*site_.store, request, progress));
+    room_ = must(site_.rooms->open(model_.slug));
+    make_layer("moisture", ValueType::f32, 0.5);
+    make_layer("units", ValueType::u16, 7);
+    make_layer("salt", ValueType::f32, 0.1);
+    paint_spots("units");
+    paint_spots("moisture");
+    net::ServerOptions server;
+    server.port = 0;
+    server.owner_token = std::string(40, 'b');
+    server.requests_per_second = server.request_burst = 1e9;
+    server.protocol_dir = std::filesystem::path(STRATA_SOURCE_DIR) / "protocol/generated";
+    server.upload_dir = site_.folder / "uploads";
+    server_ = must(net::Server::start(server, *site_.store, *site_.rooms, jobs_, *site_.renderer));
+    client_ = std::make_unique<Client>(server_->port(), server.owner_token);
+  }
+  ~Queries() { server_->stop(); }
+
+  void run() {
+    const std::string model = "/models/" + model_.slug;
+    add("first point, with the search tree", 0, {client_->get(point_query())});
+    add("a point, idle (p99)", 2, points(), 0.99);
+    {
+      std::atomic<bool> stop{false};
+      std::thread painter([&] { paint_until(stop); });
+      add("a point while somebody paints (p99)", 10, points(), 0.99);
+      stop = true;
+      painter.join();
+    }
+    const std::string many = many_points();
+    add("points in one POST, CSV", 300,
+        repeated(3, [&] { return client_->post(model + "/positions", many, "text/csv"); }));
+    add("points in one POST, JSON", 1000, repeated(3, [&] { return client_->post(model + "/positions", many); }));
+
+    for (const std::string layer : {"units", "moisture"}) {
+      const std::string path = model + "/layers/" + layer + "/statistics";
+      client_->get(path + "?where=valid(" + layer + ")");  // the surface map is there
+      add("statistics of " + layer + ", counted anew", 50, repeated(3, [&] {
+            refill(layer);
+            return client_->get(path);
+          }));
+      add("statistics of " + layer + " after a stroke", 5, repeated(15, [&] {
+            stroke(layer);
+            return client_->get(path);
+          }));
+      add("the same with quantiles", 2000, repeated(3, [&] { return client_->get(path + "?include=quantiles"); }));
+      add("first with pieces, with the texels' graph", 0, {client_->get(path + "?include=pieces")});
+      add("with pieces", 2000, repeated(3, [&] { return client_->get(path + "?include=pieces"); }));
+    }
+    add("an expression over three layers", 100, repeated(5, [&] {
+          return client_->post(model + "/select", R"({"where": "moisture * 2 + salt > 0.5 and units <> 3"})");
+        }));
+    add("a cross-table", 0,
+        repeated(3, [&] { return client_->post(model + "/cross-table", R"({"rows": "units", "columns": "units"})"); }));
+    const auto gpu = site_.renderer->info();
+    write_result(options_.json, machine(&gpu), results_);
+  }
+
+ private:
+  void make_layer(const std::string& name, ValueType type, double value) {
+    Layer layer;
+    layer.name = layer.slug = name;
+    layer.type = type;
+    layer.resolution = kResolution;
+    layer.palette = default_palette(type, false);
+    layers_[name] = must(room_->create_layer(layer));
+    refill(name, value);
+  }
+  void refill(const std::string& name, std::optional<double> value = {}) {
+    const Layer& layer = layers_.at(name);
+    const double filled = value.value_or(is_float(layer.type) ? 0.001 * ++fills_ : double(100 + ++fills_ % 100));
+    edit_and_wait(*room_, {random_uuid(),
+                           "bench",
+                           layer.id,
+                           room::FillEdit{false, must(encode_value(layer.type, filled)), {}},
+                           {{"op", "fill"}}});
+  }
+  Camera camera() const { return look_at(*room_->geometry(), {0.5, -1, 0.6}, 1280, 720); }
+  void stroke(const std::string& name) {
+    const double x = 400 + static_cast<double>(random_() % 480), y = 200 + static_cast<double>(random_() % 320);
+    edit_and_wait(*room_, stroke_request(layers_.at(name), camera(), {{x, y}, {x + 30, y + 10}}, 20,
+                                         static_cast<double>(random_() % 20)));
+  }
+  void paint_spots(const std::string& name) {
+    for (int i = 0; i < 30; ++i) stroke(name);
+  }
+  void paint_until(const std::atomic<bool>& stop) {
+    std::mt19937 random(5);
+    const Camera view = camera();
+    while (!stop) {
+      const double x = 400 + static_cast<double>(random() % 480), y = 200 + static_cast<double>(random() % 320);
+      edit_and_wait(*room_, stroke_request(layers_.at("units"), view, {{x, y}, {x + 8, y + 3}}, 20, 3));
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    }
+  }
+
+  glm::dvec3 place() {
+    const auto geometry = room_->geometry();
+    std::uniform_real_distribution<double> jitter(-1, 1);
+    const double reach = 0.002 * glm::length(model_.bounds_max - model_.bounds_min);
+    return geometry->positions[random_() % geometry->positions.size()] +
+           reach * glm::dvec3(jitter(random_), jitter(random_), jitter(random_));
+  }
+  std::string point_query() {
+    const auto p = place();
+    char text[200];
+    std::snprintf(text, sizeof text, "/models/%s/position?coords=POINT%%20Z(%.6f%%20%.6f%%20%.6f)", model_.slug.c_str(),
+                  p.x, p.y, p.z);
+    return text;
+  }
+  Samples points() {
+    Samples samples;
+    for (int i = 0; i < options_.requests; ++i) samples.add(client_->get(point_query()));
+    return samples;
+  }
+  std::string many_points() {
+    nlohmann::json list = nlohmann::json::array();
+    for (int i = 0; i < options_.points; ++i) {
+      const auto p = place();
+      list.push_back({p.x, p.y, p.z});
+    }
+    return nlohmann::json{{"points", std::move(list)}, {"layers", {"moisture"}}}.dump();
+  }
+  template <class Work>
+  static Samples repeated(int times, Work work) {
+    Samples samples;
+    for (int i = 0; i < times; ++i) samples.add(work());
+    return samples;
+  }
+  void add(const std::string& what, double goal_ms, const Samples& samples, double quantile = 0.5) {
+    std::printf("  %-45s %10.2f ms", what.c_str(), samples.quantile(quantile));
+    if (goal_ms > 0) std::printf("   goal %g", goal_ms);
+    std::printf("\n");
+    std::fflush(stdout);
+    auto json = samples.json();
+    json.update({{"method", "query"},
+                 {"model", options_.model},
+                 {"triangles", model_.triangles},
+                 {"resolution", kResolution},
+                 {"points", options_.points},
+                 {"question", what},
+                 {"ms", samples.quantile(quantile)}});
+    if (goal_ms > 0) json["goal_ms"] = goal_ms;
+    results_.push_back(std::move(json));
+  }
+  void add(const std::string& what, double goal_ms, std::initializer_list<double> times) {
+    Samples samples;
+    for (const double ms : times) samples.add(ms);
+    add(what, goal_ms, samples);
+  }
+
+  const Options& options_;
+  Site site_;
+  jobs::JobQueue jobs_;
+  Model model_;
+  std::shared_ptr<room::Room> room_;
+  std::map<std::string, Layer> layers_;
+  std::unique_ptr<net::Server> server_;
+  std::unique_ptr<Client> client_;
+  std::mt19937 random_;
+  int fills_ = 0;
+  nlohmann::json results_ = nlohmann::json::array();
 };
 
 int run(const Options& options) {
-  Site site;
-  jobs::ImportRequest request;
-  request.files = must(mesh_files(options.model, options.cache));
-  Progress progress;
-  const Model model = must(jobs::import_model(*site.store, request, progress));
-  auto room = must(site.rooms->open(model.slug));
-  Layer layer;
-  layer.name = layer.slug = "moisture";
-  layer.type = ValueType::f32;
-  layer.resolution = 4096;
-  layer.palette = default_palette(layer.type, false);
-  layer = must(room->create_layer(layer));
-  edit_and_wait(
-      *room,
-      {random_uuid(), "bench", layer.id, room::FillEdit{false, must(encode_value(layer.type, 0.5))}, {{"op", "fill"}}});
-
-  std::mt19937 random(1);
-  auto anywhere = [&] {
-    glm::dvec3 p;
-    for (int i = 0; i < 3; ++i) p[i] = std::uniform_real_distribution(model.bounds_min[i], model.bounds_max[i])(random);
-    return p;
-  };
-  double start = now_ms();
-  must(room->position(anywhere(), {}));
-  const double tree_ms = now_ms() - start;
-  Samples single;
-  for (int i = 0; i < 2000; ++i) {
-    const auto point = anywhere();
-    start = now_ms();
-    must(room->position(point, {}));
-    single.add(now_ms() - start);
-  }
-  std::vector<glm::dvec3> many(options.points);
-  for (auto& p : many) p = anywhere();
-  start = now_ms();
-  must(room->positions(many, {}));
-  const double many_ms = now_ms() - start;
-  start = now_ms();
-  must(room->statistics(layer.slug));
-  const double statistics_ms = now_ms() - start;
-
-  std::printf(
-      "%s: search tree %.0f ms, one point p50 %.3f p99 %.3f ms, %d points %.0f ms, statistics at 4096² %.0f ms\n",
-      options.model.c_str(), tree_ms, single.median(), single.quantile(0.99), options.points, many_ms, statistics_ms);
-  const auto gpu = site.renderer->info();
-  write_result(options.json, machine(&gpu),
-               nlohmann::json::array({{{"method", "query"},
-                                       {"model", options.model},
-                                       {"triangles", model.triangles},
-                                       {"tree_ms", tree_ms},
-                                       {"position", single.json()},
-                                       {"points", options.points},
-                                       {"points_ms", many_ms},
-                                       {"statistics_ms", statistics_ms}}}));
+  Queries(options).run();
   return 0;
 }
 
 }  // namespace
 
 Command add_query(CLI::App& app) {
-  auto* command = app.add_subcommand("query", "Values at points and statistics");
+  auto* command = app.add_subcommand("query", "Values, statistics and selections over HTTP, of layers of 4096²");
   auto options = std::make_shared<Options>();
   command->add_option("--model", options->model, "vessel, excavation, amazon, thai, or a file")->capture_default_str();
   command->add_option("--points", options->points, "Points of the bulk query")->capture_default_str();
+  command->add_option("--requests", options->requests, "Single points")->capture_default_str();
   command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();
   command->add_option("--json", options->json, "Write the results here");
   return [options] { return run(*options); };

@@ -143,6 +143,30 @@ TEST(Expression, a_condition_selects_the_surface_texels_where_it_holds) {
       {"abs(wet) < 1 and max(fine, \"3d\", 4) > 100 and min(fine, 5) = 5",
        [](int, int, const At& a) { return a.wet && std::abs(*a.wet) < 1 && a.coarse && a.fine > 100; }},
       {"if(valid(roof-crack), roof-crack, 9) > 2", [](int, int, const At& a) { return !a.crack || *a.crack > 2; }},
+      {"wet between -1 and 0.5 + 1", [](int, int, const At& a) { return a.wet && *a.wet >= -1 && *a.wet <= 1.5; }},
+      {"wet NOT BETWEEN 0 AND 1 and true", [](int, int, const At& a) { return a.wet && (*a.wet < 0 || *a.wet > 1); }},
+      {"roof-crack in (2, -1, 1 + 2)",
+       [](int, int, const At& a) { return a.crack && (*a.crack == 2 || *a.crack == -1 || *a.crack == 3); }},
+      {"roof-crack not in (0) or false", [](int, int, const At& a) { return a.crack && *a.crack != 0; }},
+      {"roof-crack IS NULL", [](int, int, const At& a) { return !a.crack; }},
+      {"wet + roof-crack is not null", [](int, int, const At& a) { return a.wet && a.crack; }},
+      {"sqrt(wet) is not null and sqrt(wet) > 1", [](int, int, const At& a) { return a.wet && *a.wet > 1; }},
+      {"fine % 7 = 3 and fine div 100 = 4",
+       [](int, int, const At& a) { return static_cast<int>(a.fine) % 7 == 3 && static_cast<int>(a.fine) / 100 == 4; }},
+      {"-7 % 4 = -3 and -7 div 4 = -1 and wet > 0", [](int, int, const At& a) { return a.wet && *a.wet > 0; }},
+      {"wet ^ 2 > 4", [](int, int, const At& a) { return a.wet && *a.wet * *a.wet > 4; }},
+      {"-2 ^ 2 = 4 and 2 ^ -1 = 0.5 and 3 * 2 ^ 2 = 12", [](int, int, const At&) { return true; }},
+      {"case when wet > 1 then 10 when wet > 0 then 5 else 0 end >= 5",
+       [](int, int, const At& a) { return a.wet && *a.wet > 0; }},
+      {"case when valid(wet) then 1 end is null", [](int x, int y, const At&) { return !wet().at(x, y); }},
+      {"floor(wet) = 1 or ceil(wet) = 1 or round(wet) = 1",
+       [](int, int, const At& a) {
+         return a.wet && (std::floor(*a.wet) == 1 || std::ceil(*a.wet) == 1 || std::round(*a.wet) == 1);
+       }},
+      {"abs(sin(wet) ^ 2 + cos(wet) ^ 2 - 1) < 1e-9", [](int, int, const At& a) { return a.wet.has_value(); }},
+      {"abs(tan(atan(wet)) - wet) < 1e-6 and abs(degrees(acos(0)) - 90) + abs(radians(180) - 2 * asin(1)) < 1e-9",
+       [](int, int, const At& a) { return a.wet.has_value(); }},
+      {"abs(exp(ln(fine)) - fine) < 1e-6 and log10(1000) = 3", [](int, int, const At& a) { return a.fine > 0; }},
   };
   for (const auto& [text, expected] : cases) expect_selected(text, expected);
 }
@@ -161,7 +185,18 @@ TEST(Expression, what_is_not_known_is_not_selected_nor_is_its_contrary) {
   expect_selected("if(true, fine, wet) >= 0", [](int, int, const At&) { return true; });
 }
 
+TEST(Expression, null_is_unknown_wherever_it_is_used) {
+  const auto map = full_map();
+  for (const char* text : {"null > 1", "null = null", "wet + null > 0", "not (null is null)", "max(null, wet) > -99"}) {
+    const auto selection = select_where(*parse_condition(text, ""), views(), map, "where");
+    for (const auto bits : *selection) ASSERT_EQ(bits, 0u) << text;
+  }
+}
+
 TEST(Expression, or_binds_loosest_and_a_sign_most_tightly) {
+  EXPECT_EQ(*parse_condition("not a is null and b in (1, 2) or c not between 1 and 3", ""),
+            *parse_condition("((not (a is null)) and (b = 1 or b = 2)) or (not (c >= 1 and c <= 3))", ""));
+  EXPECT_EQ(*parse_number("a * b ^ -c % d", ""), *parse_number("(a * (b ^ (-c))) % d", ""));
   EXPECT_EQ(*parse_condition("a > 1 or b > 2 and not c > 3", ""),
             *parse_condition("(a > 1) or ((b > 2) and (not (c > 3)))", ""));
   EXPECT_EQ(*parse_number("a + b * -c - d / e", ""), *parse_number("(a + (b * (-c))) - (d / e)", ""));
@@ -200,25 +235,30 @@ std::string repeated(const std::string& text, int times) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, BadExpression,
-    testing::Values(Bad{"", "the end"}, Bad{"   ", "the end"}, Bad{"wet", "condition is wanted"},
-                    Bad{"1 + 2", "condition is wanted"}, Bad{"wet >", "instead of 'the end' (at character 6)"},
-                    Bad{"wet > 1 wet", "'wet' was not expected here (at character 9)"}, Bad{"(wet > 1", "Expected ')'"},
-                    Bad{"wet > 1)", "')' was not expected"}, Bad{"wet > (1 > 2)", "number is wanted"},
-                    Bad{"true > 1", "number is wanted"}, Bad{"not wet", "condition is wanted"},
-                    Bad{"wet and true", "condition is wanted"}, Bad{"1 < wet < 2", "two numbers"},
-                    Bad{"sqrt(wet) > 1", "no function 'sqrt'"}, Bad{"valid(1)", "name of a layer"},
-                    Bad{"valid(wet", "Expected ')'"}, Bad{"valid wet", "Expected '('"},
-                    Bad{"min(1) > 0", "At least two"}, Bad{"if(wet > 1, 2) > 0", "Expected ','"},
-                    Bad{"if(wet, 1, 2) > 0", "condition is wanted"}, Bad{"and > 1", "instead of 'and'"},
-                    Bad{"valid(and)", "double quotes"}, Bad{"wet > 1 ; drop", "no meaning"},
-                    Bad{"wet > '1'", "no meaning"}, Bad{"wet > 1.2.3", "A number ends here"},
-                    Bad{"3d > 1", "double quotes"}, Bad{"wet > 1e999", "too large"}, Bad{"\"wet > 1", "never closed"},
-                    Bad{"\"\" > 1", "name is missing"}, Bad{"wet > 1 or", "the end"}, Bad{"wet ! 1", "no meaning"},
-                    Bad{"w\xc3\xa4nde > 1", "no meaning"}, Bad{repeated("(", 2000) + "true", "nested too deeply"},
-                    Bad{repeated("not ", 1000) + "true", "nested too deeply"},
-                    Bad{repeated("-", 4000) + "1 > 0", "nested too deeply"},
-                    Bad{"0 < 1" + repeated("+1", 100), "nested too deeply"},
-                    Bad{"wet > 1" + repeated(" ", 5000), "at most 4096"}));
+    testing::Values(
+        Bad{"", "the end"}, Bad{"   ", "the end"}, Bad{"wet", "condition is wanted"},
+        Bad{"1 + 2", "condition is wanted"}, Bad{"wet >", "instead of 'the end' (at character 6)"},
+        Bad{"wet > 1 wet", "'wet' was not expected here (at character 9)"}, Bad{"(wet > 1", "Expected ')'"},
+        Bad{"wet > 1)", "')' was not expected"}, Bad{"wet > (1 > 2)", "number is wanted"},
+        Bad{"true > 1", "number is wanted"}, Bad{"not wet", "condition is wanted"},
+        Bad{"wet and true", "condition is wanted"}, Bad{"1 < wet < 2", "two numbers"},
+        Bad{"root(wet) > 1", "no function 'root'; there are valid, if, min, max, abs, sqrt"},
+        Bad{"2 ^ 3 ^ 4 > 1", "need parentheses"}, Bad{"wet in ()", "instead of ')'"}, Bad{"wet in (1", "Expected ')'"},
+        Bad{"wet between 1", "Expected 'and'"}, Bad{"wet is 1", "Expected 'null'"},
+        Bad{"wet not 1", "'between' or 'in'"}, Bad{"case wet end > 1", "Expected 'when'"},
+        Bad{"case when wet > 1 then 2 > 1", "number is wanted"}, Bad{"case when wet > 1 then 2", "Expected 'end'"},
+        Bad{"(wet > 1) in (1)", "number is wanted"}, Bad{"valid(sqrt)", "double quotes"},
+        Bad{"sqrt > 1", "Expected '('"}, Bad{"valid(1)", "name of a layer"}, Bad{"valid(wet", "Expected ')'"},
+        Bad{"valid wet", "Expected '('"}, Bad{"min(1) > 0", "At least two"}, Bad{"if(wet > 1, 2) > 0", "Expected ','"},
+        Bad{"if(wet, 1, 2) > 0", "condition is wanted"}, Bad{"and > 1", "instead of 'and'"},
+        Bad{"valid(and)", "double quotes"}, Bad{"wet > 1 ; drop", "no meaning"}, Bad{"wet > '1'", "no meaning"},
+        Bad{"wet > 1.2.3", "A number ends here"}, Bad{"3d > 1", "double quotes"}, Bad{"wet > 1e999", "too large"},
+        Bad{"\"wet > 1", "never closed"}, Bad{"\"\" > 1", "name is missing"}, Bad{"wet > 1 or", "the end"},
+        Bad{"wet ! 1", "no meaning"}, Bad{"w\xc3\xa4nde > 1", "no meaning"},
+        Bad{repeated("(", 2000) + "true", "nested too deeply"},
+        Bad{repeated("not ", 1000) + "true", "nested too deeply"},
+        Bad{repeated("-", 4000) + "1 > 0", "nested too deeply"},
+        Bad{"0 < 1" + repeated("+1", 100), "nested too deeply"}, Bad{"wet > 1" + repeated(" ", 5000), "at most 4096"}));
 
 TEST(Expression, a_layer_that_is_not_there_is_named) {
   const auto condition = parse_condition("wet > 0 and salt > 1", "where");
