@@ -389,7 +389,7 @@ double copy_bandwidth(render::Renderer& renderer) {
       program.use();
       from.bind_storage(0);
       to.bind_storage(1);
-      const auto copy = [] { glDispatchCompute(static_cast<GLuint>(kBytes / kBytesPerGroup), 1, 1); };
+      const auto copy = [&] { glDispatchCompute(static_cast<GLuint>(kBytes / kBytesPerGroup), 1, 1); };
       copy();
       for (int run = 0; run < kRuns; ++run) {
         glFinish();
