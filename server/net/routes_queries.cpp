@@ -82,6 +82,38 @@ Result<Response> positions(const RouteContext& context, const Request& request) 
   return response;
 }
 
+Result<Response> profile(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::ProfileRequest>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  std::vector<Layer> layers = (*room)->layers();
+  if (asked->layers) {
+    std::vector<std::string> refs;
+    for (const auto& ref : *asked->layers) refs.push_back(protocol::to_ref(ref));
+    auto found = find_layers(**room, refs, "layers");
+    if (!found) return tl::unexpected(found.error());
+    layers = std::move(*found);
+  }
+  const Unit unit = (*room)->model().unit;
+  room::ProfileLine line;
+  if (asked->places)
+    line = room::PlacesInSteps{*asked->places, in_model_units(*asked->step_mm, unit)};
+  else
+    line = room::SeenLine{*asked->camera, *asked->path};
+  const auto at = find_sequence(context, **room, asked->at);
+  if (!at) return tl::unexpected(at.error());
+  const auto sequence = at->value_or((*room)->sequence());
+  const auto found = (*room)->profile(line, slugs_of(layers), *at);
+  if (!found) return tl::unexpected(found.error());
+  const bool as_csv = request.header("accept").find("text/csv") != std::string_view::npos;
+  Response response = as_csv ? text_response(profile_csv(*found, unit, slugs_of(layers)), kCsvType)
+                             : json_response(to_json(*found, unit));
+  add_sequences(response, sequence, (*room)->durable_sequence());
+  response.with("Vary", "Accept");
+  return response;
+}
+
 Result<Response> pick(const RouteContext& context, const Request& request) {
   auto asked = body_of<protocol::PickRequest>(request);
   if (!asked) return tl::unexpected(asked.error());
@@ -109,6 +141,11 @@ void add_query_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context](const Request& request) { return positions(context, request); }),
               .body = BodyKind::memory,
               .max_body = context.options.max_positions_bytes});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/profile",
+              .handler = answering([&context](const Request& request) { return profile(context, request); }),
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes});
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/pick",
               .handler = answering([&context](const Request& request) { return pick(context, request); }),

@@ -119,6 +119,7 @@ bool names_tool(const protocol::Edit& edit) {
 bool names_tool(const protocol::StrokeBegin& begin) { return is_tool(begin.shape); }
 
 double in_model_units(double millimetres, Unit unit) { return millimetres * 0.001 / metres_per(unit); }
+double in_millimetres(double length, Unit unit) { return length * metres_per(unit) * 1000; }
 
 Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer, const Model& model,
                                        const Uuid& id, const std::string& user, const FindTool& find_tool) {
@@ -351,28 +352,55 @@ nlohmann::json to_json(const store::JournalRow& row) {
   return json;
 }
 
-std::string points_csv(const std::vector<query::SurfacePoint>& points, const std::vector<std::string>& layers) {
+namespace {
+
+std::string point_header(const std::vector<std::string>& layers) {
   std::string text = "hit,x,y,z,normal_x,normal_y,normal_z,distance,u,v";
   for (const auto& layer : layers) text += "," + csv_field(layer);
+  return text + "\r\n";
+}
+
+void append_point(const query::SurfacePoint& point, const std::vector<std::string>& layers, std::string& text) {
+  if (!point.hit) {
+    text += "false" + std::string(9 + layers.size(), ',') + "\r\n";
+    return;
+  }
+  text += "true";
+  for (double value :
+       {point.position.x, point.position.y, point.position.z, double(point.normal.x), double(point.normal.y),
+        double(point.normal.z), point.distance, double(point.uv.x), double(point.uv.y)})
+    text += "," + number(value);
+  for (const auto& layer : layers) {
+    text += ",";
+    for (const auto& value : point.values)
+      if (value.layer == layer && value.valid) text += number(value.value);
+  }
   text += "\r\n";
-  for (const auto& point : points) {
-    if (!point.hit) {
-      text += "false" + std::string(9 + layers.size(), ',') + "\r\n";
-      continue;
-    }
-    text += "true";
-    for (double value :
-         {point.position.x, point.position.y, point.position.z, double(point.normal.x), double(point.normal.y),
-          double(point.normal.z), point.distance, double(point.uv.x), double(point.uv.y)})
-      text += "," + number(value);
-    for (const auto& layer : layers) {
-      text += ",";
-      for (const auto& value : point.values)
-        if (value.layer == layer && value.valid) text += number(value.value);
-    }
-    text += "\r\n";
+}
+
+}  // namespace
+
+std::string points_csv(const std::vector<query::SurfacePoint>& points, const std::vector<std::string>& layers) {
+  std::string text = point_header(layers);
+  for (const auto& point : points) append_point(point, layers, text);
+  return text;
+}
+
+std::string profile_csv(const query::Profile& profile, Unit unit, const std::vector<std::string>& layers) {
+  std::string text = "along_mm," + point_header(layers);
+  for (const auto& sample : profile.samples) {
+    text += number(in_millimetres(sample.along, unit)) + ",";
+    append_point(sample.point, layers, text);
   }
   return text;
+}
+
+nlohmann::json to_json(const query::Profile& profile, Unit unit) {
+  nlohmann::json samples = nlohmann::json::array();
+  for (const auto& sample : profile.samples)
+    samples.push_back(
+        {{"along_mm", in_millimetres(sample.along, unit)}, {"point", protocol::to_json(to_protocol(sample.point))}});
+  return {{"length_mm", in_millimetres(profile.length, unit)}, {"samples", std::move(samples)}};
 }
 
 nlohmann::json point_coverage(const query::SurfacePoint& point, const std::vector<Layer>& layers, const Model& model) {

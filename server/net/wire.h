@@ -21,6 +21,7 @@ namespace strata::net {
 
 // Millimetres on the object in the model's unit.
 double in_model_units(double millimetres, Unit unit);
+double in_millimetres(double length, Unit unit);
 
 // A tool of the site, ready to paint with.
 struct FoundTool {
@@ -54,6 +55,7 @@ protocol::Picked to_picked(const query::SurfacePoint& point, const std::optional
 nlohmann::json to_json(const query::Statistics& statistics);
 nlohmann::json to_json(const room::SelectedArea& area);
 nlohmann::json to_json(const query::CrossTable& table);
+nlohmann::json to_json(const query::Profile& profile, Unit unit);
 // Areas in m²: a line a row's value, a column a column's, `-` where a layer has none; the corner names both layers.
 std::string cross_table_csv(const query::CrossTable& table, const std::string& rows, const std::string& columns);
 nlohmann::json to_json(const jobs::JobStatus& job);
@@ -62,6 +64,8 @@ std::string utc_text(std::chrono::system_clock::time_point time);  // RFC 3339 w
 
 // Answers of many points in the formats of GET …/position and POST …/positions. `layers`: slugs, one column each.
 std::string points_csv(const std::vector<query::SurfacePoint>& points, const std::vector<std::string>& layers);
+// With a column `along_mm` before those of points.
+std::string profile_csv(const query::Profile& profile, Unit unit, const std::vector<std::string>& layers);
 nlohmann::json point_coverage(const query::SurfacePoint& point, const std::vector<Layer>& layers, const Model& model);
 
 }  // namespace strata::net

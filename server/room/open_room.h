@@ -56,6 +56,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
                                        StatisticsWanted wanted) override;
   Result<SelectedArea> select(const Selection& selection, const std::vector<std::string>& layers,
                               StatisticsWanted wanted) override;
+  Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers, At at) override;
   Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
                                         const Selection& selection) override;
   Result<TileMap> dabs(const Layer& layer, const std::vector<PlacedValue>& values, double radius,

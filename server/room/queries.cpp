@@ -189,6 +189,17 @@ Result<SelectedArea> OpenRoom::select(const Selection& selection, const std::vec
   return area;
 }
 
+Result<query::Profile> OpenRoom::profile(const ProfileLine& line, const std::vector<std::string>& layers, At at) {
+  touch();
+  const auto views = layer_views(layers, at);
+  if (!views) return tl::unexpected(views.error());
+  const auto tree = surface_->tree();
+  if (const auto* seen = std::get_if<SeenLine>(&line))
+    return query::profile_seen(*tree, geometry_->origin, seen->camera, seen->path, *views);
+  const auto& steps = std::get<PlacesInSteps>(line);
+  return query::profile_near(*tree, geometry_->origin, steps.places, steps.step, *views);
+}
+
 Result<query::CrossTable> OpenRoom::cross_table(const std::string& rows, const std::string& columns,
                                                 const Selection& selection) {
   touch();

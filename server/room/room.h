@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "query/cross_table.h"
+#include "query/profile.h"
 #include "query/statistics.h"
 #include "query/values.h"
 #include "room/edit.h"
@@ -103,6 +104,16 @@ struct SelectedArea {
   std::map<std::string, query::Statistics> layers;  // by slug: what they hold there
 };
 
+struct PlacesInSteps {             // of which each the nearest surface point is taken
+  std::vector<glm::dvec3> places;  // world; 2 at least
+  double step = 0;                 // model units, above 0
+};
+struct SeenLine {
+  Camera camera;
+  std::vector<glm::dvec2> path;  // window pixels, origin top left; 2 at least
+};
+using ProfileLine = std::variant<PlacesInSteps, SeenLine>;
+
 struct PictureRequest {
   Camera camera;
   std::optional<std::vector<std::string>> layers{};  // by slug; nothing: those visible by default
@@ -152,6 +163,9 @@ class Room {
   // Counts texels of the finest layer that is named or asked of; of the model's default where none is.
   virtual Result<SelectedArea> select(const Selection& selection, const std::vector<std::string>& layers,
                                       StatisticsWanted wanted = {}) = 0;
+  // The surface along a line; `layers` as for `position`.
+  virtual Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers,
+                                         At at = {}) = 0;
   // What two layers of whole numbers hold together, at the finer one's texels.
   virtual Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
                                                 const Selection& selection = {}) = 0;

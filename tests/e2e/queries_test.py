@@ -111,6 +111,25 @@ def check_cross_table(server, marks):
     assert server.post(M + "/cross-table", {"rows": "units", "columns": "depth"}).json()["field"] == "columns"
 
 
+def check_profile(server, marks):
+    asked = {"places": [[10, 30, 5], [50, 30, 5]], "step_mm": 0.1, "layers": ["marks"]}
+    profile = server.ok("POST", M + "/profile", asked).json()
+    near(profile["length_mm"], 40, 0.01)
+    inside = [s["along_mm"] for s in profile["samples"] if s["point"]["values"]["marks"] == {"valid": True, "value": 3}]
+    near(inside[0], 10, 0.02)
+    near(inside[-1], 30, 0.02)
+    lines = server.ok("POST", M + "/profile", asked, headers={"Accept": "text/csv"}).body.decode().split("\r\n")
+    assert lines[0] == "along_mm,hit,x,y,z,normal_x,normal_y,normal_z,distance,u,v,marks" and len(lines) == 403, lines[:2]
+    camera = camera_from(server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
+    seen = server.ok("POST", M + "/profile", {"camera": camera, "path": [[0, 240], [639, 240]], "layers": []}).json()
+    near(seen["length_mm"], 100, 0.02)
+    assert not seen["samples"][0]["point"]["hit"] and len(seen["samples"]) == 640
+    for body, field in (({"places": [[0, 0, 0], [50, 0, 0]], "step_mm": 1e-6}, "step_mm"), ({"places": [[0, 0, 0]], "step_mm": 1}, "places"),
+                        ({"places": [[0, 0, 0], [1, 0, 0]], "step_mm": 1, "layers": ["salt"]}, "layers")):
+        answer = server.post(M + "/profile", body)
+        assert answer.status in (404, 422) and answer.json()["field"].startswith(field), (body, answer)
+
+
 def main():
     with StrataServer() as server:
         server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
@@ -119,6 +138,7 @@ def main():
         check_statistics(server, marks)
         check_selections(server, marks, risk)
         check_cross_table(server, marks)
+        check_profile(server, marks)
         assert server.stop() == 0
         server.assert_clean_log()
 

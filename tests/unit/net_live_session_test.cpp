@@ -104,6 +104,9 @@ class FakeRoom final : public room::Room {
                                     room::StatisticsWanted) override {
     return room::SelectedArea{};
   }
+  Result<query::Profile> profile(const room::ProfileLine&, const std::vector<std::string>&, At) override {
+    return query::Profile{};
+  }
   Result<query::CrossTable> cross_table(const std::string&, const std::string&, const room::Selection&) override {
     return query::CrossTable{};
   }

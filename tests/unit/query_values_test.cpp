@@ -5,6 +5,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
+#include "query/profile.h"
+
 namespace strata::query {
 namespace {
 
@@ -128,6 +130,48 @@ TEST(QueryValues, a_pick_sees_what_the_section_keeps) {
   EXPECT_FALSE(height());
   camera.section.clear();
   EXPECT_NEAR(*height(), -1, 1e-6) << "uncut surface is picked from both sides";
+}
+
+TEST(QueryProfile, a_line_over_a_plane_is_as_long_as_it_was_drawn_and_reads_what_lies_under_it) {
+  const mesh::SearchTree tree(square());
+  const LayerView view = layer_with(ValueType::u8, 256, 128, 128, 9);  // one texel: from the middle to 2/256
+  const std::vector<glm::dvec3> places = {kOrigin + glm::dvec3(-0.5, 0.004, 0.3),
+                                          kOrigin + glm::dvec3(0.5, 0.004, 0.3)};
+  const auto profile = profile_near(tree, kOrigin, places, 0.001, {view});
+  ASSERT_TRUE(profile);
+  EXPECT_EQ(profile->samples.size(), 1001u);
+  EXPECT_NEAR(profile->length, 1, 1e-5);
+  EXPECT_NEAR(profile->samples.back().along, 1, 1e-5);
+  int inside = 0;
+  for (const auto& sample : profile->samples) inside += sample.point.values[0].valid;
+  EXPECT_NEAR(inside, 2.0 / 256 / 0.001, 1.5);
+  EXPECT_NEAR(profile->samples[503].along, 0.503, 1e-5);
+  EXPECT_TRUE(profile->samples[503].point.values[0].valid);
+}
+
+TEST(QueryProfile, what_a_line_of_a_view_misses_adds_no_length) {
+  const mesh::SearchTree tree(square());
+  Camera camera;
+  camera.width = camera.height = 400;
+  camera.view = glm::lookAt(kOrigin + glm::dvec3(0, 0, 3), kOrigin, glm::dvec3(0, 1, 0));
+  camera.projection = glm::ortho(-2.0, 2.0, -2.0, 2.0, 0.1, 10.0);  // 100 pixels a unit
+  const std::vector<glm::dvec2> path = {{20, 200}, {380, 200}, {380, 250}, {200, 250}};
+  const auto profile = profile_seen(tree, kOrigin, camera, path, {});
+  ASSERT_TRUE(profile);
+  EXPECT_EQ(profile->samples.size(), 360u + 50u + 180u + 1u);
+  EXPECT_NEAR(profile->length, 2 + 1, 0.04) << "all of the square, and half of it";
+  EXPECT_FALSE(profile->samples.front().point.hit);
+  EXPECT_FALSE(profile->samples[400].point.hit);
+  EXPECT_TRUE(profile->samples.back().point.hit);
+}
+
+TEST(QueryProfile, too_many_samples_are_refused) {
+  const mesh::SearchTree tree(square());
+  const std::vector<glm::dvec3> places = {kOrigin, kOrigin + glm::dvec3(1, 0, 0)};
+  EXPECT_EQ(profile_near(tree, kOrigin, places, 1e-5, {}).error().field, "step_mm");
+  EXPECT_EQ(profile_near(tree, kOrigin, places, 1e-300, {}).error().field, "step_mm");
+  const std::vector<glm::dvec2> path = {{0, 0}, {1e6, 0}};
+  EXPECT_EQ(profile_seen(tree, kOrigin, {}, path, {}).error().field, "path");
 }
 
 }  // namespace

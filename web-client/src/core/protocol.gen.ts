@@ -1067,6 +1067,32 @@ export interface SelectResponse {
   edit?: EditResult;
 }
 
+/** The surface along a line. Through places: of each step the nearest surface point. Or what is seen under a line drawn in a camera's window, at each of its pixels. */
+export interface ProfileRequest {
+  places?: Point3[];
+  /** Millimetres on the object. */
+  step_mm?: number;
+  camera?: Camera;
+  /** Pixels of the camera's window. */
+  path?: Point2[];
+  /** Absent: all layers. */
+  layers?: LayerRef[];
+  at?: At;
+}
+
+/** Place on a profile. */
+export interface ProfileSample {
+  /** On the surface, from the beginning. Where the line leaves the surface nothing is added. */
+  along_mm: number;
+  point: SurfacePoint;
+}
+
+/** The surface along a line. */
+export interface Profile {
+  length_mm: number;
+  samples: ProfileSample[];
+}
+
 /** Two layers against each other. */
 export interface CrossTableRequest {
   rows: LayerRef;

@@ -1667,6 +1667,55 @@ nlohmann::json to_json(const SelectResponse& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, ProfileRequest& value) {
+  read_optional_member(json, "places", value.places);
+  read_optional_member(json, "step_mm", value.step_mm);
+  read_optional_member(json, "camera", value.camera);
+  read_optional_member(json, "path", value.path);
+  read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "at", value.at);
+}
+
+nlohmann::json to_json(const ProfileRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "places", value.places);
+  write_optional_member(json, "step_mm", value.step_mm);
+  write_optional_member(json, "camera", value.camera);
+  write_optional_member(json, "path", value.path);
+  write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "at", value.at);
+  return json;
+}
+
+Result<void> check(const ProfileRequest& value, const std::string& field) {
+  if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, ProfileSample& value) {
+  read_member(json, "along_mm", value.along_mm);
+  read_member(json, "point", value.point);
+}
+
+nlohmann::json to_json(const ProfileSample& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "along_mm", value.along_mm);
+  write_member(json, "point", value.point);
+  return json;
+}
+
+void read(const nlohmann::json& json, Profile& value) {
+  read_member(json, "length_mm", value.length_mm);
+  read_member(json, "samples", value.samples);
+}
+
+nlohmann::json to_json(const Profile& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "length_mm", value.length_mm);
+  write_member(json, "samples", value.samples);
+  return json;
+}
+
 void read(const nlohmann::json& json, CrossTableRequest& value) {
   read_member(json, "rows", value.rows);
   read_member(json, "columns", value.columns);

@@ -138,6 +138,9 @@ enum class Schema {
   SelectRequest,
   SelectedLayers,
   SelectResponse,
+  ProfileRequest,
+  ProfileSample,
+  Profile,
   CrossTableRequest,
   CrossTable,
   FrameRequest,
@@ -147,7 +150,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 121;
+constexpr int kSchemaCount = 124;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1311,6 +1314,44 @@ void read(const nlohmann::json& json, SelectResponse& value);
 nlohmann::json to_json(const SelectResponse& value);
 template <>
 inline constexpr Schema kSchemaOf<SelectResponse> = Schema::SelectResponse;
+
+// The surface along a line. Through places: of each step the nearest surface point. Or what is seen under a line drawn in a camera's window, at each of its pixels.
+struct ProfileRequest {
+  std::optional<std::vector<glm::dvec3>> places;
+  std::optional<double> step_mm;  // Millimetres on the object.
+  std::optional<strata::Camera> camera;
+  std::optional<std::vector<glm::dvec2>> path;  // Pixels of the camera's window.
+  std::optional<std::vector<LayerRef>> layers;  // Absent: all layers.
+  std::optional<At> at;
+  bool operator==(const ProfileRequest&) const = default;
+};
+void read(const nlohmann::json& json, ProfileRequest& value);
+nlohmann::json to_json(const ProfileRequest& value);
+Result<void> check(const ProfileRequest& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<ProfileRequest> = Schema::ProfileRequest;
+
+// Place on a profile.
+struct ProfileSample {
+  double along_mm = 0;  // On the surface, from the beginning. Where the line leaves the surface nothing is added.
+  SurfacePoint point;
+  bool operator==(const ProfileSample&) const = default;
+};
+void read(const nlohmann::json& json, ProfileSample& value);
+nlohmann::json to_json(const ProfileSample& value);
+template <>
+inline constexpr Schema kSchemaOf<ProfileSample> = Schema::ProfileSample;
+
+// The surface along a line.
+struct Profile {
+  double length_mm = 0;
+  std::vector<ProfileSample> samples;
+  bool operator==(const Profile&) const = default;
+};
+void read(const nlohmann::json& json, Profile& value);
+nlohmann::json to_json(const Profile& value);
+template <>
+inline constexpr Schema kSchemaOf<Profile> = Schema::Profile;
 
 // Two layers against each other.
 struct CrossTableRequest {
