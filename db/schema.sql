@@ -1,3 +1,5 @@
+CREATE SCHEMA records;
+
 CREATE DOMAIN public.slug AS text
 	CONSTRAINT slug_check CHECK (((VALUE ~ '^[a-z0-9-]+$'::text) AND (VALUE !~ '^[0-9]+$'::text)));
 
@@ -59,9 +61,10 @@ CREATE TABLE public.layers (
     opacity double precision NOT NULL,
     visible boolean NOT NULL,
     draw_order integer NOT NULL,
-    records_table text,
     sequence bigint DEFAULT 0 NOT NULL,
     version bigint DEFAULT 1 NOT NULL,
+    table_id bigint,
+    CONSTRAINT layers_check CHECK (((kind = 'database'::text) = (table_id IS NOT NULL))),
     CONSTRAINT layers_kind_check CHECK ((kind = ANY (ARRAY['numeric'::text, 'database'::text]))),
     CONSTRAINT layers_name_check CHECK ((name <> ''::text)),
     CONSTRAINT layers_opacity_check CHECK (((opacity >= (0)::double precision) AND (opacity <= (1)::double precision))),
@@ -182,6 +185,48 @@ ALTER TABLE public.projects ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     CACHE 1
 );
 
+CREATE TABLE public.record_columns (
+    id bigint NOT NULL,
+    table_id bigint NOT NULL,
+    kind text NOT NULL,
+    target bigint,
+    properties jsonb NOT NULL,
+    hidden boolean DEFAULT false NOT NULL,
+    CONSTRAINT record_columns_kind_check CHECK ((kind = ANY (ARRAY['text'::text, 'integer'::text, 'numeric'::text, 'boolean'::text, 'date'::text, 'timestamp'::text, 'period'::text, 'enumeration'::text, 'url'::text, 'term'::text, 'relation'::text])))
+);
+
+ALTER TABLE public.record_columns ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.record_columns_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
+CREATE TABLE public.record_tables (
+    id bigint NOT NULL,
+    project_id bigint NOT NULL,
+    name text NOT NULL,
+    slug public.slug NOT NULL,
+    labels jsonb DEFAULT '{}'::jsonb NOT NULL,
+    description text DEFAULT ''::text NOT NULL,
+    next_key bigint DEFAULT 1 NOT NULL,
+    records bigint DEFAULT 0 NOT NULL,
+    sequence bigint DEFAULT 0 NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT record_tables_name_check CHECK ((name <> ''::text))
+);
+
+ALTER TABLE public.record_tables ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.record_tables_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.schema_checksums (
     version character varying(128) NOT NULL,
     sha256 text NOT NULL
@@ -189,6 +234,30 @@ CREATE TABLE public.schema_checksums (
 
 CREATE TABLE public.schema_migrations (
     version character varying(128) NOT NULL
+);
+
+CREATE TABLE public.table_changes (
+    table_id bigint NOT NULL,
+    subject text NOT NULL,
+    subject_id bigint NOT NULL,
+    sequence bigint NOT NULL,
+    before jsonb NOT NULL,
+    after jsonb NOT NULL,
+    CONSTRAINT table_changes_subject_check CHECK ((subject = ANY (ARRAY['record'::text, 'column'::text])))
+);
+
+CREATE TABLE public.table_edits (
+    table_id bigint NOT NULL,
+    sequence bigint NOT NULL,
+    user_name text NOT NULL,
+    op text NOT NULL,
+    record jsonb NOT NULL,
+    "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    in_force boolean DEFAULT true NOT NULL,
+    undone_by bigint,
+    writer boolean GENERATED ALWAYS AS ((op <> ALL (ARRAY['undo'::text, 'redo'::text]))) STORED NOT NULL,
+    CONSTRAINT table_edits_check CHECK ((in_force = (undone_by IS NULL))),
+    CONSTRAINT table_edits_sequence_check CHECK ((sequence > 0))
 );
 
 CREATE TABLE public.tile_revisions (
@@ -298,11 +367,26 @@ ALTER TABLE ONLY public.projects
 ALTER TABLE ONLY public.projects
     ADD CONSTRAINT projects_slug_key UNIQUE (slug);
 
+ALTER TABLE ONLY public.record_columns
+    ADD CONSTRAINT record_columns_pkey PRIMARY KEY (id);
+
+ALTER TABLE ONLY public.record_tables
+    ADD CONSTRAINT record_tables_pkey PRIMARY KEY (id);
+
+ALTER TABLE ONLY public.record_tables
+    ADD CONSTRAINT record_tables_slug_key UNIQUE (slug);
+
 ALTER TABLE ONLY public.schema_checksums
     ADD CONSTRAINT schema_checksums_pkey PRIMARY KEY (version);
 
 ALTER TABLE ONLY public.schema_migrations
     ADD CONSTRAINT schema_migrations_pkey PRIMARY KEY (version);
+
+ALTER TABLE ONLY public.table_changes
+    ADD CONSTRAINT table_changes_pkey PRIMARY KEY (table_id, subject, subject_id, sequence);
+
+ALTER TABLE ONLY public.table_edits
+    ADD CONSTRAINT table_edits_pkey PRIMARY KEY (table_id, sequence);
 
 ALTER TABLE ONLY public.tile_revisions
     ADD CONSTRAINT tile_revisions_pkey PRIMARY KEY (layer_id, tile_y, tile_x, sequence);
@@ -329,6 +413,8 @@ CREATE INDEX edits_layer ON public.edits USING btree (layer_id, sequence);
 
 CREATE INDEX edits_undone ON public.edits USING btree (layer_id, user_name, undone_by) WHERE (NOT in_force);
 
+CREATE INDEX layers_table ON public.layers USING btree (table_id);
+
 CREATE INDEX looks_picture ON public.looks USING btree (picture);
 
 CREATE INDEX model_sources_blob ON public.model_sources USING btree (sha256);
@@ -336,6 +422,18 @@ CREATE INDEX model_sources_blob ON public.model_sources USING btree (sha256);
 CREATE INDEX models_geometry ON public.models USING btree (geometry);
 
 CREATE INDEX models_project ON public.models USING btree (project_id);
+
+CREATE UNIQUE INDEX record_columns_slug ON public.record_columns USING btree (table_id, ((properties ->> 'slug'::text))) WHERE (NOT hidden);
+
+CREATE INDEX record_columns_target ON public.record_columns USING btree (target);
+
+CREATE INDEX record_tables_project ON public.record_tables USING btree (project_id);
+
+CREATE INDEX table_changes_edit ON public.table_changes USING btree (table_id, sequence);
+
+CREATE INDEX table_edits_author ON public.table_edits USING btree (table_id, user_name, in_force, sequence) WHERE writer;
+
+CREATE INDEX table_edits_time ON public.table_edits USING btree (table_id, "time");
 
 CREATE INDEX tile_revisions_edit ON public.tile_revisions USING btree (layer_id, sequence);
 
@@ -363,6 +461,9 @@ ALTER TABLE ONLY public.edits
 ALTER TABLE ONLY public.layers
     ADD CONSTRAINT layers_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
 
+ALTER TABLE ONLY public.layers
+    ADD CONSTRAINT layers_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id);
+
 ALTER TABLE ONLY public.looks
     ADD CONSTRAINT looks_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
 
@@ -380,6 +481,21 @@ ALTER TABLE ONLY public.models
 
 ALTER TABLE ONLY public.models
     ADD CONSTRAINT models_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id);
+
+ALTER TABLE ONLY public.record_columns
+    ADD CONSTRAINT record_columns_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.record_columns
+    ADD CONSTRAINT record_columns_target_fkey FOREIGN KEY (target) REFERENCES public.record_tables(id);
+
+ALTER TABLE ONLY public.record_tables
+    ADD CONSTRAINT record_tables_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id);
+
+ALTER TABLE ONLY public.table_changes
+    ADD CONSTRAINT table_changes_table_id_sequence_fkey FOREIGN KEY (table_id, sequence) REFERENCES public.table_edits(table_id, sequence) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.table_edits
+    ADD CONSTRAINT table_edits_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.tile_revisions
     ADD CONSTRAINT tile_revisions_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE CASCADE;

@@ -143,7 +143,7 @@ class Writer:
             if self.is_optional(member):
                 spelled = f"std::optional<{spelled}>"
             note = f"  // {member.description}" if member.description else ""
-            text += f"  {spelled} {member.name}{self.initial(member)};{note}\n"
+            text += f"  {spelled} {cpp_name(member)}{self.initial(member)};{note}\n"
         text += f"  bool operator==(const {name}&) const = default;\n}};\n" + self.functions(name)
         if definition.schema.get("x-camera"):
             text += f"strata::Camera camera_of(const {name}& value);\n"
@@ -200,7 +200,7 @@ class Writer:
                 write += f'  json["{member.name}"] = "{member.type.values[0]}";\n'
                 continue
             unused = False
-            target = f'"{member.name}", value.{member.name}'
+            target = f'"{member.name}", value.{cpp_name(member)}'
             if member.required:
                 read += f"  read_member(json, {target});\n"
                 write += f"  write_member(json, {target});\n"
@@ -224,8 +224,8 @@ class Writer:
                     continue
                 optional = self.is_optional(member)
                 call = "strata::validate" if self.protocol.definitions[inner.name].cpp_type else "check"
-                access = f"*value.{member.name}" if optional else f"value.{member.name}"
-                condition = f"value.{member.name} ? " if optional else ""
+                access = f"*value.{cpp_name(member)}" if optional else f"value.{cpp_name(member)}"
+                condition = f"value.{cpp_name(member)} ? " if optional else ""
                 otherwise = " : Result<void>{}" if optional else ""
                 checks += (f'  if (auto ok = {condition}{call}({access}, join_field(field, "{member.name}")){otherwise}; !ok) return ok;\n')
             blank = "" if checks else "[[maybe_unused]] "
@@ -257,6 +257,11 @@ class Writer:
 def identifier(word) -> str:
     text = str(word).replace("-", "_").replace(".", "_")
     return text + "_" if text in ("true", "false", "default", "delete", "new") else text
+
+
+def cpp_name(member) -> str:
+    """Members may be called what C++ keeps for itself."""
+    return member.name + "_value" if member.name in ("default",) else member.name
 
 
 def snake(name: str) -> str:

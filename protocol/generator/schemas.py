@@ -16,7 +16,7 @@ class SchemaError(Exception):
 
 @dataclass
 class Type:
-    """kind: string, uuid, number, int32, int64, boolean, const, enum, array, map, nullable, ref, union, scalar_union, object."""
+    """kind: string, uuid, number, int32, int64, boolean, const, enum, array, map, nullable, ref, union, scalar_union, any, object."""
 
     kind: str
     name: str = ""  # ref: the definition; enum: its own name
@@ -24,6 +24,7 @@ class Type:
     count: "int | None" = None  # array: fixed length
     values: list = field(default_factory=list)  # enum: the words or numbers; const: one value; union: definition names
     members: list = field(default_factory=list)  # object
+    choices: list = field(default_factory=list)  # any: types
     description: str = ""
 
 
@@ -126,6 +127,8 @@ class Protocol:
             return Type("union", values=names)
         if [choice.get("type") for choice in choices] == ["integer", "string"]:
             return Type("scalar_union")
+        if all("type" in choice for choice in choices):  # for definitions with `x-cpp-type`: values as they are
+            return Type("any", choices=[Type("null") if choice["type"] == "null" else self.type_of(choice, where) for choice in choices])
         raise SchemaError(f"{where}: this oneOf is not known")
 
     def require_bounds(self, schema: dict, where: str):

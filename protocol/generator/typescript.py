@@ -29,6 +29,8 @@ def spell(protocol: Protocol, type_: Type) -> str:
         return spell(protocol, type_.items) + " | null"
     if type_.kind == "union":
         return " | ".join(type_.values)
+    if type_.kind == "any":
+        return " | ".join("null" if choice.kind == "null" else spell(protocol, choice) for choice in type_.choices)
     raise AssertionError(type_.kind)
 
 

@@ -123,11 +123,12 @@ bool begins_formula(std::string_view text) {
 Result<CsvText> parse_csv(std::string_view text, const CsvLimits& limits) { return Reader(text, limits).read(); }
 
 std::string csv_line(const std::vector<std::string>& cells, char separator) {
+  const std::string special = std::string("\"\r\n") + separator;
   std::string line;
   for (const std::string& cell : cells) {
     if (&cell != cells.data()) line += separator;
     // A lone empty cell would be an empty row, which readers leave out.
-    const bool quoted = cell.find_first_of("\",;\t\r\n") != std::string::npos || (cell.empty() && cells.size() == 1) ||
+    const bool quoted = cell.find_first_of(special) != std::string::npos || (cell.empty() && cells.size() == 1) ||
                         cell.starts_with(' ') || cell.ends_with(' ');
     if (!quoted) {
       line += cell;

@@ -24,10 +24,10 @@ struct Layer {
   Palette palette;
   double opacity = 1;
   bool visible = true;
-  int order = 0;  // drawn ascending: higher is on top
-  std::optional<std::string> table;
-  std::int64_t sequence = 0;  // of the last edit in it
-  std::int64_t version = 1;   // of the metadata, for ETag and If-Match
+  int order = 0;                      // drawn ascending: higher is on top
+  std::optional<std::int64_t> table;  // database: the project's table whose keys the texels hold
+  std::int64_t sequence = 0;          // of the last edit in it
+  std::int64_t version = 1;           // of the metadata, for ETag and If-Match
 };
 
 nlohmann::json to_json(const Layer& layer);

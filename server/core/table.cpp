@@ -92,7 +92,7 @@ Result<void> check_labels(const Labels& labels, const std::string& field) {
     if (!is_language_tag(tag))
       return fail(422, "Bad language", "\"" + mended_utf8(tag) + "\" is no language tag such as `es` or `pt-BR`.",
                   field);
-    if (auto good = check_short(label, field + "/" + tag); !good) return good;
+    if (auto good = check_short(label, field + "." + tag); !good) return good;
   }
   return {};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "net/painted_keys.h"
 #include "net/wire.h"
 
 namespace strata::net {
@@ -155,8 +156,8 @@ void LiveSession::on(const protocol::LayersUpdate& message) {
 
 void LiveSession::on(const protocol::StrokeBegin& message) {
   if (!may_edit(message.id)) return;
-  if (!names_tool(message)) return begin(message);
-  work_ = [self = shared_from_this(), message] { self->begin(message); };  // to look for the tool may block
+  if (!names_tool(message) && !has_records(message.layer)) return begin(message);
+  work_ = [self = shared_from_this(), message] { self->begin(message); };  // to look for tool or record may block
 }
 
 void LiveSession::begin(const protocol::StrokeBegin& message) {
@@ -164,6 +165,9 @@ void LiveSession::begin(const protocol::StrokeBegin& message) {
   if (!layer) return refuse(layer.error(), message.id);
   auto tool = stroke_tool(message, *layer, room_->model(), shared_->find_tool);
   if (!tool) return refuse(tool.error(), message.id);
+  if (layer->table && !tool->batch.erase)
+    if (auto known = check_keys(*shared_->store, *layer, {tool->batch.value_bits}); !known)
+      return refuse(known.error(), message.id);
   if (auto begun = shared_->strokes->begin(owner_, message.stroke, std::move(*tool)); !begun)
     refuse(begun.error(), message.id);
 }
@@ -184,7 +188,7 @@ void LiveSession::on(const protocol::StrokeEnd& message) {
 
 void LiveSession::on(const protocol::EditRequest& message) {
   if (!may_edit(message.id)) return;
-  if (!names_tool(message.edit)) return edit(message);
+  if (!names_tool(message.edit) && !has_records(message.layer)) return edit(message);
   work_ = [self = shared_from_this(), message] { self->edit(message); };
 }
 
@@ -193,7 +197,16 @@ void LiveSession::edit(const protocol::EditRequest& message) {
   if (!layer) return refuse(layer.error(), message.id);
   auto request = edit_request(message.edit, *layer, room_->model(), message.id, principal_.user, shared_->find_tool);
   if (!request) return refuse(request.error(), message.id);
+  if (layer->table)
+    if (auto known = check_keys(*shared_->store, *layer, painted_by(*layer, *request)); !known)
+      return refuse(known.error(), message.id);
   submit(std::move(*request), std::nullopt);
+}
+
+// What is painted there are keys, which must have records.
+bool LiveSession::has_records(const protocol::LayerRef& ref) const {
+  const auto layer = layer_of(ref);
+  return layer && layer->table;
 }
 
 template <class Message>

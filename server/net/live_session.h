@@ -68,7 +68,8 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   Work on_text(const std::string& text);
   void on_binary();
   void on_closed();
-  // What concerns the whole site; only who was welcomed hears it. Any thread.
+  std::int64_t project_id() const { return room_->model().project_id; }  // of the model; any thread
+  // What concerns the whole site or project; only who was welcomed hears it. Any thread.
   void tell(const protocol::ServerMessage& message);
 
   // --- room::Listener
@@ -111,6 +112,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   bool may_edit(const Uuid& id);
   bool has_view(int view_id, const std::string& ref);
   Result<Layer> layer_of(const protocol::LayerRef& ref) const;
+  bool has_records(const protocol::LayerRef& ref) const;
   std::shared_ptr<room::Member> member() const;
   void resolve_pointer();
   void send_presence();

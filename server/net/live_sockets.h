@@ -21,13 +21,11 @@ class LiveSockets {
   }
   // Whichever model they look at.
   void tell_all(const protocol::ServerMessage& message) {
-    std::vector<std::shared_ptr<LiveSession>> sessions;
-    {
-      std::lock_guard lock(mutex_);
-      for (const Entry& entry : entries_)
-        if (auto session = entry.session.lock()) sessions.push_back(std::move(session));
-    }
-    for (const auto& session : sessions) session->tell(message);
+    tell_if([](const LiveSession&) { return true; }, message);
+  }
+  // Whoever looks at a model of the project.
+  void tell_project(std::int64_t project_id, const protocol::ServerMessage& message) {
+    tell_if([&](const LiveSession& session) { return session.project_id() == project_id; }, message);
   }
   void close_all(int code, const std::string& reason) {
     close_if([](const Entry&) { return true; }, code, reason);
@@ -42,6 +40,17 @@ class LiveSockets {
     std::weak_ptr<LiveSession> session;
     std::string secret;
   };
+  template <class Choice>
+  void tell_if(Choice chosen, const protocol::ServerMessage& message) {
+    std::vector<std::shared_ptr<LiveSession>> sessions;
+    {
+      std::lock_guard lock(mutex_);
+      for (const Entry& entry : entries_)
+        if (auto session = entry.session.lock()) sessions.push_back(std::move(session));
+    }
+    for (const auto& session : sessions)
+      if (chosen(*session)) session->tell(message);
+  }
   template <class Choice>
   void close_if(Choice chosen, int code, const std::string& reason) {
     std::vector<std::shared_ptr<LiveSocket>> sockets;

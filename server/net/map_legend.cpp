@@ -10,11 +10,11 @@ constexpr std::size_t kMostNamed = 5;
 
 }  // namespace
 
-Result<std::optional<query::KeyNames>> keys_of(room::Room& room, const Layer& layer) {
+Result<std::optional<query::KeyNames>> keys_of(room::Room& room, const Layer& layer, const std::set<double>& records) {
   if (layer.palette.mode != PaletteMode::categorical) return std::nullopt;
   const auto statistics = room.statistics(layer.slug);
   if (!statistics) return tl::unexpected(statistics.error());
-  std::set<double> taken;
+  std::set<double> taken = records;
   for (const auto& [key, of_key] : statistics->keys) taken.insert(key);
   return query::KeyNames(layer.palette, taken);
 }

@@ -35,7 +35,7 @@ Result<MapValues> values_by_color(const Request& request, MapPicture map, const 
   if (!tolerance) return tl::unexpected(tolerance.error());
   const auto colors = color_keys(request.query.at("colors"), map.picture, *tolerance);
   if (!colors) return tl::unexpected(colors.error());
-  auto keys = keys_of(target.room, target.layer);
+  auto keys = keys_of(target.room, target.layer, target.records);
   if (!keys) return tl::unexpected(keys.error());
   for (const query::ColorKey& key : *colors) {
     if (auto bits = bits_of(target.layer, key.value, ""); !bits) return tl::unexpected(bits.error());
@@ -129,7 +129,7 @@ Result<MapValues> polygon_values(const Request& request, const MapFiles& files, 
   if (!features) return tl::unexpected(features.error());
   std::optional<query::KeyNames> keys;
   if (!choice.attribute.empty()) {
-    auto found = keys_of(target.room, target.layer);
+    auto found = keys_of(target.room, target.layer, target.records);
     if (!found) return tl::unexpected(found.error());
     keys = std::move(*found);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 
 #include "net/byte_budget.h"
 #include "net/map_query.h"
@@ -19,6 +20,7 @@ struct MapValues {
 struct MapTarget {
   room::Room& room;
   const Layer& layer;
+  std::set<double> records{};  // of a database layer: keys that stand for something already
 };
 
 // GeoJSON or a shapefile; `value`, `attribute` and `names` of the query.

@@ -3,6 +3,7 @@
 #include "core/slug.h"
 #include "core/uuid.h"
 #include "net/digest.h"
+#include "net/painted_keys.h"
 #include "net/wire.h"
 
 namespace strata::net {
@@ -46,6 +47,9 @@ Uuid edit_id(const Request& request, const Layer& layer, std::string_view operat
 
 void apply_edit(const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room,
                 room::EditRequest edit, const Respond& respond, std::function<nlohmann::json(nlohmann::json)> body_of) {
+  const auto layer = room->layer(std::to_string(edit.layer_id));
+  if (!layer) return respond(layer.error());
+  if (auto known = check_keys(context.store, *layer, painted_by(*layer, edit)); !known) return respond(known.error());
   const bool keyed = !request.header("idempotency-key").empty();
   if (keyed)
     if (auto same = context.edit_book.begin(room->model().id, edit); !same) return respond(same.error());

@@ -4,6 +4,7 @@
 #include "net/computed_layers.h"
 #include "net/layer_jobs.h"
 #include "net/routes.h"
+#include "net/table_wire.h"
 
 namespace strata::net {
 namespace {
@@ -48,9 +49,11 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
   const bool is_key = layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
   if (layer.kind == LayerKind::database && !is_key)
     return fail(422, "Type not usable", "A database layer holds keys: its type is u8, u16 or u32.", "type");
-  if (asked.table && layer.kind != LayerKind::database)
-    return fail(422, "Table on a numeric layer", "Only database layers have a table.", "table");
-  layer.table = asked.table;
+  if ((asked.table || asked.columns) && layer.kind != LayerKind::database)
+    return fail(422, "Table on a numeric layer", "Only database layers have a table.",
+                asked.table ? "table" : "columns");
+  if (asked.table && asked.columns)
+    return fail(422, "Table and columns", "Name a table, or give the columns of a new one.", "columns");
   layer.resolution = asked.resolution.value_or(std::max(model.default_resolution, model.atlas.lowest_resolution));
   if (layer.resolution < model.atlas.lowest_resolution)
     return fail(
@@ -76,13 +79,23 @@ Result<Response> create_layer(const RouteContext& context, JobBook& book, const 
   const Model model = (*room)->model();
   auto layer = new_layer(*asked, model, (*room)->layers());
   if (!layer) return tl::unexpected(layer.error());
+  if (asked->table) {
+    auto table = table_of_project(context.store, model.project_id, *asked->table, "table");
+    if (!table) return tl::unexpected(table.error());
+    layer->table = table->id;
+  }
+  Column name;
+  name.name = "Name";
+  Result<std::vector<Column>> columns = std::vector{name};
+  if (asked->columns) columns = new_columns(context.store, model.project_id, *asked->columns);
+  if (!columns) return tl::unexpected(columns.error());
   if (asked->compute) return start_computing(context, book, request, *room, *asked, std::move(*layer));
   const auto answer = [model_slug = model.slug](const Layer& made) {
     return json_response(to_json(made), 201)
         .with("Location", "/api/v1/models/" + model_slug + "/layers/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
-  auto created = (*room)->create_layer(std::move(*layer), first_answer<Layer>(request, answer));
+  auto created = (*room)->create_layer(std::move(*layer), first_answer<Layer>(request, answer), std::move(*columns));
   if (!created) return tl::unexpected(created.error());
   return answer(*created);
 }

@@ -7,6 +7,7 @@
 #include "net/map_legend.h"
 #include "net/map_query.h"
 #include "net/map_values.h"
+#include "net/painted_keys.h"
 #include "net/routes.h"
 #include "net/wire.h"
 #include "query/readings.h"
@@ -44,6 +45,11 @@ Handler painting(const RouteContext& context, std::string op, Paint paint) {
     edit.record.update(painted->record);
     for (const auto& [name, value] : request.query) edit.record[name] = value;
     edit.edit = room::ImportEdit{std::move(painted->tiles), true};
+    // With the names that the map brought.
+    const auto named = (*room)->layer(std::to_string(layer->id));
+    if (!named) return respond(named.error());
+    if (auto made = records_from_legend(context, *named, painted_by(*named, edit), request.user()); !made)
+      return respond(made.error());
     apply_edit(context, request, *room, std::move(edit), respond);
   };
 }
@@ -80,7 +86,13 @@ Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeV
   if (!axis) return tl::unexpected(axis.error());
   auto files = MapFiles::take(request, context.options.upload_dir);
   if (!files) return tl::unexpected(files.error());
-  auto values = make(request, *files, {*target.room, target.layer}, budget);
+  MapTarget map_target{*target.room, target.layer};
+  if (target.layer.table) {
+    auto page = context.store.records(*target.layer.table, {{}, {}, {}, store::kMostRecords, 0});
+    if (!page) return tl::unexpected(page.error());
+    for (const Record& record : page->records) map_target.records.insert(static_cast<double>(record.key));
+  }
+  auto values = make(request, *files, map_target, budget);
   if (!values) return tl::unexpected(values.error());
   auto tiles = target.room->project(target.layer, axis->direction,
                                     [&](const glm::dvec3& world) { return values->bits_at(axis->on_map(world)); });

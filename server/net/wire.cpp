@@ -15,6 +15,13 @@ Result<std::uint32_t> value_bits(const Layer& layer, double value, bool erase) {
   if (!bits) {
     Problem problem = bits.error();
     problem.field = "value";
+    if (layer.kind == LayerKind::database && value > highest_value(layer.type))
+      problem = {422, "Key too large",
+                 layer.name + " holds keys up to " +
+                     std::to_string(static_cast<std::int64_t>(highest_value(layer.type))) + " (" +
+                     std::string(name(layer.type)) +
+                     "). Records beyond that are painted on a layer of a wider type, u32 at most.",
+                 "value"};
     return tl::unexpected(std::move(problem));
   }
   return *bits;

@@ -175,15 +175,16 @@ Result<T> OpenRoom::exclusively(std::function<Result<T>()> work) {
   return result;
 }
 
-Result<Layer> OpenRoom::create_layer(Layer layer, const store::FirstAnswer<Layer>& answer) {
+Result<Layer> OpenRoom::create_layer(Layer layer, const store::FirstAnswer<Layer>& answer,
+                                     std::vector<Column> columns) {
   layer.model_id = model_id_;
   if (auto ok = check_layer(layer, model()); !ok) return tl::unexpected(ok.error());
-  auto created = exclusively<Layer>([this, layer, answer]() -> Result<Layer> {
+  auto created = exclusively<Layer>([this, layer, answer, columns]() -> Result<Layer> {
     // The GPU first: of what it refuses nothing is in the database.
     auto mirror = std::make_shared<TileMirror>(layer.type, layer.resolution);
     auto handle = add_layer(parts_.renderer, model_handle(), mirror);
     if (!handle) return tl::unexpected(gpu_problem(handle.error()));
-    auto made = parts_.store.create_layer(layer, answer);
+    auto made = parts_.store.create_layer(layer, answer, columns);
     if (!made) {
       parts_.renderer.remove_layer(*handle);
       return made;
@@ -446,6 +447,15 @@ Result<std::shared_ptr<const mesh::SurfaceMap>> OpenRoom::surface_map(int resolu
   auto map = maps_->wait(resolution);
   if (!map) return tl::unexpected(gpu_problem(map.error()));
   return map;
+}
+
+Result<std::map<std::int64_t, query::KeyArea>> OpenRoom::key_areas(const std::string& layer) {
+  touch();
+  const auto found = state(layer);
+  if (!found) return tl::unexpected(found.error());
+  const auto map = surface_map(found->layer.resolution);
+  if (!map) return tl::unexpected(map.error());
+  return query::key_areas({found->layer, found->mirror->snapshot()}, **map, model().metres());
 }
 
 }  // namespace strata::room

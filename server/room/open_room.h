@@ -43,7 +43,8 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void edit(EditRequest request, Applied applied, Saved saved) override;
   std::unique_ptr<Member> join(std::string user, Listener* listener, stream::Viewer::Send send) override;
   std::vector<Presence> presence() const override;
-  Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer) override;
+  Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer,
+                             std::vector<Column> columns) override;
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer) override;
   Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) override;
   Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer) override;
@@ -62,6 +63,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   Result<TileMap> dabs(const Layer& layer, const std::vector<PlacedValue>& values, double radius,
                        double tolerance) override;
   Result<TileMap> project(const Layer& layer, const glm::dvec3& direction, const ValueAt& value_at) override;
+  Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer) override;
   Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) override;
   std::shared_ptr<const mesh::Geometry> geometry() const override { return geometry_; }
   std::shared_ptr<const mesh::SearchTree> search_tree() override { return surface_->tree(); }

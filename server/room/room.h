@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "query/cross_table.h"
+#include "query/key_areas.h"
 #include "query/profile.h"
 #include "query/statistics.h"
 #include "query/values.h"
@@ -144,7 +145,9 @@ class Room {
   virtual std::vector<Presence> presence() const = 0;
 
   // Metadata; blocking (database), announced to the listeners.
-  virtual Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer = {}) = 0;
+  // A database layer that names no table gets one of its own name with `columns`.
+  virtual Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer = {},
+                                     std::vector<Column> columns = {}) = 0;
   virtual Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer = {}) = 0;
   virtual Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer = {}) = 0;
   virtual Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer = {}) = 0;
@@ -181,6 +184,8 @@ class Room {
   // The surface that is seen first along a direction, without perspective, by a function of its place in the world.
   using ValueAt = std::function<std::optional<std::uint32_t>(const glm::dvec3& world)>;
   virtual Result<TileMap> project(const Layer& layer, const glm::dvec3& direction, const ValueAt& value_at) = 0;
+  virtual Result<std::map<std::int64_t, query::KeyArea>> key_areas(
+      const std::string& layer) = 0;  // of a database layer
   virtual Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) = 0;
   // What the model is, for work that computes on the whole surface. The tree is built and the map baked when first asked for.
   virtual std::shared_ptr<const mesh::Geometry> geometry() const = 0;

@@ -1,11 +1,12 @@
 #include "store/store_impl.h"
+#include "store/table_writer.h"
 
 namespace strata::store {
 namespace {
 
 #define STRATA_LAYER_COLUMNS                                                                                           \
   "id, model_id, name, slug::text, kind, type, resolution, unit, description, palette, opacity, visible, draw_order, " \
-  "records_table, sequence, version"
+  "table_id, sequence, version"
 
 Result<Layer> read_layer(const PgResult& rows, int i) {
   Layer layer;
@@ -26,7 +27,7 @@ Result<Layer> read_layer(const PgResult& rows, int i) {
   layer.opacity = rows.real(i, 10);
   layer.visible = rows.boolean(i, 11);
   layer.order = static_cast<int>(rows.integer(i, 12));
-  if (!rows.null(i, 13)) layer.table = rows.text(i, 13);
+  if (!rows.null(i, 13)) layer.table = rows.integer(i, 13);
   layer.sequence = rows.integer(i, 14);
   layer.version = rows.integer(i, 15);
   return layer;
@@ -36,10 +37,30 @@ Result<void> check(const Layer& layer) {
   if (auto good = check_name(layer.name); !good) return good;
   if (!(layer.opacity >= 0 && layer.opacity <= 1))
     return fail(400, "Bad opacity", "`opacity` must be between 0 and 1.", "opacity");
-  if (layer.table)
-    if (auto good = check_text(*layer.table, "table"); !good) return good;
   if (auto good = check_json(to_json(layer.palette), "palette"); !good) return good;
   return check_texts({{&layer.slug, "slug"}, {&layer.unit, "unit"}, {&layer.description, "description"}});
+}
+
+// The table of a database layer: of its model's project, or a new one.
+Result<void> find_table(PgConnection& connection, Layer& layer, std::int64_t project_id,
+                        const std::vector<Column>& columns) {
+  if (!layer.table) {
+    Table table;
+    table.project_id = project_id;
+    table.name = layer.name;
+    table.columns = columns;
+    auto made = insert_table(connection, std::move(table));
+    if (!made) return tl::unexpected(made.error());
+    layer.table = made->id;
+    return {};
+  }
+  auto known = connection.query("SELECT 1 FROM record_tables WHERE id = $1 AND project_id = $2 FOR KEY SHARE",
+                                Params().integer(*layer.table).integer(project_id));
+  if (!known) return tl::unexpected(known.error());
+  if (known->rows() == 0)
+    return fail(422, "No such table", "The model's project has no table " + std::to_string(*layer.table) + ".",
+                "table");
+  return {};
 }
 
 }  // namespace
@@ -77,18 +98,22 @@ Result<Layer> Store::layer(std::int64_t model_id, const std::string& ref) {
   });
 }
 
-Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer) {
+Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer, std::vector<Column> columns) {
   if (auto good = check(layer); !good) return tl::unexpected(good.error());
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
-    auto model = connection.query("SELECT 1 FROM models WHERE id = $1 FOR KEY SHARE", Params().integer(layer.model_id));
+    auto model =
+        connection.query("SELECT project_id FROM models WHERE id = $1 FOR KEY SHARE", Params().integer(layer.model_id));
     if (!model) return tl::unexpected(model.error());
     if (model->rows() == 0) return not_found("model", std::to_string(layer.model_id));
+    if (layer.kind == LayerKind::database)
+      if (auto found = find_table(connection, layer, model->integer(0, 0), columns); !found)
+        return tl::unexpected(found.error());
     auto row = insert_with_slug(
         connection, "SELECT slug::text FROM layers WHERE slug LIKE $1 AND model_id = $2", layer.model_id,
         layer.slug.empty() ? layer.name : layer.slug, [&](const std::string& slug) {
           return connection.query(
               "INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
-              "draw_order, records_table) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13) "
+              "draw_order, table_id) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13) "
               "ON CONFLICT (model_id, slug) DO NOTHING RETURNING " STRATA_LAYER_COLUMNS,
               Params()
                   .integer(layer.model_id)
@@ -103,7 +128,7 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer)
                   .real(layer.opacity)
                   .boolean(layer.visible)
                   .integer(layer.order)
-                  .optional_text(layer.table));
+                  .optional_integer(layer.table));
         });
     if (!row) return tl::unexpected(row.error());
     return read_layer(*row, 0);
@@ -115,7 +140,7 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = connection.query(
         "UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
-        "draw_order = $10, records_table = $11, version = version + 1 WHERE id = $1 AND version = $2 "
+        "draw_order = $10, version = version + 1 WHERE id = $1 AND version = $2 "
         "RETURNING " STRATA_LAYER_COLUMNS,
         Params()
             .integer(layer.id)
@@ -127,8 +152,7 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
             .json(to_json(layer.palette))
             .real(layer.opacity)
             .boolean(layer.visible)
-            .integer(layer.order)
-            .optional_text(layer.table));
+            .integer(layer.order));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) return read_layer(*row, 0);
     auto known = connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(layer.id));

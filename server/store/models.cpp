@@ -250,7 +250,17 @@ Result<Model> Store::update_model(Model m, const FirstAnswer<Model>& answer) {
         metadata(m, m.slug).integer(m.id).integer(m.version));
     if (!row) return tl::unexpected(row.error());
     auto now = model_by_id(connection, m.id);
-    if (now && row->rows() == 0) return stale("model");
+    if (!now) return now;
+    if (row->rows() == 0) return stale("model");
+    auto layer = connection.query(
+        "SELECT l.name FROM layers l JOIN record_tables t ON t.id = l.table_id WHERE l.model_id = $1 AND t.project_id <> $2 "
+        "LIMIT 1",
+        Params().integer(m.id).integer(m.project_id));
+    if (!layer) return tl::unexpected(layer.error());
+    if (layer->rows() > 0)
+      return fail(409, "Tables stay",
+                  "The keys of the layer " + layer->text(0, 0) + " are of a table of the model's present project.",
+                  "project");
     return now;
   });
 }

@@ -197,6 +197,13 @@ Result<PgResult> PgConnection::query(const char* sql, const Params& params) {
   return outcome();
 }
 
+Result<PgResult> PgConnection::query_once(const std::string& sql, const Params& params) {
+  if (!PQsendQueryParams(connection_.get(), sql.c_str(), params.count(), params.types(), params.values(),
+                         params.lengths(), params.formats(), 1))
+    return failed(nullptr);
+  return outcome();
+}
+
 Result<void> PgConnection::each_row(const char* sql, const Params& params,
                                     const std::function<Result<void>(const PgResult&)>& on_row) {
   const auto name = prepared(sql, params);

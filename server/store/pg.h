@@ -134,6 +134,8 @@ class PgConnection {
 
   Result<void> script(const std::string& sql);  // any number of statements without parameters
   Result<PgResult> query(const char* sql, const Params& params = {});
+  // The same without preparing it: for statements that name generated tables, of which there is no end.
+  Result<PgResult> query_once(const std::string& sql, const Params& params = {});
   // Hands out rows as they arrive, one result of one row each, so that memory stays small. An error of `on_row` ends it, and
   // with it the connection, since asking the server to stop could wait for it without end.
   Result<void> each_row(const char* sql, const Params& params,

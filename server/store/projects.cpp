@@ -78,7 +78,8 @@ Result<Project> Store::update_project(Project project, const FirstAnswer<Project
 Result<void> Store::delete_project(std::int64_t id, const FirstAnswer<>& answer) {
   return impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
     auto row = connection.query(
-        "SELECT slug::text, (SELECT count(*) FROM models WHERE project_id = p.id) "
+        "SELECT slug::text, (SELECT count(*) FROM models WHERE project_id = p.id), "
+        "(SELECT count(*) FROM record_tables WHERE project_id = p.id) "
         "FROM projects p WHERE id = $1 FOR UPDATE",
         Params().integer(id));
     if (!row) return tl::unexpected(row.error());
@@ -89,6 +90,9 @@ Result<void> Store::delete_project(std::int64_t id, const FirstAnswer<>& answer)
       return fail(409, "Conflict",
                   "The project still has " + std::to_string(row->integer(0, 1)) +
                       " models. Delete them or move them to another project first.");
+    if (row->integer(0, 2) > 0)
+      return fail(409, "Conflict",
+                  "The project still has " + std::to_string(row->integer(0, 2)) + " tables. Delete them first.");
     auto done = connection.query("DELETE FROM projects WHERE id = $1", Params().integer(id));
     return done ? Result<void>{} : tl::unexpected(done.error());
   });

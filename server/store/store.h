@@ -18,6 +18,7 @@
 #include "store/first_answer.h"
 #include "store/journal.h"
 #include "store/pg_limits.h"
+#include "store/table_changes.h"
 
 namespace strata::store {
 
@@ -109,9 +110,60 @@ class Store {
   // --- layers
   Result<std::vector<Layer>> layers(std::int64_t model_id);  // by order
   Result<Layer> layer(std::int64_t model_id, const std::string& ref);
-  Result<Layer> create_layer(Layer layer, const FirstAnswer<Layer>& answer = {});
+  // A database layer that names no table gets one of its own name with `columns`.
+  Result<Layer> create_layer(Layer layer, const FirstAnswer<Layer>& answer = {}, std::vector<Column> columns = {});
   Result<Layer> update_layer(Layer layer, const FirstAnswer<Layer>& answer = {});
   Result<void> delete_layer(std::int64_t id, const FirstAnswer<>& answer = {});
+
+  // --- tables of a project, by id or slug. Changes of columns and records are entries of the table's journal, of one person each.
+  Result<std::vector<Table>> tables(std::int64_t project_id);  // by name
+  Result<Table> table(const std::string& ref);
+  Result<Table> create_table(const Table& table, const FirstAnswer<Table>& answer = {});  // with its columns
+  Result<Table> update_table(const Table& table, const FirstAnswer<Table>& answer = {});  // name, labels, description
+  Result<void> delete_table(std::int64_t id,
+                            const FirstAnswer<>& answer = {});  // refused (409) while something names it
+  Result<std::vector<Layer>> layers_of_table(std::int64_t table_id);
+  // Where the kind or target changes, the column makes way for a new one that takes over what it can hold: `record` of the change
+  // says how much that was (`converted`, `lost`, `lost_keys`).
+  Result<TableChange> create_column(std::int64_t table_id, const Column& column, const std::string& user,
+                                    const FirstAnswer<TableChange>& answer = {});
+  Result<TableChange> update_column(std::int64_t table_id, const Column& column, std::optional<std::int64_t> version,
+                                    const std::string& user, const FirstAnswer<TableChange>& answer = {});
+  Result<TableChange> drop_column(std::int64_t table_id, std::int64_t column_id, std::optional<std::int64_t> version,
+                                  const std::string& user, const FirstAnswer<TableChange>& answer = {});
+
+  // --- records
+  struct RecordQuery {
+    std::vector<std::pair<std::string, bool>> order;  // column (or `key`), descending
+    std::optional<std::vector<std::int64_t>> keys;    // only these, by key, whatever the page
+    std::optional<std::int64_t> at;                   // as after that sequence of the table
+    std::int64_t limit = 100, offset = 0;
+  };
+  struct RecordPage {
+    Table table;  // with the columns of then
+    std::vector<Record> records;
+    std::int64_t total = 0;
+  };
+  Result<RecordPage> records(std::int64_t table_id, const RecordQuery& query);
+  // All or none: where the change has problems, nothing was written.
+  Result<TableChange> write_records(std::int64_t table_id, const WriteRecords& asked, const std::string& user,
+                                    const FirstAnswer<TableChange>& answer = {});
+  Result<TableChange> delete_record(std::int64_t table_id, std::int64_t key, std::optional<std::int64_t> version,
+                                    const std::string& user, bool dry_run = false,
+                                    const FirstAnswer<TableChange>& answer = {});
+  Result<std::vector<std::int64_t>> missing_records(std::int64_t table_id, std::span<const std::int64_t> keys);
+  // The last sequence that was there at a time.
+  Result<std::int64_t> table_sequence_at(std::int64_t table_id, std::chrono::system_clock::time_point time);
+  struct TableHistory {
+    std::vector<TableEditRow> rows;
+    std::int64_t total = 0;
+  };
+  Result<TableHistory> table_history(std::int64_t table_id, std::optional<std::int64_t> key, int limit, int offset);
+  // The person's newest entry in force, or the one that was undone last; 409 where there is none. Done where the table is as it was
+  // when it was planned (412).
+  Result<UndoPlan> plan_table_undo(std::int64_t table_id, const std::string& user, bool redo);
+  Result<TableChange> undo_table(std::int64_t table_id, const std::string& user, bool redo, std::int64_t planned_at,
+                                 const FirstAnswer<TableChange>& answer = {});
 
   // --- journal (reads; writes go through JournalWriter)
   // All tiles of a layer after `at_sequence` (nothing: the newest).

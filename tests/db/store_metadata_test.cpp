@@ -192,7 +192,6 @@ TEST(Layers, they_come_in_drawing_order_with_every_field) {
   top.description = "δ";
   top.opacity = 0.3;
   top.visible = false;
-  top.table = "pieces";
   top.palette.mode = PaletteMode::categorical;
   top.palette.points = {{0.1, {1, 2, 3, 4}, "crack"}, {2, {5, 6, 7, 255}, "sält"}};
   top = store->create_layer(top).value();
@@ -201,7 +200,7 @@ TEST(Layers, they_come_in_drawing_order_with_every_field) {
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0].id, bottom.id);
   EXPECT_EQ(to_json(list[1]), to_json(top));
-  EXPECT_EQ(list[1].table, "pieces");
+  EXPECT_EQ(store->table(std::to_string(list[1].table.value()))->name, "Top");
   EXPECT_EQ(list[1].palette.points[0].label, "crack");
   EXPECT_EQ(list[1].opacity, 0.3);
   EXPECT_EQ(store->layer(model.id, "top")->id, top.id);

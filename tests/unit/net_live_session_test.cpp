@@ -81,7 +81,9 @@ class FakeRoom final : public room::Room {
   std::vector<room::Presence> presence() const override {
     return {{random_uuid(), "anna", "#112233", glm::dvec3(1, 2, 3)}};
   }
-  Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
+  Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>&, std::vector<Column>) override {
+    return layer;
+  }
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
   Result<void> delete_layer(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
   Result<Model> update_model(Model model, const store::FirstAnswer<Model>&) override { return model; }
@@ -109,6 +111,9 @@ class FakeRoom final : public room::Room {
   }
   Result<query::CrossTable> cross_table(const std::string&, const std::string&, const room::Selection&) override {
     return query::CrossTable{};
+  }
+  Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string&) override {
+    return std::map<std::int64_t, query::KeyArea>();
   }
   Result<TileMirror::Snapshot> tiles(const std::string&, std::optional<std::int64_t>) override {
     return TileMirror::Snapshot{};

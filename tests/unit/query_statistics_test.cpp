@@ -11,6 +11,7 @@
 
 #include "mesh/packed_position.h"
 #include "query/cross_table.h"
+#include "query/key_areas.h"
 
 namespace strata::query {
 namespace {
@@ -377,6 +378,27 @@ TEST(QueryStatistics, a_layer_of_very_many_values_lists_no_keys) {
     EXPECT_EQ(statistics(make_layer(type, map, 4000, 2, true), map, kOrigin, 1).keys.size(), 4000u);
     EXPECT_TRUE(statistics(make_layer(type, map, 60000, 2, true), map, kOrigin, 1).keys.empty());
   }
+}
+
+TEST(QueryStatistics, areas_of_keys_are_those_of_the_statistics_however_many_keys_there_are) {
+  const auto map = make_map(512, 0.8, 41);
+  for (const auto type : {ValueType::u8, ValueType::u16, ValueType::u32}) {
+    const auto few = make_layer(type, map, 200, 42);
+    const auto expected = statistics(few, map, kOrigin, 0.1);
+    const auto areas = key_areas(few, map, 0.1);
+    ASSERT_EQ(areas.size(), expected.keys.size());
+    for (const auto& [key, of_key] : expected.keys) {
+      const auto& area = areas.at(static_cast<std::int64_t>(key));
+      EXPECT_EQ(area.texels, of_key.texels);
+      EXPECT_NEAR(area.area_m2, of_key.area_m2, 1e-9 * of_key.area_m2);
+    }
+  }
+  const auto many = make_layer(ValueType::u32, map, 50'000, 43);
+  const auto areas = key_areas(many, map, 0.1);
+  EXPECT_GT(areas.size(), kMaxStatisticsKeys);
+  std::uint64_t texels = 0;
+  for (const auto& [key, area] : areas) texels += area.texels;
+  EXPECT_EQ(texels, statistics(many, map, kOrigin, 0.1).texels);
 }
 
 TEST(QueryStatistics, a_map_of_another_resolution_is_a_mistake_of_the_program) {

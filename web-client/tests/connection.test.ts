@@ -46,6 +46,7 @@ beforeEach(() => {
     tool: vi.fn(),
     model: vi.fn(),
     record: vi.fn(),
+    table: vi.fn(),
     presence: vi.fn(),
     picked: vi.fn(),
     problem: vi.fn(),

@@ -463,7 +463,10 @@ export class StrataLayerDialog extends LitElement {
       type: kTypes[purpose],
       ...this.resolution(),
     };
-    session.add_created(await session.api.create_layer(session.model_id, created));
+    const layer = await session.api.create_layer(session.model_id, created);
+    // So that painting can begin at once: a number without a record is not painted.
+    if (layer.table !== undefined) await session.api.create_record(layer.table);
+    session.add_created(layer);
     notices.show("success", texts.layers.created(wanted.name));
   }
 }

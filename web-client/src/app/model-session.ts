@@ -141,6 +141,7 @@ export class ModelSession {
         tool: (event) => this.shapes.on_event(event),
         model: (event) => this.on_model(event),
         record: () => {},
+        table: () => {},
         presence: (message) => {
           this.users = message.users;
           this.changed();

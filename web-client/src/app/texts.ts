@@ -178,6 +178,8 @@ export const texts = {
     not_connected: "Not connected: painting waits until the server is back.",
     too_much_waits: "Too much waits to be saved: painting goes on once the server has caught up.",
     record: "Number of the record",
+    new_record: "New record",
+    new_record_hint: "Adds a record with the next number to the layer's table and paints that number",
     viewer_only: "You may look at this model but not change it.",
   },
 

@@ -2,6 +2,7 @@
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
+import { ApiError } from "../core/api";
 import { css_color, purpose_of } from "../core/palette";
 import type { Layer } from "../core/types";
 import { describe_value, value_problem } from "./brush-settings";
@@ -17,6 +18,7 @@ export class StrataValuePicker extends LitElement {
   @property({ attribute: false }) layer!: Layer;
   @property({ attribute: false }) value = 0;
   @state() private wrong_value_ = "";
+  @state() private adding_ = false;
 
   static override styles = [
     shared_styles,
@@ -100,6 +102,11 @@ export class StrataValuePicker extends LitElement {
           <span>${layer.unit}</span>
         </span>
       </label>
+      ${layer.table === undefined
+        ? nothing
+        : html`<button title=${texts.brush.new_record_hint} ?disabled=${this.adding_} @click=${() => void this.add_record(layer, layer.table!)}>
+            ${texts.brush.new_record}
+          </button>`}
       ${purpose === "measurement"
         ? html`<input
             type="range"
@@ -113,6 +120,20 @@ export class StrataValuePicker extends LitElement {
         : nothing}
       ${this.wrong_value_ ? html`<p class="error" role="alert">${this.wrong_value_}</p>` : nothing}
     </div>`;
+  }
+
+  private async add_record(layer: Layer, table: number): Promise<void> {
+    this.adding_ = true;
+    try {
+      const made = await this.session.api.create_record(table);
+      this.set_value(layer, made.key);
+      this.wrong_value_ = "";
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.wrong_value_ = error.message;
+    } finally {
+      this.adding_ = false;
+    }
   }
 
   private set_value(layer: Layer, value: number): void {

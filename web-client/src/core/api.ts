@@ -148,6 +148,10 @@ export class Api {
   async delete_look(model: Id, look: Id): Promise<void> {
     await this.request("DELETE", look_path(model, look));
   }
+  /** A record of which nothing is said yet, with the next key. */
+  async create_record(table: Id): Promise<wire.TableRecord> {
+    return this.json("POST", `/tables/${encodeURIComponent(table)}/records`, { values: {} });
+  }
   async tools(): Promise<wire.Tool[]> {
     return (await this.json<wire.ToolList>("GET", "/tools")).tools;
   }

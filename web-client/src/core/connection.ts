@@ -23,6 +23,7 @@ import {
   type Saved,
   type ServerMessage,
   type StrokeBegin,
+  type TableEvent,
   type ToolEvent,
   type ToolShape,
   type Welcome,
@@ -59,6 +60,7 @@ export interface ConnectionCallbacks {
   tool(message: ToolEvent): void;
   model(message: ModelEvent): void;
   record(message: RecordEvent): void;
+  table(message: TableEvent): void;
   presence(message: Presence): void;
   picked(message: Picked): void;
   /** A refusal. What was refused for good is no longer waiting. */
@@ -347,6 +349,8 @@ export class Connection {
         return this.callbacks_.model(message);
       case "record":
         return this.callbacks_.record(message);
+      case "table":
+        return this.callbacks_.table(message);
       case "presence":
         return this.callbacks_.presence(message);
       case "picked":

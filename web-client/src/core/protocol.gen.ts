@@ -18,6 +18,69 @@ export type Section = Plane[];
 /** Pointer path. Pixels of the camera's window; consecutive points are joined, one point is a dab. */
 export type Path = Point2[];
 
+/** Table by id or slug. */
+export type TableRef = number | string;
+
+/** Names by language. Keys are language tags (BCP 47): es, pt-BR. */
+export type Labels = Record<string, string>;
+
+/** Kind of column. */
+export type ColumnKind = "text" | "integer" | "numeric" | "boolean" | "date" | "timestamp" | "period" | "enumeration" | "url" | "term" | "relation";
+
+/** Value of a record in a column. Texts, dates (2024-02-29), timestamps (RFC 3339, told in UTC), periods (EDTF: 1560~, 156X, -0043/0100, 1560/..), choices and addresses are strings; a term is a key of its target table, a relation a list of keys. Null: no value. */
+export type CellValue = string | number | boolean | number[] | null;
+
+/** Values by column. By the slug of the column, or its id. */
+export type CellValues = Record<string, CellValue>;
+
+/** Column of a table. */
+export interface Column {
+  id: number;
+  name: string;
+  slug: string;
+  labels: Labels;
+  kind: ColumnKind;
+  unit?: string;
+  required: boolean;
+  unique: boolean;
+  default?: CellValue;
+  comment: string;
+  choices?: string[];
+  /** Id of the table. */
+  target?: number;
+  minimum?: number;
+  maximum?: number;
+  order: number;
+}
+
+/** Table of a project. What the keys of its database layers stand for. */
+export interface Table {
+  id: number;
+  /** Id of the project. */
+  project: number;
+  name: string;
+  slug: string;
+  labels: Labels;
+  description: string;
+  columns: Column[];
+  /** How many. */
+  records: number;
+  /** Of the last change of columns or records. */
+  sequence: number;
+}
+
+/** Record of a table. */
+export interface TableRecord {
+  /** What texels hold. */
+  key: number;
+  /** The table's sequence when it was changed last. */
+  version: number;
+  /** By the slug of the column. */
+  values: CellValues;
+  /** Under a layer: the surface that it has there. */
+  area_m2?: number;
+}
+
 /** Layer by id or slug. */
 export type LayerRef = number | string;
 
@@ -159,8 +222,8 @@ export interface Layer {
   visible: boolean;
   /** Drawn ascending: higher is on top. */
   order: number;
-  /** Database layers: the table whose keys the texels hold. */
-  table?: string;
+  /** Database layers: id of the project's table whose keys the texels hold. */
+  table?: number;
   /** Of the last edit in the layer. */
   sequence: number;
 }
@@ -540,12 +603,23 @@ export interface ModelEvent {
   model?: Model;
 }
 
-/** A record was created, changed or deleted. */
+/** A record was created, changed or deleted. Of a table of the model's project. `record` is there unless it was deleted. */
 export interface RecordEvent {
   op: "record";
   event: "created" | "changed" | "deleted";
-  table: string;
+  /** Id of the table. */
+  table: number;
   key: number;
+  record?: TableRecord;
+  user?: string;
+}
+
+/** A table was created, changed or deleted. Of the model's project. Changed: its names or columns, or so many records at once that they should be read anew. `table` is there unless it was deleted. */
+export interface TableEvent {
+  op: "table";
+  event: "created" | "changed" | "deleted";
+  table_id: number;
+  table?: Table;
   user?: string;
 }
 
@@ -594,6 +668,28 @@ export interface ProblemMessage {
   field?: string;
 }
 
+/** What is wrong with a row. */
+export interface RowProblem {
+  /** Of the text, where the row begins. */
+  line: number;
+  /** As its head calls it. */
+  column?: string;
+  title: string;
+  detail: string;
+}
+
+/** What became of records that were sent in bulk. Where there are problems nothing was written. */
+export interface RecordsReport {
+  rows: number;
+  created: number;
+  changed: number;
+  unchanged: number;
+  dry_run: boolean;
+  /** Of the entry in the table's journal; 0: nothing was written. */
+  sequence: number;
+  problems: RowProblem[];
+}
+
 /** Problem (RFC 9457). */
 export interface Problem {
   /** about:blank when absent. */
@@ -606,6 +702,8 @@ export interface Problem {
   /** Path of the offending member: camera.view[3]. */
   field?: string;
   instance?: string;
+  /** Of records in bulk: what is wrong with which line. */
+  rows?: RecordsReport;
 }
 
 /** Sign-in by a token or by the secret of an owner link. */
@@ -784,6 +882,198 @@ export interface MapContents {
   colors?: MapColor[];
 }
 
+/** New column. */
+export interface ColumnCreate {
+  name: string;
+  /** Made from the name when absent; never all digits. */
+  slug?: string;
+  labels?: Labels;
+  /** Default: "text". */
+  kind?: ColumnKind;
+  /** Numbers: what they count. Default: "". */
+  unit?: string;
+  /** Default: false. */
+  required?: boolean;
+  /** Default: false. */
+  unique?: boolean;
+  /** What new records have where they say nothing; null: none. */
+  default?: CellValue;
+  /** Default: "". */
+  comment?: string;
+  /** Enumerations: what may be chosen. */
+  choices?: string[];
+  /** Terms and relations: the table of the project whose records they name. */
+  target?: TableRef;
+  minimum?: number | null;
+  maximum?: number | null;
+}
+
+/** Changes to a column. Another kind or target makes a new column in its place, which takes over what it can hold. */
+export interface ColumnPatch {
+  name?: string;
+  slug?: string;
+  labels?: Labels;
+  kind?: ColumnKind;
+  /** Numbers: what they count. */
+  unit?: string;
+  required?: boolean;
+  unique?: boolean;
+  /** What new records have where they say nothing; null: none. */
+  default?: CellValue;
+  comment?: string;
+  /** Enumerations: what may be chosen. */
+  choices?: string[];
+  /** Terms and relations: the table of the project whose records they name. */
+  target?: TableRef;
+  minimum?: number | null;
+  maximum?: number | null;
+  /** Ascending from left to right. */
+  order?: number;
+}
+
+/** Columns of a table, by order. */
+export interface ColumnList {
+  columns: Column[];
+  total: number;
+}
+
+/** A column after a change. */
+export interface ColumnChanged {
+  column: Column;
+  sequence: number;
+  /** Of another kind: values that it could take over. */
+  converted?: number;
+  /** Values that it could not; undo brings them back. */
+  lost?: number;
+  /** The first of the records that had them. */
+  lost_keys?: number[];
+}
+
+/** Tables of a project, by name. */
+export interface TableList {
+  tables: Table[];
+  total: number;
+}
+
+/** New table. */
+export interface TableCreate {
+  name: string;
+  /** Made from the name when absent; never all digits. */
+  slug?: string;
+  labels?: Labels;
+  /** Default: "". */
+  description?: string;
+  columns?: ColumnCreate[];
+}
+
+/** Changes to a table. */
+export interface TablePatch {
+  name?: string;
+  labels?: Labels;
+  description?: string;
+}
+
+/** Records of a table. */
+export interface RecordList {
+  records: TableRecord[];
+  total: number;
+}
+
+/** New record. */
+export interface RecordInput {
+  /** Absent: the next one. A deleted record's key is not given again. */
+  key?: number;
+  values?: CellValues;
+}
+
+/** One new record, or several. Either `records`, all of which are made or none, or `key` and `values` of one. */
+export interface RecordsCreate {
+  key?: number;
+  values?: CellValues;
+  records?: RecordInput[];
+}
+
+/** Changes to a record. Columns that are not named stay. */
+export interface RecordPatch {
+  /** Of the record as it was read; as If-Match. */
+  version?: number;
+  values: CellValues;
+}
+
+/** What undo or redo did to a table. */
+export interface TableChanged {
+  sequence: number;
+  /** Keys of records that came. */
+  created: number[];
+  changed: number[];
+  deleted: number[];
+  columns_changed: boolean;
+}
+
+/** Cells before or after a change. Of a record: `exists`, and values by column id; of a column: `hidden`, and its properties. */
+export type ChangedCells = Record<string, string | number | boolean | null | (number | string)[] | Record<string, string>>;
+
+/** What an entry did to one record or column. */
+export interface TableCellChange {
+  /** Key of the record. */
+  record?: number;
+  /** Or id of the column. */
+  column?: number;
+  before: ChangedCells;
+  after: ChangedCells;
+}
+
+/** One entry of a table's history. */
+export interface TableEdit {
+  sequence: number;
+  user: string;
+  /** UTC, RFC 3339. */
+  time: string;
+  op: "records" | "delete" | "import" | "create-column" | "change-column" | "retype-column" | "drop-column" | "undo" | "redo";
+  /** False while it is taken back. */
+  in_force: boolean;
+  changes: TableCellChange[];
+  /** The first hundred are told. */
+  total_changes: number;
+}
+
+/** History of a table, newest first. */
+export interface TableEditList {
+  edits: TableEdit[];
+  total: number;
+}
+
+/** Surface of one key on one layer. */
+export interface LayerArea {
+  layer: number;
+  area_m2: number;
+  texels: number;
+}
+
+/** Surface of one key on one model. */
+export interface ModelArea {
+  model: number;
+  /** Summed over its layers. */
+  area_m2: number;
+  layers: LayerArea[];
+}
+
+/** Surface of one key. */
+export interface KeyArea {
+  key: number;
+  /** On all models. */
+  area_m2: number;
+  /** False: undo or an earlier state brought back paint of a key whose record is gone. */
+  has_record: boolean;
+  models: ModelArea[];
+}
+
+/** Surface of records, in all and by model and layer. */
+export interface TableAreas {
+  areas: KeyArea[];
+  total: number;
+}
+
 /** Values computed from the model's shape. The answer is a job; the layer is there once it is done. Unit, palette and description follow from the recipe where they are not given. */
 export interface ShapeRecipe {
   kind: "height" | "slope" | "azimuth" | "mean_curvature" | "gaussian_curvature" | "max_curvature" | "min_curvature" | "roughness" | "ambient_occlusion" | "boundary_distance" | "model_distance" | "vertex_property";
@@ -825,8 +1115,10 @@ export interface LayerCreate {
   visible?: boolean;
   /** Absent: on top. */
   order?: number;
-  /** Database layers: the project's table whose keys the texels hold. */
-  table?: string;
+  /** Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own name. */
+  table?: TableRef;
+  /** Database layers without `table`: those of its own one. Absent: one text, Name. */
+  columns?: ColumnCreate[];
   compute?: ShapeRecipe;
 }
 
@@ -1158,6 +1450,7 @@ export type ServerMessage =
   | ToolEvent
   | ModelEvent
   | RecordEvent
+  | TableEvent
   | Presence
   | Picked
   | ProblemMessage;
@@ -1174,6 +1467,7 @@ const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([
   "tool",
   "model",
   "record",
+  "table",
   "presence",
   "picked",
   "problem",

@@ -5,6 +5,40 @@
 
 namespace strata::protocol {
 
+std::string_view name(ColumnKind value) {
+  switch (value) {
+    case ColumnKind::text: return "text";
+    case ColumnKind::integer: return "integer";
+    case ColumnKind::numeric: return "numeric";
+    case ColumnKind::boolean: return "boolean";
+    case ColumnKind::date: return "date";
+    case ColumnKind::timestamp: return "timestamp";
+    case ColumnKind::period: return "period";
+    case ColumnKind::enumeration: return "enumeration";
+    case ColumnKind::url: return "url";
+    case ColumnKind::term: return "term";
+    case ColumnKind::relation: return "relation";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ColumnKind& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "text") value = ColumnKind::text;
+  if (text == "integer") value = ColumnKind::integer;
+  if (text == "numeric") value = ColumnKind::numeric;
+  if (text == "boolean") value = ColumnKind::boolean;
+  if (text == "date") value = ColumnKind::date;
+  if (text == "timestamp") value = ColumnKind::timestamp;
+  if (text == "period") value = ColumnKind::period;
+  if (text == "enumeration") value = ColumnKind::enumeration;
+  if (text == "url") value = ColumnKind::url;
+  if (text == "term") value = ColumnKind::term;
+  if (text == "relation") value = ColumnKind::relation;
+}
+
+nlohmann::json to_json(const ColumnKind& value) { return name(value); }
+
 std::string_view name(EditFillMode value) {
   switch (value) {
     case EditFillMode::where: return "where";
@@ -168,6 +202,24 @@ void read(const nlohmann::json& json, RecordEventEvent& value) {
 }
 
 nlohmann::json to_json(const RecordEventEvent& value) { return name(value); }
+
+std::string_view name(TableEventEvent value) {
+  switch (value) {
+    case TableEventEvent::created: return "created";
+    case TableEventEvent::changed: return "changed";
+    case TableEventEvent::deleted: return "deleted";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, TableEventEvent& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "created") value = TableEventEvent::created;
+  if (text == "changed") value = TableEventEvent::changed;
+  if (text == "deleted") value = TableEventEvent::deleted;
+}
+
+nlohmann::json to_json(const TableEventEvent& value) { return name(value); }
 
 std::string_view name(JobState value) {
   switch (value) {
@@ -949,6 +1001,7 @@ void read(const nlohmann::json& json, RecordEvent& value) {
   read_member(json, "event", value.event);
   read_member(json, "table", value.table);
   read_member(json, "key", value.key);
+  read_optional_member(json, "record", value.record);
   read_optional_member(json, "user", value.user);
 }
 
@@ -958,6 +1011,24 @@ nlohmann::json to_json(const RecordEvent& value) {
   write_member(json, "event", value.event);
   write_member(json, "table", value.table);
   write_member(json, "key", value.key);
+  write_optional_member(json, "record", value.record);
+  write_optional_member(json, "user", value.user);
+  return json;
+}
+
+void read(const nlohmann::json& json, TableEvent& value) {
+  read_member(json, "event", value.event);
+  read_member(json, "table_id", value.table_id);
+  read_optional_member(json, "table", value.table);
+  read_optional_member(json, "user", value.user);
+}
+
+nlohmann::json to_json(const TableEvent& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "table";
+  write_member(json, "event", value.event);
+  write_member(json, "table_id", value.table_id);
+  write_optional_member(json, "table", value.table);
   write_optional_member(json, "user", value.user);
   return json;
 }
@@ -1223,6 +1294,146 @@ nlohmann::json to_json(const JobList& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, ColumnCreate& value) {
+  read_member(json, "name", value.name);
+  read_optional_member(json, "slug", value.slug);
+  read_optional_member(json, "labels", value.labels);
+  read_optional_member(json, "kind", value.kind);
+  read_optional_member(json, "unit", value.unit);
+  read_optional_member(json, "required", value.required);
+  read_optional_member(json, "unique", value.unique);
+  read_optional_member(json, "default", value.default_value);
+  read_optional_member(json, "comment", value.comment);
+  read_optional_member(json, "choices", value.choices);
+  read_optional_member(json, "target", value.target);
+  read_optional_member(json, "minimum", value.minimum);
+  read_optional_member(json, "maximum", value.maximum);
+}
+
+nlohmann::json to_json(const ColumnCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_optional_member(json, "slug", value.slug);
+  write_optional_member(json, "labels", value.labels);
+  write_member(json, "kind", value.kind);
+  write_member(json, "unit", value.unit);
+  write_member(json, "required", value.required);
+  write_member(json, "unique", value.unique);
+  write_optional_member(json, "default", value.default_value);
+  write_member(json, "comment", value.comment);
+  write_optional_member(json, "choices", value.choices);
+  write_optional_member(json, "target", value.target);
+  write_optional_member(json, "minimum", value.minimum);
+  write_optional_member(json, "maximum", value.maximum);
+  return json;
+}
+
+void read(const nlohmann::json& json, ColumnPatch& value) {
+  read_optional_member(json, "name", value.name);
+  read_optional_member(json, "slug", value.slug);
+  read_optional_member(json, "labels", value.labels);
+  read_optional_member(json, "kind", value.kind);
+  read_optional_member(json, "unit", value.unit);
+  read_optional_member(json, "required", value.required);
+  read_optional_member(json, "unique", value.unique);
+  read_optional_member(json, "default", value.default_value);
+  read_optional_member(json, "comment", value.comment);
+  read_optional_member(json, "choices", value.choices);
+  read_optional_member(json, "target", value.target);
+  read_optional_member(json, "minimum", value.minimum);
+  read_optional_member(json, "maximum", value.maximum);
+  read_optional_member(json, "order", value.order);
+}
+
+nlohmann::json to_json(const ColumnPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "name", value.name);
+  write_optional_member(json, "slug", value.slug);
+  write_optional_member(json, "labels", value.labels);
+  write_optional_member(json, "kind", value.kind);
+  write_optional_member(json, "unit", value.unit);
+  write_optional_member(json, "required", value.required);
+  write_optional_member(json, "unique", value.unique);
+  write_optional_member(json, "default", value.default_value);
+  write_optional_member(json, "comment", value.comment);
+  write_optional_member(json, "choices", value.choices);
+  write_optional_member(json, "target", value.target);
+  write_optional_member(json, "minimum", value.minimum);
+  write_optional_member(json, "maximum", value.maximum);
+  write_optional_member(json, "order", value.order);
+  return json;
+}
+
+void read(const nlohmann::json& json, TableCreate& value) {
+  read_member(json, "name", value.name);
+  read_optional_member(json, "slug", value.slug);
+  read_optional_member(json, "labels", value.labels);
+  read_optional_member(json, "description", value.description);
+  read_optional_member(json, "columns", value.columns);
+}
+
+nlohmann::json to_json(const TableCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_optional_member(json, "slug", value.slug);
+  write_optional_member(json, "labels", value.labels);
+  write_member(json, "description", value.description);
+  write_optional_member(json, "columns", value.columns);
+  return json;
+}
+
+void read(const nlohmann::json& json, TablePatch& value) {
+  read_optional_member(json, "name", value.name);
+  read_optional_member(json, "labels", value.labels);
+  read_optional_member(json, "description", value.description);
+}
+
+nlohmann::json to_json(const TablePatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "name", value.name);
+  write_optional_member(json, "labels", value.labels);
+  write_optional_member(json, "description", value.description);
+  return json;
+}
+
+void read(const nlohmann::json& json, RecordInput& value) {
+  read_optional_member(json, "key", value.key);
+  read_optional_member(json, "values", value.values);
+}
+
+nlohmann::json to_json(const RecordInput& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "key", value.key);
+  write_optional_member(json, "values", value.values);
+  return json;
+}
+
+void read(const nlohmann::json& json, RecordsCreate& value) {
+  read_optional_member(json, "key", value.key);
+  read_optional_member(json, "values", value.values);
+  read_optional_member(json, "records", value.records);
+}
+
+nlohmann::json to_json(const RecordsCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "key", value.key);
+  write_optional_member(json, "values", value.values);
+  write_optional_member(json, "records", value.records);
+  return json;
+}
+
+void read(const nlohmann::json& json, RecordPatch& value) {
+  read_optional_member(json, "version", value.version);
+  read_member(json, "values", value.values);
+}
+
+nlohmann::json to_json(const RecordPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "version", value.version);
+  write_member(json, "values", value.values);
+  return json;
+}
+
 void read(const nlohmann::json& json, ShapeRecipe& value) {
   read_member(json, "kind", value.kind);
   read_optional_member(json, "radius_mm", value.radius_mm);
@@ -1260,6 +1471,7 @@ void read(const nlohmann::json& json, LayerCreate& value) {
   read_optional_member(json, "visible", value.visible);
   read_optional_member(json, "order", value.order);
   read_optional_member(json, "table", value.table);
+  read_optional_member(json, "columns", value.columns);
   read_optional_member(json, "compute", value.compute);
 }
 
@@ -1277,6 +1489,7 @@ nlohmann::json to_json(const LayerCreate& value) {
   write_member(json, "visible", value.visible);
   write_optional_member(json, "order", value.order);
   write_optional_member(json, "table", value.table);
+  write_optional_member(json, "columns", value.columns);
   write_optional_member(json, "compute", value.compute);
   return json;
 }
@@ -1874,6 +2087,7 @@ std::optional<Schema> server_message_schema(std::string_view op) {
   if (op == ToolEvent::kOp) return Schema::ToolEvent;
   if (op == ModelEvent::kOp) return Schema::ModelEvent;
   if (op == RecordEvent::kOp) return Schema::RecordEvent;
+  if (op == TableEvent::kOp) return Schema::TableEvent;
   if (op == Presence::kOp) return Schema::Presence;
   if (op == Picked::kOp) return Schema::Picked;
   if (op == ProblemMessage::kOp) return Schema::ProblemMessage;
@@ -1916,6 +2130,10 @@ void read(const nlohmann::json& json, ServerMessage& value) {
   }
   if (op == RecordEvent::kOp) {
     read(json, value.emplace<RecordEvent>());
+    return;
+  }
+  if (op == TableEvent::kOp) {
+    read(json, value.emplace<TableEvent>());
     return;
   }
   if (op == Presence::kOp) {

@@ -31,6 +31,14 @@ enum class Schema {
   Plane,
   Section,
   Path,
+  TableRef,
+  Labels,
+  ColumnKind,
+  CellValue,
+  CellValues,
+  Column,
+  Table,
+  TableRecord,
   LayerRef,
   Uuid,
   Camera,
@@ -89,6 +97,7 @@ enum class Schema {
   ToolEvent,
   ModelEvent,
   RecordEvent,
+  TableEvent,
   PresencePointer,
   PresenceUser,
   Presence,
@@ -112,6 +121,28 @@ enum class Schema {
   MapContents,
   MapColumn,
   MapColor,
+  ColumnCreate,
+  ColumnPatch,
+  ColumnList,
+  ColumnChanged,
+  TableList,
+  TableCreate,
+  TablePatch,
+  RecordList,
+  RecordInput,
+  RecordsCreate,
+  RecordPatch,
+  RowProblem,
+  RecordsReport,
+  TableChanged,
+  TableCellChange,
+  TableEdit,
+  TableEditList,
+  ChangedCells,
+  LayerArea,
+  ModelArea,
+  KeyArea,
+  TableAreas,
   LayerCreate,
   ShapeRecipe,
   Recipe,
@@ -150,7 +181,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 124;
+constexpr int kSchemaCount = 155;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -160,6 +191,18 @@ extern const Schema kSchemaOf;
 
 // Pointer path. Pixels of the camera's window; consecutive points are joined, one point is a dab.
 using Path = std::vector<glm::dvec2>;
+
+// Table by id or slug.
+using TableRef = std::variant<std::int64_t, std::string>;
+
+// Names by language. Keys are language tags (BCP 47): es, pt-BR.
+using Labels = std::map<std::string, std::string>;
+
+// Kind of column.
+enum class ColumnKind { text, integer, numeric, boolean, date, timestamp, period, enumeration, url, term, relation };
+std::string_view name(ColumnKind value);
+void read(const nlohmann::json& json, ColumnKind& value);
+nlohmann::json to_json(const ColumnKind& value);
 
 // Layer by id or slug.
 using LayerRef = std::variant<std::int64_t, std::string>;
@@ -733,12 +776,13 @@ std::string_view name(RecordEventEvent value);
 void read(const nlohmann::json& json, RecordEventEvent& value);
 nlohmann::json to_json(const RecordEventEvent& value);
 
-// A record was created, changed or deleted.
+// A record was created, changed or deleted. Of a table of the model's project. `record` is there unless it was deleted.
 struct RecordEvent {
   static constexpr std::string_view kOp = "record";
   RecordEventEvent event{};
-  std::string table;
+  std::int64_t table = 0;  // Id of the table.
   std::int64_t key = 0;
+  std::optional<nlohmann::json> record;
   std::optional<std::string> user;
   bool operator==(const RecordEvent&) const = default;
 };
@@ -746,6 +790,25 @@ void read(const nlohmann::json& json, RecordEvent& value);
 nlohmann::json to_json(const RecordEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordEvent> = Schema::RecordEvent;
+
+enum class TableEventEvent { created, changed, deleted };
+std::string_view name(TableEventEvent value);
+void read(const nlohmann::json& json, TableEventEvent& value);
+nlohmann::json to_json(const TableEventEvent& value);
+
+// A table was created, changed or deleted. Of the model's project. Changed: its names or columns, or so many records at once that they should be read anew. `table` is there unless it was deleted.
+struct TableEvent {
+  static constexpr std::string_view kOp = "table";
+  TableEventEvent event{};
+  std::int64_t table_id = 0;
+  std::optional<nlohmann::json> table;
+  std::optional<std::string> user;
+  bool operator==(const TableEvent&) const = default;
+};
+void read(const nlohmann::json& json, TableEvent& value);
+nlohmann::json to_json(const TableEvent& value);
+template <>
+inline constexpr Schema kSchemaOf<TableEvent> = Schema::TableEvent;
 
 // Where a pointer touches the surface. World coordinates.
 struct PresencePointer {
@@ -959,6 +1022,111 @@ nlohmann::json to_json(const JobList& value);
 template <>
 inline constexpr Schema kSchemaOf<JobList> = Schema::JobList;
 
+// New column.
+struct ColumnCreate {
+  std::string name;
+  std::optional<std::string> slug;  // Made from the name when absent; never all digits.
+  std::optional<Labels> labels;
+  ColumnKind kind = ColumnKind::text;
+  std::string unit;  // Numbers: what they count.
+  bool required = false;
+  bool unique = false;
+  std::optional<nlohmann::json> default_value;  // What new records have where they say nothing; null: none.
+  std::string comment;
+  std::optional<std::vector<std::string>> choices;  // Enumerations: what may be chosen.
+  std::optional<TableRef> target;  // Terms and relations: the table of the project whose records they name.
+  std::optional<double> minimum;
+  std::optional<double> maximum;
+  bool operator==(const ColumnCreate&) const = default;
+};
+void read(const nlohmann::json& json, ColumnCreate& value);
+nlohmann::json to_json(const ColumnCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<ColumnCreate> = Schema::ColumnCreate;
+
+// Changes to a column. Another kind or target makes a new column in its place, which takes over what it can hold.
+struct ColumnPatch {
+  std::optional<std::string> name;
+  std::optional<std::string> slug;
+  std::optional<Labels> labels;
+  std::optional<ColumnKind> kind;
+  std::optional<std::string> unit;  // Numbers: what they count.
+  std::optional<bool> required;
+  std::optional<bool> unique;
+  std::optional<nlohmann::json> default_value;  // What new records have where they say nothing; null: none.
+  std::optional<std::string> comment;
+  std::optional<std::vector<std::string>> choices;  // Enumerations: what may be chosen.
+  std::optional<TableRef> target;  // Terms and relations: the table of the project whose records they name.
+  std::optional<double> minimum;
+  std::optional<double> maximum;
+  std::optional<int> order;  // Ascending from left to right.
+  bool operator==(const ColumnPatch&) const = default;
+};
+void read(const nlohmann::json& json, ColumnPatch& value);
+nlohmann::json to_json(const ColumnPatch& value);
+template <>
+inline constexpr Schema kSchemaOf<ColumnPatch> = Schema::ColumnPatch;
+
+// New table.
+struct TableCreate {
+  std::string name;
+  std::optional<std::string> slug;  // Made from the name when absent; never all digits.
+  std::optional<Labels> labels;
+  std::string description;
+  std::optional<std::vector<ColumnCreate>> columns;
+  bool operator==(const TableCreate&) const = default;
+};
+void read(const nlohmann::json& json, TableCreate& value);
+nlohmann::json to_json(const TableCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<TableCreate> = Schema::TableCreate;
+
+// Changes to a table.
+struct TablePatch {
+  std::optional<std::string> name;
+  std::optional<Labels> labels;
+  std::optional<std::string> description;
+  bool operator==(const TablePatch&) const = default;
+};
+void read(const nlohmann::json& json, TablePatch& value);
+nlohmann::json to_json(const TablePatch& value);
+template <>
+inline constexpr Schema kSchemaOf<TablePatch> = Schema::TablePatch;
+
+// New record.
+struct RecordInput {
+  std::optional<std::int64_t> key;  // Absent: the next one. A deleted record's key is not given again.
+  std::optional<nlohmann::json> values;
+  bool operator==(const RecordInput&) const = default;
+};
+void read(const nlohmann::json& json, RecordInput& value);
+nlohmann::json to_json(const RecordInput& value);
+template <>
+inline constexpr Schema kSchemaOf<RecordInput> = Schema::RecordInput;
+
+// One new record, or several. Either `records`, all of which are made or none, or `key` and `values` of one.
+struct RecordsCreate {
+  std::optional<std::int64_t> key;
+  std::optional<nlohmann::json> values;
+  std::optional<std::vector<RecordInput>> records;
+  bool operator==(const RecordsCreate&) const = default;
+};
+void read(const nlohmann::json& json, RecordsCreate& value);
+nlohmann::json to_json(const RecordsCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<RecordsCreate> = Schema::RecordsCreate;
+
+// Changes to a record. Columns that are not named stay.
+struct RecordPatch {
+  std::optional<std::int64_t> version;  // Of the record as it was read; as If-Match.
+  nlohmann::json values;
+  bool operator==(const RecordPatch&) const = default;
+};
+void read(const nlohmann::json& json, RecordPatch& value);
+nlohmann::json to_json(const RecordPatch& value);
+template <>
+inline constexpr Schema kSchemaOf<RecordPatch> = Schema::RecordPatch;
+
 enum class ShapeRecipeKind { height, slope, azimuth, mean_curvature, gaussian_curvature, max_curvature, min_curvature, roughness, ambient_occlusion, boundary_distance, model_distance, vertex_property };
 std::string_view name(ShapeRecipeKind value);
 void read(const nlohmann::json& json, ShapeRecipeKind& value);
@@ -994,7 +1162,8 @@ struct LayerCreate {
   double opacity = 1;
   bool visible = true;
   std::optional<int> order;  // Absent: on top.
-  std::optional<std::string> table;  // Database layers: the project's table whose keys the texels hold.
+  std::optional<TableRef> table;  // Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own name.
+  std::optional<std::vector<ColumnCreate>> columns;  // Database layers without `table`: those of its own one. Absent: one text, Name.
   std::optional<ShapeRecipe> compute;
   bool operator==(const LayerCreate&) const = default;
 };
@@ -1419,7 +1588,7 @@ std::optional<Schema> client_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ClientMessage& value);
 nlohmann::json to_json(const ClientMessage& value);
 
-using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, Presence, Picked, ProblemMessage>;
+using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, TableEvent, Presence, Picked, ProblemMessage>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> server_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ServerMessage& value);

@@ -1,0 +1,180 @@
+#include "net/painted_keys.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+#include <set>
+
+#include "net/table_events.h"
+#include "room/await.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::size_t kMostNamed = 5;
+
+std::string area_text(double area_m2) {
+  char text[48];
+  if (area_m2 >= 1)
+    std::snprintf(text, sizeof text, "%.2f m²", area_m2);
+  else
+    std::snprintf(text, sizeof text, "%.2f cm²", area_m2 * 1e4);
+  return text;
+}
+
+// Distinct values of a raster's valid texels.
+std::set<std::int64_t> keys_in(const TileMap& tiles) {
+  std::set<std::int64_t> keys;
+  for (const auto& [address, tile] : tiles) {
+    std::optional<std::uint32_t> last;  // neighbours mostly share a key
+    for (std::size_t word = 0; word < tile->valid.words.size(); ++word)
+      for (auto rest = tile->valid.words[word]; rest != 0; rest &= rest - 1) {
+        const std::uint32_t bits = tile->bits(static_cast<int>(word * 64) + std::countr_zero(rest));
+        if (last != bits) keys.insert(bits);
+        last = bits;
+      }
+  }
+  return keys;
+}
+
+}  // namespace
+
+Result<std::vector<PaintedLayer>> painted_layers(const RouteContext& context, std::int64_t table_id) {
+  auto layers = context.store.layers_of_table(table_id);
+  if (!layers) return tl::unexpected(layers.error());
+  std::vector<PaintedLayer> painted;
+  for (Layer& layer : *layers) {
+    if (layer.sequence == 0) continue;  // nothing was ever painted there
+    auto room = context.rooms.open(std::to_string(layer.model_id));
+    if (!room) return tl::unexpected(room.error());
+    auto areas = (*room)->key_areas(layer.slug);
+    if (!areas && areas.error().status == 404) continue;  // deleted meanwhile
+    if (!areas) return tl::unexpected(areas.error());
+    painted.push_back({std::move(*room), std::move(layer), std::move(*areas)});
+  }
+  return painted;
+}
+
+std::string where_painted(const std::vector<PaintedLayer>& layers, const std::vector<std::int64_t>& keys) {
+  std::string text;
+  std::size_t named = 0;
+  for (const PaintedLayer& painted : layers) {
+    double area_m2 = 0;
+    bool found = false;
+    for (const auto key : keys)
+      if (const auto area = painted.areas.find(key); area != painted.areas.end()) {
+        found = true;
+        area_m2 += area->second.area_m2;
+      }
+    if (!found) continue;
+    if (++named > kMostNamed) return text + ", …";
+    text += (text.empty() ? "" : ", ") + area_text(area_m2) + " on " + painted.layer.name + " of " +
+            painted.room->model().name;
+  }
+  return text;
+}
+
+Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedLayer>& layers, std::int64_t key,
+                         std::optional<std::int64_t> to, const std::string& user) {
+  for (const PaintedLayer& painted : layers) {
+    if (!painted.areas.contains(key)) continue;
+    if (to && static_cast<double>(*to) > highest_value(painted.layer.type))
+      return fail(422, "Key too large",
+                  painted.layer.name + " of " + painted.room->model().name + " holds keys up to " +
+                      std::to_string(static_cast<std::int64_t>(highest_value(painted.layer.type))) + ".",
+                  "to");
+  }
+  for (const PaintedLayer& painted : layers) {
+    if (!painted.areas.contains(key)) continue;
+    Expression number, of_layer, equal;
+    number.op = Expression::Op::number;
+    number.number = static_cast<double>(key);
+    of_layer.op = Expression::Op::layer;
+    of_layer.layer = painted.layer.slug;
+    equal.op = Expression::Op::equal;
+    equal.parts = {of_layer, number};
+    room::FillEdit fill;
+    fill.erase = !to;
+    fill.value_bits = static_cast<std::uint32_t>(to.value_or(0));
+    fill.region = room::FillEdit::Where{std::move(equal)};
+    room::EditRequest edit;
+    edit.id = random_uuid();
+    edit.user = user;
+    edit.layer_id = painted.layer.id;
+    edit.record = {{"op", "fill"},
+                   {"mode", "where"},
+                   {"where", "\"" + painted.layer.slug + "\" = " + std::to_string(key)},
+                   {"value", to.value_or(0)},
+                   {"erase", !to}};
+    edit.edit = std::move(fill);
+    auto done = room::await<room::EditAnswer>([&](auto saved) {
+      painted.room->edit(
+          std::move(edit), [&context](const room::EditAnswer&) { ++context.metrics.edits_applied; }, std::move(saved));
+    });
+    if (!done) {
+      ++context.metrics.edits_refused;
+      return tl::unexpected(done.error());
+    }
+    ++context.metrics.edits_saved;
+  }
+  return {};
+}
+
+std::vector<std::int64_t> painted_by(const Layer& layer, const room::EditRequest& edit) {
+  if (layer.kind != LayerKind::database) return {};
+  const auto one = [](bool erase, std::uint32_t bits) {
+    return erase ? std::vector<std::int64_t>{} : std::vector<std::int64_t>{bits};
+  };
+  if (const auto* stroke = std::get_if<room::StrokeEdit>(&edit.edit))
+    return one(stroke->batch.erase, stroke->batch.value_bits);
+  if (const auto* fill = std::get_if<room::FillEdit>(&edit.edit)) return one(fill->erase, fill->value_bits);
+  if (const auto* polygon = std::get_if<room::PolygonEdit>(&edit.edit)) return one(polygon->erase, polygon->value_bits);
+  if (const auto* import = std::get_if<room::ImportEdit>(&edit.edit)) {
+    const auto keys = keys_in(import->tiles);
+    return {keys.begin(), keys.end()};
+  }
+  return {};
+}
+
+Result<void> records_from_legend(const RouteContext& context, const Layer& layer, const std::vector<std::int64_t>& keys,
+                                 const std::string& user) {
+  if (keys.empty() || !layer.table || layer.palette.mode != PaletteMode::categorical) return {};
+  const auto missing = context.store.missing_records(*layer.table, keys);
+  if (!missing) return tl::unexpected(missing.error());
+  auto table = context.store.table(std::to_string(*layer.table));
+  if (!table) return tl::unexpected(table.error());
+  const auto text = std::find_if(table->columns.begin(), table->columns.end(),
+                                 [](const Column& column) { return column.kind == ColumnKind::text; });
+  store::WriteRecords write;
+  write.op = "import";
+  for (const auto& point : layer.palette.points) {
+    const auto key = static_cast<std::int64_t>(point.at);
+    if (point.label.empty() || static_cast<double>(key) != point.at ||
+        !std::binary_search(missing->begin(), missing->end(), key))
+      continue;
+    write.records.push_back({key, {}});
+    if (text != table->columns.end()) write.records.back().values[text->id] = point.label;
+  }
+  if (write.records.empty()) return {};
+  auto change = context.store.write_records(table->id, write, user);
+  if (!change) return tl::unexpected(change.error());
+  if (!change->problems.empty()) return tl::unexpected(change->problems.front().problem);
+  tell_change(context, *change, user);
+  return {};
+}
+
+Result<void> check_keys(store::Store& store, const Layer& layer, const std::vector<std::int64_t>& keys) {
+  if (keys.empty() || !layer.table) return {};
+  const auto missing = store.missing_records(*layer.table, keys);
+  if (!missing) return tl::unexpected(missing.error());
+  if (missing->empty()) return {};
+  std::string named;
+  for (std::size_t i = 0; i < std::min(missing->size(), kMostNamed); ++i)
+    named += (i ? ", " : "") + std::to_string((*missing)[i]);
+  return fail(422, "No record of this key",
+              "The table of " + layer.name + " has no record " + named + (missing->size() > kMostNamed ? ", …" : "") +
+                  ". Make it first, then paint.",
+              "value");
+}
+
+}  // namespace strata::net

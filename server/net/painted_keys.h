@@ -1,0 +1,37 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "net/routes.h"
+
+// What the keys of a table are on the surfaces of its project. Everything here may open rooms, and blocks.
+namespace strata::net {
+
+struct PaintedLayer {
+  std::shared_ptr<room::Room> room;
+  Layer layer;
+  std::map<std::int64_t, query::KeyArea> areas;  // by key
+};
+// All layers of the table.
+Result<std::vector<PaintedLayer>> painted_layers(const RouteContext& context, std::int64_t table_id);
+
+// Those where one of the keys is painted, as they are named to a person: "12.5 cm² on Units of Trench 1"; empty where there are none.
+std::string where_painted(const std::vector<PaintedLayer>& layers, const std::vector<std::int64_t>& keys);
+
+// Clears the key's texels on these layers, or gives them to another key: one edit of the user on each layer where it is painted,
+// journalled and undone like a fill.
+Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedLayer>& layers, std::int64_t key,
+                         std::optional<std::int64_t> to, const std::string& user);
+
+// The keys that an edit paints: none where it erases, undoes or brings back what was.
+std::vector<std::int64_t> painted_by(const Layer& layer, const room::EditRequest& edit);
+// Makes records of those keys of a database layer that have none but are named in its legend, which a map may just have brought: the
+// name goes into the table's first text column. As the user's entry in the table's journal, told to who looks.
+Result<void> records_from_legend(const RouteContext& context, const Layer& layer, const std::vector<std::int64_t>& keys,
+                                 const std::string& user);
+// Refuses (422, `value`) keys of a database layer that have no record.
+Result<void> check_keys(store::Store& store, const Layer& layer, const std::vector<std::int64_t>& keys);
+
+}  // namespace strata::net

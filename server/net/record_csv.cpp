@@ -1,0 +1,143 @@
+#include "net/record_csv.h"
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+#include "core/column_value.h"
+#include "core/csv.h"
+#include "net/http_types.h"
+
+namespace strata::net {
+namespace {
+
+constexpr const char* kKey = "key";
+constexpr const char* kVersion = "version";
+constexpr const char* kArea = "area_m2";
+
+std::string with_comma(std::string number) {
+  std::replace(number.begin(), number.end(), '.', ',');
+  return number;
+}
+
+bool is_called(const Column& column, const std::string& head) {
+  if (column.slug == head || column.name == head) return true;
+  return std::any_of(column.labels.begin(), column.labels.end(),
+                     [&](const auto& label) { return label.second == head; });
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+// What each cell of a row is: a column, or one of the words.
+struct Head {
+  std::string text;
+  const Column* column = nullptr;
+};
+
+Result<std::vector<Head>> read_heads(const CsvRow& row, const Table& table) {
+  std::vector<Head> heads;
+  std::set<std::string> met;
+  for (const std::string& cell : row.cells) {
+    Head head{std::string(trimmed(cell)), nullptr};
+    const bool is_word = head.text == kKey || head.text == kVersion || head.text == kArea;
+    if (!is_word)
+      for (const Column& column : table.columns)
+        if (is_called(column, head.text)) {
+          head.column = &column;
+          break;
+        }
+    if (!is_word && !head.column)
+      return fail(422, "Unknown column",
+                  table.name + " has no column \"" + head.text +
+                      "\". The first row names columns by slug, name or label, and `key`.",
+                  "body");
+    if (!met.insert(head.column ? std::to_string(head.column->id) : head.text).second)
+      return fail(422, "Column named twice", "\"" + head.text + "\" stands twice in the first row.", "body");
+    heads.push_back(std::move(head));
+  }
+  return heads;
+}
+
+}  // namespace
+
+std::string records_csv(const std::vector<Record>& records, const std::vector<Column>& columns,
+                        const std::vector<double>& areas_m2, char separator) {
+  const bool comma = separator == ';';
+  std::string text(kUtf8Mark);
+  std::vector<std::string> cells{kKey};
+  for (const Column& column : columns) cells.push_back(column.slug);
+  if (!areas_m2.empty()) cells.emplace_back(kArea);
+  text += csv_line(cells, separator);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    cells = {std::to_string(records[i].key)};
+    for (const Column& column : columns) {
+      const auto value = records[i].values.find(column.id);
+      std::string cell = value == records[i].values.end() ? std::string() : print_value(column, value->second);
+      cells.push_back(comma && column.kind == ColumnKind::numeric ? with_comma(std::move(cell)) : std::move(cell));
+    }
+    if (!areas_m2.empty()) {
+      char number[40];
+      std::string area(number, std::to_chars(number, number + sizeof number, areas_m2[i]).ptr);
+      cells.push_back(comma ? with_comma(std::move(area)) : std::move(area));
+    }
+    text += csv_line(cells, separator);
+  }
+  return text;
+}
+
+Result<RecordRows> read_records_csv(std::string_view text, const Table& table) {
+  auto csv = parse_csv(text, {store::kMostRecordsAtOnce + 1, static_cast<std::size_t>(kMostColumns) + 3});
+  if (!csv) return tl::unexpected(csv.error());
+  if (csv->rows.empty()) return fail(422, "Empty table", "The first row names the columns.", "body");
+  auto heads = read_heads(csv->rows.front(), table);
+  if (!heads) return tl::unexpected(heads.error());
+  const bool comma = csv->separator == ';';
+  RecordRows out;
+  for (const Head& head : *heads)
+    if (head.column) out.heads[head.column->id] = head.text;
+  out.rows = csv->rows.size() - 1;
+  for (std::size_t r = 1; r < csv->rows.size(); ++r) {
+    const CsvRow& row = csv->rows[r];
+    std::vector<RowMistake> mistakes;
+    store::RecordInput record;
+    if (row.cells.size() != heads->size())
+      mistakes.push_back({row.line,
+                          {},
+                          {422,
+                           "Cells missing or too many",
+                           "The row has " + std::to_string(row.cells.size()) + " cells, the first row " +
+                               std::to_string(heads->size()) + ".",
+                           {}}});
+    for (std::size_t c = 0; c < std::min(row.cells.size(), heads->size()); ++c) {
+      const Head& head = (*heads)[c];
+      const std::string& cell = row.cells[c];
+      if (head.column) {
+        auto value = parse_value(*head.column, cell, comma, head.text);
+        if (!value)
+          mistakes.push_back({row.line, head.text, value.error()});
+        else
+          record.values[head.column->id] = std::move(*value);
+      } else if (head.text != kArea && !trimmed(cell).empty()) {
+        const bool is_key = head.text == kKey;
+        auto number = parse_integer(trimmed(cell), 0, is_key ? kHighestKey : INT64_MAX, head.text);
+        if (!number)
+          mistakes.push_back({row.line, head.text, number.error()});
+        else
+          (is_key ? record.key : record.version) = *number;
+      }
+    }
+    if (mistakes.empty()) {
+      out.records.push_back(std::move(record));
+      out.lines.push_back(row.line);
+    }
+    for (RowMistake& mistake : mistakes)
+      if (out.mistakes.size() < store::kMostRowProblems) out.mistakes.push_back(std::move(mistake));
+  }
+  return out;
+}
+
+}  // namespace strata::net

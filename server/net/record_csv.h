@@ -1,0 +1,37 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/table.h"
+#include "store/table_changes.h"
+
+// Records as CSV, the way spreadsheets have it: the first row names the columns.
+namespace strata::net {
+
+// With a semicolon between the cells numbers have a decimal comma, as in the countries whose Excel writes semicolons. `areas_m2`:
+// empty, or one for each record, told as `area_m2`. Begins with a byte order mark.
+std::string records_csv(const std::vector<Record>& records, const std::vector<Column>& columns,
+                        const std::vector<double>& areas_m2, char separator);
+
+struct RowMistake {
+  int line = 0;
+  std::string column;  // as the first row calls it; empty: of the whole row
+  Problem problem;
+};
+
+struct RecordRows {
+  std::vector<store::RecordInput> records;
+  std::vector<int> lines;                     // of each record
+  std::map<std::int64_t, std::string> heads;  // what the first row calls the columns, by id
+  std::vector<RowMistake> mistakes;           // the first hundred; those rows are not among the records
+  std::size_t rows = 0;
+};
+
+// A head is `key`, `version` (of the record as it was read), `area_m2` (passed over), or a column's slug, name or label in any
+// language. Rows without a key are new records. A Problem where the text is no CSV or its first row cannot be understood.
+Result<RecordRows> read_records_csv(std::string_view text, const Table& table);
+
+}  // namespace strata::net

@@ -1,0 +1,419 @@
+#include <algorithm>
+#include <map>
+
+#include "net/answer_book.h"
+#include "net/painted_keys.h"
+#include "net/record_csv.h"
+#include "net/routes.h"
+#include "net/table_events.h"
+#include "net/table_wire.h"
+
+namespace strata::net {
+namespace {
+
+using TableChange = store::TableChange;
+
+constexpr std::uint64_t kMaxRecordsBytes = 64u << 20;
+constexpr const char* kCsvType = "text/csv; charset=utf-8";
+
+// The table of the address: its own, or that of a layer.
+struct Place {
+  Table table;
+  std::optional<Model> model;
+  std::optional<Layer> layer;
+};
+
+Result<Place> place_of(const RouteContext& context, const Request& request) {
+  if (!request.params.contains("layer")) {
+    auto table = context.store.table(request.param("table"));
+    if (!table) return tl::unexpected(table.error());
+    return Place{std::move(*table), {}, {}};
+  }
+  auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  auto layer = context.store.layer(model->id, request.param("layer"));
+  if (!layer) return tl::unexpected(layer.error());
+  if (!layer->table)
+    return fail(422, "Numeric layer", layer->name + " holds numbers; only database layers have records.", "layer");
+  auto table = context.store.table(std::to_string(*layer->table));
+  if (!table) return tl::unexpected(table.error());
+  return Place{std::move(*table), std::move(*model), std::move(*layer)};
+}
+
+Result<std::map<std::int64_t, query::KeyArea>> areas_of(const RouteContext& context, const Place& place) {
+  if (place.layer->sequence == 0) return std::map<std::int64_t, query::KeyArea>();  // nothing was ever painted there
+  auto room = context.rooms.open(std::to_string(place.model->id));
+  if (!room) return tl::unexpected(room.error());
+  return (*room)->key_areas(place.layer->slug);
+}
+
+double area_of(const std::map<std::int64_t, query::KeyArea>& areas, std::int64_t key) {
+  const auto area = areas.find(key);
+  return area == areas.end() ? 0 : area->second.area_m2;
+}
+
+// "name,-depth": descending after a minus.
+std::vector<std::pair<std::string, bool>> order_of(const std::string& text) {
+  std::vector<std::pair<std::string, bool>> order;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    std::string word = text.substr(begin, end - begin);
+    const bool descending = word.starts_with('-');
+    if (descending || word.starts_with('+') || word.starts_with(' ')) word.erase(0, 1);  // a plus in a query is a space
+    if (!word.empty()) order.emplace_back(std::move(word), descending);
+    begin = end + 1;
+  }
+  return order;
+}
+
+Result<char> separator_of(const Request& request) {
+  const std::string text = request.query_or("separator", "comma");
+  if (text == "comma") return ',';
+  if (text == "semicolon") return ';';
+  if (text == "tab") return '\t';
+  return fail(422, "Unknown separator", "`separator` is comma, semicolon or tab.", "separator");
+}
+
+// Sorted by the area that they have on the layer: the others' order is the database's.
+Result<store::Store::RecordPage> page_by_area(const RouteContext& context, const Place& place,
+                                              const std::map<std::int64_t, query::KeyArea>& areas,
+                                              store::Store::RecordQuery query) {
+  const bool descending = query.order.front().second;
+  const auto limit = query.limit, offset = query.offset;
+  query.order.erase(query.order.begin());
+  query.limit = store::kMostRecords;
+  query.offset = 0;
+  auto page = context.store.records(place.table.id, query);
+  if (!page) return page;
+  auto& records = page->records;
+  std::stable_sort(records.begin(), records.end(), [&](const Record& a, const Record& b) {
+    const double left = area_of(areas, a.key), right = area_of(areas, b.key);
+    return descending ? left > right : left < right;
+  });
+  const auto count = static_cast<std::int64_t>(records.size());
+  records.erase(records.begin(), records.begin() + std::min(offset, count));
+  if (static_cast<std::int64_t>(records.size()) > limit) records.resize(static_cast<std::size_t>(limit));
+  return page;
+}
+
+Result<Response> list_records(const RouteContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  const std::string format = request.query_or("f", "json");
+  if (format != "json" && format != "csv") return fail(406, "Unknown format", "`f` is json or csv.", "f");
+  auto separator = separator_of(request);
+  if (!separator) return tl::unexpected(separator.error());
+  auto place = place_of(context, request);
+  if (!place) return tl::unexpected(place.error());
+  store::Store::RecordQuery query;
+  query.order = order_of(request.query_or("sortby", {}));
+  // A table to work on elsewhere is all of it, unless a part is asked for.
+  const bool whole = format == "csv" && !request.query.contains("limit");
+  query.limit = whole ? store::kMostRecords : page->limit;
+  query.offset = page->offset;
+  if (auto at = request.query.find("at"); at != request.query.end()) {
+    auto sequence = sequence_at(context.store, place->table, at->second);
+    if (!sequence) return tl::unexpected(sequence.error());
+    query.at = *sequence;
+  }
+  std::map<std::int64_t, query::KeyArea> areas;
+  if (place->layer) {
+    auto found = areas_of(context, *place);
+    if (!found) return tl::unexpected(found.error());
+    areas = std::move(*found);
+  }
+  const bool by_area = place->layer && !query.order.empty() && query.order.front().first == "area_m2";
+  auto records = by_area ? page_by_area(context, *place, areas, query) : context.store.records(place->table.id, query);
+  if (!records) return tl::unexpected(records.error());
+  Response response;
+  if (format == "csv") {
+    std::vector<double> areas_m2;
+    if (place->layer)
+      for (const Record& record : records->records) areas_m2.push_back(area_of(areas, record.key));
+    response = text_response(records_csv(records->records, records->table.columns, areas_m2, *separator), kCsvType);
+    response.with("Content-Disposition", "attachment; filename*=UTF-8''" + percent_encode(place->table.slug + ".csv"));
+  } else {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Record& record : records->records) {
+      nlohmann::json json = to_json(record, records->table.columns);
+      if (place->layer) json["area_m2"] = area_of(areas, record.key);
+      list.push_back(std::move(json));
+    }
+    response = json_response({{"records", std::move(list)}, {"total", records->total}});
+  }
+  if (!whole) add_page_links(response, request, *page, records->total);
+  response.with("Strata-Sequence", std::to_string(records->table.sequence));
+  return response;
+}
+
+Result<std::int64_t> key_of(const Request& request) {
+  auto key = parse_integer(request.param("key"), 0, kHighestKey, "key");
+  if (!key) return fail(404, "Not found", "Keys of records are whole numbers from 0 to 4294967295.");
+  return key;
+}
+
+Result<Record> stored_record(const RouteContext& context, const Table& table, std::int64_t key,
+                             std::optional<std::int64_t> at, Table* then = nullptr) {
+  store::Store::RecordQuery query;
+  query.keys = std::vector{key};
+  query.at = at;
+  auto page = context.store.records(table.id, query);
+  if (!page) return tl::unexpected(page.error());
+  if (page->records.empty()) return fail(404, "Not found", table.name + " has no record " + std::to_string(key) + ".");
+  if (then) *then = page->table;
+  return page->records.front();
+}
+
+Result<Response> read_record(const RouteContext& context, const Request& request) {
+  auto key = key_of(request);
+  if (!key) return tl::unexpected(key.error());
+  auto place = place_of(context, request);
+  if (!place) return tl::unexpected(place.error());
+  std::optional<std::int64_t> at;
+  if (auto text = request.query.find("at"); text != request.query.end()) {
+    auto sequence = sequence_at(context.store, place->table, text->second);
+    if (!sequence) return tl::unexpected(sequence.error());
+    at = *sequence;
+  }
+  Table then;
+  auto record = stored_record(context, place->table, *key, at, &then);
+  if (!record) return tl::unexpected(record.error());
+  nlohmann::json json = to_json(*record, then.columns);
+  if (!place->layer) return with_etag(json_response(json), request, record->version);
+  auto areas = areas_of(context, *place);
+  if (!areas) return tl::unexpected(areas.error());
+  json["area_m2"] = area_of(*areas, *key);
+  return json_response(json).with("ETag", etag_of(record->version));
+}
+
+// --- changes
+
+Problem first_problem(const TableChange& change, bool is_list) {
+  Problem problem = change.problems.front().problem;
+  if (is_list && change.problems.front().index)
+    problem.field = "records[" + std::to_string(*change.problems.front().index) + "]." + problem.field;
+  return problem;
+}
+
+Result<Response> create_from_json(const RouteContext& context, const Request& request, const Place& place) {
+  auto asked = body_of<protocol::RecordsCreate>(request, kMaxRecordsBytes);
+  if (!asked) return tl::unexpected(asked.error());
+  if (asked->records && (asked->key || asked->values))
+    return fail(422, "One or several", "Give either `records`, or `key` and `values` of one.", "records");
+  store::WriteRecords write;
+  write.may_change = false;
+  const bool is_list = asked->records.has_value();
+  std::vector<protocol::RecordInput> inputs;
+  if (is_list)
+    inputs = std::move(*asked->records);
+  else
+    inputs.push_back({asked->key, asked->values});
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::string field = is_list ? "records[" + std::to_string(i) + "].values" : "values";
+    auto values = values_by_column(place.table, inputs[i].values.value_or(nlohmann::json::object()), field);
+    if (!values) return tl::unexpected(values.error());
+    write.records.push_back({inputs[i].key, std::move(*values)});
+  }
+  const auto answer = [is_list](const TableChange& change) {
+    if (!is_list) {
+      const Record& record = change.records.front();
+      return json_response(to_json(record, change.table.columns), 201)
+          .with("Location", "/api/v1/tables/" + change.table.slug + "/records/" + std::to_string(record.key))
+          .with("ETag", etag_of(record.version));
+    }
+    nlohmann::json list = nlohmann::json::array();
+    for (const Record& record : change.records) list.push_back(to_json(record, change.table.columns));
+    const std::size_t total = list.size();
+    return json_response({{"records", std::move(list)}, {"total", total}}, 201);
+  };
+  auto change =
+      context.store.write_records(place.table.id, write, request.user(), first_answer<TableChange>(request, answer));
+  if (!change) return tl::unexpected(change.error());
+  if (!change->problems.empty()) return tl::unexpected(first_problem(*change, is_list));
+  tell_change(context, *change, request.user());
+  return answer(*change);
+}
+
+nlohmann::json report_of(const RecordRows& rows, const TableChange& change, bool dry_run) {
+  nlohmann::json problems = nlohmann::json::array();
+  const auto add = [&](int line, const std::string& column, const Problem& problem) {
+    if (problems.size() == store::kMostRowProblems) return;
+    problems.push_back({{"line", line}, {"title", problem.title}, {"detail", problem.detail}});
+    if (!column.empty()) problems.back()["column"] = column;
+  };
+  for (const RowMistake& mistake : rows.mistakes) add(mistake.line, mistake.column, mistake.problem);
+  for (const store::RowProblem& problem : change.problems) {
+    std::string head = problem.problem.field;
+    for (const Column& column : change.table.columns)
+      if ("values." + column.slug == head) {
+        const auto found = rows.heads.find(column.id);
+        head = found == rows.heads.end() ? column.name : found->second;
+      }
+    // Something else names a record that is not in the text.
+    add(problem.index ? rows.lines[*problem.index] : 1, head, problem.problem);
+  }
+  const bool refused = !problems.empty();
+  const std::size_t created = refused ? 0 : change.created.size(), changed = refused ? 0 : change.changed.size();
+  return {{"rows", rows.rows},
+          {"created", created},
+          {"changed", changed},
+          {"unchanged", refused ? 0 : rows.records.size() - created - changed},
+          {"dry_run", dry_run},
+          {"sequence", refused || dry_run ? 0 : change.sequence},
+          {"problems", std::move(problems)}};
+}
+
+Result<Response> import_csv(const RouteContext& context, const Request& request, const Place& place) {
+  const std::string tried = request.query_or("dry_run", "false");
+  if (tried != "true" && tried != "false") return fail(422, "Bad value", "`dry_run` is true or false.", "dry_run");
+  auto rows = read_records_csv(request.body, place.table);
+  if (!rows) return tl::unexpected(rows.error());
+  store::WriteRecords write;
+  write.records = rows->records;
+  write.op = "import";
+  // Where a row cannot even be read, the others are looked at all the same, so that one look finds all that is wrong.
+  write.dry_run = tried == "true" || !rows->mistakes.empty();
+  const auto answer = [&rows](const TableChange& change) { return json_response(report_of(*rows, change, false)); };
+  auto change =
+      context.store.write_records(place.table.id, write, request.user(), first_answer<TableChange>(request, answer));
+  if (!change) return tl::unexpected(change.error());
+  const bool refused = !rows->mistakes.empty() || !change->problems.empty();
+  if (tried == "true") return json_response(report_of(*rows, *change, true));
+  if (refused) {
+    const nlohmann::json report = report_of(*rows, *change, false);
+    const auto& first = report.at("problems").front();
+    Response response = problem_response({422, "Rows refused",
+                                          "Nothing was written. Line " + std::to_string(first.at("line").get<int>()) +
+                                              ": " + first.at("detail").get<std::string>(),
+                                          "body"});
+    auto body = nlohmann::json::parse(response.body);
+    body["rows"] = report;
+    response.body = body.dump();
+    return response;
+  }
+  tell_change(context, *change, request.user());
+  return answer(*change);
+}
+
+Result<Response> create_records(const RouteContext& context, const Request& request) {
+  auto place = place_of(context, request);
+  if (!place) return tl::unexpected(place.error());
+  if (to_lower(request.header("content-type")).starts_with("text/csv")) return import_csv(context, request, *place);
+  if (request.query.contains("dry_run"))
+    return fail(422, "Not for JSON", "`dry_run` is for records sent as text/csv.", "dry_run");
+  return create_from_json(context, request, *place);
+}
+
+// If-Match, or the member of a body.
+Result<std::optional<std::int64_t>> wished_version(const RouteContext& context, const Request& request,
+                                                   const Table& table, std::int64_t key) {
+  if (request.header("if-match").empty()) return std::optional<std::int64_t>();
+  auto record = stored_record(context, table, key, {});
+  if (!record) return tl::unexpected(record.error());
+  if (auto fresh = check_if_match(request, record->version); !fresh) return tl::unexpected(fresh.error());
+  return request.header("if-match") == "*" ? std::optional<std::int64_t>() : std::optional(record->version);
+}
+
+Result<Response> change_record(const RouteContext& context, const Request& request) {
+  auto key = key_of(request);
+  if (!key) return tl::unexpected(key.error());
+  auto asked = body_of<protocol::RecordPatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto place = place_of(context, request);
+  if (!place) return tl::unexpected(place.error());
+  auto version = wished_version(context, request, place->table, *key);
+  if (!version) return tl::unexpected(version.error());
+  auto values = values_by_column(place->table, asked->values, "values");
+  if (!values) return tl::unexpected(values.error());
+  store::WriteRecords write;
+  write.may_create = false;
+  write.records.push_back({*key, std::move(*values), *version ? *version : asked->version});
+  const auto answer = [](const TableChange& change) {
+    const Record& record = change.records.front();
+    return json_response(to_json(record, change.table.columns)).with("ETag", etag_of(record.version));
+  };
+  // What stays the same is no entry, and no record comes with it.
+  std::optional<Record> same;
+  if (auto now = stored_record(context, place->table, *key, {})) same = std::move(*now);
+  const auto keep = [&](const TableChange& change) {
+    if (!change.records.empty() || !same) return answer(change);
+    return json_response(to_json(*same, change.table.columns)).with("ETag", etag_of(same->version));
+  };
+  auto change =
+      context.store.write_records(place->table.id, write, request.user(), first_answer<TableChange>(request, keep));
+  if (!change) return tl::unexpected(change.error());
+  if (!change->problems.empty()) return tl::unexpected(first_problem(*change, false));
+  tell_change(context, *change, request.user());
+  return keep(*change);
+}
+
+Result<Response> delete_record(const RouteContext& context, const Request& request) {
+  auto key = key_of(request);
+  if (!key) return tl::unexpected(key.error());
+  const std::string texels = request.query_or("texels", "refuse");
+  if (texels != "refuse" && texels != "clear" && texels != "reassign")
+    return fail(422, "Unknown choice", "`texels` is refuse, clear or reassign.", "texels");
+  std::optional<std::int64_t> to;
+  if ((texels == "reassign") != request.query.contains("to"))
+    return fail(422, "Which record", "`to` is the key that the texels get, with texels=reassign.", "to");
+  auto place = place_of(context, request);
+  if (!place) return tl::unexpected(place.error());
+  const Table& table = place->table;
+  if (texels == "reassign") {
+    auto number = parse_integer(request.query.at("to"), 0, kHighestKey, "to");
+    if (!number) return tl::unexpected(number.error());
+    auto missing = context.store.missing_records(table.id, std::vector{*number});
+    if (!missing) return tl::unexpected(missing.error());
+    if (!missing->empty() || *number == *key)
+      return fail(422, "No such record", "`to` is another record of " + table.name + ".", "to");
+    to = *number;
+  }
+  auto version = wished_version(context, request, table, *key);
+  if (!version) return tl::unexpected(version.error());
+  // Before any texel is touched: may it go?
+  auto may = context.store.delete_record(table.id, *key, *version, request.user(), true);
+  if (!may) return tl::unexpected(may.error());
+  auto painted = painted_layers(context, table.id);
+  if (!painted) return tl::unexpected(painted.error());
+  const std::string where = where_painted(*painted, {*key});
+  if (!where.empty() && texels == "refuse")
+    return fail(409, "Record is painted",
+                "Record " + std::to_string(*key) + " covers " + where +
+                    ". Say what becomes of it: texels=clear, or texels=reassign&to=KEY.",
+                "texels");
+  if (auto done = repaint_key(context, *painted, *key, to, request.user()); !done) return tl::unexpected(done.error());
+  const auto answer = [](const TableChange&) { return empty_response(204); };
+  auto change = context.store.delete_record(table.id, *key, *version, request.user(), false,
+                                            first_answer<TableChange>(request, answer));
+  if (!change) return tl::unexpected(change.error());
+  tell_change(context, *change, request.user());
+  return answer(*change);
+}
+
+}  // namespace
+
+void add_record_routes(Router& router, const RouteContext& context) {
+  using Answer = Result<Response> (*)(const RouteContext&, const Request&);
+  const auto add = [&](Method method, const std::string& pattern, Answer answer, std::vector<std::string> query,
+                       BodyKind body = BodyKind::none, std::uint64_t max_body = 0) {
+    const bool changes = method != Method::get;
+    router.add({.method = method,
+                .pattern = pattern,
+                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
+                .role = changes ? Role::annotator : Role::viewer,
+                .query = std::move(query),
+                .body = body,
+                .max_body = max_body,
+                .keeps_answer = changes});
+  };
+  for (const std::string parent : {"/api/v1/tables/{table}", "/api/v1/models/{model}/layers/{layer}"}) {
+    const std::string records = parent + "/records", record = records + "/{key}";
+    add(Method::get, records, list_records, {"f", "separator", "sortby", "limit", "offset", "at"});
+    add(Method::post, records, create_records, {"dry_run"}, BodyKind::memory, kMaxRecordsBytes);
+    add(Method::get, record, read_record, {"at"});
+    add(Method::patch, record, change_record, {}, BodyKind::memory, context.options.max_json_bytes);
+    add(Method::remove, record, delete_record, {"texels", "to"});
+  }
+}
+
+}  // namespace strata::net

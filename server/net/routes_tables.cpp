@@ -1,0 +1,343 @@
+#include <algorithm>
+#include <map>
+
+#include "net/answer_book.h"
+#include "net/painted_keys.h"
+#include "net/routes.h"
+#include "net/table_events.h"
+#include "net/table_wire.h"
+
+namespace strata::net {
+namespace {
+
+using TableChange = store::TableChange;
+
+Result<Response> list_tables(const RouteContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  auto project = context.store.project(request.param("project"));
+  if (!project) return tl::unexpected(project.error());
+  auto tables = context.store.tables(project->id);
+  if (!tables) return tl::unexpected(tables.error());
+  nlohmann::json list = nlohmann::json::array();
+  const int total = static_cast<int>(tables->size());
+  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json((*tables)[i]));
+  Response response = json_response({{"tables", list}, {"total", total}});
+  add_page_links(response, request, *page, total);
+  return response;
+}
+
+Result<Response> create_table(const RouteContext& context, const Request& request) {
+  auto asked = body_of<protocol::TableCreate>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto project = context.store.project(request.param("project"));
+  if (!project) return tl::unexpected(project.error());
+  auto slug = slug_of(asked->slug, asked->name);
+  if (!slug) return tl::unexpected(slug.error());
+  Table table;
+  table.project_id = project->id;
+  table.name = asked->name;
+  table.slug = *slug;
+  if (asked->labels) table.labels = *asked->labels;
+  table.description = asked->description;
+  if (asked->columns) {
+    auto columns = new_columns(context.store, project->id, *asked->columns);
+    if (!columns) return tl::unexpected(columns.error());
+    table.columns = std::move(*columns);
+  }
+  const auto answer = [](const Table& made) {
+    return json_response(to_json(made), 201)
+        .with("Location", "/api/v1/tables/" + made.slug)
+        .with("ETag", etag_of(made.version));
+  };
+  auto created = context.store.create_table(table, first_answer<Table>(request, answer));
+  if (!created) return tl::unexpected(created.error());
+  tell_table(context, protocol::TableEventEvent::created, *created, request.user());
+  return answer(*created);
+}
+
+Result<Response> change_table(const RouteContext& context, const Request& request) {
+  auto table = context.store.table(request.param("table"));
+  if (!table) return tl::unexpected(table.error());
+  if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
+  auto asked = body_of<protocol::TablePatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  if (asked->name) table->name = *asked->name;
+  if (asked->labels) table->labels = *asked->labels;
+  if (asked->description) table->description = *asked->description;
+  const auto answer = [](const Table& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
+  auto changed = context.store.update_table(*table, first_answer<Table>(request, answer));
+  if (!changed) return tl::unexpected(changed.error());
+  tell_table(context, protocol::TableEventEvent::changed, *changed, request.user());
+  return answer(*changed);
+}
+
+Result<Response> delete_table(const RouteContext& context, const Request& request) {
+  auto table = context.store.table(request.param("table"));
+  if (!table) return tl::unexpected(table.error());
+  if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
+  auto gone = context.store.delete_table(table->id, first_answer<>(request, [] { return empty_response(204); }));
+  if (!gone) return tl::unexpected(gone.error());
+  tell_table(context, protocol::TableEventEvent::deleted, *table, request.user());
+  return empty_response(204);
+}
+
+// --- columns; If-Match takes the version of the table
+
+std::optional<std::int64_t> wished_version(const Request& request, const Table& table) {
+  return request.header("if-match").empty() ? std::nullopt : std::optional(table.version);
+}
+
+Result<const Column*> column_of(const Table& table, const Request& request) {
+  const Column* column = find_column(table.columns, request.param("column"));
+  if (!column)
+    return fail(404, "Not found", table.name + " has no column `" + request.param("column").substr(0, 100) + "`.");
+  return column;
+}
+
+nlohmann::json column_json(const TableChange& change, std::int64_t id) {
+  nlohmann::json json{{"sequence", change.sequence ? change.sequence : change.table.sequence}};
+  for (const Column& column : change.table.columns)
+    if (column.id == id) json["column"] = to_json(column);
+  for (const char* told : {"converted", "lost", "lost_keys"})
+    if (change.record.contains(told)) json[told] = change.record.at(told);
+  return json;
+}
+
+Result<Response> list_columns(const RouteContext& context, const Request& request) {
+  auto table = context.store.table(request.param("table"));
+  if (!table) return tl::unexpected(table.error());
+  nlohmann::json list = nlohmann::json::array();
+  for (const Column& column : table->columns) list.push_back(to_json(column));
+  return with_etag(json_response({{"columns", std::move(list)}, {"total", table->columns.size()}}), request,
+                   table->version);
+}
+
+Result<Response> create_column(const RouteContext& context, const Request& request) {
+  auto asked = body_of<protocol::ColumnCreate>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto table = context.store.table(request.param("table"));
+  if (!table) return tl::unexpected(table.error());
+  if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
+  auto column = new_column(context.store, table->project_id, *asked);
+  if (!column) return tl::unexpected(column.error());
+  for (const Column& other : table->columns) column->order = std::max(column->order, other.order + 1);
+  const auto answer = [](const TableChange& change) {
+    const std::int64_t id = change.record.at("column").get<std::int64_t>();
+    return json_response(column_json(change, id), 201)
+        .with("Location", "/api/v1/tables/" + change.table.slug + "/columns/" + std::to_string(id))
+        .with("ETag", etag_of(change.table.version));
+  };
+  auto change =
+      context.store.create_column(table->id, *column, request.user(), first_answer<TableChange>(request, answer));
+  if (!change) return tl::unexpected(change.error());
+  tell_change(context, *change, request.user());
+  return answer(*change);
+}
+
+// Null takes a default or a limit away, which the typed body cannot tell from a member that is absent.
+Result<void> change(const RouteContext& context, const Request& request, const Table& table, Column& column) {
+  auto asked = body_of<protocol::ColumnPatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto body = nlohmann::json::parse(request.body);
+  if (asked->name) column.name = *asked->name;
+  if (asked->slug) {
+    auto slug = slug_of(asked->slug, column.name);
+    if (!slug) return tl::unexpected(slug.error());
+    column.slug = *slug;
+  }
+  if (asked->labels) column.labels = *asked->labels;
+  if (asked->kind) {
+    column.kind = *parse_column_kind(protocol::name(*asked->kind));
+    // What the new kind has no use for goes with the old one, unless it is asked for.
+    const bool is_number = column.kind == ColumnKind::integer || column.kind == ColumnKind::numeric;
+    if (!is_number) column.unit.clear(), column.minimum.reset(), column.maximum.reset();
+    if (column.kind != ColumnKind::enumeration) column.choices.clear();
+    if (column.kind != ColumnKind::term && column.kind != ColumnKind::relation) column.target.reset();
+    if (!body.contains("default")) column.default_value = nullptr;
+  }
+  if (asked->unit) column.unit = *asked->unit;
+  if (asked->required) column.required = *asked->required;
+  if (asked->unique) column.unique = *asked->unique;
+  if (body.contains("default")) column.default_value = body.at("default");
+  if (asked->comment) column.comment = *asked->comment;
+  if (asked->choices) column.choices = *asked->choices;
+  if (asked->target) {
+    auto target = table_of_project(context.store, table.project_id, *asked->target, "target");
+    if (!target) return tl::unexpected(target.error());
+    column.target = target->id;
+  }
+  if (body.contains("minimum")) column.minimum = asked->minimum;
+  if (body.contains("maximum")) column.maximum = asked->maximum;
+  if (asked->order) column.order = *asked->order;
+  return {};
+}
+
+Result<Response> change_column(const RouteContext& context, const Request& request) {
+  auto table = context.store.table(request.param("table"));
+  if (!table) return tl::unexpected(table.error());
+  auto found = column_of(*table, request);
+  if (!found) return tl::unexpected(found.error());
+  if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
+  Column column = **found;
+  if (auto good = change(context, request, *table, column); !good) return tl::unexpected(good.error());
+  const auto answer = [id = column.id](const TableChange& done) {
+    const auto now = done.record.is_object() ? done.record.value("column", id) : id;
+    return json_response(column_json(done, now)).with("ETag", etag_of(done.table.version));
+  };
+  auto done = context.store.update_column(table->id, column, wished_version(request, *table), request.user(),
+                                          first_answer<TableChange>(request, answer));
+  if (!done) return tl::unexpected(done.error());
+  tell_change(context, *done, request.user());
+  return answer(*done);
+}
+
+Result<Response> drop_column(const RouteContext& context, const Request& request) {
+  auto table = context.store.table(request.param("table"));
+  if (!table) return tl::unexpected(table.error());
+  auto column = column_of(*table, request);
+  if (!column) return tl::unexpected(column.error());
+  if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
+  const auto answer = [](const TableChange&) { return empty_response(204); };
+  auto done = context.store.drop_column(table->id, (*column)->id, wished_version(request, *table), request.user(),
+                                        first_answer<TableChange>(request, answer));
+  if (!done) return tl::unexpected(done.error());
+  tell_change(context, *done, request.user());
+  return answer(*done);
+}
+
+// --- history
+
+Result<Response> history(const RouteContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  auto table = context.store.table(request.param("table"));
+  if (!table) return tl::unexpected(table.error());
+  std::optional<std::int64_t> key;
+  if (const std::string text = request.query_or("key", {}); !text.empty()) {
+    auto number = parse_integer(text, 0, kHighestKey, "key");
+    if (!number) return tl::unexpected(number.error());
+    key = *number;
+  }
+  auto rows = context.store.table_history(table->id, key, page->limit, page->offset);
+  if (!rows) return tl::unexpected(rows.error());
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& row : rows->rows) list.push_back(to_json(row));
+  Response response = json_response({{"edits", std::move(list)}, {"total", rows->total}});
+  add_page_links(response, request, *page, rows->total);
+  return response;
+}
+
+Result<Response> undo(const RouteContext& context, const Request& request, bool redo) {
+  if (!request.body.empty())
+    if (auto empty = body_of<protocol::Empty>(request); !empty) return tl::unexpected(empty.error());
+  auto table = context.store.table(request.param("table"));
+  if (!table) return tl::unexpected(table.error());
+  auto plan = context.store.plan_table_undo(table->id, request.user(), redo);
+  if (!plan) return tl::unexpected(plan.error());
+  if (!plan->vanishing.empty()) {
+    auto painted = painted_layers(context, table->id);
+    if (!painted) return tl::unexpected(painted.error());
+    if (const std::string where = where_painted(*painted, plan->vanishing); !where.empty())
+      return fail(409, "Record is painted",
+                  "This would take away records that are painted: " + where +
+                      ". Delete those records instead, which asks what to do with their texels.");
+  }
+  const auto answer = [](const TableChange& done) {
+    return json_response({{"sequence", done.sequence},
+                          {"created", done.created},
+                          {"changed", done.changed},
+                          {"deleted", done.deleted},
+                          {"columns_changed", done.columns_changed}});
+  };
+  auto done = context.store.undo_table(table->id, request.user(), redo, plan->table_sequence,
+                                       first_answer<TableChange>(request, answer));
+  if (!done) return tl::unexpected(done.error());
+  tell_change(context, *done, request.user());
+  return answer(*done);
+}
+
+// --- surface of its keys
+
+Result<Response> areas(const RouteContext& context, const Request& request) {
+  auto table = context.store.table(request.param("table"));
+  if (!table) return tl::unexpected(table.error());
+  auto painted = painted_layers(context, table->id);
+  if (!painted) return tl::unexpected(painted.error());
+  struct Sum {
+    double area_m2 = 0;
+    std::map<std::int64_t, std::pair<double, nlohmann::json>> models;
+  };
+  std::map<std::int64_t, Sum> sums;
+  for (const PaintedLayer& layer : *painted)
+    for (const auto& [key, area] : layer.areas) {
+      Sum& sum = sums[key];
+      sum.area_m2 += area.area_m2;
+      auto& [model_area_m2, layers] = sum.models[layer.layer.model_id];
+      model_area_m2 += area.area_m2;
+      layers.push_back({{"layer", layer.layer.id}, {"area_m2", area.area_m2}, {"texels", area.texels}});
+    }
+  std::vector<std::int64_t> keys;
+  for (const auto& [key, sum] : sums) keys.push_back(key);
+  auto missing = context.store.missing_records(table->id, keys);
+  if (!missing) return tl::unexpected(missing.error());
+  nlohmann::json list = nlohmann::json::array();
+  for (auto& [key, sum] : sums) {
+    nlohmann::json models = nlohmann::json::array();
+    for (auto& [model, of_model] : sum.models)
+      models.push_back({{"model", model}, {"area_m2", of_model.first}, {"layers", std::move(of_model.second)}});
+    list.push_back({{"key", key},
+                    {"area_m2", sum.area_m2},
+                    {"has_record", !std::binary_search(missing->begin(), missing->end(), key)},
+                    {"models", std::move(models)}});
+  }
+  const std::size_t total = list.size();
+  return json_response({{"areas", std::move(list)}, {"total", total}});
+}
+
+}  // namespace
+
+void add_table_routes(Router& router, const RouteContext& context) {
+  const std::string tables = "/api/v1/projects/{project}/tables", table = "/api/v1/tables/{table}";
+  using Answer = Result<Response> (*)(const RouteContext&, const Request&);
+  const auto read = [&](const std::string& pattern, Answer answer, std::vector<std::string> query = {}) {
+    router.add({.method = Method::get,
+                .pattern = pattern,
+                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
+                .query = std::move(query)});
+  };
+  const auto write = [&](Method method, const std::string& pattern, Answer answer, BodyKind body = BodyKind::memory) {
+    router.add({.method = method,
+                .pattern = pattern,
+                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
+                .role = Role::curator,
+                .body = body,
+                .max_body = body == BodyKind::none ? 0 : context.options.max_json_bytes,
+                .keeps_answer = true});
+  };
+  read(tables, list_tables, {"limit", "offset"});
+  write(Method::post, tables, create_table);
+  read(table, [](const RouteContext& c, const Request& request) -> Result<Response> {
+    auto found = c.store.table(request.param("table"));
+    if (!found) return tl::unexpected(found.error());
+    return with_etag(json_response(to_json(*found)), request, found->version);
+  });
+  write(Method::patch, table, change_table);
+  write(Method::remove, table, delete_table, BodyKind::none);
+  read(table + "/columns", list_columns);
+  write(Method::post, table + "/columns", create_column);
+  write(Method::patch, table + "/columns/{column}", change_column);
+  write(Method::remove, table + "/columns/{column}", drop_column, BodyKind::none);
+  read(table + "/edits", history, {"key", "limit", "offset"});
+  read(table + "/areas", areas);
+  for (const bool redo : {false, true})
+    router.add({.method = Method::post,
+                .pattern = table + (redo ? "/redo" : "/undo"),
+                .handler = answering([&context, redo](const Request& request) { return undo(context, request, redo); }),
+                .role = Role::annotator,
+                .body = BodyKind::memory,
+                .max_body = context.options.max_json_bytes,
+                .keeps_answer = true});
+}
+
+}  // namespace strata::net

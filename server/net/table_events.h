@@ -1,0 +1,13 @@
+#pragma once
+
+#include "net/routes.h"
+
+namespace strata::net {
+
+// Told to who looks at a model of the table's project.
+void tell_table(const RouteContext& context, protocol::TableEventEvent event, const Table& table,
+                const std::string& user);
+// Each record that changed; the table instead where its columns changed, too, or there are too many to tell.
+void tell_change(const RouteContext& context, const store::TableChange& change, const std::string& user);
+
+}  // namespace strata::net

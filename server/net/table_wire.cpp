@@ -1,0 +1,109 @@
+#include "net/table_wire.h"
+
+#include "core/column_value.h"
+#include "core/edtf.h"
+#include "core/slug.h"
+#include "net/http_types.h"
+#include "net/wire.h"
+
+namespace strata::net {
+namespace {
+
+std::chrono::system_clock::time_point time_of(
+    std::string_view utc) {  // of a timestamp column: 2024-02-29T12:00:00.000Z
+  const auto number = [&](std::size_t at, std::size_t digits) {
+    std::int64_t value = 0;
+    for (std::size_t i = at; i < at + digits; ++i) value = value * 10 + (utc[i] - '0');
+    return value;
+  };
+  const std::int64_t day = day_number(number(0, 4), static_cast<int>(number(5, 2)), static_cast<int>(number(8, 2)));
+  const std::int64_t seconds = ((day * 24 + number(11, 2)) * 60 + number(14, 2)) * 60 + number(17, 2);
+  return std::chrono::system_clock::time_point(std::chrono::milliseconds(seconds * 1000 + number(20, 3)));
+}
+
+}  // namespace
+
+Result<Table> table_of_project(store::Store& store, std::int64_t project_id, const protocol::TableRef& ref,
+                               const std::string& field) {
+  const std::string name = protocol::to_ref(ref);
+  auto table = store.table(name);
+  if (!table && table.error().status != 404) return table;
+  if (!table || table->project_id != project_id)
+    return fail(422, "No such table", "The project has no table `" + name + "`.", field);
+  return table;
+}
+
+Result<Column> new_column(store::Store& store, std::int64_t project_id, const protocol::ColumnCreate& asked,
+                          const std::string& target_field) {
+  Column column;
+  column.name = asked.name;
+  if (asked.slug) column.slug = make_slug(*asked.slug);
+  if (asked.labels) column.labels = *asked.labels;
+  column.kind = *parse_column_kind(protocol::name(asked.kind));
+  column.unit = asked.unit;
+  column.required = asked.required;
+  column.unique = asked.unique;
+  if (asked.default_value) column.default_value = *asked.default_value;
+  column.comment = asked.comment;
+  if (asked.choices) column.choices = *asked.choices;
+  if (asked.target) {
+    auto table = table_of_project(store, project_id, *asked.target, target_field);
+    if (!table) return tl::unexpected(table.error());
+    column.target = table->id;
+  }
+  column.minimum = asked.minimum;
+  column.maximum = asked.maximum;
+  return column;
+}
+
+Result<std::vector<Column>> new_columns(store::Store& store, std::int64_t project_id,
+                                        const std::vector<protocol::ColumnCreate>& asked) {
+  std::vector<Column> columns;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    auto column = new_column(store, project_id, asked[i], "columns[" + std::to_string(i) + "].target");
+    if (!column) return tl::unexpected(column.error());
+    columns.push_back(std::move(*column));
+  }
+  return columns;
+}
+
+Result<std::map<std::int64_t, nlohmann::json>> values_by_column(const Table& table, const nlohmann::json& values,
+                                                                const std::string& field) {
+  std::map<std::int64_t, nlohmann::json> by_column;
+  for (const auto& [ref, value] : values.items()) {
+    const Column* column = find_column(table.columns, ref);
+    if (!column) return fail(422, "No such column", table.name + " has no column `" + ref + "`.", field + "." + ref);
+    if (!by_column.emplace(column->id, value).second)
+      return fail(422, "Column named twice", "`" + column->slug + "` stands here by its slug and by its id.",
+                  field + "." + ref);
+  }
+  return by_column;
+}
+
+nlohmann::json to_json(const store::TableEditRow& row) {
+  nlohmann::json changes = nlohmann::json::array();
+  for (const auto& change : row.changes)
+    changes.push_back({{change.is_column ? "column" : "record", change.id},
+                       {"before", nlohmann::json(change.before)},
+                       {"after", nlohmann::json(change.after)}});
+  return {{"sequence", row.sequence},          {"user", row.user},
+          {"time", utc_text(row.time)},        {"op", row.op},
+          {"in_force", row.in_force},          {"changes", std::move(changes)},
+          {"total_changes", row.total_changes}};
+}
+
+Result<std::int64_t> sequence_at(store::Store& store, const Table& table, const std::string& text) {
+  if (is_all_digits(text)) return parse_integer(text, 0, table.sequence, "at");
+  Column column;
+  column.name = "at";
+  column.kind = ColumnKind::timestamp;
+  // A plus sign in a query is a space.
+  std::string plain = text;
+  if (const auto blank = plain.rfind(' '); blank != std::string::npos && blank > 11) plain[blank] = '+';
+  const auto time = check_value(column, plain, "at");
+  if (!time || time->is_null())
+    return fail(422, "Not a moment", "`at` is a sequence of the table, or a time such as 2024-02-29T12:00:00Z.", "at");
+  return store.table_sequence_at(table.id, time_of(time->get_ref<const std::string&>()));
+}
+
+}  // namespace strata::net

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "core/table.h"
+#include "protocol/parse.h"
+#include "store/store.h"
+
+// Between the protocol's tables and the domain's.
+namespace strata::net {
+
+// The project's table that `ref` names; 422 with `field` where it has none.
+Result<Table> table_of_project(store::Store& store, std::int64_t project_id, const protocol::TableRef& ref,
+                               const std::string& field);
+
+Result<Column> new_column(store::Store& store, std::int64_t project_id, const protocol::ColumnCreate& asked,
+                          const std::string& target_field = "target");
+Result<std::vector<Column>> new_columns(store::Store& store, std::int64_t project_id,
+                                        const std::vector<protocol::ColumnCreate>& asked);
+
+// Values by slug or id of a column, as a body has them; 422 where the table has no such column.
+Result<std::map<std::int64_t, nlohmann::json>> values_by_column(const Table& table, const nlohmann::json& values,
+                                                                const std::string& field);
+
+nlohmann::json to_json(const store::TableEditRow& row);
+
+// A sequence of the table, or the one that was there at a time (RFC 3339).
+Result<std::int64_t> sequence_at(store::Store& store, const Table& table, const std::string& text);
+
+}  // namespace strata::net

@@ -1,0 +1,307 @@
+#include <algorithm>
+#include <set>
+
+#include "core/column_value.h"
+#include "store/store_impl.h"
+#include "store/table_past.h"
+#include "store/table_rows.h"
+#include "store/table_writer.h"
+
+namespace strata::store {
+namespace {
+
+nlohmann::json keys_json(const std::vector<std::int64_t>& keys) {
+  return nlohmann::json(
+      std::vector(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(std::min(keys.size(), kMostRowProblems))));
+}
+
+// What was asked for becomes cells, record by record.
+class Intake {
+ public:
+  Intake(PgConnection& connection, const OpenTable& open, const WriteRecords& asked)
+      : connection_(connection), open_(open), asked_(asked) {}
+
+  Result<TableEdit> read(const std::string& user) {
+    std::vector<std::int64_t> keys;
+    for (const RecordInput& input : asked_.records)
+      if (input.key) keys.push_back(*input.key);
+    auto rows = load_rows(connection_, open_.table.id, open_.all, keys);
+    if (!rows) return tl::unexpected(rows.error());
+    for (Record& row : *rows) now_[row.key] = std::move(row);
+    auto gone = used_keys(keys);
+    if (!gone) return tl::unexpected(gone.error());
+    gone_ = std::move(*gone);
+    named_.insert(keys.begin(), keys.end());
+    next_key_ = open_.next_key;
+    TableEdit edit{user, asked_.op, {}, {}, {}};
+    for (std::size_t i = 0; i < asked_.records.size(); ++i)
+      if (auto cells = cells_for(asked_.records[i]); !cells)
+        add_problem(i, cells.error());
+      else if (!cells->second.empty())
+        edit.records.insert(std::move(*cells));
+    std::vector<std::int64_t> written;
+    for (const auto& [key, cells] : edit.records) written.push_back(key);
+    edit.record = {{"records", written.size()}, {"keys", keys_json(written)}};
+    return edit;
+  }
+
+  std::vector<RowProblem>& problems() { return problems_; }
+  std::optional<std::size_t> index_of(std::int64_t key) const {
+    const auto found = index_of_.find(key);
+    return found == index_of_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  // Keys that a record had once: it may come back by undo.
+  Result<std::set<std::int64_t>> used_keys(const std::vector<std::int64_t>& keys) {
+    PgArray asked(oid::kInt8);
+    for (const auto key : keys) asked.add(key);
+    auto rows = connection_.query(
+        "SELECT DISTINCT subject_id FROM table_changes WHERE table_id = $1 AND subject = 'record' AND subject_id = any($2)",
+        Params().integer(open_.table.id).array(asked));
+    if (!rows) return tl::unexpected(rows.error());
+    std::set<std::int64_t> used;
+    for (int i = 0; i < rows->rows(); ++i)
+      if (!now_.contains(rows->integer(i, 0))) used.insert(rows->integer(i, 0));
+    return used;
+  }
+
+  // The cells that change; of a new record also those of its defaults.
+  Result<std::pair<std::int64_t, Cells>> cells_for(const RecordInput& input) {
+    const std::size_t index = next_index_++;
+    if (input.key && (*input.key < 0 || *input.key > kHighestKey))
+      return fail(422, "Bad key", "Keys are whole numbers from 0 to 4294967295.", "key");
+    const auto now = input.key ? now_.find(*input.key) : now_.end();
+    const bool exists = now != now_.end();
+    if (exists ? !asked_.may_change : !asked_.may_create)
+      return exists
+                 ? fail(409, "Record exists", "There is a record " + std::to_string(*input.key) + " already.", "key")
+                 : Result<std::pair<std::int64_t, Cells>>(not_found("record", std::to_string(input.key.value_or(0))));
+    if (exists && input.version && *input.version != now->second.version) return stale("record");
+    if (!exists && input.key && gone_.contains(*input.key))
+      return fail(409, "Key used before",
+                  "Key " + std::to_string(*input.key) + " was a record's that is deleted. Keys are not given again.",
+                  "key");
+    while (!input.key && named_.contains(next_key_)) ++next_key_;
+    if (!input.key && next_key_ > kHighestKey)
+      return fail(409, "No keys left", "All keys up to 4294967295 were given.", "key");
+    const std::int64_t key = input.key ? *input.key : next_key_++;
+    if (!index_of_.emplace(key, index).second)
+      return fail(422, "Record named twice", "Record " + std::to_string(key) + " stands here twice.", "key");
+    Cells cells;
+    if (!exists) cells["exists"] = true;
+    for (const auto& [id, value] : input.values)
+      if (std::none_of(open_.table.columns.begin(), open_.table.columns.end(),
+                       [id = id](const Column& column) { return column.id == id; }))
+        return not_found("column", std::to_string(id));
+    for (const Column& column : open_.table.columns) {
+      const auto given = input.values.find(column.id);
+      if (given == input.values.end() && exists) continue;
+      auto value = check_value(column, given == input.values.end() ? column.default_value : given->second,
+                               "values." + column.slug);
+      if (!value) return tl::unexpected(value.error());
+      nlohmann::json held;
+      if (exists)
+        if (const auto cell = now->second.values.find(column.id); cell != now->second.values.end()) held = cell->second;
+      if (*value != held) cells[std::to_string(column.id)] = std::move(*value);
+    }
+    return std::pair(key, std::move(cells));
+  }
+
+  void add_problem(std::size_t index, const Problem& problem) {
+    if (problems_.size() < kMostRowProblems)
+      problems_.push_back({asked_.records[index].key.value_or(0), problem, index});
+  }
+
+  PgConnection& connection_;
+  const OpenTable& open_;
+  const WriteRecords& asked_;
+  std::map<std::int64_t, Record> now_;
+  std::set<std::int64_t> gone_, named_;
+  std::map<std::int64_t, std::size_t> index_of_;
+  std::int64_t next_key_ = 1;
+  std::size_t next_index_ = 0;
+  std::vector<RowProblem> problems_;
+};
+
+Result<TableChange> write(PgConnection& connection, std::int64_t table_id, const WriteRecords& asked,
+                          const std::string& user) {
+  auto open = lock_table(connection, table_id);
+  if (!open) return tl::unexpected(open.error());
+  Intake intake(connection, *open, asked);
+  auto edit = intake.read(user);
+  if (!edit) return tl::unexpected(edit.error());
+  TableChange change;
+  change.table = open->table;
+  change.problems = std::move(intake.problems());
+  // Nothing that was not so before: no entry.
+  if (!change.problems.empty() || edit->records.empty()) return change;
+  auto done = apply_edit(connection, *open, std::move(*edit));
+  if (!done) return done;
+  for (RowProblem& problem : done->problems) problem.index = intake.index_of(problem.key);
+  return done;
+}
+
+}  // namespace
+
+Result<TableChange> Store::write_records(std::int64_t table_id, const WriteRecords& asked, const std::string& user,
+                                         const FirstAnswer<TableChange>& answer) {
+  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  if (asked.records.size() > kMostRecordsAtOnce)
+    return fail(413, "Too many records", "At most " + std::to_string(kMostRecordsAtOnce) + " records go in one call.");
+  // What is only tried, and what has problems, is rolled back, and told all the same.
+  std::optional<TableChange> told;
+  auto done = impl_->change(
+      answer,
+      [&](PgConnection& connection) -> Result<TableChange> {
+        auto change = write(connection, table_id, asked, user);
+        if (!change || (change->problems.empty() && !asked.dry_run)) return change;
+        told = std::move(*change);
+        return fail(409, "Not kept", "Nothing was written.");
+      },
+      kBulkLimits);
+  if (told) return std::move(*told);
+  return done;
+}
+
+Result<TableChange> Store::delete_record(std::int64_t table_id, std::int64_t key, std::optional<std::int64_t> version,
+                                         const std::string& user, bool dry_run,
+                                         const FirstAnswer<TableChange>& answer) {
+  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  std::optional<TableChange> told;
+  auto done = impl_->change(answer, [&](PgConnection& connection) -> Result<TableChange> {
+    auto open = lock_table(connection, table_id);
+    if (!open) return tl::unexpected(open.error());
+    auto rows = load_rows(connection, table_id, open->all, std::vector{key});
+    if (!rows) return tl::unexpected(rows.error());
+    if (rows->empty()) return not_found("record", std::to_string(key));
+    if (version && *version != rows->front().version) return stale("record");
+    TableEdit edit{user, "delete", {{"records", 1}, {"keys", nlohmann::json::array({key})}}, {}, {}};
+    Cells& cells = edit.records[key];
+    cells["exists"] = false;
+    for (const Column& column : open->all) cells[std::to_string(column.id)] = nullptr;
+    auto change = apply_edit(connection, *open, std::move(edit));
+    if (change && !change->problems.empty()) return tl::unexpected(change->problems.front().problem);
+    if (!change || !dry_run) return change;
+    told = std::move(*change);
+    return fail(409, "Not kept", "Nothing was written.");
+  });
+  if (told) return std::move(*told);
+  return done;
+}
+
+Result<Store::RecordPage> Store::records(std::int64_t table_id, const RecordQuery& query) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<RecordPage> {
+    // One moment for the columns and the rows.
+    auto transaction = Transaction::begin(connection);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto isolated = connection.script("SET TRANSACTION ISOLATION LEVEL REPEATABLE READ READ ONLY");
+    if (!isolated) return tl::unexpected(isolated.error());
+    auto open = read_table(connection, table_id);
+    if (!open) return tl::unexpected(open.error());
+    if (query.at && *query.at > open->table.sequence)
+      return fail(422, "Not yet there",
+                  "The newest sequence of this table is " + std::to_string(open->table.sequence) + ".", "at");
+    RecordPage page;
+    std::optional<std::vector<Record>> past;
+    if (query.at && *query.at < open->table.sequence) {
+      auto rows = rows_at(connection, *open, *query.at);
+      if (!rows) return tl::unexpected(rows.error());
+      past = std::move(*rows);
+    }
+    page.table = open->table;
+    std::vector<RecordOrder> order;
+    for (const auto& [ref, descending] : query.order) {
+      if (ref == "key") {
+        order.push_back({0, descending});
+        continue;
+      }
+      const Column* column = find_column(open->table.columns, ref);
+      if (!column)
+        return fail(422, "No such column", "The table has no column `" + ref.substr(0, 100) + "`.", "sortby");
+      order.push_back({column->id, descending});
+    }
+    Result<std::vector<Record>> rows;
+    if (query.keys) {
+      if (past) {
+        std::erase_if(*past, [&](const Record& row) {
+          return std::find(query.keys->begin(), query.keys->end(), row.key) == query.keys->end();
+        });
+        rows = std::move(*past);
+      } else {
+        rows = load_rows(connection, table_id, open->table.columns, *query.keys);
+      }
+      if (rows) page.total = static_cast<std::int64_t>(rows->size());
+    } else if (past) {
+      page.total = static_cast<std::int64_t>(past->size());
+      rows = page_of_rows(connection, table_id, open->table.columns, *past, order, query.limit, query.offset);
+    } else {
+      page.total = open->table.records;
+      rows = load_page(connection, table_id, open->table.columns, order, query.limit, query.offset);
+    }
+    if (!rows) return tl::unexpected(rows.error());
+    page.records = std::move(*rows);
+    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    return page;
+  });
+}
+
+Result<std::vector<std::int64_t>> Store::missing_records(std::int64_t table_id, std::span<const std::int64_t> keys) {
+  return impl_->pool.read([&](PgConnection& connection) { return missing_rows(connection, table_id, keys); });
+}
+
+Result<std::int64_t> Store::table_sequence_at(std::int64_t table_id, std::chrono::system_clock::time_point time) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
+    auto row = connection.query("SELECT coalesce(max(sequence), 0) FROM table_edits WHERE table_id = $1 AND time <= $2",
+                                Params().integer(table_id).time(time));
+    if (!row) return tl::unexpected(row.error());
+    return row->integer(0, 0);
+  });
+}
+
+Result<Store::TableHistory> Store::table_history(std::int64_t table_id, std::optional<std::int64_t> key, int limit,
+                                                 int offset) {
+  return impl_->pool.read(
+      [&](PgConnection& connection) { return read_history(connection, table_id, key, limit, offset); });
+}
+
+Result<UndoPlan> Store::plan_table_undo(std::int64_t table_id, const std::string& user, bool redo) {
+  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  return impl_->pool.read([&](PgConnection& connection) -> Result<UndoPlan> {
+    auto open = read_table(connection, table_id);
+    if (!open) return tl::unexpected(open.error());
+    auto undo = plan_undo(connection, *open, user, redo);
+    if (!undo) return tl::unexpected(undo.error());
+    return std::move(undo->plan);
+  });
+}
+
+Result<TableChange> Store::undo_table(std::int64_t table_id, const std::string& user, bool redo,
+                                      std::int64_t planned_at, const FirstAnswer<TableChange>& answer) {
+  const auto work = [&](PgConnection& connection) -> Result<TableChange> {
+    auto open = lock_table(connection, table_id);
+    if (!open) return tl::unexpected(open.error());
+    if (open->table.sequence != planned_at) return stale("table");
+    auto undo = plan_undo(connection, *open, user, redo);
+    if (!undo) return tl::unexpected(undo.error());
+    const std::int64_t sequence = open->table.sequence + 1;
+    auto change = apply_edit(connection, *open, std::move(undo->edit));
+    if (!change) return change;
+    if (!change->problems.empty()) {
+      Problem problem = change->problems.front().problem;
+      return fail(409, redo ? "Cannot be redone" : "Cannot be undone", problem.detail, problem.field);
+    }
+    auto flipped =
+        connection.query("UPDATE table_edits SET in_force = $3, undone_by = $4 WHERE table_id = $1 AND sequence = $2",
+                         Params()
+                             .integer(table_id)
+                             .integer(undo->plan.edit)
+                             .boolean(redo)
+                             .optional_integer(redo ? std::nullopt : std::optional(sequence)));
+    if (!flipped) return tl::unexpected(flipped.error());
+    return change;
+  };
+  return impl_->change(answer, work, kBulkLimits);
+}
+
+}  // namespace strata::store

@@ -1,0 +1,250 @@
+#include "store/table_rows.h"
+
+#include "core/column_value.h"
+#include "core/edtf.h"
+
+namespace strata::store {
+namespace {
+
+constexpr std::size_t kRowsAtOnce = 2000;  // of an INSERT: some MB of JSON at most for usual rows
+
+std::string table_name(std::int64_t table_id) { return "records.t" + std::to_string(table_id); }
+std::string column_name(const Column& column) { return "c" + std::to_string(column.id); }
+std::string index_name(std::int64_t table_id, const Column& column) {
+  return "t" + std::to_string(table_id) + "_" + column_name(column) + "_unique";
+}
+
+const char* sql_type(ColumnKind kind) {
+  switch (kind) {
+    case ColumnKind::integer:
+    case ColumnKind::term: return "bigint";
+    case ColumnKind::numeric: return "double precision";
+    case ColumnKind::boolean: return "boolean";
+    case ColumnKind::date: return "date";
+    case ColumnKind::timestamp: return "timestamptz";
+    case ColumnKind::relation: return "bigint[]";
+    default: return "text";
+  }
+}
+
+// The value as columns keep it: PostgreSQL prints times in its own way, and whole numbers without a point.
+nlohmann::json value_of(const Column& column, const nlohmann::json& stored) {
+  if (stored.is_null()) return stored;
+  if (column.kind == ColumnKind::numeric) return stored.get<double>();
+  if (column.kind != ColumnKind::timestamp) return stored;
+  Column bare;
+  bare.kind = column.kind;
+  return check_value(bare, stored, "").value_or(stored);
+}
+
+std::vector<Record> read_rows(const PgResult& rows, const std::vector<Column>& columns) {
+  std::vector<Record> records;
+  records.reserve(static_cast<std::size_t>(rows.rows()));
+  for (int i = 0; i < rows.rows(); ++i) {
+    Record record{rows.integer(i, 0), rows.integer(i, 1), {}};
+    const nlohmann::json stored = rows.json(i, 2);
+    for (const Column& column : columns)
+      if (const auto found = stored.find(column_name(column)); found != stored.end() && !found->is_null())
+        record.values[column.id] = value_of(column, *found);
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+// As jsonb_populate_recordset takes them.
+nlohmann::json rows_json(const std::vector<Column>& columns, std::span<const Record> rows) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Record& row : rows) {
+    nlohmann::json json{{"key", row.key}, {"version", row.version}};
+    for (const Column& column : columns) {
+      const auto found = row.values.find(column.id);
+      if (found == row.values.end() || found->second.is_null()) continue;
+      json[column_name(column)] = found->second;
+      if (column.kind != ColumnKind::period) continue;
+      const auto period = parse_edtf(found->second.get_ref<const std::string&>());
+      if (period && period->first_day) json[column_name(column) + "_first"] = *period->first_day;
+      if (period && period->last_day) json[column_name(column) + "_last"] = *period->last_day;
+    }
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+std::string order_by(const std::vector<Column>& columns, std::span<const RecordOrder> order) {
+  std::string sql = " ORDER BY ";
+  bool by_key = false;
+  for (const RecordOrder& by : order) {
+    const std::string way = by.descending ? " DESC NULLS LAST, " : " ASC NULLS LAST, ";
+    if (by.column == 0) {
+      sql += "key" + way;
+      by_key = true;
+      break;  // nothing is left to decide
+    }
+    for (const Column& column : columns) {
+      if (column.id != by.column) continue;
+      const std::string name = column_name(column);
+      if (column.kind == ColumnKind::period)
+        sql += name + "_first" + way + name + "_last" + way;
+      else if (std::string_view(sql_type(column.kind)) == "text")
+        sql += "lower(" + name + ")" + way + name + way;
+      else
+        sql += name + way;
+    }
+  }
+  if (!by_key) sql += "key, ";
+  return sql.substr(0, sql.size() - 2);
+}
+
+PgArray array_of(std::span<const std::int64_t> keys) {
+  PgArray array(oid::kInt8);
+  for (const auto key : keys) array.add(key);
+  return array;
+}
+
+Result<void> run(PgConnection& connection, const std::string& sql) {
+  auto done = connection.query_once(sql);
+  return done ? Result<void>{} : tl::unexpected(done.error());
+}
+
+}  // namespace
+
+Result<void> make_rows_table(PgConnection& connection, std::int64_t table_id) {
+  return run(connection, "CREATE TABLE " + table_name(table_id) + " (key bigint PRIMARY KEY CHECK (key BETWEEN 0 AND " +
+                             std::to_string(kHighestKey) + "), version bigint NOT NULL)");
+}
+
+Result<void> drop_rows_table(PgConnection& connection, std::int64_t table_id) {
+  return run(connection, "DROP TABLE " + table_name(table_id));
+}
+
+Result<void> add_rows_column(PgConnection& connection, std::int64_t table_id, const Column& column) {
+  const std::string name = column_name(column);
+  std::string sql = "ALTER TABLE " + table_name(table_id) + " ADD COLUMN " + name + " " + sql_type(column.kind);
+  if (column.kind == ColumnKind::period)
+    sql += ", ADD COLUMN " + name + "_first bigint, ADD COLUMN " + name + "_last bigint";
+  return run(connection, sql);
+}
+
+Result<void> make_unique_index(PgConnection& connection, std::int64_t table_id, const Column& column) {
+  return run(connection, "CREATE UNIQUE INDEX IF NOT EXISTS " + index_name(table_id, column) + " ON " +
+                             table_name(table_id) + " (" + column_name(column) + ")");
+}
+
+Result<void> drop_unique_index(PgConnection& connection, std::int64_t table_id, const Column& column) {
+  return run(connection, "DROP INDEX IF EXISTS records." + index_name(table_id, column));
+}
+
+Result<std::vector<Record>> load_rows(PgConnection& connection, std::int64_t table_id,
+                                      const std::vector<Column>& columns, std::span<const std::int64_t> keys) {
+  auto rows = connection.query_once(
+      "SELECT key, version, to_jsonb(t) FROM " + table_name(table_id) + " t WHERE key = any($1) ORDER BY key",
+      Params().array(array_of(keys)));
+  if (!rows) return tl::unexpected(rows.error());
+  return read_rows(*rows, columns);
+}
+
+Result<std::vector<Record>> load_all_rows(PgConnection& connection, std::int64_t table_id,
+                                          const std::vector<Column>& columns) {
+  auto rows =
+      connection.query_once("SELECT key, version, to_jsonb(t) FROM " + table_name(table_id) + " t ORDER BY key");
+  if (!rows) return tl::unexpected(rows.error());
+  return read_rows(*rows, columns);
+}
+
+Result<std::vector<Record>> load_page(PgConnection& connection, std::int64_t table_id,
+                                      const std::vector<Column>& columns, std::span<const RecordOrder> order,
+                                      std::int64_t limit, std::int64_t offset) {
+  auto rows = connection.query_once("SELECT key, version, to_jsonb(t) FROM " + table_name(table_id) + " t" +
+                                        order_by(columns, order) + " LIMIT $1 OFFSET $2",
+                                    Params().integer(limit).integer(offset));
+  if (!rows) return tl::unexpected(rows.error());
+  return read_rows(*rows, columns);
+}
+
+Result<std::vector<Record>> page_of_rows(PgConnection& connection, std::int64_t table_id,
+                                         const std::vector<Column>& columns, std::span<const Record> rows,
+                                         std::span<const RecordOrder> order, std::int64_t limit, std::int64_t offset) {
+  auto page = connection.query_once(
+      "SELECT key, version, to_jsonb(t) FROM jsonb_populate_recordset(NULL::" + table_name(table_id) + ", $3) t" +
+          order_by(columns, order) + " LIMIT $1 OFFSET $2",
+      Params().integer(limit).integer(offset).json(rows_json(columns, rows)));
+  if (!page) return tl::unexpected(page.error());
+  return read_rows(*page, columns);
+}
+
+Result<void> delete_rows(PgConnection& connection, std::int64_t table_id, std::span<const std::int64_t> keys) {
+  auto done = connection.query_once("DELETE FROM " + table_name(table_id) + " WHERE key = any($1)",
+                                    Params().array(array_of(keys)));
+  return done ? Result<void>{} : tl::unexpected(done.error());
+}
+
+Result<void> insert_rows(PgConnection& connection, std::int64_t table_id, const std::vector<Column>& columns,
+                         std::span<const Record> rows) {
+  const std::string name = table_name(table_id);
+  for (std::size_t begin = 0; begin < rows.size(); begin += kRowsAtOnce) {
+    const auto part = rows.subspan(begin, std::min(kRowsAtOnce, rows.size() - begin));
+    auto done =
+        connection.query_once("INSERT INTO " + name + " SELECT * FROM jsonb_populate_recordset(NULL::" + name + ", $1)",
+                              Params().json(rows_json(columns, part)));
+    if (!done) return tl::unexpected(done.error());
+  }
+  return {};
+}
+
+Result<std::optional<Taken>> taken_value(PgConnection& connection, std::int64_t table_id, const Column& column,
+                                         std::span<const Record> rows) {
+  const std::string name = table_name(table_id), of_column = column_name(column);
+  std::map<std::string, std::int64_t> met;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto value = rows[i].values.find(column.id);
+    if (value == rows[i].values.end() || value->second.is_null()) continue;
+    const auto [first, is_first] = met.emplace(value->second.dump(), rows[i].key);
+    if (!is_first) return std::optional(Taken{i, first->second, true});
+  }
+  if (met.empty()) return std::optional<Taken>();
+  auto row = connection.query_once("SELECT i.key, t.key FROM jsonb_populate_recordset(NULL::" + name + ", $1) i JOIN " +
+                                       name + " t ON t." + of_column + " = i." + of_column + " LIMIT 1",
+                                   Params().json(rows_json({column}, rows)));
+  if (!row) return tl::unexpected(row.error());
+  if (row->rows() == 0) return std::optional<Taken>();
+  std::size_t at = 0;
+  while (at + 1 < rows.size() && rows[at].key != row->integer(0, 0)) ++at;
+  return std::optional(Taken{at, row->integer(0, 1)});
+}
+
+Result<std::optional<std::pair<std::int64_t, std::int64_t>>> twins(PgConnection& connection, std::int64_t table_id,
+                                                                   const Column& column) {
+  const std::string of_column = column_name(column);
+  auto row = connection.query_once("SELECT min(key), max(key) FROM " + table_name(table_id) + " WHERE " + of_column +
+                                   " IS NOT NULL GROUP BY " + of_column + " HAVING count(*) > 1 LIMIT 1");
+  if (!row) return tl::unexpected(row.error());
+  if (row->rows() == 0) return std::optional<std::pair<std::int64_t, std::int64_t>>();
+  return std::optional(std::pair(row->integer(0, 0), row->integer(0, 1)));
+}
+
+Result<std::vector<std::int64_t>> missing_rows(PgConnection& connection, std::int64_t table_id,
+                                               std::span<const std::int64_t> keys) {
+  auto rows = connection.query_once("SELECT DISTINCT k FROM unnest($1::bigint[]) k WHERE NOT EXISTS (SELECT 1 FROM " +
+                                        table_name(table_id) + " t WHERE t.key = k) ORDER BY k",
+                                    Params().array(array_of(keys)));
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<std::int64_t> missing;
+  for (int i = 0; i < rows->rows(); ++i) missing.push_back(rows->integer(i, 0));
+  return missing;
+}
+
+Result<std::optional<std::pair<std::int64_t, std::int64_t>>> row_naming(PgConnection& connection, std::int64_t table_id,
+                                                                        const Column& column,
+                                                                        std::span<const std::int64_t> keys) {
+  const std::string name = column_name(column);
+  const std::string sql =
+      column.kind == ColumnKind::term
+          ? "SELECT key, " + name + " FROM " + table_name(table_id) + " WHERE " + name + " = any($1) LIMIT 1"
+          : "SELECT key, k FROM " + table_name(table_id) + ", unnest(" + name + ") k WHERE k = any($1) LIMIT 1";
+  auto row = connection.query_once(sql, Params().array(array_of(keys)));
+  if (!row) return tl::unexpected(row.error());
+  if (row->rows() == 0) return std::optional<std::pair<std::int64_t, std::int64_t>>();
+  return std::optional(std::pair(row->integer(0, 0), row->integer(0, 1)));
+}
+
+}  // namespace strata::store

@@ -1,0 +1,213 @@
+#include "core/column_value.h"
+#include "store/store_impl.h"
+#include "store/table_rows.h"
+#include "store/table_writer.h"
+
+namespace strata::store {
+namespace {
+
+Result<Table> table_of(PgConnection& connection, std::int64_t id) {
+  auto open = read_table(connection, id);
+  if (!open) return tl::unexpected(open.error());
+  return std::move(open->table);
+}
+
+// Refuses a column that the table does not show, and (412) a version that is not the table's.
+Result<const Column*> shown_column(const OpenTable& open, std::int64_t column_id, std::optional<std::int64_t> version) {
+  if (version && *version != open.table.version) return stale("table");
+  for (const Column& column : open.table.columns)
+    if (column.id == column_id) return &column;
+  return not_found("column", std::to_string(column_id));
+}
+
+Result<TableChange> refused_by_records(Result<TableChange> change) {
+  if (change && !change->problems.empty()) return tl::unexpected(change->problems.front().problem);
+  return change;
+}
+
+// The values of a column in a new one that takes its place; those that it cannot hold are lost, and named.
+Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Column& old, Column column,
+                           const std::string& user) {
+  auto made = insert_column(connection, open, column);
+  if (!made) return tl::unexpected(made.error());
+  open.all.push_back(*made);
+  TableEdit edit{user, "retype-column", {{"column", made->id}, {"from", old.id}}, {}, {}};
+  edit.columns[old.id] = {{"hidden", true}};
+  edit.columns[made->id] = {{"hidden", false}};
+  auto rows = load_all_rows(connection, open.table.id, {old});
+  if (!rows) return tl::unexpected(rows.error());
+  nlohmann::json lost = nlohmann::json::array();
+  std::int64_t converted = 0, lost_count = 0;
+  Column lenient = *made;
+  lenient.required = false;
+  for (const Record& row : *rows) {
+    const auto value = row.values.find(old.id);
+    if (value == row.values.end()) continue;
+    auto then = convert_value(old, lenient, value->second, {});
+    if (then && !then->is_null()) {
+      edit.records[row.key][std::to_string(made->id)] = std::move(*then);
+      ++converted;
+    } else {
+      ++lost_count;
+      if (lost.size() < kMostRowProblems) lost.push_back(row.key);
+    }
+  }
+  edit.record["converted"] = converted;
+  edit.record["lost"] = lost_count;
+  edit.record["lost_keys"] = std::move(lost);
+  return refused_by_records(apply_edit(connection, open, std::move(edit)));
+}
+
+}  // namespace
+
+Result<std::vector<Table>> Store::tables(std::int64_t project_id) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Table>> {
+    auto rows = connection.query("SELECT id FROM record_tables WHERE project_id = $1 ORDER BY lower(name), id",
+                                 Params().integer(project_id));
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<Table> tables;
+    for (int i = 0; i < rows->rows(); ++i) {
+      auto table = table_of(connection, rows->integer(i, 0));
+      if (!table && table.error().status == 404) continue;  // deleted meanwhile
+      if (!table) return tl::unexpected(table.error());
+      tables.push_back(std::move(*table));
+    }
+    return tables;
+  });
+}
+
+Result<Table> Store::table(const std::string& ref) {
+  if (!check_text(ref, "table")) return not_found("table", ref);
+  return impl_->pool.read([&](PgConnection& connection) -> Result<Table> {
+    if (const auto id = id_of(ref)) return table_of(connection, *id);
+    auto row = connection.query("SELECT id FROM record_tables WHERE slug = $1", Params().text(ref));
+    if (!row) return tl::unexpected(row.error());
+    if (row->rows() == 0) return not_found("table", ref);
+    return table_of(connection, row->integer(0, 0));
+  });
+}
+
+Result<Table> Store::create_table(const Table& table, const FirstAnswer<Table>& answer) {
+  return impl_->change(answer, [&](PgConnection& connection) { return insert_table(connection, table); });
+}
+
+Result<Table> Store::update_table(const Table& table, const FirstAnswer<Table>& answer) {
+  if (auto good = check_name(table.name); !good) return tl::unexpected(good.error());
+  if (auto good = check_text(table.description, "description"); !good) return tl::unexpected(good.error());
+  if (auto good = check_labels(table.labels); !good) return tl::unexpected(good.error());
+  return impl_->change(answer, [&](PgConnection& connection) -> Result<Table> {
+    auto row = connection.query(
+        "UPDATE record_tables SET name = $3, labels = $4, description = $5, version = version + 1 "
+        "WHERE id = $1 AND version = $2 RETURNING id",
+        Params().integer(table.id).integer(table.version).text(table.name).json(table.labels).text(table.description));
+    if (!row) return tl::unexpected(row.error());
+    auto now = table_of(connection, table.id);
+    if (!now) return now;
+    return row->rows() > 0 ? now : Result<Table>(stale("table"));
+  });
+}
+
+Result<void> Store::delete_table(std::int64_t id, const FirstAnswer<>& answer) {
+  return impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
+    auto open = lock_table(connection, id);
+    if (!open) return tl::unexpected(open.error());
+    auto users = connection.query(
+        "SELECT 'the layer ' || l.name || ' of ' || m.name FROM layers l JOIN models m ON m.id = l.model_id "
+        "WHERE l.table_id = $1 UNION ALL "
+        "SELECT 'the column ' || (c.properties ->> 'name') || ' of ' || t.name FROM record_columns c "
+        "JOIN record_tables t ON t.id = c.table_id WHERE c.target = $1 AND c.table_id <> $1 LIMIT 1",
+        Params().integer(id));
+    if (!users) return tl::unexpected(users.error());
+    if (users->rows() > 0)
+      return fail(409, "Table in use", "The table is named by " + users->text(0, 0) + ". Delete that one first.");
+    if (auto gone = drop_rows_table(connection, id); !gone) return gone;
+    // Its own columns may point at it.
+    auto columns = connection.query("DELETE FROM record_columns WHERE table_id = $1", Params().integer(id));
+    if (!columns) return tl::unexpected(columns.error());
+    auto gone = connection.query("DELETE FROM record_tables WHERE id = $1", Params().integer(id));
+    return gone ? Result<void>{} : tl::unexpected(gone.error());
+  });
+}
+
+Result<std::vector<Layer>> Store::layers_of_table(std::int64_t table_id) {
+  auto refs = impl_->pool.read([&](PgConnection& connection) {
+    return connection.query("SELECT model_id, id FROM layers WHERE table_id = $1 ORDER BY model_id, draw_order, id",
+                            Params().integer(table_id));
+  });
+  if (!refs) return tl::unexpected(refs.error());
+  std::vector<Layer> layers;
+  for (int i = 0; i < refs->rows(); ++i) {
+    auto found = layer(refs->integer(i, 0), std::to_string(refs->integer(i, 1)));
+    if (!found && found.error().status == 404) continue;  // deleted meanwhile
+    if (!found) return tl::unexpected(found.error());
+    layers.push_back(std::move(*found));
+  }
+  return layers;
+}
+
+Result<TableChange> Store::create_column(std::int64_t table_id, const Column& column, const std::string& user,
+                                         const FirstAnswer<TableChange>& answer) {
+  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  const auto work = [&](PgConnection& connection) -> Result<TableChange> {
+    auto open = lock_table(connection, table_id);
+    if (!open) return tl::unexpected(open.error());
+    Column fresh = column;
+    if (auto fits = fit_column(connection, *open, fresh); !fits) return tl::unexpected(fits.error());
+    auto made = insert_column(connection, *open, std::move(fresh));
+    if (!made) return tl::unexpected(made.error());
+    open->all.push_back(*made);
+    TableEdit edit{user, "create-column", {{"column", made->id}}, {}, {}};
+    edit.columns[made->id] = {{"hidden", false}};
+    if (!made->default_value.is_null()) {
+      auto rows = load_all_rows(connection, table_id, {});
+      if (!rows) return tl::unexpected(rows.error());
+      for (const Record& row : *rows) edit.records[row.key][std::to_string(made->id)] = made->default_value;
+    }
+    return refused_by_records(apply_edit(connection, *open, std::move(edit)));
+  };
+  return impl_->change(answer, work, kBulkLimits);
+}
+
+Result<TableChange> Store::update_column(std::int64_t table_id, const Column& column,
+                                         std::optional<std::int64_t> version, const std::string& user,
+                                         const FirstAnswer<TableChange>& answer) {
+  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  const auto work = [&](PgConnection& connection) -> Result<TableChange> {
+    auto open = lock_table(connection, table_id);
+    if (!open) return tl::unexpected(open.error());
+    auto found = shown_column(*open, column.id, version);
+    if (!found) return tl::unexpected(found.error());
+    const Column old = **found;
+    Column wished = column;
+    if (auto fits = fit_column(connection, *open, wished); !fits) return tl::unexpected(fits.error());
+    if (wished.kind != old.kind || wished.target != old.target)
+      return retype(connection, *open, old, std::move(wished), user);
+    TableEdit edit{user, "change-column", {{"column", old.id}}, {}, {}};
+    const Cells now = cells_of(old);
+    for (auto& [name, value] : cells_of(wished))
+      if (now.at(name) != value) edit.columns[old.id][name] = value;
+    if (edit.columns.empty()) {
+      TableChange nothing;
+      nothing.table = std::move(open->table);
+      return nothing;
+    }
+    return refused_by_records(apply_edit(connection, *open, std::move(edit)));
+  };
+  return impl_->change(answer, work, kBulkLimits);
+}
+
+Result<TableChange> Store::drop_column(std::int64_t table_id, std::int64_t column_id,
+                                       std::optional<std::int64_t> version, const std::string& user,
+                                       const FirstAnswer<TableChange>& answer) {
+  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  return impl_->change(answer, [&](PgConnection& connection) -> Result<TableChange> {
+    auto open = lock_table(connection, table_id);
+    if (!open) return tl::unexpected(open.error());
+    if (auto found = shown_column(*open, column_id, version); !found) return tl::unexpected(found.error());
+    TableEdit edit{user, "drop-column", {{"column", column_id}}, {}, {}};
+    edit.columns[column_id] = {{"hidden", true}};
+    return apply_edit(connection, *open, std::move(edit));
+  });
+}
+
+}  // namespace strata::store

@@ -1,0 +1,322 @@
+#!/usr/bin/env python3
+"""A day's work with the tables of a project, over HTTP: two trenches share their units, records come by hand and as CSV, keys are painted, changed, undone,
+read as they were, deleted with what is painted; and what bad input gets."""
+import csv
+import io
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.cameras import camera_from
+from support.live_client import LiveClient
+from support.meshes import bumpy_ball, folded_grid
+from support.strata_server import StrataServer
+
+CSV = {"Content-Type": "text/csv"}
+T = "/tables/units"
+NORTH, SOUTH = "/models/north/layers/units", "/models/south/layers/units"
+
+
+def records(server, path=T, query=""):
+    return {each["key"]: each["values"] for each in server.ok("GET", f"{path}/records{query}").json()["records"]}
+
+
+def area(server, key, path):
+    return server.ok("GET", f"{path}/records/{key}").json()["area_m2"]
+
+
+def make_tables(server):
+    condition = server.ok("POST", "/projects/default/tables", {
+        "name": "Condition", "labels": {"es": "Estado"}, "columns": [{"name": "Term", "required": True, "unique": True}]})
+    assert condition.headers["Location"] == "/api/v1/tables/condition"
+    for term in ("sound", "cracked", "lost"):
+        server.ok("POST", "/tables/condition/records", {"values": {"term": term}})
+    columns = [
+        {"name": "Code", "required": True, "unique": True, "labels": {"es": "Código"}},
+        {"name": "Depth", "kind": "numeric", "unit": "m", "minimum": 0},
+        {"name": "Period", "kind": "period"},
+        {"name": "Dug", "kind": "date"},
+        {"name": "Soil", "kind": "enumeration", "choices": ["sand", "clay"], "default": "clay"},
+        {"name": "Condition", "kind": "term", "target": "condition"},
+    ]
+    keyed = {"Idempotency-Key": "units"}
+    table = server.ok("POST", "/projects/default/tables", {"name": "Units", "columns": columns}, headers=keyed).json()
+    again = server.ok("POST", "/projects/default/tables", {"name": "Units", "columns": columns}, headers=keyed).json()
+    assert again["id"] == table["id"] and server.get("/projects/default/tables").json()["total"] == 2
+    above = server.ok("POST", T + "/columns", {"name": "Above", "kind": "relation", "target": table["id"]}).json()
+    assert above["column"]["slug"] == "above" and above["sequence"] == 1
+    assert [each["slug"] for each in server.get(T + "/columns").json()["columns"]] == [
+        "code", "depth", "period", "dug", "soil", "condition", "above"]
+    return table
+
+
+def share_layers(server, table):
+    """Layers of two models name one table; what a layer is made with of its own is a table of its name."""
+    for model in ("north", "south"):
+        layer = server.ok("POST", f"/models/{model}/layers",
+                          {"name": "Units", "kind": "database", "type": "u16", "table": "units", "resolution": 2048}).json()
+        assert layer["table"] == table["id"], layer
+    own = server.ok("POST", "/models/north/layers", {"name": "Samples", "kind": "database", "columns": [{"name": "Number", "kind": "integer"}]}).json()
+    assert server.get(f"/tables/{own['table']}").json()["slug"] == "samples"
+    bare = server.ok("POST", "/models/north/layers", {"name": "Notes", "kind": "database"}).json()
+    assert [each["name"] for each in server.get(f"/tables/{bare['table']}").json()["columns"]] == ["Name"]
+
+
+def write_records(server, live):
+    first = server.ok("POST", T + "/records", {"values": {"code": "SU 1", "depth": 0.5, "period": "1560~/1580", "dug": "2024-05-02"}})
+    assert first.status == 201 and first.headers["Location"] == "/api/v1/tables/units/records/1"
+    record = first.json()
+    assert record["values"]["soil"] == "clay" and record["values"]["condition"] is None, record
+    told = live.receive_until("record")
+    assert (told["event"], told["table"], told["key"], told["record"]) == ("created", server.get(T).json()["id"], 1, record), told
+    several = server.ok("POST", T + "/records", {"records": [
+        {"values": {"code": "SU 2", "above": [1], "condition": 2}}, {"key": 300, "values": {"code": "SU 300", "period": "-0043"}}]}).json()
+    assert [each["key"] for each in several["records"]] == [2, 300]
+    etag = first.headers["ETag"]
+    changed = server.ok("PATCH", T + "/records/1", {"values": {"depth": 0.75}}, headers={"If-Match": etag})
+    assert changed.json()["values"]["depth"] == 0.75
+    assert server.request("PATCH", T + "/records/1", {"values": {"depth": 9}}, headers={"If-Match": etag}).status == 412
+    assert server.request("PATCH", T + "/records/1", {"version": record["version"], "values": {"depth": 9}}).status == 412
+    same = server.ok("PATCH", T + "/records/1", {"values": {"depth": 0.75}})
+    assert same.json() == changed.json(), "nothing changed, so nothing is written"
+    assert list(records(server, query="?sortby=period")) == [300, 1, 2]
+    assert list(records(server, query="?sortby=-code&limit=2")) == [300, 2]
+    page = server.ok("GET", T + "/records?limit=1&offset=1")
+    assert 'rel="next"' in page.headers["Link"] and page.json()["total"] == 3
+
+
+def paint(server, cameras):
+    refused = server.post(NORTH + "/edits", {"op": "fill", "mode": "where", "where": "true", "value": 9})
+    assert refused.status == 422 and refused.json()["field"] == "value" and "no record 9" in refused.json()["detail"], refused
+    stroke = {"op": "stroke", "camera": cameras["north"], "radius_px": 40, "path": [[320, 240]]}
+    server.ok("POST", NORTH + "/edits", {**stroke, "value": 1})
+    server.ok("POST", SOUTH + "/edits", {"op": "fill", "mode": "where", "where": "true", "value": 1})
+    server.ok("POST", NORTH + "/edits", {**stroke, "value": 2, "path": [[320, 170]]})
+    assert area(server, 1, SOUTH) > area(server, 1, NORTH) > 0
+    assert list(records(server, NORTH, "?sortby=-area_m2"))[2] == 300 and area(server, 300, NORTH) == 0
+    areas = {each["key"]: each for each in server.ok("GET", T + "/areas").json()["areas"]}
+    assert sorted(areas) == [1, 2] and all(each["has_record"] for each in areas.values())
+    assert len(areas[1]["models"]) == 2 and len(areas[2]["models"]) == 1
+    total = sum(model["area_m2"] for model in areas[1]["models"])
+    assert abs(areas[1]["area_m2"] - total) < 1e-9 and abs(total - area(server, 1, NORTH) - area(server, 1, SOUTH)) < 1e-9
+
+
+def paint_live(server, camera):
+    with LiveClient(server, "north") as live:
+        live.send({"op": "hello", "client": "test", "dpr": 1, "accept": ["jpeg"]})
+        live.receive_until("welcome")
+        begin = {"op": "stroke.begin", "layer": "units", "camera": camera, "radius_px": 5}
+        ids = [f"00000000-0000-4000-8000-00000000000{n}" for n in range(6)]
+        live.send({**begin, "id": ids[0], "stroke": ids[1], "value": 77})
+        problem = live.receive_until("problem")
+        assert problem["status"] == 422 and problem["field"] == "value" and problem["ref"] == ids[0], problem
+        live.send({**begin, "id": ids[2], "stroke": ids[3], "value": 2})
+        live.send({"op": "stroke.extend", "id": ids[4], "stroke": ids[3], "n": 0, "path": [[320, 100]]})
+        saved = live.receive_until("saved", "problem")
+        assert saved["op"] == "saved", saved
+
+
+def delete_painted(server):
+    refused = server.request("DELETE", T + "/records/2")
+    assert refused.status == 409 and "cm² on Units of North" in refused.json()["detail"], refused
+    before = area(server, 1, NORTH), area(server, 2, NORTH)
+    server.ok("DELETE", T + "/records/2?texels=reassign&to=1")
+    assert abs(area(server, 1, NORTH) - sum(before)) < 1e-9
+    assert server.get(T + "/records/2").status == 404
+    reused = server.post(T + "/records", {"key": 2, "values": {"code": "x"}})
+    assert reused.status == 409 and reused.json()["title"] == "Key used before"
+    server.ok("POST", NORTH + "/undo")  # the texels are the layer's: they can be taken back, and the record, too
+    assert [each["has_record"] for each in server.ok("GET", T + "/areas").json()["areas"]] == [True, False]
+    undone = server.ok("POST", T + "/undo").json()
+    assert undone["created"] == [2] and records(server)[2]["above"] == [1], undone
+    assert abs(area(server, 2, NORTH) - before[1]) < 1e-9
+
+    in_use = server.request("DELETE", T + "/records/1?texels=clear")
+    assert in_use.status == 409 and in_use.json()["title"] == "Record in use" and area(server, 1, SOUTH) > 0, "nothing was cleared"
+    server.ok("PATCH", T + "/records/2", {"values": {"above": None}})
+    server.ok("DELETE", T + "/records/1?texels=clear")
+    assert server.ok("GET", SOUTH + "/statistics").json()["texels"] == 0
+    history = server.ok("GET", SOUTH + "/edits").json()["edits"]
+    assert history[0]["op"] == "fill" and len(history) == 2
+    server.ok("POST", T + "/undo")
+    server.ok("POST", SOUTH + "/undo")
+    assert area(server, 1, SOUTH) > 0
+    # What would take a painted record away is not undone.
+    server.ok("POST", T + "/records", {"key": 400, "values": {"code": "SU 400"}})
+    server.ok("POST", SOUTH + "/edits", {"op": "fill", "mode": "where", "where": "true", "value": 400})
+    assert server.post(T + "/undo").json()["title"] == "Record is painted"
+    server.ok("POST", SOUTH + "/undo")
+    server.ok("POST", T + "/undo")
+    assert 400 not in records(server)
+
+
+def past_and_history(server):
+    now = server.ok("GET", T).json()["sequence"]
+    assert records(server, query="?at=1") == {}
+    assert records(server, query="?at=2")[1]["depth"] == 0.5
+    assert records(server, query=f"?at={now}") == records(server)
+    history = server.ok("GET", T + "/edits?key=1").json()["edits"]
+    created = history[-1]
+    assert created["op"] == "records" and created["user"] == "owner" and created["changes"][0]["after"]["exists"] is True
+    assert records(server, query="?at=" + created["time"].replace(":", "%3A")) != records(server)
+    assert server.get(T + "/records/1?at=1").status == 404
+    assert server.get(T + "/records?at=2000-01-01T00:00:00Z").json()["total"] == 0
+
+
+def bulk(server):
+    text = server.ok("GET", T + "/records?f=csv").body
+    assert text.startswith(b"\xef\xbb\xbfkey,code,depth,"), text[:60]
+    rows = list(csv.DictReader(io.StringIO(text.decode("utf-8-sig"))))
+    assert [row["code"] for row in rows] == ["SU 1", "SU 2", "SU 300"], rows
+    with_comma = server.ok("GET", NORTH + "/records?f=csv&separator=semicolon").body.decode("utf-8-sig")
+    assert with_comma.splitlines()[0].endswith(";area_m2") and ";0,75;" in with_comma, with_comma
+    # It goes in as it came out, and says that nothing is new.
+    unchanged = server.ok("POST", T + "/records", text, headers=CSV).json()
+    assert (unchanged["unchanged"], unchanged["sequence"]) == (3, 0), unchanged
+    assert server.ok("POST", NORTH + "/records", with_comma.encode(), headers=CSV).json()["unchanged"] == 3
+
+    bad = "key,Código,Depth,Soil,Period\r\n,SU 10,1.5,sand,1560\r\n,SU 11,deep,sand,1560\r\n,\"SU\r\n12\",1,mud,\r\n,SU 10,1,sand,circa\r\n1,SU 1,1\r\n"
+    for dry in ("?dry_run=true", ""):
+        answer = server.post(T + "/records" + dry, bad.encode(), headers=CSV)
+        report = answer.json() if dry else answer.json()["rows"]
+        assert answer.status == (200 if dry else 422), answer
+        assert [(each["line"], each.get("column")) for each in report["problems"]] == [(3, "Depth"), (4, "Soil"), (6, "Period"), (7, None)], report
+        assert report["created"] == report["sequence"] == 0
+    clash = server.post(T + "/records", b"code\nSU 10\nSU 20\nSU 10\n", headers=CSV).json()["rows"]["problems"]
+    assert [(each["line"], each["column"]) for each in clash] == [(4, "code")], clash
+    many = "code;depth\n" + "".join(f"B {n};{n},5\n" for n in range(2000))
+    dry = server.ok("POST", T + "/records?dry_run=true", many.encode(), headers=CSV).json()
+    assert (dry["created"], dry["sequence"], dry["dry_run"]) == (2000, 0, True)
+    with LiveClient(server, "south") as live:
+        live.send({"op": "hello", "client": "test", "dpr": 1, "accept": ["jpeg"]})
+        live.receive_until("welcome")
+        made = server.ok("POST", T + "/records", many.encode(), headers={**CSV, "Idempotency-Key": "many"}).json()
+        assert made["created"] == 2000
+        told = live.receive_until("table", "record")
+        assert told["op"] == "table" and told["event"] == "changed" and told["table"]["records"] == 2003, told
+    assert server.ok("POST", T + "/records", many.encode(), headers={**CSV, "Idempotency-Key": "many"}).json() == made
+    assert server.ok("GET", T + "/records?sortby=-depth&limit=1").json()["records"][0]["values"]["depth"] == 1999.5
+    server.ok("POST", T + "/undo")
+    assert server.get(T).json()["records"] == 3
+
+
+def map_brings_records(server):
+    """Names of a map that the legend lacks become records, under keys that no record has."""
+    server.ok("POST", "/tables/notes/records", {"values": {"name": "by hand"}})
+    features = [{"type": "Feature", "properties": {"what": what},
+                 "geometry": {"type": "Polygon", "coordinates": [[[x, 10], [x + 20, 10], [x + 20, 30], [x, 30], [x, 10]]]}}
+                for what, x in (("pit", 10), ("wall", 50))]
+    notes = "/models/north/layers/notes"
+    server.ok("POST", notes + "/polygons?attribute=what", {"type": "FeatureCollection", "features": features})
+    assert records(server, "/tables/notes") == {1: {"name": "by hand"}, 2: {"name": "pit"}, 3: {"name": "wall"}}
+    assert area(server, 3, notes) > 0 and area(server, 1, notes) == 0
+    assert server.post(notes + "/polygons?value=77", {"type": "FeatureCollection", "features": features}).status == 422
+
+
+def change_columns(server):
+    before = records(server)
+    etag = server.get(T).headers["ETag"]
+    renamed = server.ok("PATCH", T + "/columns/depth", {"name": "Depth below surface", "labels": {"es": "Profundidad"}}, headers={"If-Match": etag}).json()
+    assert renamed["column"]["slug"] == "depth" and renamed["column"]["labels"] == {"es": "Profundidad"}
+    assert server.request("PATCH", T + "/columns/depth", {"unit": "cm"}, headers={"If-Match": etag}).status == 412
+    limit = server.request("PATCH", T + "/columns/depth", {"maximum": 0.1})
+    assert limit.status == 409 and "Record 1" in limit.json()["detail"], limit
+    server.ok("PATCH", T + "/columns/depth", {"maximum": 100})
+    assert "maximum" not in server.ok("PATCH", T + "/columns/depth", {"maximum": None}).json()["column"]
+    retyped = server.ok("PATCH", T + "/columns/code", {"kind": "integer", "required": False, "unique": False}).json()
+    assert (retyped["converted"], retyped["lost"], retyped["lost_keys"]) == (0, 3, [1, 2, 300]), retyped
+    server.ok("POST", T + "/undo")
+    assert records(server) == before
+    server.ok("DELETE", T + "/columns/dug")
+    assert "dug" not in records(server)[1]
+    server.ok("POST", T + "/undo")
+    assert records(server) == before
+    assert server.request("DELETE", "/tables/condition").json()["title"] == "Table in use"
+    assert server.request("DELETE", T).status == 409
+
+
+def refusals(server):
+    for what, method, path, body, headers, status, field in [
+        ("unknown table", "GET", "/tables/none", None, {}, 404, None),
+        ("unknown project", "GET", "/projects/none/tables", None, {}, 404, None),
+        ("unknown column", "DELETE", T + "/columns/none", None, {}, 404, None),
+        ("unknown record", "GET", T + "/records/9", None, {}, 404, None),
+        ("a key that is none", "GET", T + "/records/first", None, {}, 404, None),
+        ("a numeric layer", "GET", "/models/north/layers/wet/records", None, {}, 422, "layer"),
+        ("a table of a numeric layer", "POST", "/models/north/layers", {"name": "x", "table": "units"}, {}, 422, "table"),
+        ("a table that is not there", "POST", "/models/north/layers", {"name": "x", "kind": "database", "table": "none"}, {}, 422, "table"),
+        ("a table and columns", "POST", "/models/north/layers", {"name": "x", "kind": "database", "table": "units", "columns": []}, {}, 422, "columns"),
+        ("a slug of digits", "POST", "/projects/default/tables", {"name": "x", "slug": "12"}, {}, 422, "slug"),
+        ("a column of an unknown kind", "POST", T + "/columns", {"name": "x", "kind": "picture"}, {}, 422, "kind"),
+        ("a term of no table", "POST", T + "/columns", {"name": "x", "kind": "term"}, {}, 422, "target"),
+        ("a required column on records that have none", "POST", T + "/columns", {"name": "x", "required": True}, {}, 409, None),
+        ("a slug that is taken", "POST", T + "/columns", {"name": "x", "slug": "code"}, {}, 409, "slug"),
+        ("a value of another kind", "POST", T + "/records", {"values": {"code": "x", "depth": "deep"}}, {}, 422, "values.depth"),
+        ("a value out of range", "POST", T + "/records", {"values": {"code": "x", "depth": -1}}, {}, 422, "values.depth"),
+        ("no period", "POST", T + "/records", {"values": {"code": "x", "period": "circa 1560"}}, {}, 422, "values.period"),
+        ("no choice", "POST", T + "/records", {"values": {"code": "x", "soil": "mud"}}, {}, 422, "values.soil"),
+        ("no record of the target", "POST", T + "/records", {"values": {"code": "x", "condition": 99}}, {}, 422, "values.condition"),
+        ("a value missing", "POST", T + "/records", {"values": {}}, {}, 422, "values.code"),
+        ("a value twice", "POST", T + "/records", {"values": {"code": "SU 1"}}, {}, 409, "values.code"),
+        ("SQL for a column", "POST", T + "/records", {"values": {"code\"; DROP TABLE records.t1; --": 1}}, {}, 422, None),
+        ("SQL to sort by", "GET", T + "/records?sortby=key;DROP%20TABLE%20records.t1", None, {}, 422, "sortby"),
+        ("a column to sort by that is not there", "GET", T + "/records?sortby=none", None, {}, 422, "sortby"),
+        ("a moment that is none", "GET", T + "/records?at=yesterday", None, {}, 422, "at"),
+        ("a future sequence", "GET", T + "/records?at=100000", None, {}, 422, "at"),
+        ("an unknown format", "GET", T + "/records?f=xlsx", None, {}, 406, "f"),
+        ("an unknown separator", "GET", T + "/records?f=csv&separator=pipe", None, {}, 422, "separator"),
+        ("one and several", "POST", T + "/records", {"key": 5, "records": [{}]}, {}, 422, "records"),
+        ("an empty list", "POST", T + "/records", {"records": []}, {}, 422, "records"),
+        ("a record twice in a list", "POST", T + "/records", {"records": [{"key": 5, "values": {"code": "a"}}, {"key": 5, "values": {"code": "b"}}]}, {}, 422, "records[1].key"),
+        ("texels of no kind", "DELETE", T + "/records/1?texels=burn", None, {}, 422, "texels"),
+        ("reassigned to nothing", "DELETE", T + "/records/1?texels=reassign", None, {}, 422, "to"),
+        ("reassigned to itself", "DELETE", T + "/records/1?texels=reassign&to=1", None, {}, 422, "to"),
+        ("cleared to something", "DELETE", T + "/records/1?texels=clear&to=2", None, {}, 422, "to"),
+        ("CSV of unknown columns", "POST", T + "/records", b"colour\nred\n", CSV, 422, "body"),
+        ("CSV that is not UTF-8", "POST", T + "/records", b"code\n\xff\n", CSV, 422, "body"),
+        ("empty CSV", "POST", T + "/records", b"", CSV, 422, "body"),
+        ("CSV with an open quote", "POST", T + "/records", b'code\n"SU\n', CSV, 422, "body"),
+        ("a dry run of JSON", "POST", T + "/records?dry_run=true", {"values": {}}, {}, 422, "dry_run"),
+        ("nothing to redo", "POST", "/tables/samples/redo", None, {}, 409, None),
+    ]:
+        answer = server.request(method, path, body, headers=headers)
+        assert answer.status == status, f"{what}: {answer}"
+        assert field is None or answer.json().get("field") == field, f"{what}: {answer}"
+    hostile = "Robert'); DROP TABLE records.t1; --\u202e \U0001f3fa"
+    made = server.ok("POST", T + "/records", {"values": {"code": hostile}}).json()
+    assert server.get(f"{T}/records/{made['key']}").json()["values"]["code"] == hostile
+    server.ok("POST", "/projects/default/tables", {"name": hostile, "columns": [{"name": hostile}, {"name": hostile}]})
+    server.ok("DELETE", f"{T}/records/{made['key']}")
+
+
+def main():
+    with StrataServer() as server:
+        models = {"north": server.import_model(folded_grid(), "north.ply", unit="mm", name="North"),
+                  "south": server.import_model(bumpy_ball(), "south.ply", unit="mm", name="South")}
+        cameras = {name: camera_from(model, (0, 0, 1), up=(0, 1, 0)) for name, model in models.items()}
+        server.ok("POST", "/models/north/layers", {"name": "wet"})
+        table = make_tables(server)
+        share_layers(server, table)
+        with LiveClient(server, "south") as live:
+            live.send({"op": "hello", "client": "test", "dpr": 1, "accept": ["jpeg"]})
+            live.receive_until("welcome")
+            write_records(server, live)
+        paint(server, cameras)
+        paint_live(server, cameras["north"])
+        delete_painted(server)
+        past_and_history(server)
+        bulk(server)
+        map_brings_records(server)
+        change_columns(server)
+        refusals(server)
+        content = records(server)
+        assert server.stop() == 0
+        server.start()
+        assert records(server) == content, "all of it is durable"
+        assert server.stop() == 0
+        server.assert_clean_log()
+    print("tables, columns, records, their history and what is painted of them: good")
+
+
+if __name__ == "__main__":
+    main()
