@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/relation_cycles.h"
 #include "net/answer_book.h"
 #include "net/painted_keys.h"
 #include "net/routes.h"
@@ -206,6 +207,27 @@ Result<Response> drop_column(const RouteContext& context, const Request& request
   return answer(*done);
 }
 
+// A record that lies above itself cannot be: told, not refused, since excavation drawings have such things to be found.
+Result<Response> cycles(const RouteContext& context, const Request& request) {
+  auto table = context.store.table(request.param("table"));
+  if (!table) return tl::unexpected(table.error());
+  auto column = column_of(*table, request);
+  if (!column) return tl::unexpected(column.error());
+  if ((*column)->kind != ColumnKind::relation || (*column)->target != table->id)
+    return fail(422, "No relation of its own", "Cycles are those of a relation that names records of its own table.",
+                "column");
+  store::Store::RecordQuery query;
+  query.limit = store::kMostRecords;
+  auto page = context.store.records(table->id, query);
+  if (!page) return tl::unexpected(page.error());
+  Relation relation;
+  for (const Record& record : page->records)
+    if (const auto named = record.values.find((*column)->id); named != record.values.end())
+      relation[record.key] = named->second.get<std::vector<std::int64_t>>();
+  const auto found = relation_cycles(relation);
+  return json_response({{"cycles", found}, {"total", found.size()}});
+}
+
 // --- history
 
 Result<Response> history(const RouteContext& context, const Request& request) {
@@ -328,6 +350,7 @@ void add_table_routes(Router& router, const RouteContext& context) {
   write(Method::post, table + "/columns", create_column);
   write(Method::patch, table + "/columns/{column}", change_column);
   write(Method::remove, table + "/columns/{column}", drop_column, BodyKind::none);
+  read(table + "/columns/{column}/cycles", cycles);
   read(table + "/edits", history, {"key", "limit", "offset"});
   read(table + "/areas", areas);
   for (const bool redo : {false, true})

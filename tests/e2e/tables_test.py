@@ -235,6 +235,17 @@ def change_columns(server):
     assert server.request("DELETE", T).status == 409
 
 
+def circles(server):
+    path = T + "/columns/above/cycles"
+    assert server.ok("GET", path).json() == {"cycles": [], "total": 0}
+    for key, above in ((1, [300]), (300, [2]), (2, [1])):
+        server.ok("PATCH", f"{T}/records/{key}", {"values": {"above": above}})
+    assert server.ok("GET", path).json()["cycles"] == [[1, 300, 2]]
+    server.ok("POST", T + "/undo")
+    assert server.ok("GET", path).json()["total"] == 0
+    assert server.get(T + "/columns/condition/cycles").status == 422
+
+
 def refusals(server):
     for what, method, path, body, headers, status, field in [
         ("unknown table", "GET", "/tables/none", None, {}, 404, None),
@@ -308,6 +319,7 @@ def main():
         bulk(server)
         map_brings_records(server)
         change_columns(server)
+        circles(server)
         refusals(server)
         content = records(server)
         assert server.stop() == 0

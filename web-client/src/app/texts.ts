@@ -179,6 +179,8 @@ export const texts = {
     too_much_waits: "Too much waits to be saved: painting goes on once the server has caught up.",
     record: "Number of the record",
     new_record: "New record",
+    no_record: (n: number) => `The layer's table has no record ${n} yet.`,
+    make_record: (n: number) => `Make record ${n}`,
     new_record_hint: "Adds a record with the next number to the layer's table and paints that number",
     viewer_only: "You may look at this model but not change it.",
   },

@@ -18,7 +18,8 @@ export class StrataValuePicker extends LitElement {
   @property({ attribute: false }) layer!: Layer;
   @property({ attribute: false }) value = 0;
   @state() private wrong_value_ = "";
-  @state() private adding_ = false;
+  @state() private asking_ = false;
+  @state() private missing_: number | null = null; // a number that was typed and has no record
 
   static override styles = [
     shared_styles,
@@ -60,7 +61,10 @@ export class StrataValuePicker extends LitElement {
   ];
 
   override willUpdate(changed: PropertyValues<this>): void {
-    if (changed.has("layer") && changed.get("layer")?.id !== this.layer.id) this.wrong_value_ = "";
+    if (changed.has("layer") && changed.get("layer")?.id !== this.layer.id) {
+      this.wrong_value_ = "";
+      this.missing_ = null;
+    }
   }
 
   override render(): TemplateResult {
@@ -95,7 +99,7 @@ export class StrataValuePicker extends LitElement {
           <input
             type="number"
             step=${steps}
-            .value=${String(value)}
+            .value=${String(this.missing_ ?? value)}
             aria-invalid=${this.wrong_value_ ? "true" : "false"}
             @change=${(event: Event) => this.on_value(layer, event)}
           />
@@ -104,9 +108,7 @@ export class StrataValuePicker extends LitElement {
       </label>
       ${layer.table === undefined
         ? nothing
-        : html`<button title=${texts.brush.new_record_hint} ?disabled=${this.adding_} @click=${() => void this.add_record(layer, layer.table!)}>
-            ${texts.brush.new_record}
-          </button>`}
+        : this.record_buttons(layer, layer.table)}
       ${purpose === "measurement"
         ? html`<input
             type="range"
@@ -122,17 +124,37 @@ export class StrataValuePicker extends LitElement {
     </div>`;
   }
 
-  private async add_record(layer: Layer, table: number): Promise<void> {
-    this.adding_ = true;
+  private record_buttons(layer: Layer, table: number): TemplateResult {
+    const missing = this.missing_;
+    const add = (key?: number) => () => void this.ask(async () => this.set_record(layer, (await this.session.api.create_record(table, key)).key));
+    return html`${missing === null
+        ? nothing
+        : html`<p class="hint" role="status">${texts.brush.no_record(missing)}</p>
+            <button ?disabled=${this.asking_} @click=${add(missing)}>${texts.brush.make_record(missing)}</button>`}
+      <button title=${texts.brush.new_record_hint} ?disabled=${this.asking_} @click=${add()}>${texts.brush.new_record}</button>`;
+  }
+
+  private set_record(layer: Layer, key: number): void {
+    this.missing_ = null;
+    this.set_value(layer, key);
+  }
+
+  /** Only records can be painted: a number that has none is offered to be made. */
+  private async find_record(layer: Layer, table: number, key: number): Promise<void> {
+    if (await this.session.api.has_record(table, key)) this.set_record(layer, key);
+    else this.missing_ = key;
+  }
+
+  private async ask(work: () => Promise<void>): Promise<void> {
+    this.asking_ = true;
+    this.wrong_value_ = "";
     try {
-      const made = await this.session.api.create_record(table);
-      this.set_value(layer, made.key);
-      this.wrong_value_ = "";
+      await work();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.wrong_value_ = error.message;
     } finally {
-      this.adding_ = false;
+      this.asking_ = false;
     }
   }
 
@@ -145,6 +167,9 @@ export class StrataValuePicker extends LitElement {
     const number = typed === "" ? Number.NaN : Number(typed);
     const value = layer.type.startsWith("f") ? Number(number.toPrecision(6)) : number;
     this.wrong_value_ = value_problem(layer, value) ?? "";
-    if (!this.wrong_value_) this.set_value(layer, value);
+    if (this.wrong_value_) return;
+    const { table } = layer;
+    if (table === undefined) this.set_value(layer, value);
+    else void this.ask(() => this.find_record(layer, table, value));
   }
 }

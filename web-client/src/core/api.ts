@@ -148,9 +148,19 @@ export class Api {
   async delete_look(model: Id, look: Id): Promise<void> {
     await this.request("DELETE", look_path(model, look));
   }
-  /** A record of which nothing is said yet, with the next key. */
-  async create_record(table: Id): Promise<wire.TableRecord> {
-    return this.json("POST", `/tables/${encodeURIComponent(table)}/records`, { values: {} });
+  /** A record of which nothing is said yet; without a key it gets the next one. */
+  async create_record(table: Id, key?: number): Promise<wire.TableRecord> {
+    const asked: wire.RecordsCreate = key === undefined ? { values: {} } : { key, values: {} };
+    return this.json("POST", `/tables/${encodeURIComponent(table)}/records`, asked);
+  }
+  async has_record(table: Id, key: number): Promise<boolean> {
+    try {
+      await this.request("GET", `/tables/${encodeURIComponent(table)}/records/${key}`);
+      return true;
+    } catch (error) {
+      if (error instanceof ApiError && error.status === 404) return false;
+      throw error;
+    }
   }
   async tools(): Promise<wire.Tool[]> {
     return (await this.json<wire.ToolList>("GET", "/tools")).tools;
