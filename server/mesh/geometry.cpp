@@ -1,6 +1,7 @@
 #include "mesh/geometry.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -24,24 +25,43 @@ std::uint64_t spread_bits(std::uint64_t value) {
   return (value | value << 2) & 0x1249249249249249ULL;
 }
 
-// Triangle numbers along a Morton curve through their centroids: neighbours on the surface end up near each other,
-// which serves the caches of the GPU, clusters for culling, compression and the search tree at once.
+constexpr int kCurveBits = 21;  // of each coordinate
+constexpr std::uint32_t kCurveEnd = (1u << kCurveBits) - 1;
+
+// The place of a cell on the Hilbert curve (Skilling 2004, "Programming the Hilbert curve").
+std::uint64_t hilbert_code(std::array<std::uint32_t, 3> cell) {
+  for (std::uint32_t bit = 1u << (kCurveBits - 1); bit > 1; bit >>= 1) {
+    const std::uint32_t below = bit - 1;
+    for (auto& coordinate : cell) {
+      const std::uint32_t swapped = (coordinate & bit) != 0 ? 0 : (cell[0] ^ coordinate) & below;
+      cell[0] ^= (coordinate & bit) != 0 ? below : swapped;
+      coordinate ^= swapped;
+    }
+  }
+  cell[1] ^= cell[0];
+  cell[2] ^= cell[1];
+  std::uint32_t turn = 0;
+  for (std::uint32_t bit = 1u << (kCurveBits - 1); bit > 1; bit >>= 1)
+    if ((cell[2] & bit) != 0) turn ^= bit - 1;
+  return spread_bits(cell[0] ^ turn) << 2 | spread_bits(cell[1] ^ turn) << 1 | spread_bits(cell[2] ^ turn);
+}
+
+// Triangle numbers along a Hilbert curve through their centroids: neighbours on the surface end up near each other, and a run of
+// triangles lies together, as the curve never jumps. It serves the caches of the GPU, clusters for culling, compression and the
+// search tree at once.
 std::vector<std::uint32_t> spatial_order(const TriangleMesh& mesh, const glm::dvec3& low, const glm::dvec3& extent) {
   struct Entry {
     std::uint64_t code;
     std::uint32_t triangle;
   };
-  const double scale = 2097151.0 / std::max({extent.x, extent.y, extent.z, 1e-300});
+  const double scale = double{kCurveEnd} / std::max({extent.x, extent.y, extent.z, 1e-300});
   std::vector<Entry> entries(mesh.triangle_count());
   for (std::uint32_t t = 0; t < entries.size(); ++t) {
     const std::uint32_t* corners = &mesh.triangles[3 * std::size_t{t}];
     const glm::dvec3 centroid =
         (mesh.positions[corners[0]] + mesh.positions[corners[1]] + mesh.positions[corners[2]]) / 3.0;
-    const glm::dvec3 cell = glm::clamp((centroid - low) * scale, 0.0, 2097151.0);
-    entries[t] = {spread_bits(static_cast<std::uint64_t>(cell.x)) |
-                      spread_bits(static_cast<std::uint64_t>(cell.y)) << 1 |
-                      spread_bits(static_cast<std::uint64_t>(cell.z)) << 2,
-                  t};
+    const glm::uvec3 cell(glm::clamp((centroid - low) * scale, 0.0, double{kCurveEnd}));
+    entries[t] = {hilbert_code({cell.x, cell.y, cell.z}), t};
   }
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.code != b.code ? a.code < b.code : a.triangle < b.triangle;

@@ -13,7 +13,7 @@
 //   u64 positions, vertices, indices · f64 origin[3] · planes(positions x, y, z as u64) ·
 //   planes(vertex normal, uv.x, uv.y, color, position index as u32) · planes(index codes as u32)
 // "planes" is a column of integers, each replaced by its zigzag difference to the one before, stored byte plane by byte
-// plane: neighbours in the Morton order differ little, so the high planes are nearly all zero. Vertex positions and the
+// plane: neighbours in the order along the curve differ little, so the high planes are nearly all zero. Vertex positions and the
 // box follow from the rest and are not stored.
 
 namespace strata::mesh {

@@ -6,28 +6,48 @@
 #include <limits>
 #include <vector>
 
-// A tree of boxes over the triangles in the order in which the geometry stores them. That order follows a Morton curve,
-// so halving it gives compact boxes without any sorting: a million triangles take some tens of milliseconds, and any
-// other order would only be slower, never wrong. Queries compute in double.
+// A tree of boxes over the triangles in the order in which the geometry stores them. That order follows a Hilbert
+// curve, so runs of it have compact boxes without any sorting: a million triangles take some tens of milliseconds, and any
+// other order would only be slower, never wrong. Each node has eight children, whose boxes lie side by side, so that vectors
+// of the CPU test them together. Triangles are computed in double.
 
 namespace strata::mesh {
 namespace {
 
 constexpr std::size_t kLeafTriangles = 4;
-constexpr int kMaxDepth = 64;
+constexpr std::size_t kWidth = 8;
+constexpr std::size_t kMaxLevels = 12;  // 8^12 leaves
 
-struct Box {
-  glm::vec3 low{std::numeric_limits<float>::infinity()};
-  glm::vec3 high{-std::numeric_limits<float>::infinity()};
-  void grow(const glm::vec3& p) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
+// The boxes of a node's children; those of children that are not there are empty.
+struct Boxes {
+  Boxes() {
+    for (auto& side : low) side.fill(std::numeric_limits<float>::infinity());
+    for (auto& side : high) side.fill(-std::numeric_limits<float>::infinity());
   }
+  void grow(std::size_t child, const glm::vec3& from, const glm::vec3& to) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis][child] = std::min(low[axis][child], from[axis]);
+      high[axis][child] = std::max(high[axis][child], to[axis]);
+    }
+  }
+  std::array<std::array<float, kWidth>, 3> low, high;
 };
+using Keys = std::array<double, kWidth>;
 
-double squared_distance(const Box& box, const glm::dvec3& p) {
-  const glm::dvec3 outside = glm::max(glm::max(glm::dvec3(box.low) - p, p - glm::dvec3(box.high)), glm::dvec3(0));
-  return glm::dot(outside, outside);
+// Not above the squared distances of the boxes: the margin is more than the floats round.
+Keys squared_distances(const Boxes& boxes, const glm::vec3& p) {
+  std::array<float, kWidth> sums{};
+  for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0; i < kWidth; ++i) {
+      const float below = boxes.low[axis][i] - p[axis], above = p[axis] - boxes.high[axis][i];
+      const float outside = std::max(std::max(below, above), 0.0f);
+      sums[i] += outside * outside;
+    }
+  Keys keys;
+  // Points may be so far that a square is no float any more.
+  for (std::size_t i = 0; i < kWidth; ++i)
+    keys[i] = double{std::min(sums[i], std::numeric_limits<float>::max())} * (1 - 1e-6);
+  return keys;
 }
 
 // Weights of the corners at the point of triangle a, b, c that is nearest to p (Ericson, Real-Time Collision
@@ -65,17 +85,24 @@ struct PreparedRay {
     shear = glm::dvec3(direction[kx], direction[ky], 1.0) / direction[kz];
   }
 
-  // Entry distance of the box, or infinity. The factor covers the rounding of the three divisions.
-  double enter(const Box& box, double limit) const {
-    double near = 0, far = limit;
+  // Entry distances of the boxes, or infinity. The factor covers the rounding of the three divisions.
+  Keys enter(const Boxes& boxes, double limit) const {
+    Keys near{}, far;
+    far.fill(limit);
     for (int axis = 0; axis < 3; ++axis) {
-      double t0 = (box.low[axis] - origin[axis]) * inverse[axis], t1 = (box.high[axis] - origin[axis]) * inverse[axis];
-      if (t0 > t1) std::swap(t0, t1);
-      // 0 × infinity: the ray runs inside the face of the box, which bounds nothing.
-      if (t0 > near) near = t0;
-      if (t1 < far) far = t1;
+      // From the side that the ray meets first.
+      const auto& first = inverse[axis] < 0 ? boxes.high[axis] : boxes.low[axis];
+      const auto& last = inverse[axis] < 0 ? boxes.low[axis] : boxes.high[axis];
+      for (std::size_t i = 0; i < kWidth; ++i) {
+        const double t0 = (first[i] - origin[axis]) * inverse[axis], t1 = (last[i] - origin[axis]) * inverse[axis];
+        // 0 × infinity: the ray runs inside the face of the box, which bounds nothing.
+        near[i] = t0 > near[i] ? t0 : near[i];
+        far[i] = t1 < far[i] ? t1 : far[i];
+      }
     }
-    return near <= far * (1 + 1e-14) ? near : std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < kWidth; ++i)
+      near[i] = near[i] <= far[i] * (1 + 1e-14) ? near[i] : std::numeric_limits<double>::infinity();
+    return near;
   }
 
   // Distance to the triangle, in front of the origin; fills `weights`.
@@ -106,26 +133,26 @@ struct SearchTree::Impl {
   explicit Impl(std::shared_ptr<const Geometry> source) : geometry(std::move(source)) {
     leaves = (geometry->triangle_count() + kLeafTriangles - 1) / kLeafTriangles;
     if (leaves == 0) return;
-    nodes.resize(2 * leaves - 1);
-    build(0, 0, leaves);
-  }
-
-  // A node over the leaves [first, last): its left child follows it, its right child comes after the left one's subtree
-  // of 2n-1 nodes, so that no links are stored.
-  void build(std::size_t node, std::size_t first, std::size_t last) {
-    if (last - first == 1) {
-      const std::size_t end = std::min(geometry->triangle_count(), (first + 1) * kLeafTriangles);
-      for (std::size_t t = first * kLeafTriangles; t < end; ++t) {
-        for (std::size_t k = 0; k < 3; ++k) nodes[node].grow(geometry->vertices[geometry->indices[3 * t + k]].position);
+    levels.emplace_back((leaves + kWidth - 1) / kWidth);
+    for (std::size_t t = 0; t < geometry->triangle_count(); ++t) {
+      const std::size_t leaf = t / kLeafTriangles;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const glm::vec3& corner = geometry->vertices[geometry->indices[3 * t + k]].position;
+        levels.front()[leaf / kWidth].grow(leaf % kWidth, corner, corner);
       }
-      return;
     }
-    const std::size_t middle = first + (last - first) / 2;
-    const std::size_t left = node + 1, right = node + 2 * (middle - first);
-    build(left, first, middle);
-    build(right, middle, last);
-    nodes[node].low = glm::min(nodes[left].low, nodes[right].low);
-    nodes[node].high = glm::max(nodes[left].high, nodes[right].high);
+    while (levels.back().size() > 1) {
+      const auto& below = levels.back();
+      std::vector<Boxes> nodes((below.size() + kWidth - 1) / kWidth);
+      for (std::size_t i = 0; i < below.size(); ++i)
+        for (std::size_t child = 0; child < kWidth; ++child) {
+          const auto corner = [&](const auto& side) {
+            return glm::vec3(side[0][child], side[1][child], side[2][child]);
+          };
+          nodes[i / kWidth].grow(i % kWidth, corner(below[i].low), corner(below[i].high));
+        }
+      levels.push_back(std::move(nodes));
+    }
   }
 
   std::array<glm::dvec3, 3> corners(std::size_t triangle) const {
@@ -133,32 +160,37 @@ struct SearchTree::Impl {
     return {geometry->vertices[i[0]].position, geometry->vertices[i[1]].position, geometry->vertices[i[2]].position};
   }
 
-  // Visits leaves in the order of `key` (of a box: distance so far, infinity to skip) while it is below `limit`, which
-  // `visit` may lower.
-  template <class Key, class Visit>
-  void search(double& limit, Key key, Visit visit) const {
+  // Visits the triangles of leaves in the order of their keys while these are not above `limit`, which `visit` may lower.
+  // `keys_of` gives those of a node's children: distances, infinity to skip.
+  template <class KeysOf, class Visit>
+  void search(double& limit, KeysOf keys_of, Visit visit) const {
     struct Entry {
       double key;
-      std::size_t node, first, last;
+      std::size_t level;  // of nodes, 1 is the lowest; 0: a leaf
+      std::size_t index;
     };
-    if (leaves == 0) return;
-    std::array<Entry, kMaxDepth + 1> stack;
-    int depth = 0;
-    stack[depth++] = {key(nodes[0]), 0, 0, leaves};
+    if (levels.empty()) return;
+    std::array<Entry, kMaxLevels * kWidth> stack;
+    std::size_t depth = 0;
+    stack[depth++] = {0, levels.size(), 0};
     while (depth > 0) {
       const Entry entry = stack[--depth];
       if (!(entry.key <= limit)) continue;
-      if (entry.last - entry.first == 1) {
-        const std::size_t end = std::min(geometry->triangle_count(), entry.last * kLeafTriangles);
-        for (std::size_t t = entry.first * kLeafTriangles; t < end; ++t) visit(t);
+      if (entry.level == 0) {
+        const std::size_t end = std::min(geometry->triangle_count(), (entry.index + 1) * kLeafTriangles);
+        for (std::size_t t = entry.index * kLeafTriangles; t < end; ++t) visit(t);
         continue;
       }
-      const std::size_t middle = entry.first + (entry.last - entry.first) / 2;
-      const std::size_t left = entry.node + 1, right = entry.node + 2 * (middle - entry.first);
-      Entry near{key(nodes[left]), left, entry.first, middle}, far{key(nodes[right]), right, middle, entry.last};
-      if (far.key < near.key) std::swap(near, far);
-      if (far.key <= limit) stack[depth++] = far;
-      if (near.key <= limit) stack[depth++] = near;
+      const Keys keys = keys_of(levels[entry.level - 1][entry.index]);
+      const std::size_t below = entry.level == 1 ? leaves : levels[entry.level - 2].size();
+      const std::size_t first = depth, children = std::min(kWidth, below - entry.index * kWidth);
+      for (std::size_t child = 0; child < children; ++child) {
+        if (!(keys[child] <= limit)) continue;
+        // The nearest is on top of the stack.
+        std::size_t place = depth++;
+        for (; place > first && stack[place - 1].key < keys[child]; --place) stack[place] = stack[place - 1];
+        stack[place] = {keys[child], entry.level - 1, entry.index * kWidth + child};
+      }
     }
   }
 
@@ -170,7 +202,7 @@ struct SearchTree::Impl {
     std::size_t found = std::numeric_limits<std::size_t>::max();
     glm::dvec3 found_weights(0);
     search(
-        limit, [&](const Box& box) { return squared_distance(box, p); },
+        limit, [&](const Boxes& boxes) { return squared_distances(boxes, point); },
         [&](std::size_t triangle) {
           const auto [a, b, c] = corners(triangle);
           const glm::dvec3 weights = nearest_weights(p, a, b, c);
@@ -206,7 +238,7 @@ struct SearchTree::Impl {
 
   std::shared_ptr<const Geometry> geometry;
   std::size_t leaves = 0;
-  std::vector<Box> nodes;
+  std::vector<std::vector<Boxes>> levels;  // the lowest nodes, whose children are leaves, first
 };
 
 SearchTree::SearchTree(std::shared_ptr<const Geometry> geometry) : impl_(std::make_unique<Impl>(std::move(geometry))) {}
@@ -234,7 +266,7 @@ std::optional<SearchTree::Hit> SearchTree::first_hit(const glm::vec3& origin, co
   std::size_t found = std::numeric_limits<std::size_t>::max();
   glm::dvec3 found_weights(0);
   impl_->search(
-      limit, [&](const Box& box) { return ray.enter(box, limit); },
+      limit, [&](const Boxes& boxes) { return ray.enter(boxes, limit); },
       [&](std::size_t triangle) {
         const auto [a, b, c] = impl_->corners(triangle);
         glm::dvec3 weights(0);

@@ -124,6 +124,23 @@ TEST(MeshGeometry, triangles_are_the_same_as_those_of_the_mesh_in_a_local_order)
   EXPECT_LT(step, step_mixed / 10);
 }
 
+TEST(MeshGeometry, the_order_of_the_triangles_never_jumps) {
+  constexpr int kSide = 8;
+  TriangleMesh mesh;
+  for (int z = 0; z < kSide; ++z)
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        const glm::dvec3 at(x, y, z);
+        mesh.positions.insert(mesh.positions.end(), {at, at + glm::dvec3(1e-3, 0, 0), at + glm::dvec3(0, 1e-3, 0)});
+        mesh.triangles.insert(mesh.triangles.end(), {first, first + 1, first + 2});
+      }
+  const Geometry geometry = build_geometry(mesh, {});
+  const auto place = [&](std::size_t triangle) { return geometry.vertices[geometry.indices[3 * triangle]].position; };
+  for (std::size_t t = 1; t < geometry.triangle_count(); ++t)
+    EXPECT_NEAR(glm::distance(place(t - 1), place(t)), 1, 0.01) << "triangle " << t;
+}
+
 TEST(MeshGeometry, what_is_encoded_is_decoded_bit_for_bit) {
   TriangleMesh mesh = mesh::make_demo_pot(0.03);
   for (auto& p : mesh.positions) p += glm::dvec3(433210.123, 4581234.567, 612.25);

@@ -154,6 +154,7 @@ TEST(MeshSearchTree, queries_that_mean_nothing_find_nothing) {
   EXPECT_FALSE(tree.nearest({0, 0, 0}, nan));
   EXPECT_FALSE(tree.nearest({0, 0, 0}, -1));
   EXPECT_TRUE(tree.nearest({0, 0, 0}, infinity));
+  EXPECT_TRUE(tree.nearest({1e30f, 0, 0}, std::numeric_limits<float>::max())) << "its square is no float";
   const SearchTree empty(std::make_shared<Geometry>());
   EXPECT_FALSE(empty.nearest({0, 0, 0}, 1e9f));
   EXPECT_FALSE(empty.first_hit({0, 0, 1}, {0, 0, -1}));
