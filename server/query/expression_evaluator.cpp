@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <numbers>
 
 #include "mesh/parallel.h"
+#include "query/texel_values.h"
 #include "query/tile_table.h"
 
 namespace strata::query {
@@ -178,6 +180,7 @@ class Block {
   // Validity alone costs no decoding.
   Numbers layer(const std::string& slug, bool decoded) const {
     const Source& source = sources_.at(slug);
+    if (source.resolution == resolution_) return same_block(source, decoded);
     Numbers result;
     for (int i = 0; i < kTexels; ++i) {
       const int x = in_layer(bx_ * kBlockSize + i % kBlockSize, source),
@@ -190,6 +193,35 @@ class Block {
       if (!decoded || std::isfinite(result.value[i])) result.known |= Bits{1} << i;
     }
     return result;
+  }
+
+  // Of a layer that has the map's own texels.
+  Numbers same_block(const Source& source, bool decoded) const {
+    Numbers result;
+    const TileData* tile = source.tiles.of_block(bx_, by_);
+    if (tile == nullptr) return result;
+    const int bx = bx_ % kBlocksPerTile, by = by_ % kBlocksPerTile;
+    result.known = block_bits(tile->valid, bx, by);
+    if (!decoded || result.known == 0) return result;
+    const auto take = [&]<class TexelBits>(TexelBits, auto value_of) {
+      for (int row = 0; row < kBlockSize; ++row) {
+        const auto first = static_cast<std::size_t>((by * kBlockSize + row) * kTileSize + bx * kBlockSize);
+        std::array<TexelBits, kBlockSize> bits;
+        std::memcpy(bits.data(), tile->values.data() + first * sizeof(TexelBits), sizeof bits);
+        for (int x = 0; x < kBlockSize; ++x)
+          result.value[static_cast<std::size_t>(row * kBlockSize + x)] = value_of(bits[static_cast<std::size_t>(x)]);
+      }
+    };
+    const double* values = values_of_bits(source.type);
+    switch (source.type) {
+      case ValueType::f32: take(float{}, [](float value) { return double{value}; }); break;
+      case ValueType::u32: take(std::uint32_t{}, [](std::uint32_t value) { return static_cast<double>(value); }); break;
+      case ValueType::i32: take(std::int32_t{}, [](std::int32_t value) { return static_cast<double>(value); }); break;
+      case ValueType::u8:
+      case ValueType::i8: take(std::uint8_t{}, [values](std::uint8_t bits) { return values[bits]; }); break;
+      default: take(std::uint16_t{}, [values](std::uint16_t bits) { return values[bits]; }); break;
+    }
+    return only_finite(std::move(result));
   }
 
   // The layer's texel that holds the centre of the map's.

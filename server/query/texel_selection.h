@@ -15,7 +15,7 @@ struct SelectionExtent {
   double area = 0;            // unit²
   glm::vec3 low{0}, high{0};  // model space, where there is a texel
 };
-// Of the surface texels in `selection`; null: of all.
-SelectionExtent measure_selection(const mesh::SurfaceMap& map, const TexelSelection* selection);
+// Of the surface texels in `selection`; null: of all. The same on any number of threads.
+SelectionExtent measure_selection(const mesh::SurfaceMap& map, const TexelSelection* selection, int threads = 1);
 
 }  // namespace strata::query

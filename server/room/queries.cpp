@@ -175,7 +175,7 @@ Result<SelectedArea> OpenRoom::select(const Selection& selection, const std::vec
   const auto selected = select_texels(selection, **map);
   if (!selected) return tl::unexpected(selected.error());
   const double m2_per_unit2 = model().metres() * model().metres();
-  const auto extent = query::measure_selection(**map, *selected ? &**selected : nullptr);
+  const auto extent = query::measure_selection(**map, *selected ? &**selected : nullptr, mesh::background_threads());
   area.texels = extent.texels;
   area.area_m2 = extent.area * m2_per_unit2;
   area.share = (*map)->area_total > 0 ? std::min(1.0, extent.area / (*map)->area_total) : 0;

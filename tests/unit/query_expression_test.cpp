@@ -171,6 +171,29 @@ TEST(Expression, a_condition_selects_the_surface_texels_where_it_holds) {
   for (const auto& [text, expected] : cases) expect_selected(text, expected);
 }
 
+TEST(Expression, layers_of_every_type_and_resolution_read_alike) {
+  const mesh::SurfaceMap map = full_map();
+  for (const auto type : {ValueType::u8, ValueType::i8, ValueType::u16, ValueType::i16, ValueType::u32, ValueType::i32,
+                          ValueType::f16, ValueType::f32}) {
+    SCOPED_TRACE(name(type));
+    const double low = lowest_value(type) < 0 ? -60 : 0;
+    const auto value = [&](int x, int y) -> Value {
+      return (x + 2 * y) % 5 == 0 ? Value() : Value((7 * x + y) % 120 + low);
+    };
+    // The same content at the map's own resolution and at half of it, four texels for one.
+    const auto own = layer("own", type, kSide, [&](int x, int y) { return value(x / 2, y / 2); }),
+               half = layer("half", type, kSide / 2, value);
+    const auto selection = [&](const char* text) {
+      return *select_where(*parse_condition(text, ""), {own.view, half.view}, map, "where");
+    };
+    EXPECT_EQ(selection("own > 20"), selection("half > 20"));
+    EXPECT_EQ(selection("valid(own)"), selection("valid(half)"));
+    const auto equal = selection("own = half");
+    EXPECT_EQ(equal, selection("valid(own)"));
+    EXPECT_GT(std::popcount(equal.front()), 10);
+  }
+}
+
 TEST(Expression, what_is_not_known_is_not_selected_nor_is_its_contrary) {
   expect_selected("not wet > 0.25", [](int, int, const At& a) { return a.wet && !(*a.wet > 0.25); });
   expect_selected("wet > 0 or roof-crack > 0",
