@@ -15,7 +15,7 @@ class DemoRules {
   static constexpr int kSherds = 14;
   enum Crack : std::uint8_t { none = 0, hairline = 1, crack = 2, open_crack = 3 };
 
-  // Points of the surface, model units, from which the seeds are chosen evenly; at least kSherds of them.
+  // Points of the surface in any order, model units, from which the seeds are chosen evenly; at least kSherds of them.
   explicit DemoRules(std::span<const glm::vec3> surface);
 
   struct Marks {

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 
 namespace strata::jobs {
 namespace {
@@ -50,6 +52,17 @@ TEST(JobsDemoRules, a_sherd_goes_through_the_wall) {
   for (const auto& p : outside) {
     const auto inside = rules.at(p * 0.9f), here = rules.at(p);
     ASSERT_EQ(inside.sherd == here.sherd || here.crack != DemoRules::none || inside.crack != DemoRules::none, true);
+  }
+}
+
+TEST(JobsDemoRules, the_order_of_the_points_does_not_matter) {
+  const auto points = ball(20'000, 50);
+  auto shuffled = points;
+  std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(3));
+  const DemoRules one(points), two(shuffled);
+  for (const auto& p : points) {
+    ASSERT_EQ(one.at(p).sherd, two.at(p).sherd);
+    ASSERT_EQ(one.at(p).crack, two.at(p).crack);
   }
 }
 
