@@ -112,7 +112,8 @@ TouchedTiles EditCuller::touched(const gl::Readback& read, int resolution) {
   std::array<std::uint32_t, 2> counts;
   std::memcpy(counts.data(), read.data().data(), sizeof counts);
   std::vector<std::uint32_t> numbers(counts[1]);
-  std::memcpy(numbers.data(), read.data().data() + kCountBytes, numbers.size() * sizeof(std::uint32_t));
+  if (!numbers.empty())
+    std::memcpy(numbers.data(), read.data().data() + kCountBytes, numbers.size() * sizeof(std::uint32_t));
   TouchedTiles touched;
   touched.parts = counts[0];
   const auto per_side = static_cast<std::uint32_t>(resolution / kTileSize);
