@@ -12,6 +12,15 @@ std::vector<std::string> slugs_of(const std::vector<Layer>& layers) {
   return slugs;
 }
 
+// Those of a body, or all.
+Result<std::vector<Layer>> asked_layers(const room::Room& room,
+                                        const std::optional<std::vector<protocol::LayerRef>>& asked) {
+  if (!asked) return room.layers();
+  std::vector<std::string> refs;
+  for (const auto& ref : *asked) refs.push_back(protocol::to_ref(ref));
+  return find_layers(room, refs, "layers");
+}
+
 constexpr const char* kCsvType = "text/csv; charset=utf-8";
 
 Result<Response> position(const RouteContext& context, const Request& request) {
@@ -54,23 +63,17 @@ Result<Response> positions(const RouteContext& context, const Request& request) 
   if (!asked) return tl::unexpected(asked.error());
   auto room = context.rooms.open(request.param("model"));
   if (!room) return tl::unexpected(room.error());
-  std::vector<Layer> layers = (*room)->layers();
-  if (asked->layers) {
-    std::vector<std::string> refs;
-    for (const auto& ref : *asked->layers) refs.push_back(protocol::to_ref(ref));
-    auto found = find_layers(**room, refs, "layers");
-    if (!found) return tl::unexpected(found.error());
-    layers = std::move(*found);
-  }
+  const auto layers = asked_layers(**room, asked->layers);
+  if (!layers) return tl::unexpected(layers.error());
   const std::vector<glm::dvec3> points(asked->points.begin(), asked->points.end());
   const auto at = find_sequence(context, **room, asked->at);
   if (!at) return tl::unexpected(at.error());
   const auto sequence = at->value_or((*room)->sequence());
-  auto answers = (*room)->positions(points, slugs_of(layers), *at);
+  auto answers = (*room)->positions(points, slugs_of(*layers), *at);
   if (!answers) return tl::unexpected(answers.error());
   Response response;
   if (request.header("accept").find("text/csv") != std::string_view::npos) {
-    response = text_response(points_csv(*answers, slugs_of(layers)), kCsvType);
+    response = text_response(points_csv(*answers, slugs_of(*layers)), kCsvType);
   } else {
     nlohmann::json list = nlohmann::json::array();
     for (const auto& point : *answers) list.push_back(protocol::to_json(to_protocol(point)));
@@ -87,14 +90,8 @@ Result<Response> profile(const RouteContext& context, const Request& request) {
   if (!asked) return tl::unexpected(asked.error());
   const auto room = context.rooms.open(request.param("model"));
   if (!room) return tl::unexpected(room.error());
-  std::vector<Layer> layers = (*room)->layers();
-  if (asked->layers) {
-    std::vector<std::string> refs;
-    for (const auto& ref : *asked->layers) refs.push_back(protocol::to_ref(ref));
-    auto found = find_layers(**room, refs, "layers");
-    if (!found) return tl::unexpected(found.error());
-    layers = std::move(*found);
-  }
+  const auto layers = asked_layers(**room, asked->layers);
+  if (!layers) return tl::unexpected(layers.error());
   const Unit unit = (*room)->model().unit;
   room::ProfileLine line;
   if (asked->places)
@@ -104,10 +101,10 @@ Result<Response> profile(const RouteContext& context, const Request& request) {
   const auto at = find_sequence(context, **room, asked->at);
   if (!at) return tl::unexpected(at.error());
   const auto sequence = at->value_or((*room)->sequence());
-  const auto found = (*room)->profile(line, slugs_of(layers), *at);
+  const auto found = (*room)->profile(line, slugs_of(*layers), *at);
   if (!found) return tl::unexpected(found.error());
   const bool as_csv = request.header("accept").find("text/csv") != std::string_view::npos;
-  Response response = as_csv ? text_response(profile_csv(*found, unit, slugs_of(layers)), kCsvType)
+  Response response = as_csv ? text_response(profile_csv(*found, unit, slugs_of(*layers)), kCsvType)
                              : json_response(to_json(*found, unit));
   add_sequences(response, sequence, (*room)->durable_sequence());
   response.with("Vary", "Accept");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/csv.h"
 #include "query/expression_parser.h"
 
 namespace strata::net {
@@ -95,16 +96,6 @@ std::string number(double value) {
   char text[40];
   const auto [end, error] = std::to_chars(text, text + sizeof text, value);
   return error == std::errc() ? std::string(text, end) : "0";
-}
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
 }
 
 nlohmann::json vec3(const glm::dvec3& v) { return nlohmann::json::array({v.x, v.y, v.z}); }
@@ -304,13 +295,13 @@ nlohmann::json to_json(const query::CrossTable& table) {
 
 std::string cross_table_csv(const query::CrossTable& table, const std::string& rows, const std::string& columns) {
   const auto key_text = [](const query::CrossTable::Key& key) { return key ? number(*key) : std::string("-"); };
-  std::string text = csv_field(rows + " / " + columns);
-  for (const auto& column : table.columns) text += "," + key_text(column);
-  text += "\r\n";
+  std::vector<std::string> cells{rows + " / " + columns};
+  for (const auto& column : table.columns) cells.push_back(key_text(column));
+  std::string text = csv_line(cells, ',');
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    text += key_text(table.rows[row]);
-    for (const double area : table.area_m2[row]) text += "," + number(area);
-    text += "\r\n";
+    cells.assign(1, key_text(table.rows[row]));
+    for (const double area : table.area_m2[row]) cells.push_back(number(area));
+    text += csv_line(cells, ',');
   }
   return text;
 }
@@ -362,9 +353,9 @@ nlohmann::json to_json(const store::JournalRow& row) {
 namespace {
 
 std::string point_header(const std::vector<std::string>& layers) {
-  std::string text = "hit,x,y,z,normal_x,normal_y,normal_z,distance,u,v";
-  for (const auto& layer : layers) text += "," + csv_field(layer);
-  return text + "\r\n";
+  std::vector<std::string> cells{"hit", "x", "y", "z", "normal_x", "normal_y", "normal_z", "distance", "u", "v"};
+  cells.insert(cells.end(), layers.begin(), layers.end());
+  return csv_line(cells, ',');
 }
 
 void append_point(const query::SurfacePoint& point, const std::vector<std::string>& layers, std::string& text) {

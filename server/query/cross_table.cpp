@@ -20,23 +20,18 @@ struct Sum {
 class Values {
  public:
   Values(const LayerView& view, int map_resolution)
-      : table_(view.snapshot.tiles, view.layer.resolution),
-        resolution_(view.layer.resolution),
-        map_resolution_(map_resolution) {}
+      : table_(view.snapshot.tiles, view.layer.resolution), map_resolution_(map_resolution) {}
   std::uint64_t at(int x, int y) const {
-    x = in_layer(x);
-    y = in_layer(y);
+    x = table_.texel_under(x, map_resolution_);
+    y = table_.texel_under(y, map_resolution_);
     const TileData* tile = table_.of_texel(x, y);
     const int texel = y % kTileSize * kTileSize + x % kTileSize;
     return tile && tile->valid.test(texel) ? tile->bits(texel) : kNone;
   }
 
  private:
-  int in_layer(int texel) const {
-    return static_cast<int>((2 * std::int64_t{texel} + 1) * resolution_ / (2 * std::int64_t{map_resolution_}));
-  }
   const TileTable table_;
-  const int resolution_, map_resolution_;
+  const int map_resolution_;
 };
 
 // The values of one side in order, and the place of each.

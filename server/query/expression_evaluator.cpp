@@ -183,8 +183,8 @@ class Block {
     if (source.resolution == resolution_) return same_block(source, decoded);
     Numbers result;
     for (int i = 0; i < kTexels; ++i) {
-      const int x = in_layer(bx_ * kBlockSize + i % kBlockSize, source),
-                y = in_layer(by_ * kBlockSize + i / kBlockSize, source);
+      const int x = source.tiles.texel_under(bx_ * kBlockSize + i % kBlockSize, resolution_),
+                y = source.tiles.texel_under(by_ * kBlockSize + i / kBlockSize, resolution_);
       const TileData* tile = source.tiles.of_texel(x, y);
       const int texel = (y % kTileSize) * kTileSize + x % kTileSize;
       if (tile == nullptr || !tile->valid.test(texel)) continue;
@@ -222,11 +222,6 @@ class Block {
       default: take(std::uint16_t{}, [values](std::uint16_t bits) { return values[bits]; }); break;
     }
     return only_finite(std::move(result));
-  }
-
-  // The layer's texel that holds the centre of the map's.
-  int in_layer(int texel, const Source& source) const {
-    return static_cast<int>((2 * std::int64_t{texel} + 1) * source.resolution / (2 * std::int64_t{resolution_}));
   }
 
   const Sources& sources_;

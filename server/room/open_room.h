@@ -131,7 +131,9 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   Result<TileMirror::Snapshot> tiles_at(const LayerState& state, At at) const;
   Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs, At at) const;
   Result<std::optional<query::TexelSelection>> select_texels(const Selection& selection, const mesh::SurfaceMap& map);
-  Result<query::Statistics> count(const query::LayerView& view, const Selection& selection, StatisticsWanted wanted);
+  // `within` is null where the whole surface is meant; `is_now`: the view is the newest, whose sums are kept.
+  Result<query::Statistics> count(const query::LayerView& view, const mesh::SurfaceMap& map,
+                                  const query::TexelSelection* within, bool is_now, StatisticsWanted wanted);
 
   const RoomParts parts_;
   const std::int64_t model_id_;

@@ -1,5 +1,7 @@
 // Questions to an open model: they are answered from mirrors and maps in main memory, beside those who paint.
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "mesh/parallel.h"
 #include "mesh/slot_bits.h"
@@ -129,26 +131,22 @@ Result<std::optional<query::TexelSelection>> OpenRoom::select_texels(const Selec
   return selected;
 }
 
-Result<query::Statistics> OpenRoom::count(const query::LayerView& view, const Selection& selection,
-                                          StatisticsWanted wanted) {
-  const auto map = surface_map(view.layer.resolution);
-  if (!map) return tl::unexpected(map.error());
-  const auto selected = select_texels(selection, **map);
-  if (!selected) return tl::unexpected(selected.error());
+Result<query::Statistics> OpenRoom::count(const query::LayerView& view, const mesh::SurfaceMap& map,
+                                          const query::TexelSelection* within, bool is_now, StatisticsWanted wanted) {
   query::StatisticsRequest request;
-  if (*selected) request.within = &**selected;
+  request.within = within;
   request.quantiles = wanted.quantiles;
   request.threads = mesh::background_threads();
   std::shared_ptr<const mesh::TexelGraph> graph;
   if (wanted.pieces) {
-    auto found = surface_->graph(**map);
+    auto found = surface_->graph(map);
     if (!found) return tl::unexpected(found.error());
     graph = std::move(*found);
     request.pieces = graph.get();
   }
   const auto found = state(view.layer.slug);
-  if (found && !selection.at) request.cache = found->sums.get();
-  return query::statistics(view, **map, geometry_->origin, model().metres(), request);
+  if (found && is_now) request.cache = found->sums.get();
+  return query::statistics(view, map, geometry_->origin, model().metres(), request);
 }
 
 Result<query::Statistics> OpenRoom::statistics(const std::string& layer, const Selection& selection,
@@ -156,7 +154,11 @@ Result<query::Statistics> OpenRoom::statistics(const std::string& layer, const S
   touch();
   const auto views = layer_views({layer}, selection.at);
   if (!views) return tl::unexpected(views.error());
-  return count(views->front(), selection, wanted);
+  const auto map = surface_map(views->front().layer.resolution);
+  if (!map) return tl::unexpected(map.error());
+  const auto selected = select_texels(selection, **map);
+  if (!selected) return tl::unexpected(selected.error());
+  return count(views->front(), **map, *selected ? &**selected : nullptr, !selection.at, wanted);
 }
 
 Result<SelectedArea> OpenRoom::select(const Selection& selection, const std::vector<std::string>& layers,
@@ -170,19 +172,32 @@ Result<SelectedArea> OpenRoom::select(const Selection& selection, const std::vec
     for (const auto& slug : layers_of(*selection.where))
       if (const auto found = state(slug)) area.resolution = std::max(area.resolution, found->layer.resolution);
   if (area.resolution == 0) area.resolution = model().default_resolution;
-  const auto map = surface_map(area.resolution);
-  if (!map) return tl::unexpected(map.error());
-  const auto selected = select_texels(selection, **map);
-  if (!selected) return tl::unexpected(selected.error());
+  struct Selected {
+    std::shared_ptr<const mesh::SurfaceMap> map;
+    std::optional<query::TexelSelection> texels;
+    const query::TexelSelection* within() const { return texels ? &*texels : nullptr; }
+  };
+  std::map<int, Selected> of_resolution;  // layers of one resolution share it
+  std::set<int> resolutions{area.resolution};
+  for (const auto& view : *views) resolutions.insert(view.layer.resolution);
+  for (const int resolution : resolutions) {
+    auto map = surface_map(resolution);
+    if (!map) return tl::unexpected(map.error());
+    auto selected = select_texels(selection, **map);
+    if (!selected) return tl::unexpected(selected.error());
+    of_resolution[resolution] = {std::move(*map), std::move(*selected)};
+  }
+  const Selected& finest = of_resolution.at(area.resolution);
   const double m2_per_unit2 = model().metres() * model().metres();
-  const auto extent = query::measure_selection(**map, *selected ? &**selected : nullptr, mesh::background_threads());
+  const auto extent = query::measure_selection(*finest.map, finest.within(), mesh::background_threads());
   area.texels = extent.texels;
   area.area_m2 = extent.area * m2_per_unit2;
-  area.share = (*map)->area_total > 0 ? std::min(1.0, extent.area / (*map)->area_total) : 0;
+  area.share = finest.map->area_total > 0 ? std::min(1.0, extent.area / finest.map->area_total) : 0;
   area.bounds_min = glm::dvec3(extent.low) + geometry_->origin;
   area.bounds_max = glm::dvec3(extent.high) + geometry_->origin;
   for (const auto& view : *views) {
-    auto counted = count(view, selection, wanted);
+    const Selected& here = of_resolution.at(view.layer.resolution);
+    auto counted = count(view, *here.map, here.within(), !selection.at, wanted);
     if (!counted) return tl::unexpected(counted.error());
     area.layers.emplace(view.layer.slug, std::move(*counted));
   }
