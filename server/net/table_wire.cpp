@@ -1,28 +1,11 @@
 #include "net/table_wire.h"
 
-#include "core/column_value.h"
-#include "core/edtf.h"
 #include "core/slug.h"
+#include "core/timestamp.h"
 #include "net/http_types.h"
 #include "net/wire.h"
 
 namespace strata::net {
-namespace {
-
-std::chrono::system_clock::time_point time_of(
-    std::string_view utc) {  // of a timestamp column: 2024-02-29T12:00:00.000Z
-  const auto number = [&](std::size_t at, std::size_t digits) {
-    std::int64_t value = 0;
-    for (std::size_t i = at; i < at + digits; ++i) value = value * 10 + (utc[i] - '0');
-    return value;
-  };
-  const std::int64_t day = day_number(number(0, 4), static_cast<int>(number(5, 2)), static_cast<int>(number(8, 2)));
-  const std::int64_t seconds = ((day * 24 + number(11, 2)) * 60 + number(14, 2)) * 60 + number(17, 2);
-  return std::chrono::system_clock::time_point(std::chrono::milliseconds(seconds * 1000 + number(20, 3)));
-}
-
-}  // namespace
-
 Result<Table> table_of_project(store::Store& store, std::int64_t project_id, const protocol::TableRef& ref,
                                const std::string& field) {
   const std::string name = protocol::to_ref(ref);
@@ -94,16 +77,13 @@ nlohmann::json to_json(const store::TableEditRow& row) {
 
 Result<std::int64_t> sequence_at(store::Store& store, const Table& table, const std::string& text) {
   if (is_all_digits(text)) return parse_integer(text, 0, table.sequence, "at");
-  Column column;
-  column.name = "at";
-  column.kind = ColumnKind::timestamp;
   // A plus sign in a query is a space.
   std::string plain = text;
   if (const auto blank = plain.rfind(' '); blank != std::string::npos && blank > 11) plain[blank] = '+';
-  const auto time = check_value(column, plain, "at");
-  if (!time || time->is_null())
+  const auto utc = utc_timestamp(plain);
+  if (!utc)
     return fail(422, "Not a moment", "`at` is a sequence of the table, or a time such as 2024-02-29T12:00:00Z.", "at");
-  return store.table_sequence_at(table.id, time_of(time->get_ref<const std::string&>()));
+  return store.table_sequence_at(table.id, *utc);
 }
 
 }  // namespace strata::net

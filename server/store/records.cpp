@@ -250,10 +250,13 @@ Result<std::vector<std::int64_t>> Store::missing_records(std::int64_t table_id, 
   return impl_->pool.read([&](PgConnection& connection) { return missing_rows(connection, table_id, keys); });
 }
 
-Result<std::int64_t> Store::table_sequence_at(std::int64_t table_id, std::chrono::system_clock::time_point time) {
+Result<std::int64_t> Store::table_sequence_at(std::int64_t table_id, const std::string& utc) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
-    auto row = connection.query("SELECT coalesce(max(sequence), 0) FROM table_edits WHERE table_id = $1 AND time <= $2",
-                                Params().integer(table_id).time(time));
+    // As for a model: a time that was read, in milliseconds, counts its own edit.
+    auto row = connection.query(
+        "SELECT coalesce(max(sequence), 0) FROM table_edits "
+        "WHERE table_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
+        Params().integer(table_id).text(utc));
     if (!row) return tl::unexpected(row.error());
     return row->integer(0, 0);
   });

@@ -152,8 +152,8 @@ class Store {
                                     const std::string& user, bool dry_run = false,
                                     const FirstAnswer<TableChange>& answer = {});
   Result<std::vector<std::int64_t>> missing_records(std::int64_t table_id, std::span<const std::int64_t> keys);
-  // The last sequence that was there at a time.
-  Result<std::int64_t> table_sequence_at(std::int64_t table_id, std::chrono::system_clock::time_point time);
+  // Of the last change until a time, as `sequence_at`.
+  Result<std::int64_t> table_sequence_at(std::int64_t table_id, const std::string& utc);
   struct TableHistory {
     std::vector<TableEditRow> rows;
     std::int64_t total = 0;
