@@ -38,6 +38,7 @@ const shapes = {
   people: svg`<circle cx="9" cy="8.5" r="3.2" /><path d="M3 19.500c.3-3.6 2.7-5.5 6-5.500s5.7 1.9 6 5.500M15.5 5.600a3.2 3.2 0 0 1 0 5.800M17.5 14.400c2.1.7 3.3 2.4 3.5 5.1" />`,
   drop: svg`<path d="M12 3.500s6 6.6 6 11a6 6 0 0 1-12 0c0-4.4 6-11 6-11Z" />`,
   flip: svg`<path d="M12 3.500v17" stroke-dasharray="2.5 2.5" /><path d="M9 7 4 17h5ZM15 7l5 10h-5Z" />`,
+  table: svg`<rect x="3.5" y="4.5" width="17" height="15" rx="2" /><path d="M3.5 9.500h17M3.5 14.500h17M9.500 9.500v10" />`,
   panel: svg`<rect x="3.5" y="4.5" width="17" height="15" rx="2" /><path d="M14.5 4.500v15" />`,
 } satisfies Record<string, SVGTemplateResult>;
 

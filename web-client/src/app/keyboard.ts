@@ -90,6 +90,10 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
     case "X":
       session.appearance.next_section();
       return true;
+    case "t":
+    case "T":
+      session.toggle_table();
+      return true;
     case "?":
       show_help();
       return true;

@@ -251,6 +251,9 @@ export class StrataLayerPanel extends LitElement {
                 ${icon("edit")}${words.edit}
               </button>`
             : nothing}
+          ${layer.table === undefined
+            ? nothing
+            : html`<button class="quiet" role="menuitem" @click=${() => session.tables.open(layer)}>${icon("table")}${texts.tables.open}</button>`}
           <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "statistics", layer })}>
             ${icon("chart")}${words.statistics}
           </button>
@@ -303,6 +306,11 @@ export class StrataLayerPanel extends LitElement {
     const opacity = session.layers.opacity(layer);
     return html`<div class="more">
       ${layer.description ? html`<p class="description">${layer.description}</p>` : nothing} ${legend(layer)}
+      ${layer.table === undefined
+        ? nothing
+        : html`<button aria-pressed=${session.tables.view?.layer_id === layer.id} title="${texts.tables.open} (T)" @click=${() => session.toggle_table()}>
+            ${icon("table")}${texts.tables.open}
+          </button>`}
       <div class="opacity">
         <span class="caption">${texts.layers.opacity}</span>
         <input

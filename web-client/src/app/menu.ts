@@ -10,6 +10,7 @@ export class StrataMenu extends LitElement {
   @property() label = "";
   @property() glyph: IconName = "more";
   @property({ type: Boolean }) quiet = true;
+  @property({ type: Boolean, reflect: true }) small = false;
   @property() side: "below" | "right" = "below";
 
   @query("button") private button_!: HTMLButtonElement;
@@ -32,6 +33,13 @@ export class StrataMenu extends LitElement {
         background: var(--raised);
         color: var(--ink);
         box-shadow: var(--shadow);
+      }
+      :host([small]) {
+        display: inline-flex;
+      }
+      :host([small]) button.icon {
+        width: 26px;
+        min-height: 26px;
       }
       ::slotted(button) {
         display: flex !important;

@@ -3,13 +3,18 @@
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
+import { keyed } from "lit/directives/keyed.js";
 import { ApiError, type Api } from "../core/api";
-import type { Layer } from "../core/types";
+import { label_of } from "../core/cells";
+import type { Column, Layer } from "../core/types";
 import { kPaintingTools } from "../tools/tool";
 import "./blank";
 import type { WhereRequest } from "./brush-panel";
 import "./brush-panel";
-import { modal_is_open } from "./dialog";
+import "./column-dialog";
+import "./csv-dialog";
+import "./delete-record-dialog";
+import { ask, modal_is_open } from "./dialog";
 import { icon, logo } from "./icons";
 import { handle_key, is_for_field } from "./keyboard";
 import "./layer-dialog";
@@ -19,6 +24,8 @@ import "./map-dialog";
 import "./orthophoto-dialog";
 import { model_styles } from "./model-styles";
 import { ModelSession } from "./model-session";
+import { notices } from "./notices";
+import "./record-dialog";
 import { follow } from "./routes";
 import "./scale-dialog";
 import "./sheets";
@@ -27,6 +34,9 @@ import type { StrataStage } from "./stage";
 import "./statistics-dialog";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
+import type { TablePanelRequest } from "./table-panel";
+import "./table-panel";
+import type { TableView } from "./table-view";
 import { texts } from "./texts";
 import "./tool-rail";
 import "./transfer-dialog";
@@ -34,10 +44,12 @@ import "./value-readout";
 import "./view-panel";
 import "./where-dialog";
 
-type OpenDialog = LayerPanelRequest | WhereRequest | { dialog: "scale" | "help" | "about" | "orthophoto" } | null;
+type OpenDialog = LayerPanelRequest | TablePanelRequest | WhereRequest | { dialog: "scale" | "help" | "about" | "orthophoto" } | null;
 
 const kPanelWidth = { least: 270, first: 330, most: 620 };
 const kPanelKey = "strata.panel_width";
+const kTableHeight = { least: 120, first: 280 };
+const kTableKey = "strata.table_height";
 const kNotFound = { heading: texts.model.not_found_title, lead: texts.model.not_found_lead };
 
 @customElement("strata-model-page")
@@ -47,6 +59,7 @@ export class StrataModelPage extends LitElement {
   @state() private dialog_: OpenDialog = null;
   @state() private missing_: { heading: string; lead: string } | null = null;
   @state() private panel_width_ = Number(localStorage.getItem(kPanelKey)) || kPanelWidth.first;
+  @state() private table_height_ = Number(localStorage.getItem(kTableKey)) || kTableHeight.first;
   @state() private panel_shown_ = window.innerWidth > 820;
   @query("strata-stage") private stage_!: StrataStage | null;
   private session_: ModelSession | null = null;
@@ -66,6 +79,7 @@ export class StrataModelPage extends LitElement {
     removeEventListener("keydown", this.on_key_down);
     removeEventListener("keyup", this.on_key_up);
     removeEventListener("blur", this.on_blur);
+    this.lift_notices(null);
     this.session_?.close();
     this.session_ = null;
   }
@@ -77,6 +91,17 @@ export class StrataModelPage extends LitElement {
     this.missing_ = null;
     this.asked_scale_ = false;
     void this.open(this.session_);
+  }
+
+  override updated(): void {
+    this.lift_notices(this.session_?.tables.view ? `${this.table_height_}px` : null);
+  }
+
+  /** They are an element of the whole page, and would lie over the table. */
+  private lift_notices(height: string | null): void {
+    const { style } = document.documentElement;
+    if (height) style.setProperty("--beneath", matchMedia("(max-width: 820px)").matches ? "52dvh" : height);
+    else style.removeProperty("--beneath");
   }
 
   private async open(session: ModelSession): Promise<void> {
@@ -113,8 +138,8 @@ export class StrataModelPage extends LitElement {
     }
     if (!session) return html``;
     return html`<div
-        class="page ${this.panel_shown_ ? "" : "without-panel"}"
-        ${styled({ "--panel": `${this.panel_width_}px` })}
+        class="page ${this.panel_shown_ ? "" : "without-panel"} ${session.tables.view ? "with-table" : ""}"
+        ${styled({ "--panel": `${this.panel_width_}px`, "--table": `${this.table_height_}px` })}
         @click=${{ handleEvent: give_back_keyboard, capture: true }}
       >
         ${this.header(session)}
@@ -124,7 +149,7 @@ export class StrataModelPage extends LitElement {
           ${this.banner(session)}
           <strata-value-readout .session=${session}></strata-value-readout>
         </main>
-        ${this.panel_shown_ ? this.panel(session) : nothing}
+        ${session.tables.view ? this.table(session, session.tables.view) : nothing} ${this.panel_shown_ ? this.panel(session) : nothing}
       </div>
       ${this.dialog(session)}`;
   }
@@ -224,7 +249,7 @@ export class StrataModelPage extends LitElement {
         aria-valuemin=${kPanelWidth.least}
         aria-valuemax=${kPanelWidth.most}
         tabindex="0"
-        @pointerdown=${this.on_splitter_down}
+        @pointerdown=${(event: PointerEvent) => follow_drag(event, (at) => this.set_panel_width(window.innerWidth - at.clientX))}
         @keydown=${this.on_splitter_key}
       ></div>
       <div class="scroll">
@@ -243,6 +268,31 @@ export class StrataModelPage extends LitElement {
         </section>
       </div>
     </aside>`;
+  }
+
+  private table(session: ModelSession, view: TableView): TemplateResult {
+    return html`<div class="table">
+      <div
+        class="splitter across"
+        role="separator"
+        aria-orientation="horizontal"
+        aria-label=${texts.tables.resize}
+        aria-valuenow=${this.table_height_}
+        aria-valuemin=${kTableHeight.least}
+        tabindex="0"
+        @pointerdown=${(event: PointerEvent) => follow_drag(event, (at) => this.set_table_height(window.innerHeight - at.clientY))}
+        @keydown=${this.on_table_splitter_key}
+      ></div>
+      ${keyed(
+        view,
+        html`<strata-table-panel
+          .session=${session}
+          .view=${view}
+          @request=${(event: CustomEvent<TablePanelRequest>) => (this.dialog_ = event.detail)}
+          @drop-column=${(event: CustomEvent<Column>) => void drop_column(session, view, event.detail)}
+        ></strata-table-panel>`,
+      )}
+    </div>`;
   }
 
   private dialog(session: ModelSession): TemplateResult {
@@ -271,6 +321,27 @@ export class StrataModelPage extends LitElement {
           .layer=${newest(session, dialog.layer)}
           @closed=${closed}
         ></strata-where-dialog>`;
+      case "record":
+        return html`<strata-record-dialog
+          .session=${session}
+          .layer=${newest(session, dialog.layer)}
+          .key=${dialog.key}
+          @closed=${closed}
+        ></strata-record-dialog>`;
+      case "delete-record":
+        return html`<strata-delete-record-dialog
+          .session=${session}
+          .table=${dialog.layer.table ?? 0}
+          .key=${dialog.key}
+          @closed=${closed}
+        ></strata-delete-record-dialog>`;
+      case "column": {
+        const table = session.tables.find(dialog.table);
+        if (!table) return html``;
+        return html`<strata-column-dialog .session=${session} .table=${table} .column=${dialog.column} @closed=${closed}></strata-column-dialog>`;
+      }
+      case "csv":
+        return html`<strata-csv-dialog .session=${session} .table=${dialog.table} .file=${dialog.file} @closed=${closed}></strata-csv-dialog>`;
       case "map":
         return html`<strata-map-dialog
           .session=${session}
@@ -317,20 +388,6 @@ export class StrataModelPage extends LitElement {
     if (this.stage_) this.stage_.orbit_held = false;
   };
 
-  private on_splitter_down(event: PointerEvent): void {
-    const splitter = event.currentTarget as HTMLElement;
-    splitter.setPointerCapture(event.pointerId);
-    const move = (moved: PointerEvent): void => this.set_panel_width(window.innerWidth - moved.clientX);
-    const up = (): void => {
-      splitter.removeEventListener("pointermove", move);
-      splitter.removeEventListener("pointerup", up);
-      splitter.removeEventListener("pointercancel", up);
-    };
-    splitter.addEventListener("pointermove", move);
-    splitter.addEventListener("pointerup", up);
-    splitter.addEventListener("pointercancel", up);
-  }
-
   private on_splitter_key(event: KeyboardEvent): void {
     const step = { ArrowLeft: 20, ArrowRight: -20 }[event.key];
     if (!step) return;
@@ -338,10 +395,40 @@ export class StrataModelPage extends LitElement {
     this.set_panel_width(this.panel_width_ + step);
   }
 
+  private on_table_splitter_key(event: KeyboardEvent): void {
+    const step = { ArrowUp: 20, ArrowDown: -20 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    this.set_table_height(this.table_height_ + step);
+  }
+
+  private set_table_height(height: number): void {
+    this.table_height_ = Math.round(Math.min(window.innerHeight * 0.75, Math.max(kTableHeight.least, height)));
+    localStorage.setItem(kTableKey, String(this.table_height_));
+  }
+
   private set_panel_width(width: number): void {
     const most = Math.min(kPanelWidth.most, window.innerWidth * 0.6);
     this.panel_width_ = Math.round(Math.min(most, Math.max(kPanelWidth.least, width)));
     localStorage.setItem(kPanelKey, String(this.panel_width_));
+  }
+}
+
+function follow_drag(event: PointerEvent, move: (at: PointerEvent) => void): void {
+  const splitter = event.currentTarget as HTMLElement;
+  splitter.setPointerCapture(event.pointerId);
+  splitter.addEventListener("pointermove", move);
+  splitter.addEventListener("lostpointercapture", () => splitter.removeEventListener("pointermove", move), { once: true });
+}
+
+async function drop_column(session: ModelSession, view: TableView, column: Column): Promise<void> {
+  const words = texts.tables;
+  if (!(await ask({ heading: words.drop_title(label_of(column)), lead: words.drop_lead, yes: words.drop, danger: true }))) return;
+  try {
+    await session.api.drop_column(view.table_id, column.id);
+    await session.tables.reload(view.table_id);
+  } catch (error) {
+    notices.error(error);
   }
 }
 

@@ -1,5 +1,5 @@
 // One open model on this page: its life, and the messages between its parts. `view` is the camera, `layers` what is painted on,
-// `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits. Elements
+// `tables` the records that layers hold the keys of, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits. Elements
 // subscribe and draw themselves from their state; they change it only through their methods.
 
 import { Api, ApiError, type Versioned } from "../core/api";
@@ -22,6 +22,7 @@ import { notices } from "./notices";
 import { Painting } from "./painting";
 import { PointerWatch } from "./pointer-watch";
 import { forget, remember } from "./sessions";
+import { Tables } from "./tables";
 import { texts } from "./texts";
 import { ToolShapes } from "./tool-shapes";
 import { ViewControl } from "./view-control";
@@ -43,6 +44,7 @@ export class ModelSession {
   readonly pointer: PointerWatch;
   readonly painting: Painting;
   readonly shapes: ToolShapes;
+  readonly tables: Tables;
   readonly tools: ToolManager;
   /** Set by the stage. */
   on_frame: (part: FrameMessage) => void = () => {};
@@ -102,6 +104,7 @@ export class ModelSession {
       choose: (shape) => this.painting.set_brush((brush) => (brush.shape = shape)),
       changed,
     });
+    this.tables = new Tables(api, { model_id, project: () => this.model?.project ?? null, changed });
     this.tools = this.make_tools();
   }
 
@@ -135,13 +138,13 @@ export class ModelSession {
           this.painting.on_applied(message);
           this.pointer.ask_again();
         },
-        saved: () => {},
+        saved: () => this.tables.view?.refresh_soon(), // with the areas that this person's own strokes leave
         layer: (event) => this.on_layer(event),
         look: (event) => this.appearance.on_event(event),
         tool: (event) => this.shapes.on_event(event),
         model: (event) => this.on_model(event),
-        record: () => {},
-        table: () => {},
+        record: (event) => this.tables.on_record(event),
+        table: (event) => this.tables.on_table(event),
         presence: (message) => {
           this.users = message.users;
           this.changed();
@@ -203,6 +206,7 @@ export class ModelSession {
     this.tools.stop();
     this.view.stop();
     this.pointer.stop();
+    this.tables.close();
     this.listeners_.clear();
     this.on_frame = this.on_reset_frames = () => {};
     if (this.saving.waiting === 0) {
@@ -234,6 +238,13 @@ export class ModelSession {
 
   private changed(): void {
     for (const listener of this.listeners_) listener();
+  }
+
+  /** The table of the layer that is painted on: shown, or no longer. */
+  toggle_table(): void {
+    const layer = this.layers.selected;
+    if (this.tables.view) this.tables.close();
+    else if (layer) this.tables.open(layer);
   }
 
   // ── what elements ask for ─────────────────────────────────────────────────────────────────────────────────────────
@@ -350,11 +361,17 @@ export class ModelSession {
     this.layers.take_all(message.layers.map(complete_layer));
     this.appearance.take_looks(message.looks);
     this.shapes.refresh();
+    this.tables.refresh();
   }
 
   private on_layer(event: LayerEvent): void {
     this.layers.on_event(event);
-    if (event.event === "edited") this.pointer.ask_again();
+    if (event.event === "edited") {
+      this.pointer.ask_again();
+      this.tables.on_layer_edited(event.layer_id);
+    } else if (event.event === "deleted") {
+      this.tables.on_layer_deleted(event.layer_id);
+    }
   }
 
   private on_model(event: ModelEvent): void {

@@ -13,8 +13,23 @@ export const model_styles = css`
     height: 100dvh;
     overflow: hidden;
   }
+  .page.with-table {
+    grid-template:
+      "header header header" 54px
+      "rail stage panel" minmax(0, 1fr)
+      "rail table panel" min(var(--table), 75dvh)
+      / auto minmax(0, 1fr) var(--panel);
+  }
   .page.without-panel {
     grid-template-columns: auto minmax(0, 1fr) 0;
+  }
+  .table {
+    grid-area: table;
+    position: relative;
+    display: grid;
+    min-width: 0;
+    min-height: 0;
+    border-top: 1px solid var(--line-strong);
   }
   header {
     grid-area: header;
@@ -139,6 +154,13 @@ export const model_styles = css`
     cursor: col-resize;
     touch-action: none;
   }
+  .splitter.across {
+    inset: -3px 0 auto 0;
+    z-index: 6;
+    width: auto;
+    height: 7px;
+    cursor: row-resize;
+  }
   .splitter:hover {
     background: var(--accent-soft);
   }
@@ -170,6 +192,17 @@ export const model_styles = css`
         "panel" auto
         "rail" auto
         / minmax(0, 1fr);
+    }
+    .page.with-table {
+      grid-template:
+        "header" 50px
+        "stage" minmax(0, 1fr)
+        "table" 52dvh
+        "rail" auto
+        / minmax(0, 1fr);
+    }
+    .page.with-table aside {
+      display: none;
     }
     .splitter {
       display: none;

@@ -21,7 +21,7 @@ export class StrataNotices extends LitElement {
         position: fixed;
         z-index: 50;
         left: 76px; /* beside the tools and above the scale bar */
-        bottom: 76px;
+        bottom: calc(76px + var(--beneath, 0px)); /* what the page has below the picture */
         display: grid;
         gap: 8px;
         width: min(440px, calc(100vw - 88px));
@@ -30,7 +30,7 @@ export class StrataNotices extends LitElement {
       @media (max-width: 820px) {
         :host {
           left: 12px;
-          bottom: calc(68px + env(safe-area-inset-bottom));
+          bottom: calc(68px + var(--beneath, 0px) + env(safe-area-inset-bottom));
           width: calc(100vw - 24px);
         }
       }

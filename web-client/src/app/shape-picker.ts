@@ -160,7 +160,6 @@ export class StrataShapePicker extends LitElement {
     const [file] = event.dataTransfer?.files ?? [];
     if (!file || !this.session.can_paint) return;
     event.preventDefault();
-    event.stopPropagation();
     if (is_picture(file)) this.file_ = file;
     else notices.show("problem", texts.shapes.unreadable(file.name));
   }

@@ -168,7 +168,9 @@ export class StrataApp extends LitElement {
     this.dropping_ = this.import_refusal === null;
   };
   private readonly on_drag_over = (event: DragEvent): void => {
-    if (has_files(event)) event.preventDefault(); // else the browser opens the file in place of the page
+    if (!has_files(event)) return;
+    this.dropping_ = !event.defaultPrevented && this.import_refusal === null; // something on the page may take the file itself
+    event.preventDefault(); // else the browser opens the file in place of the page
   };
   private readonly on_drag_leave = (): void => {
     this.drag_depth_ = Math.max(0, this.drag_depth_ - 1);
@@ -177,7 +179,7 @@ export class StrataApp extends LitElement {
   private readonly on_drop = (event: DragEvent): void => {
     this.drag_depth_ = 0;
     this.dropping_ = false;
-    if (!has_files(event)) return;
+    if (!has_files(event) || event.defaultPrevented) return;
     event.preventDefault();
     const refusal = this.import_refusal;
     if (refusal) notices.show("problem", refusal);

@@ -126,7 +126,7 @@ export class StrataValuePicker extends LitElement {
 
   private record_buttons(layer: Layer, table: number): TemplateResult {
     const missing = this.missing_;
-    const add = (key?: number) => () => void this.ask(async () => this.set_record(layer, (await this.session.api.create_record(table, key)).key));
+    const add = (key?: number) => () => void this.ask(async () => this.set_record(layer, (await this.session.api.create_record(table, { ...(key === undefined ? {} : { key }) })).key));
     return html`${missing === null
         ? nothing
         : html`<p class="hint" role="status">${texts.brush.no_record(missing)}</p>

@@ -51,6 +51,18 @@ export interface Upload<T> {
 
 type Progress = (share: number) => void;
 
+/** Records of a table, or of the table whose keys a layer holds. */
+export type RecordPlace = { table: Id } | { model: Id; layer: Id };
+
+export interface RecordQuery {
+  sortby?: string;
+  filter?: string; // CQL2 text
+  limit: number;
+  offset: number;
+}
+
+export type TexelsOfDeleted = { what: "refuse" | "clear" } | { what: "reassign"; to: number };
+
 const kBase = "/api/v1";
 
 export class Api {
@@ -148,10 +160,63 @@ export class Api {
   async delete_look(model: Id, look: Id): Promise<void> {
     await this.request("DELETE", look_path(model, look));
   }
-  /** A record of which nothing is said yet; without a key it gets the next one. */
-  async create_record(table: Id, key?: number): Promise<wire.TableRecord> {
-    const asked: wire.RecordsCreate = key === undefined ? { values: {} } : { key, values: {} };
-    return this.json("POST", `/tables/${encodeURIComponent(table)}/records`, asked);
+  async tables(project: Id): Promise<wire.Table[]> {
+    return (await this.json<wire.TableList>("GET", `/projects/${encodeURIComponent(project)}/tables?limit=1000`)).tables;
+  }
+  async table(table: Id): Promise<wire.Table> {
+    return this.json("GET", table_path(table));
+  }
+  async create_column(table: Id, column: wire.ColumnCreate): Promise<wire.ColumnChanged> {
+    return this.json("POST", `${table_path(table)}/columns`, column);
+  }
+  async change_column(table: Id, column: Id, change: wire.ColumnPatch): Promise<wire.ColumnChanged> {
+    return this.json("PATCH", `${table_path(table)}/columns/${encodeURIComponent(column)}`, change);
+  }
+  async drop_column(table: Id, column: Id): Promise<void> {
+    await this.request("DELETE", `${table_path(table)}/columns/${encodeURIComponent(column)}`);
+  }
+  /** Of the caller's changes of columns and records, the newest. */
+  async undo_table(table: Id): Promise<wire.TableChanged> {
+    return this.json("POST", `${table_path(table)}/undo`);
+  }
+  async redo_table(table: Id): Promise<wire.TableChanged> {
+    return this.json("POST", `${table_path(table)}/redo`);
+  }
+  /** Newest first. */
+  async record_edits(table: Id, key: number, limit: number): Promise<wire.TableEdit[]> {
+    return (await this.json<wire.TableEditList>("GET", `${table_path(table)}/edits?${new URLSearchParams({ key: `${key}`, limit: `${limit}` })}`)).edits;
+  }
+  /** A page of a table's records; of a layer's, with their areas there. */
+  async records(place: RecordPlace, { sortby = "", filter = "", limit, offset }: RecordQuery): Promise<wire.RecordList> {
+    const query = new URLSearchParams({ limit: `${limit}`, offset: `${offset}` });
+    if (sortby !== "") query.set("sortby", sortby);
+    if (filter !== "") query.set("filter", filter);
+    return this.json("GET", `${records_path(place)}?${query}`);
+  }
+  async record(place: RecordPlace, key: number): Promise<wire.TableRecord> {
+    return this.json("GET", `${records_path(place)}/${key}`);
+  }
+  /** Without a key it gets the next one. */
+  async create_record(table: Id, record: wire.RecordInput = {}): Promise<wire.TableRecord> {
+    return this.json("POST", records_path({ table }), { values: {}, ...record });
+  }
+  /** With the version that was read: another's change in between is an ApiError of status 412. */
+  async change_record(table: Id, key: number, change: wire.RecordPatch): Promise<wire.TableRecord> {
+    return this.json("PATCH", `${records_path({ table })}/${key}`, change);
+  }
+  /** `texels`: what becomes of the surface that has the record's key. */
+  async delete_record(table: Id, key: number, texels: TexelsOfDeleted): Promise<void> {
+    const query = new URLSearchParams({ texels: texels.what, ...(texels.what === "reassign" ? { to: `${texels.to}` } : {}) });
+    await this.request("DELETE", `${records_path({ table })}/${key}?${query}`);
+  }
+  /** Where records are had as CSV. */
+  records_url(place: RecordPlace, query: Record<string, string>): string {
+    return `${kBase}${records_path(place)}?${new URLSearchParams({ f: "csv", ...query })}`;
+  }
+  /** `dry_run` only reports. Where rows are wrong nothing is written. */
+  async import_records(table: Id, csv: Blob, dry_run: boolean): Promise<wire.RecordsReport> {
+    const path = `${records_path({ table })}${dry_run ? "?dry_run=true" : ""}`;
+    return this.parsed(await this.request_raw("POST", path, csv, { "Content-Type": "text/csv" }));
   }
   async has_record(table: Id, key: number): Promise<boolean> {
     try {
@@ -315,6 +380,11 @@ const kFile = { "Content-Type": "application/octet-stream" };
 const layer_path = (model: Id, layer: Id): string =>
   `/models/${encodeURIComponent(model)}/layers/${encodeURIComponent(layer)}`;
 
+const table_path = (table: Id): string => `/tables/${encodeURIComponent(table)}`;
+
+const records_path = (place: RecordPlace): string =>
+  `${"table" in place ? table_path(place.table) : layer_path(place.model, place.layer)}/records`;
+
 const look_path = (model: Id, look: Id): string =>
   `/models/${encodeURIComponent(model)}/looks/${encodeURIComponent(look)}`;
 
@@ -346,6 +416,8 @@ export function problem_of_text(status: number, text: string): ProblemBody {
         title: body.title,
         ...(body.detail ? { detail: String(body.detail) } : {}),
         ...(body.field ? { field: String(body.field) } : {}),
+        ...(typeof body.offset === "number" ? { offset: body.offset } : {}),
+        ...(body.rows ? { rows: body.rows } : {}),
       };
     }
   } catch {

@@ -4,6 +4,10 @@ import type * as wire from "./protocol.gen";
 
 export type {
   Atlas,
+  CellValue,
+  CellValues,
+  Column,
+  ColumnKind,
   HistogramBin,
   Job,
   KeyStatistics,
@@ -16,10 +20,13 @@ export type {
   Model,
   ModelPatch,
   PalettePoint,
+  RecordsReport,
   Resolution,
   Role,
   ShapeRecipe,
   Statistics,
+  Table,
+  TableRecord,
   Transfer,
   TransferReport,
   Unit,
@@ -43,6 +50,8 @@ export interface ProblemBody {
   title: string;
   detail?: string;
   field?: string;
+  offset?: number; // of an expression: the character that is wrong, from 0
+  rows?: wire.RecordsReport; // of records in bulk
 }
 
 /** `min` and `max` default to the outer points. */

@@ -1,0 +1,286 @@
+// The table of a layer's records: ten thousand rows, sorted, written into, refused, changed by two at once, undone; new records, deleted
+// ones, columns, and CSV both ways. What the page shows is compared with what the server has.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kMany = 10_000;
+
+const browser = await Browser.open();
+const { page } = browser;
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const base = "/models/demo-pot";
+const T = "/tables/units";
+const button = (name) => page.getByRole("button", { name, exact: true });
+const panel = page.locator("strata-table-panel");
+const grid = panel.getByRole("grid");
+const bubble = panel.locator(".bubble");
+const dialog = page.locator("strata-record-dialog, strata-delete-record-dialog, strata-csv-dialog, strata-column-dialog");
+const record = async (key) => (await server.json("GET", `${T}/records/${key}`)).values;
+const shot = async (name) => {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+};
+/** The cell of a column in the row of a record that is in sight. */
+const columns = ["Key", "Code", "Depth", "Period", "Dug", "Soil", "Sealed", "Note", "Above", "Area"];
+const cell = (key, column) =>
+  panel.locator(".line", { has: page.getByRole("rowheader", { name: String(key), exact: true }) }).locator(".cell").nth(columns.indexOf(column));
+async function write(key, column, text, end = "Enter") {
+  await cell(key, column).click();
+  await page.keyboard.press("F2");
+  await panel.locator(".editor").waitFor();
+  if (text !== null) await page.keyboard.type(text);
+  await page.keyboard.press(end);
+}
+async function stored(key, slug, value) {
+  await wait_for(async () => JSON.stringify((await record(key))[slug]) === JSON.stringify(value), `${slug} of ${key} to be ${JSON.stringify(value)}`);
+}
+async function drop_csv(name, text) {
+  await panel.evaluate(
+    (element, [file, body]) => {
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File([body], file, { type: "text/csv" }));
+      element.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, composed: true, cancelable: true }));
+    },
+    [name, text],
+  );
+}
+async function menu(label, item) {
+  await button(label).click();
+  await page.getByRole("menuitem", { name: item }).click();
+}
+
+try {
+  await server.start();
+  const { project } = await server.json("GET", base);
+  await server.json("POST", `/projects/${project}/tables`, {
+    name: "Units",
+    columns: [
+      { name: "Code", required: true, unique: true, comment: "As on the label of the bag" },
+      { name: "Depth", kind: "numeric", unit: "m", minimum: 0 },
+      { name: "Period", kind: "period" },
+      { name: "Dug", kind: "date" },
+      { name: "Soil", kind: "enumeration", choices: ["sand", "clay"], default: "clay" },
+      { name: "Sealed", kind: "boolean" },
+      { name: "Note" },
+    ],
+  });
+  await server.json("POST", `${T}/columns`, { name: "Above", kind: "relation", target: "units" });
+  const lines = Array.from({ length: kMany }, (_, n) => `SU ${n + 1},${((n * 7) % kMany) / 100},${1500 + (n % 300)}`);
+  const bulk = await fetch(`${server.url}/api/v1${T}/records`, {
+    method: "POST",
+    headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "text/csv" },
+    body: ["code,depth,period", ...lines].join("\n"),
+  });
+  assert.equal(bulk.status, 200);
+  await server.json("POST", `${base}/layers`, { name: "Units", kind: "database", type: "u16", table: "units", resolution: 2048 });
+  await page.goto(server.link);
+  await page.getByRole("link", { name: /Demo pot/ }).click();
+  await browser.drawn();
+  const later = page.getByRole("button", { name: "Decide later" });
+  if (await later.isVisible()) await later.click();
+  await button("Paint on Units").click();
+
+  say("T opens the table; only the rows in sight are drawn, of ten thousand");
+  await page.keyboard.press("t");
+  await panel.getByText("10,000 records").waitFor();
+  await cell(1, "Code").getByText("SU 1", { exact: true }).waitFor();
+  assert.ok((await panel.locator(".line").count()) < 60);
+  await cell(1, "Code").click();
+  await page.keyboard.press("Control+End");
+  await panel.getByText(`SU ${kMany}`, { exact: true }).waitFor();
+  assert.ok((await panel.locator(".line").count()) < 60);
+  await page.keyboard.press("Control+Home");
+  await panel.getByText("SU 1", { exact: true }).waitFor();
+  await shot("table");
+
+  say("a click on a column's name sorts by it, again turns the order round");
+  const depth = panel.getByRole("columnheader", { name: /^Depth/ });
+  await depth.getByRole("button", { name: /Depth/ }).first().click();
+  await depth.getByRole("button", { name: /Depth/ }).first().click();
+  assert.equal(await depth.getAttribute("aria-sort"), "descending");
+  const deepest = (await server.json("GET", `${T}/records?sortby=-depth&limit=1`)).records[0];
+  await wait_for(async () => (await panel.locator(".line .cell.key").first().textContent()).trim() === String(deepest.key), "the deepest first");
+  await depth.getByRole("button", { name: /Depth/ }).first().click();
+  await cell(1, "Code").getByText("SU 1", { exact: true }).waitFor();
+
+  say("cells are written into by kind");
+  await write(1, "Depth", "2.5");
+  await stored(1, "depth", 2.5);
+  await write(1, "Note", "Charcoal", "Tab"); // on to the next cell, which is a relation
+  await page.keyboard.type("SU 9999");
+  await panel.getByRole("option", { name: /SU 9999/ }).waitFor();
+  await shot("table-relation");
+  await page.keyboard.press("Enter");
+  await page.keyboard.type("SU 3");
+  await panel.getByRole("option", { name: /^SU 3 3$/ }).waitFor();
+  await page.keyboard.press("Enter");
+  await page.keyboard.press("Enter");
+  await stored(1, "note", "Charcoal");
+  await stored(1, "above", [3, 9999]);
+  await cell(1, "Above").getByText("SU 3, SU 9999").waitFor();
+  await write(1, "Dug", "02292024");
+  await stored(1, "dug", "2024-02-29");
+  await write(1, "Soil", "s");
+  await stored(1, "soil", "sand");
+  await write(1, "Sealed", "y");
+  await stored(1, "sealed", true);
+  await cell(2, "Note").click();
+  await page.keyboard.type("b"); // begins to write; the brush is not taken
+  await page.keyboard.type("one");
+  await page.keyboard.press("Enter");
+  await stored(2, "note", "bone");
+  await page.keyboard.press("ArrowUp");
+  await page.keyboard.press("Delete");
+  await stored(2, "note", null);
+
+  say("what is no value is said at the cell, by the page or by the server");
+  await write(2, "Depth", "deep");
+  await bubble.getByText("Give a number, with a point before its decimals.").waitFor();
+  await page.keyboard.press("Escape");
+  await write(2, "Period", "circa 1560");
+  await bubble.getByText(/EDTF/).waitFor();
+  await shot("table-refused");
+  assert.equal((await record(2)).period, "1501");
+  await button("Correct it").click();
+  await page.keyboard.press("Control+a");
+  await page.keyboard.type("1560~");
+  await page.keyboard.press("Enter");
+  await stored(2, "period", "1560~");
+  assert.equal(await bubble.count(), 0);
+
+  say("Ctrl+Z takes back what this person wrote into the table, and brings it back");
+  await page.keyboard.press("Control+z");
+  await stored(2, "period", "1501");
+  await cell(2, "Period").getByText("1501", { exact: true }).waitFor();
+  await page.keyboard.press("Control+Shift+z");
+  await stored(2, "period", "1560~");
+  await cell(2, "Period").getByText("1560~").waitFor();
+
+  say("what others do is seen at once; of two who write into one cell the second is asked");
+  const anna = server.add_person("anna", "annotator");
+  const as_anna = async (method, path, body) => {
+    const answer = await fetch(`${server.url}/api/v1${path}`, {
+      method,
+      headers: { Authorization: `Bearer ${anna}`, "Content-Type": "application/json" },
+      body: JSON.stringify(body),
+    });
+    assert.ok(answer.ok, `${path}: ${answer.status}`);
+  };
+  await as_anna("PATCH", `${T}/records/4`, { values: { note: "from anna" } });
+  await cell(4, "Note").getByText("from anna").waitFor();
+  await cell(3, "Note").click();
+  await page.keyboard.press("Enter");
+  await page.keyboard.type("mine");
+  await as_anna("PATCH", `${T}/records/3`, { values: { note: "anna's" } });
+  await cell(3, "Note").getByText("anna's").waitFor();
+  await page.keyboard.press("Enter");
+  await bubble.getByText(/anna changed this at .* meanwhile: anna's/).waitFor();
+  await shot("table-conflict");
+  await button("Take mine").click();
+  await stored(3, "note", "mine");
+  await cell(3, "Note").click();
+  await page.keyboard.press("Enter");
+  await page.keyboard.type("mine again");
+  await as_anna("PATCH", `${T}/records/3`, { values: { note: "anna's again" } });
+  await cell(3, "Note").getByText("anna's again").waitFor();
+  await page.keyboard.press("Enter");
+  await button("Keep theirs").click();
+  await wait_for(async () => (await bubble.count()) === 0, "the question to go");
+  await stored(3, "note", "anna's again");
+
+  say("a new record by its form, with what is wrong at the field");
+  await button("New record").click();
+  await dialog.getByLabel("Depth").fill("-1");
+  await dialog.getByLabel("Code").fill("SU 1");
+  await button("Save").click();
+  await dialog.getByRole("alert").first().waitFor();
+  await shot("record-form");
+  await dialog.getByLabel("Depth").fill("3");
+  await button("Save").click();
+  await dialog.getByText(/Record 1 has this value/).waitFor();
+  await dialog.getByLabel("Code").fill("Pit");
+  await button("Save").click();
+  await panel.getByText("10,001 records").waitFor();
+  await cell(kMany + 1, "Code").getByText("Pit").waitFor(); // brought into sight, and chosen
+
+  say("the chosen record is painted with, and its area is seen in the table");
+  await button("Paint with it").click();
+  await browser.drag([[0.45, 0.6], [0.5, 0.62]]);
+  await browser.saved();
+  await shot("table-painted");
+  await cell(kMany + 1, "Area").getByText(/mm²|cm²/).waitFor();
+
+  say("a painted record that is to be deleted asks what becomes of that");
+  await button("Delete the record").click();
+  await button("Delete").click();
+  await dialog.getByText(/on Units of Demo pot/).waitFor();
+  await shot("delete-painted");
+  await page.getByRole("radio", { name: "Give it to another record" }).click();
+  await dialog.getByRole("combobox").fill("SU 7777");
+  await dialog.getByRole("option", { name: /SU 7777/ }).click();
+  await button("Delete").click();
+  await panel.getByText("10,000 records").waitFor();
+  assert.ok((await server.json("GET", `${base}/layers/units/records/7777`)).area_m2 > 0);
+  await panel.getByRole("columnheader", { name: /Area/ }).getByRole("button").first().click();
+  await panel.getByRole("columnheader", { name: /Area/ }).getByRole("button").first().click();
+  await wait_for(async () => (await panel.locator(".line .cell.key").first().textContent()).trim() === "7777", "the largest area first");
+  await panel.getByRole("columnheader", { name: /Area/ }).getByRole("button").first().click();
+
+  say("a CSV is looked at first: nothing is written while a row is wrong");
+  await drop_csv("finds.csv", "code,depth,note\nSU 1,9,changed\nNew 1,deep,\nNew 1,2,\n");
+  await dialog.getByText('"Depth" holds finite numbers.').waitFor();
+  await shot("csv-report");
+  assert.ok(await button("Import").isDisabled());
+  await button("Cancel").click();
+  await drop_csv("finds.csv", "key,code,depth,note\n1,SU 1,9,changed\n,New 1,2,\n");
+  await dialog.getByText("All rows fit. Nothing has been written yet.").waitFor();
+  assert.equal((await record(1)).note, "Charcoal");
+  await button("Import").click();
+  await panel.getByText("10,001 records").waitFor();
+  await stored(1, "note", "changed");
+  const [download] = await Promise.all([page.waitForEvent("download"), menu("More about the table", /^Save as CSV$/)]);
+  assert.equal(download.suggestedFilename(), "units.csv");
+
+  say("columns come, change their kind and tell what that loses, and go");
+  await menu("More about the table", "New column…");
+  await dialog.getByLabel("Name").fill("Bags");
+  await dialog.getByLabel("Holds").selectOption("integer");
+  await dialog.getByLabel("At least").fill("0");
+  await button("Create column").click();
+  await panel.getByRole("columnheader", { name: /^Bags/ }).waitFor();
+  await menu("Options for the column Note", "Change…");
+  await dialog.getByLabel("Holds").selectOption("numeric");
+  await button("Save").click();
+  await dialog.getByText(/could not be of the new kind/).waitFor();
+  await shot("column-lost");
+  await button("Take it back").click();
+  await cell(1, "Note").getByText("changed").waitFor();
+  await menu("Options for the column Bags", "Drop…");
+  await button("Drop").click();
+  await wait_for(async () => (await panel.getByRole("columnheader", { name: /^Bags/ }).count()) === 0, "the column to go");
+
+  say("on a phone, too");
+  await page.setViewportSize({ width: 400, height: 800 });
+  await shot("table-phone");
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await grid.focus();
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("t");
+  assert.equal(await panel.count(), 0);
+
+  say("the end");
+  browser.assert_no_complaints(["422", "409", "412"]);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`);
+  await shot("tables-failed");
+  throw error;
+} finally {
+  await browser.close();
+  await server.remove();
+}

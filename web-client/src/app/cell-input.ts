@@ -1,0 +1,155 @@
+// <strata-cell-input>: the field for a value of a column, by its kind. In a cell of the table and in the form of a record alike.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, query } from "lit/decorators.js";
+import { cell_text, is_number, label_of, named_keys, names_records, parse_cell } from "../core/cells";
+import type { CellValue, Column } from "../core/protocol.gen";
+import type { ModelSession } from "./model-session";
+import "./record-chooser";
+import type { StrataRecordChooser } from "./record-chooser";
+import { number_field_styles, shared_styles } from "./styles";
+import { texts } from "./texts";
+
+export type CellRead = { value: CellValue } | { problem: string };
+
+/** Whether a letter can begin a new value; the others are chosen. */
+export const takes_typing = (column: Column): boolean =>
+  !names_records(column) && column.kind !== "boolean" && column.kind !== "enumeration" && column.kind !== "date";
+
+@customElement("strata-cell-input")
+export class StrataCellInput extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) column!: Column;
+  @property({ attribute: false }) value: CellValue = null;
+  /** What was typed to begin with: it takes the place of the value. */
+  @property({ attribute: false }) typed: string | null = null;
+  @property({ type: Boolean }) invalid = false;
+  @query("input, select, textarea, strata-record-chooser") private control_!:
+    | HTMLInputElement
+    | HTMLSelectElement
+    | HTMLTextAreaElement
+    | StrataRecordChooser;
+
+  static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
+
+  static override styles = [
+    shared_styles,
+    number_field_styles,
+    css`
+      :host {
+        display: block;
+        min-width: 0;
+      }
+      textarea {
+        min-height: 38px;
+        max-height: 180px;
+        resize: none;
+        field-sizing: content;
+      }
+      input[type="date"] {
+        width: 100%;
+        min-height: 38px;
+        padding: 6px 10px;
+        border: 1px solid var(--line-strong);
+        border-radius: var(--radius-small);
+        background: var(--raised);
+      }
+      :host(.in-cell) :is(input, select, textarea) {
+        min-height: 28px;
+        padding: 2px 6px;
+        font-size: 0.9rem;
+      }
+      :host(.in-cell) .number input {
+        padding-right: 30px;
+      }
+    `,
+  ];
+
+  override firstUpdated(): void {
+    if (this.typed !== null && takes_typing(this.column)) (this.control_ as HTMLInputElement).value = this.typed;
+  }
+
+  /** What is in the field now. */
+  read(): CellRead {
+    const { column } = this;
+    if (names_records(column)) {
+      const keys = [...(this.control_ as StrataRecordChooser).chosen];
+      return { value: column.kind === "relation" ? (keys.length > 0 ? keys : null) : (keys[0] ?? null) };
+    }
+    const control = this.control_ as HTMLInputElement;
+    if (control.validity.badInput) return { problem: texts.tables.bad_date };
+    const parsed = parse_cell(column, control.value);
+    if ("value" in parsed) return parsed;
+    return { problem: parsed.wrong === "whole" ? texts.tables.bad_whole : texts.tables.bad_number };
+  }
+
+  /** In place of what was typed. */
+  put(value: CellValue): void {
+    const control = this.control_;
+    if ("chosen" in control) control.chosen = named_keys(value);
+    else control.value = cell_text(value);
+  }
+
+  /** To write on: all of the value, or behind what was typed. */
+  begin(): void {
+    this.focus({ preventScroll: true });
+    const control = this.control_;
+    const is_text = control instanceof HTMLTextAreaElement || (control instanceof HTMLInputElement && control.type === "text");
+    if (is_text) control.setSelectionRange(this.typed === null ? 0 : control.value.length, control.value.length);
+  }
+
+  override render(): TemplateResult {
+    const { column, value } = this;
+    const label = label_of(column);
+    const invalid = this.invalid ? "true" : "false";
+    switch (column.kind) {
+      case "term":
+      case "relation":
+        return html`<strata-record-chooser
+          class=${this.classList.contains("in-cell") ? "in-cell" : ""}
+          .session=${this.session}
+          .table=${column.target ?? 0}
+          .chosen=${named_keys(value)}
+          .multiple=${column.kind === "relation"}
+          .invalid=${this.invalid}
+          label=${label}
+        ></strata-record-chooser>`;
+      case "boolean":
+        return this.choice(label, value === null ? "" : String(value), [
+          ["true", texts.tables.yes],
+          ["false", texts.tables.no],
+        ]);
+      case "enumeration":
+        return this.choice(
+          label,
+          cell_text(value),
+          (column.choices ?? []).map((choice) => [choice, choice]),
+        );
+      case "text":
+        return html`<textarea rows="1" maxlength="100000" aria-label=${label} aria-invalid=${invalid} .value=${cell_text(value)}></textarea>`;
+      case "date":
+        return html`<input type="date" min="0001-01-01" max="9999-12-31" aria-label=${label} aria-invalid=${invalid} .value=${cell_text(value)} />`;
+      default: {
+        const unit = is_number(column) ? (column.unit ?? "") : "";
+        const input = html`<input
+          type="text"
+          inputmode=${is_number(column) ? "decimal" : column.kind === "url" ? "url" : "text"}
+          spellcheck="false"
+          autocapitalize="off"
+          aria-label=${label}
+          aria-invalid=${invalid}
+          placeholder=${texts.tables.examples[column.kind] ?? ""}
+          .value=${cell_text(value)}
+        />`;
+        return unit ? html`<span class="number"><span>${unit}</span>${input}</span>` : input;
+      }
+    }
+  }
+
+  private choice(label: string, chosen: string, choices: [string, string][]): TemplateResult {
+    return html`<select aria-label=${label} aria-invalid=${this.invalid ? "true" : "false"}>
+      ${this.column.required && chosen !== "" ? nothing : html`<option value="" ?selected=${chosen === ""}></option>`}
+      ${choices.map(([value, text]) => html`<option value=${value} ?selected=${value === chosen}>${text}</option>`)}
+    </select>`;
+  }
+}

@@ -1,0 +1,234 @@
+// <strata-record-dialog>: a record as a form that is made from its table: a new one, or one that is there.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { ApiError } from "../core/api";
+import { cell_text, label_of, label_of_record, same_value } from "../core/cells";
+import { format_area } from "../core/measure";
+import { color_of, css_color } from "../core/palette";
+import type { CellValues, Column, Table, TableRecord } from "../core/protocol.gen";
+import type { Layer } from "../core/types";
+import "./cell-input";
+import type { StrataCellInput } from "./cell-input";
+import "./dialog";
+import type { StrataDialog } from "./dialog";
+import { follow_session } from "./follow-session";
+import type { ModelSession } from "./model-session";
+import { shared_styles } from "./styles";
+import { styled } from "./styled";
+import { texts } from "./texts";
+
+const words = texts.tables;
+
+@customElement("strata-record-dialog")
+export class StrataRecordDialog extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) layer!: Layer;
+  /** Null: a new record. */
+  @property({ attribute: false }) key: number | null = null;
+  @state() private record_: TableRecord | null = null; // as it was read
+  @state() private problem_ = "";
+  @state() private field_problems_ = new Map<string, string>(); // by slug
+  @state() private busy_ = false;
+  @query("strata-dialog") private dialog_!: StrataDialog;
+  @query("form") private form_!: HTMLFormElement | null;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      form {
+        display: grid;
+        gap: 14px;
+      }
+      .facts {
+        display: flex;
+        align-items: center;
+        gap: 10px;
+      }
+      .field-row {
+        display: grid;
+        gap: 4px;
+      }
+      .field-row .caption b {
+        color: var(--danger);
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    if (this.key !== null) void this.load(this.key);
+  }
+
+  private get table(): Table | null {
+    return this.layer.table === undefined ? null : this.session.tables.find(this.layer.table);
+  }
+
+  private async load(key: number): Promise<void> {
+    try {
+      this.record_ = await this.session.api.record({ model: this.session.model_id, layer: this.layer.id }, key);
+    } catch (error) {
+      this.problem_ = error instanceof ApiError ? error.message : texts.problems.unexpected;
+    }
+  }
+
+  override render(): TemplateResult {
+    const { table, record_: record, key } = this;
+    const ready = table !== null && (key === null || record !== null);
+    const name = table && record ? label_of_record(table, record) || words.record(record.key) : "";
+    return html`<strata-dialog
+      heading=${key === null ? words.new_record_of(table ? label_of(table) : "") : name}
+      @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
+    >
+      ${record ? this.facts(record) : nothing}
+      ${ready ? this.form(table) : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`}
+      <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
+      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
+      ${key === null
+        ? html`<button slot="actions" ?disabled=${this.busy_ || !ready} @click=${() => void this.save(true)}>${words.save_next}</button>`
+        : nothing}
+      <button slot="actions" class="primary" ?disabled=${this.busy_ || !ready} @click=${() => this.form_?.requestSubmit()}>${texts.save}</button>
+    </strata-dialog>`;
+  }
+
+  private facts(record: TableRecord): TemplateResult {
+    const color = color_of(this.layer.palette, record.key);
+    return html`<div class="facts hint numeric">
+      ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
+      <span>${words.key_is(record.key)}</span>
+      <span>${record.area_m2 ? words.area_on(format_area(record.area_m2), this.layer.name) : words.not_painted_on(this.layer.name)}</span>
+    </div>`;
+  }
+
+  private form(table: Table): TemplateResult {
+    return html`<form
+      novalidate
+      @submit=${(event: Event) => {
+        event.preventDefault();
+        void this.save(false);
+      }}
+      @keydown=${this.on_key}
+    >
+      ${table.columns.length === 0 ? html`<p class="hint">${words.no_columns}</p>` : nothing}
+      ${table.columns.map((column) => this.field(column))}
+    </form>`;
+  }
+
+  private field(column: Column): TemplateResult {
+    const problem = this.field_problems_.get(column.slug) ?? "";
+    const value = this.record_ ? (this.record_.values[column.slug] ?? null) : (column.default ?? null);
+    return html`<div class="field-row">
+      <span class="caption" @click=${() => this.input_of(column.slug)?.focus()}
+        >${label_of(column)}${column.required ? html` <b title=${words.required}>*</b>` : nothing}</span
+      >
+      <strata-cell-input
+        data-slug=${column.slug}
+        .session=${this.session}
+        .column=${column}
+        .value=${value}
+        .invalid=${problem !== ""}
+      ></strata-cell-input>
+      ${column.comment ? html`<span class="hint">${column.comment}</span>` : nothing}
+      ${problem ? html`<span class="error" role="alert">${problem}</span>` : nothing}
+    </div>`;
+  }
+
+  private input_of(slug: string): StrataCellInput | null {
+    return this.renderRoot.querySelector(`strata-cell-input[data-slug="${CSS.escape(slug)}"]`);
+  }
+
+  /** Enter saves, also from a field in an element of its own; in texts of several lines with Ctrl. */
+  private on_key(event: KeyboardEvent): void {
+    const field = event.composedPath()[0];
+    if (event.key !== "Enter" || (field instanceof HTMLTextAreaElement && !event.ctrlKey && !event.metaKey)) return;
+    event.preventDefault();
+    this.form_?.requestSubmit();
+  }
+
+  /** What is in the form, without what is as it was; null: something is no value. */
+  private read(table: Table): CellValues | null {
+    const values: CellValues = {};
+    const problems = new Map<string, string>();
+    for (const column of table.columns) {
+      const read = this.input_of(column.slug)?.read();
+      if (!read) continue;
+      if ("problem" in read) problems.set(column.slug, read.problem);
+      else if (!this.record_ || !same_value(read.value, this.record_.values[column.slug])) values[column.slug] = read.value;
+    }
+    this.field_problems_ = problems;
+    this.focus_problem();
+    return problems.size > 0 ? null : values;
+  }
+
+  private async save(another: boolean): Promise<void> {
+    const { table, session, record_: record } = this;
+    if (!table || this.busy_) return;
+    this.problem_ = "";
+    const values = this.read(table);
+    if (!values) return;
+    this.busy_ = true;
+    try {
+      if (record && Object.keys(values).length > 0) {
+        session.tables.view?.rows.put(await session.api.change_record(table.id, record.key, { version: record.version, values }));
+      } else if (!record) {
+        const made = await session.api.create_record(table.id, { values });
+        session.tables.view?.rows.refresh();
+        session.tables.view?.show(made.key);
+      }
+      if (another) this.begin_again();
+      else this.dispatchEvent(new CustomEvent("closed"));
+    } catch (error) {
+      await this.refuse(error, table);
+    } finally {
+      this.busy_ = false;
+    }
+  }
+
+  private begin_again(): void {
+    const { table } = this;
+    for (const column of table?.columns ?? []) this.input_of(column.slug)?.put(column.default ?? null);
+    if (table?.columns[0]) this.input_of(table.columns[0].slug)?.focus();
+  }
+
+  private async refuse(error: unknown, table: Table): Promise<void> {
+    if (!(error instanceof ApiError)) throw error;
+    const slug = /^values\.(.+)$/.exec(error.problem.field ?? "")?.[1];
+    if (error.status === 412 && this.record_) await this.tell_changes(table, this.record_);
+    else if (slug && this.input_of(slug)) this.field_problems_ = new Map([[slug, error.message]]);
+    else this.problem_ = error.message;
+    this.focus_problem();
+  }
+
+  /** Somebody else changed the record: their values stand beside the fields, and saving again decides. */
+  private async tell_changes(table: Table, read: TableRecord): Promise<void> {
+    const { api } = this.session;
+    const [newest] = await api.record_edits(table.id, read.key, 1);
+    const now = await api.record({ table: table.id }, read.key);
+    const typed = new Map<string, TableRecord["values"][string]>();
+    const told = new Map<string, string>();
+    for (const column of table.columns) {
+      const mine = this.input_of(column.slug)?.read();
+      const theirs = now.values[column.slug] ?? null;
+      if (mine && "value" in mine) typed.set(column.slug, mine.value);
+      if (same_value(theirs, read.values[column.slug])) continue;
+      const changed_here = mine && "value" in mine && !same_value(mine.value, read.values[column.slug]);
+      if (changed_here) told.set(column.slug, words.now_is(cell_text(theirs) || words.no_value));
+      else typed.set(column.slug, theirs);
+    }
+    this.record_ = { ...now, ...(read.area_m2 === undefined ? {} : { area_m2: read.area_m2 }) };
+    this.field_problems_ = told;
+    this.problem_ = words.changed_meanwhile(newest?.user || words.somebody);
+    await this.updateComplete;
+    for (const [slug, value] of typed) this.input_of(slug)?.put(value);
+  }
+
+  private focus_problem(): void {
+    const [slug] = this.field_problems_.keys();
+    if (slug !== undefined) this.input_of(slug)?.focus();
+  }
+}

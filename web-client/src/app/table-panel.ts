@@ -1,0 +1,705 @@
+// <strata-table-panel>: the records of a database layer as a table: sorted, filtered, written into. Only the rows in sight are drawn.
+
+import { html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { cell_text, is_number, label_of, named_keys, names_records } from "../core/cells";
+import { format_area } from "../core/measure";
+import { color_of, css_color } from "../core/palette";
+import type { CellValue, Column, Table, TableRecord } from "../core/protocol.gen";
+import type { Layer } from "../core/types";
+import type { CellEdit } from "./cell-edits";
+import "./cell-input";
+import { takes_typing, type StrataCellInput } from "./cell-input";
+import { follow_session } from "./follow-session";
+import { icon } from "./icons";
+import "./menu";
+import type { ModelSession } from "./model-session";
+import { notices } from "./notices";
+import { shared_styles } from "./styles";
+import { styled } from "./styled";
+import { table_styles } from "./table-styles";
+import type { TableView } from "./table-view";
+import { texts } from "./texts";
+
+export type TablePanelRequest =
+  | { dialog: "record"; layer: Layer; key: number | null }
+  | { dialog: "delete-record"; layer: Layer; key: number }
+  | { dialog: "column"; table: number; column: Column | null }
+  | { dialog: "csv"; table: number; file: File };
+
+const kRow_px = 32;
+const kHead_px = 34;
+const kAbove = 6; // rows drawn beyond those in sight
+const kKeyWidth = 92;
+const kAreaWidth = 110;
+const kWidths: Partial<Record<Column["kind"], number>> = { text: 190, numeric: 126, integer: 120, boolean: 110, date: 126, timestamp: 200, url: 200, relation: 190 };
+const kUsualWidth = 150;
+const kLeastWidth = 56;
+const kEditorWidth: Partial<Record<Column["kind"], number>> = { text: 260, url: 260, relation: 280, term: 240, period: 200, timestamp: 220, date: 160 };
+
+interface Editing {
+  key: number;
+  row: number;
+  column: Column;
+  value: CellValue;
+  base: CellValue;
+  typed: string | null;
+}
+
+@customElement("strata-table-panel")
+export class StrataTablePanel extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) view!: TableView;
+  @state() private active_ = { row: 0, column: 0 };
+  @state() private editing_: Editing | null = null;
+  @state() private editor_problem_ = "";
+  @state() private over_ = false; // a file is held over it
+  @query(".scroller") private scroller_!: HTMLElement | null;
+  @query(".editor strata-cell-input") private input_!: StrataCellInput | null;
+  @query(".filter input") private filter_!: HTMLInputElement;
+  private readonly widths_ = new Map<string, number>();
+  private observer_: ResizeObserver | null = null;
+  private from_ = 0; // the row that the next one with Shift goes on from
+
+  constructor() {
+    super();
+    follow_session(this);
+    this.addEventListener("dragover", (event) => this.on_drag_over(event));
+    this.addEventListener("dragleave", () => (this.over_ = false));
+    this.addEventListener("drop", (event) => this.on_drop(event));
+  }
+
+  static override styles = [shared_styles, table_styles];
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.observer_?.disconnect();
+    this.observer_ = null;
+  }
+
+  override willUpdate(): void {
+    this.classList.toggle("over", this.over_);
+    const { first, last } = this.in_sight();
+    this.view.rows.want(first, last);
+  }
+
+  override updated(): void {
+    if (this.scroller_ && !this.observer_) {
+      this.observer_ = new ResizeObserver(() => this.requestUpdate());
+      this.observer_.observe(this.scroller_);
+    }
+    if (this.view.sought !== null) void this.seek();
+  }
+
+  // ── what is in sight ──────────────────────────────────────────────────────────────────────────────────────────────
+
+  private in_sight(): { first: number; last: number } {
+    const { scrollTop: top = 0, clientHeight: height = 300 } = this.scroller_ ?? {};
+    const first = Math.max(0, Math.floor(top / kRow_px) - kAbove);
+    return { first, last: Math.ceil((top + height) / kRow_px) + kAbove };
+  }
+
+  private get layer(): Layer | null {
+    return this.session.layers.find(this.view.layer_id);
+  }
+  private get can_write(): boolean {
+    return this.session.can_paint;
+  }
+
+  private width_of(column: Column): number {
+    return this.widths_.get(column.slug) ?? kWidths[column.kind] ?? kUsualWidth;
+  }
+  /** Left edges of the columns; after the last one, of the area. */
+  private edges(table: Table): number[] {
+    const edges = [this.widths_.get("key") ?? kKeyWidth];
+    for (const column of table.columns) edges.push(edges[edges.length - 1]! + this.width_of(column));
+    return edges;
+  }
+
+  // ── drawing ───────────────────────────────────────────────────────────────────────────────────────────────────────
+
+  override render(): TemplateResult {
+    const { view, layer } = this;
+    const { table } = view;
+    if (!table || !layer) return html`<p class="empty" role="status">${texts.loading}</p>`;
+    return html`${this.bar(table, layer)} ${this.filter_problem()} ${this.grid(table, layer)}`;
+  }
+
+  private bar(table: Table, layer: Layer): TemplateResult {
+    const words = texts.tables;
+    const { view, session } = this;
+    const { rows } = view;
+    const shown = rows.filter === "" ? words.records(rows.total) : words.records_of(rows.total, table.records);
+    return html`<div class="bar">
+      <h2 class="ellipsis" title=${table.description}>${label_of(table)}</h2>
+      <span class="hint numeric count" role="status">${view.told || (rows.loaded ? shown : "")}</span>
+      <div class="filter">
+        <input
+          type="text"
+          spellcheck="false"
+          autocapitalize="off"
+          maxlength="4096"
+          aria-label=${words.filter}
+          placeholder=${words.filter_example}
+          aria-invalid=${rows.problem?.field === "filter" ? "true" : "false"}
+          .value=${rows.filter}
+          @change=${this.on_filter}
+          @keydown=${this.on_filter_key}
+        />
+        ${rows.filter === ""
+          ? nothing
+          : html`<button class="icon quiet" aria-label=${words.filter_clear} title=${words.filter_clear} @click=${() => rows.set_query({ filter: "" })}>
+              ${icon("close")}
+            </button>`}
+      </div>
+      <span class="grow"></span>
+      ${this.chosen(layer)}
+      ${this.can_write
+        ? html`<button @click=${() => this.request({ dialog: "record", layer, key: null })}>${icon("plus")}${words.new_record}</button>
+            <button class="icon quiet" aria-label=${words.undo} title=${words.undo} @click=${() => void view.undo()}>${icon("undo")}</button>
+            <button class="icon quiet" aria-label=${words.redo} title=${words.redo} @click=${() => void view.redo()}>${icon("redo")}</button>`
+        : nothing}
+      <strata-menu label=${words.more}>
+        ${session.can_curate
+          ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "column", table: table.id, column: null })}>
+                ${icon("plus")}${words.new_column}
+              </button>
+              <hr />`
+          : nothing}
+        <button class="quiet" role="menuitem" @click=${() => this.save_csv(table, "comma")}>${icon("import")}${words.save_csv}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.save_csv(table, "semicolon")}>${icon("import")}${words.save_csv_semicolon}</button>
+        ${this.can_write
+          ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_csv(table)}>${icon("upload")}${words.import_csv}</button>`
+          : nothing}
+      </strata-menu>
+      <button class="icon quiet" aria-label=${words.close} title="${words.close} (T)" @click=${() => session.tables.close()}>${icon("close")}</button>
+    </div>`;
+  }
+
+  private chosen(layer: Layer): TemplateResult | typeof nothing {
+    const words = texts.tables;
+    const keys = [...this.view.selected];
+    if (keys.length === 0) return nothing;
+    const areas = keys.map((key) => this.view.rows.find(key)?.area_m2 ?? 0);
+    const [key] = keys;
+    const one = keys.length === 1 && key !== undefined;
+    const name = one ? (this.session.tables.label(this.view.table_id, key) ?? words.record(key)) : words.chosen(keys.length);
+    return html`<div class="chosen" role="group" aria-label=${words.chosen(keys.length)}>
+      <span class="numeric ellipsis">${name} · ${format_area(areas.reduce((sum, each) => sum + each, 0))}</span>
+      ${one && this.can_write
+        ? html`<button class="icon quiet" aria-label=${words.paint_with} title=${words.paint_with} @click=${() => this.paint_with(layer, key)}>
+              ${icon("brush")}
+            </button>
+            <button class="icon quiet" aria-label=${words.edit} title=${words.edit} @click=${() => this.request({ dialog: "record", layer, key })}>
+              ${icon("edit")}
+            </button>
+            <button class="icon quiet" aria-label=${words.delete} title=${words.delete} @click=${() => this.request({ dialog: "delete-record", layer, key })}>
+              ${icon("trash")}
+            </button>`
+        : nothing}
+      <button class="icon quiet" aria-label=${words.choose_none} title=${words.choose_none} @click=${() => this.view.select_none()}>${icon("close")}</button>
+    </div>`;
+  }
+
+  /** The filter with the character that is wrong. */
+  private filter_problem(): TemplateResult | typeof nothing {
+    const { problem, filter } = this.view.rows;
+    if (!problem) return nothing;
+    const { offset } = problem;
+    const characters = [...filter];
+    return html`<div class="wrong" role="alert">
+      <span>${problem.detail ?? problem.title}</span>
+      ${problem.field === "filter" && offset !== undefined
+        ? html`<code>${characters.slice(0, offset).join("")}<mark>${characters[offset] ?? " "}</mark>${characters.slice(offset + 1).join("")}</code>`
+        : nothing}
+    </div>`;
+  }
+
+  private grid(table: Table, layer: Layer): TemplateResult {
+    const { rows } = this.view;
+    const { first, last } = this.in_sight();
+    const edges = this.edges(table);
+    const widths = [edges[0]!, ...table.columns.map((column) => this.width_of(column)), this.widths_.get("area_m2") ?? kAreaWidth];
+    const indices: number[] = [];
+    for (let index = first; index < Math.min(last, rows.total); ++index) indices.push(index);
+    const { row, column } = this.active_;
+    return html`<div
+      class="scroller"
+      role="grid"
+      tabindex="0"
+      aria-label=${texts.tables.grid(label_of(table))}
+      aria-rowcount=${rows.total + 1}
+      aria-colcount=${widths.length}
+      aria-activedescendant=${indices.includes(row) ? `cell-${row}-${column}` : nothing}
+      ${styled({ "--columns": widths.map((width) => `${width}px`).join(" "), "--row": `${kRow_px}px` })}
+      @scroll=${() => this.requestUpdate()}
+      @keydown=${this.on_key}
+    >
+      ${this.head(table)}
+      <div class="body" role="rowgroup" ${styled({ height: `${rows.total * kRow_px}px` })}>
+        ${repeat(
+          indices,
+          (index) => index,
+          (index) => this.line(table, layer, index),
+        )}
+        ${this.editor(edges)} ${this.bubbles(table, edges)}
+      </div>
+      ${rows.loaded && rows.total === 0 && !rows.problem ? this.nothing_there(table, layer) : nothing}
+    </div>`;
+  }
+
+  private nothing_there(table: Table, layer: Layer): TemplateResult {
+    const words = texts.tables;
+    return html`<div class="empty">
+      <span>${table.records === 0 ? words.empty : words.nothing_matches}</span>
+      ${table.records === 0 && this.can_write
+        ? html`<button @click=${() => this.request({ dialog: "record", layer, key: null })}>${icon("plus")}${words.new_record}</button>`
+        : nothing}
+    </div>`;
+  }
+
+  private head(table: Table): TemplateResult {
+    const words = texts.tables;
+    return html`<div class="head" role="row" aria-rowindex="1">
+      ${this.head_cell("key", words.key, "key")}
+      ${table.columns.map((column) => this.head_cell(column.slug, label_of(column), is_number(column) ? "number" : "", column))}
+      ${this.head_cell("area_m2", words.area, "number")}
+    </div>`;
+  }
+
+  private head_cell(name: string, label: string, kind: string, column?: Column): TemplateResult {
+    const words = texts.tables;
+    const { sortby } = this.view.rows;
+    const sorted = sortby === name ? "ascending" : sortby === `-${name}` ? "descending" : "none";
+    return html`<div class="cell ${kind}" role="columnheader" aria-sort=${sorted}>
+      <button class="sort" tabindex="-1" title=${column?.comment || words.sort(label)} @click=${() => this.sort(name)}>
+        <span class="ellipsis"
+          >${label}${column?.unit ? html` <span class="unit">${column.unit}</span>` : nothing}${column?.required
+            ? html`<span class="required" title=${words.required}> *</span>`
+            : nothing}</span
+        >
+        ${sorted === "none" ? nothing : icon(sorted === "ascending" ? "up" : "down")}
+      </button>
+      ${column && this.session.can_curate
+        ? html`<strata-menu label=${words.column_menu(label)} small>
+            <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "column", table: this.view.table_id, column })}>
+              ${icon("edit")}${words.change_column}
+            </button>
+            <button class="quiet" role="menuitem" @click=${() => this.dispatchEvent(new CustomEvent("drop-column", { detail: column }))}>
+              ${icon("trash")}${words.drop_column}
+            </button>
+          </strata-menu>`
+        : nothing}
+      <span class="edge" @pointerdown=${(event: PointerEvent) => this.on_edge(event, name)}></span>
+    </div>`;
+  }
+
+  private sort(name: string): void {
+    if (this.scroller_) this.scroller_.scrollTop = 0;
+    this.view.sort(name);
+  }
+
+  private line(table: Table, layer: Layer, index: number): TemplateResult {
+    const record = this.view.rows.row(index);
+    const chosen = record !== null && this.view.selected.has(record.key);
+    const is_active = (column: number): string => (this.active_.row === index && this.active_.column === column ? "active" : "");
+    const color = record ? color_of(layer.palette, record.key) : null;
+    return html`<div
+      class="line ${chosen ? "chosen-row" : ""}"
+      role="row"
+      aria-rowindex=${index + 2}
+      aria-selected=${chosen}
+      ${styled({ top: `${index * kRow_px}px` })}
+    >
+      <div class="cell key numeric ${is_active(0)}" role="rowheader" id="cell-${index}-0" @click=${(event: MouseEvent) => this.on_key_cell(event, index)}>
+        ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}${record?.key ?? "…"}
+      </div>
+      ${table.columns.map((column, at) => this.cell(record, column, index, at + 1, is_active(at + 1)))}
+      <div
+        class="cell number numeric computed ${is_active(table.columns.length + 1)}"
+        role="gridcell"
+        aria-readonly="true"
+        id="cell-${index}-${table.columns.length + 1}"
+        @click=${() => this.activate(index, table.columns.length + 1)}
+      >
+        ${record?.area_m2 ? format_area(record.area_m2) : ""}
+      </div>
+    </div>`;
+  }
+
+  private cell(record: TableRecord | null, column: Column, row: number, at: number, active: string): TemplateResult {
+    const edit = record ? this.view.edits.of(record.key, column.slug) : null;
+    const value = edit ? edit.value : (record?.values[column.slug] ?? null);
+    const state = edit ? (edit.state === "saving" ? "saving" : "refused") : "";
+    const number = is_number(column) ? "number numeric" : "";
+    return html`<div
+      class="cell ${number} ${state} ${active}"
+      role="gridcell"
+      id="cell-${row}-${at}"
+      @click=${(event: MouseEvent) => this.on_cell(event, row, at)}
+    >
+      <span class="ellipsis">${record ? this.shown(column, value) : ""}</span>
+    </div>`;
+  }
+
+  private shown(column: Column, value: CellValue): unknown {
+    if (value === null) return "";
+    if (names_records(column)) {
+      const target = column.target ?? 0;
+      return named_keys(value)
+        .map((key) => this.session.tables.label(target, key) ?? texts.tables.record(key))
+        .join(", ");
+    }
+    if (column.kind === "boolean") return value ? texts.tables.yes : texts.tables.no;
+    const text = cell_text(value);
+    if (column.kind === "url" && /^(https?|mailto):/i.test(text)) {
+      return html`<a class="text" href=${text} target="_blank" rel="noopener noreferrer" tabindex="-1">${text}</a>`;
+    }
+    return text;
+  }
+
+  // ── writing into a cell ───────────────────────────────────────────────────────────────────────────────────────────
+
+  private editor(edges: readonly number[]): TemplateResult | typeof nothing {
+    const editing = this.editing_;
+    const { table } = this.view;
+    if (!editing || !table) return nothing;
+    const at = table.columns.findIndex((column) => column.id === editing.column.id);
+    if (at < 0) return nothing;
+    const width = Math.max(this.width_of(editing.column), kEditorWidth[editing.column.kind] ?? 0);
+    return html`<div
+        class="editor"
+        ${styled({ top: `${editing.row * kRow_px}px`, left: `${edges[at]!}px`, width: `${width}px` })}
+        @keydown=${this.on_editor_key}
+        @focusout=${this.on_editor_left}
+      >
+        <strata-cell-input
+          class="in-cell"
+          .session=${this.session}
+          .column=${editing.column}
+          .value=${editing.value}
+          .typed=${editing.typed}
+          .invalid=${this.editor_problem_ !== ""}
+        ></strata-cell-input>
+      </div>
+      ${this.editor_problem_
+        ? html`<div class="bubble" role="alert" ${styled(this.beside(editing.row, edges[at]!))}>
+            <span class="error">${this.editor_problem_}</span>
+          </div>`
+        : nothing}`;
+  }
+
+  /** Below the row, or above it where there is more room. */
+  private beside(row: number, left: number): Record<string, string | null> {
+    const { scrollTop = 0, clientHeight = 0 } = this.scroller_ ?? {};
+    const below = row === 0 || row * kRow_px - scrollTop < (clientHeight - kHead_px) / 2;
+    const [top, bottom] = below ? [(row + 1) * kRow_px + 3, null] : [null, (this.view.rows.total - row) * kRow_px + 3];
+    return { left: `${left}px`, top: top === null ? null : `${top}px`, bottom: bottom === null ? null : `${bottom}px` };
+  }
+
+  /** What the server refused, and what somebody else wrote meanwhile. */
+  private bubbles(table: Table, edges: readonly number[]): unknown {
+    return this.view.edits.open.map((edit) => {
+      const row = this.view.rows.index_of(edit.key);
+      const at = table.columns.findIndex((column) => column.slug === edit.slug);
+      const written_again = this.editing_?.key === edit.key && this.editing_.column.slug === edit.slug;
+      if (row === null || at < 0 || written_again) return nothing;
+      return html`<div class="bubble" role="alert" ${styled(this.beside(row, edges[at]!))}>
+        ${edit.theirs ? this.conflict(table.columns[at]!, edit) : this.refused(edit, row, at + 1)}
+      </div>`;
+    });
+  }
+
+  private refused(edit: CellEdit, row: number, at: number): TemplateResult {
+    const words = texts.tables;
+    return html`<span class="error">${edit.problem}</span>
+      <div class="row">
+        <button @click=${() => this.edit_at(row, at, null)}>${words.correct}</button>
+        <button class="quiet" @click=${() => this.leave_edit(edit)}>${words.give_up}</button>
+      </div>`;
+  }
+
+  private conflict(column: Column, edit: CellEdit): TemplateResult {
+    const words = texts.tables;
+    const theirs = edit.theirs!;
+    const shown = (value: CellValue): unknown => (value === null ? words.no_value : this.shown(column, value));
+    const time = theirs.time ? new Date(theirs.time).toLocaleTimeString("en-GB", { hour: "2-digit", minute: "2-digit" }) : "";
+    return html`<span>${words.changed_by(theirs.user || words.somebody, time)} <b>${shown(theirs.value)}</b></span>
+      <span>${words.yours} <b>${shown(edit.value)}</b></span>
+      <div class="row">
+        <button @click=${() => this.leave_edit(edit)}>${words.keep_theirs}</button>
+        <button class="primary" @click=${() => this.insist(edit)}>${words.take_mine}</button>
+      </div>`;
+  }
+
+  private leave_edit(edit: CellEdit): void {
+    this.view.edits.forget(edit.key, edit.slug);
+    this.scroller_?.focus();
+  }
+  private insist(edit: CellEdit): void {
+    void this.view.edits.insist(edit);
+    this.scroller_?.focus();
+  }
+
+  private edit_at(row: number, at: number, typed: string | null): void {
+    const record = this.view.rows.row(row);
+    const column = this.view.table?.columns[at - 1];
+    if (!this.can_write || !record || !column) return;
+    this.activate(row, at);
+    this.scroll_to_active(this.view.table!);
+    const edit = this.view.edits.of(record.key, column.slug);
+    const now = record.values[column.slug] ?? null;
+    this.editing_ = { key: record.key, row, column, value: edit?.value ?? now, base: edit?.state === "saving" ? edit.value : now, typed };
+    this.editor_problem_ = "";
+    void this.updateComplete.then(async () => {
+      const input = this.input_;
+      await input?.updateComplete;
+      input?.begin();
+    });
+  }
+
+  /** False: what was typed is no value, and stays in the field. */
+  private commit(): boolean {
+    const editing = this.editing_;
+    const read = this.input_?.read();
+    if (!editing || !read) return true;
+    if ("problem" in read) {
+      this.editor_problem_ = read.problem;
+      return false;
+    }
+    this.editing_ = null;
+    this.editor_problem_ = "";
+    this.view.write(editing.key, editing.column.slug, read.value, editing.base);
+    return true;
+  }
+
+  private readonly on_editor_key = (event: KeyboardEvent): void => {
+    const { row, column } = this.active_;
+    if (event.key === "Escape") {
+      this.editing_ = null;
+      this.editor_problem_ = "";
+      this.scroller_?.focus();
+    } else if (event.key === "Enter" && !event.shiftKey && !event.altKey) {
+      if (this.commit()) this.move_to(row + 1, column);
+    } else if (event.key === "Tab") {
+      if (this.commit()) this.edit_beside(row, column, event.shiftKey ? -1 : 1);
+    } else {
+      event.stopPropagation();
+      return;
+    }
+    event.preventDefault();
+    event.stopPropagation();
+  };
+
+  /** The next cell that can be written into; at the end of a row the first one of the next. */
+  private edit_beside(row: number, column: number, step: 1 | -1): void {
+    const count = this.view.table?.columns.length ?? 0;
+    const next = column + step;
+    if (next < 1) [row, column] = [row - 1, count];
+    else if (next > count) [row, column] = [row + 1, 1];
+    else column = next;
+    if (row < 0 || row >= this.view.rows.total || count === 0) {
+      this.scroller_?.focus();
+      return;
+    }
+    this.move_to(row, column);
+    this.edit_at(row, column, null);
+  }
+
+  private readonly on_editor_left = (event: FocusEvent): void => {
+    const editor = event.currentTarget as HTMLElement;
+    if (!this.editing_ || (event.relatedTarget instanceof Node && editor.contains(event.relatedTarget))) return;
+    this.commit();
+  };
+
+  // ── keys and the pointer ──────────────────────────────────────────────────────────────────────────────────────────
+
+  private activate(row: number, column: number): void {
+    this.active_ = { row, column };
+  }
+
+  private move_to(row: number, column: number): void {
+    const { table, rows } = this.view;
+    if (!table || !this.scroller_) return;
+    this.activate(Math.min(Math.max(0, row), Math.max(0, rows.total - 1)), Math.min(Math.max(0, column), table.columns.length + 1));
+    this.scroll_to_active(table);
+    this.scroller_.focus({ preventScroll: true });
+  }
+
+  private scroll_to_active(table: Table): void {
+    const box = this.scroller_!;
+    const { row, column } = this.active_;
+    const top = row * kRow_px;
+    if (top < box.scrollTop) box.scrollTop = top;
+    else if (top + kRow_px > box.scrollTop + box.clientHeight - kHead_px) box.scrollTop = top + kRow_px - box.clientHeight + kHead_px;
+    if (column === 0) return;
+    const edges = this.edges(table);
+    const left = edges[column - 1]!;
+    const right = edges[column] ?? left + (this.widths_.get("area_m2") ?? kAreaWidth);
+    if (left - edges[0]! < box.scrollLeft) box.scrollLeft = left - edges[0]!;
+    else if (right > box.scrollLeft + box.clientWidth) box.scrollLeft = right - box.clientWidth;
+  }
+
+  private readonly on_key = (event: KeyboardEvent): void => {
+    if (event.target !== this.scroller_) return; // a button in it
+    const { row, column } = this.active_;
+    const { table, rows } = this.view;
+    if (!table) return;
+    if (this.on_grid_key(event, table, row, column, rows.total)) {
+      event.preventDefault();
+      event.stopPropagation();
+    }
+  };
+
+  private on_grid_key(event: KeyboardEvent, table: Table, row: number, column: number, total: number): boolean {
+    const { key } = event;
+    const last = table.columns.length + 1;
+    const page = Math.max(1, Math.floor(((this.scroller_?.clientHeight ?? 0) - kHead_px) / kRow_px) - 1);
+    if (event.ctrlKey || event.metaKey) {
+      if (event.altKey) return false;
+      if (key.toLowerCase() === "z") void (event.shiftKey ? this.view.redo() : this.view.undo());
+      else if (key === "Home") this.move_to(0, 0);
+      else if (key === "End") this.move_to(total - 1, last);
+      else return false;
+      return true;
+    }
+    const steps: Record<string, [number, number]> = {
+      ArrowUp: [row - 1, column],
+      ArrowDown: [row + 1, column],
+      ArrowLeft: [row, column - 1],
+      ArrowRight: [row, column + 1],
+      Home: [row, 0],
+      End: [row, last],
+      PageUp: [row - page, column],
+      PageDown: [row + page, column],
+    };
+    const step = steps[key];
+    if (step) {
+      this.move_to(...step);
+      return true;
+    }
+    const record = this.view.rows.row(row);
+    const cell = table.columns[column - 1];
+    if (key === "Escape") this.scroller_?.blur();
+    else if (key === " " && record) this.view.select(record.key, "toggle");
+    else if (key === "Enter" || key === "F2") this.enter(record, row, column);
+    else if ((key === "Delete" || key === "Backspace") && record && cell && this.can_write) this.view.write(record.key, cell.slug, null, record.values[cell.slug] ?? null);
+    else if (key.length === 1 && !event.altKey && cell) this.edit_at(row, column, takes_typing(cell) ? key : null);
+    else return key.length === 1; // not a shortcut of the page
+    return true;
+  }
+
+  /** A cell is written into; the key and the area open the whole record. */
+  private enter(record: TableRecord | null, row: number, column: number): void {
+    const { layer } = this;
+    if (this.view.table?.columns[column - 1]) this.edit_at(row, column, null);
+    else if (record && layer && this.can_write) this.request({ dialog: "record", layer, key: record.key });
+  }
+
+  private on_cell(event: MouseEvent, row: number, column: number): void {
+    if ((event.target as HTMLElement).tagName === "A") return;
+    const again = this.active_.row === row && this.active_.column === column && !this.editing_;
+    if (again && this.can_write) this.edit_at(row, column, null);
+    else this.activate(row, column);
+    if (!this.editing_) this.scroller_?.focus({ preventScroll: true });
+  }
+
+  private on_key_cell(event: MouseEvent, row: number): void {
+    const record = this.view.rows.row(row);
+    this.activate(row, 0);
+    this.scroller_?.focus({ preventScroll: true });
+    if (!record) return;
+    if (event.shiftKey) this.view.select_rows(this.from_, row);
+    else this.view.select(record.key, event.ctrlKey || event.metaKey || this.view.selected.has(record.key) ? "toggle" : "only");
+    this.from_ = row;
+  }
+
+  private on_edge(event: PointerEvent, name: string): void {
+    const edge = event.currentTarget as HTMLElement;
+    const width = edge.parentElement!.getBoundingClientRect().width;
+    edge.setPointerCapture(event.pointerId);
+    event.preventDefault();
+    const move = (moved: PointerEvent): void => {
+      this.widths_.set(name, Math.max(kLeastWidth, Math.round(width + moved.clientX - event.clientX)));
+      this.requestUpdate();
+    };
+    edge.addEventListener("pointermove", move);
+    edge.addEventListener("lostpointercapture", () => edge.removeEventListener("pointermove", move), { once: true });
+  }
+
+  // ── the filter, files, and what else is asked for ─────────────────────────────────────────────────────────────────
+
+  private on_filter(): void {
+    if (this.scroller_) this.scroller_.scrollTop = 0;
+    this.active_ = { row: 0, column: this.active_.column };
+    this.view.rows.set_query({ filter: this.filter_.value.trim() });
+  }
+
+  private on_filter_key(event: KeyboardEvent): void {
+    if (event.key === "Enter") this.on_filter();
+    else if (event.key === "Escape") this.filter_.value = this.view.rows.filter;
+  }
+
+  private async seek(): Promise<void> {
+    const { view } = this;
+    const key = view.sought!;
+    view.sought = null;
+    try {
+      let row = await view.rows.locate(key);
+      if (row === null && view.rows.filter !== "") {
+        view.rows.set_query({ filter: "" });
+        row = await view.rows.locate(key);
+      }
+      await this.updateComplete;
+      if (row !== null && view === this.view) this.move_to(row, this.active_.column);
+    } catch (error) {
+      notices.error(error);
+    }
+  }
+
+  private paint_with(layer: Layer, key: number): void {
+    const { session } = this;
+    session.layers.select(layer);
+    session.painting.set_brush((brush) => brush.set_value(layer, key));
+    session.choose_tool("brush");
+  }
+
+  private save_csv(table: Table, separator: string): void {
+    const { sortby, filter } = this.view.rows;
+    const query = { separator, ...(sortby ? { sortby } : {}), ...(filter ? { filter } : {}) };
+    const link = document.createElement("a");
+    link.href = this.session.api.records_url({ model: this.session.model_id, layer: this.view.layer_id }, query);
+    link.download = `${table.slug}.csv`;
+    link.click();
+  }
+
+  private choose_csv(table: Table): void {
+    const input = document.createElement("input");
+    input.type = "file";
+    input.accept = ".csv,.tsv,.txt,text/csv";
+    input.addEventListener("change", () => {
+      const [file] = input.files ?? [];
+      if (file) this.request({ dialog: "csv", table: table.id, file });
+    });
+    input.click();
+  }
+
+  private on_drag_over(event: DragEvent): void {
+    if (!this.can_write || ![...(event.dataTransfer?.items ?? [])].some(({ kind }) => kind === "file")) return;
+    event.preventDefault();
+    this.over_ = true;
+  }
+
+  private on_drop(event: DragEvent): void {
+    this.over_ = false;
+    const [file] = event.dataTransfer?.files ?? [];
+    if (!file || !this.can_write) return;
+    event.preventDefault();
+    this.request({ dialog: "csv", table: this.view.table_id, file });
+  }
+
+  private request(detail: TablePanelRequest): void {
+    this.dispatchEvent(new CustomEvent<TablePanelRequest>("request", { detail }));
+  }
+}

@@ -1,0 +1,256 @@
+import { css } from "lit";
+
+export const table_styles = css`
+  :host {
+    display: flex;
+    flex-direction: column;
+    min-width: 0;
+    min-height: 0;
+    background: var(--surface);
+  }
+  :host(.over) {
+    box-shadow: inset 0 0 0 3px var(--accent);
+  }
+  .bar {
+    display: flex;
+    align-items: center;
+    gap: 6px;
+    padding: 5px 8px 5px 14px;
+    border-bottom: 1px solid var(--line);
+  }
+  .bar h2 {
+    font-size: 1.02rem;
+    flex: none;
+    max-width: 30%;
+  }
+  .bar .count {
+    white-space: nowrap;
+  }
+  .bar button,
+  .bar input[type="text"] {
+    min-height: 32px;
+  }
+  .bar button.icon {
+    width: 32px;
+  }
+  .filter {
+    position: relative;
+    flex: 1 1 160px;
+    min-width: 90px;
+    max-width: 460px;
+    margin-left: 6px;
+  }
+  .filter input {
+    padding-right: 30px;
+    font: 0.86rem var(--mono);
+  }
+  .filter button {
+    position: absolute;
+    right: 0;
+    top: 0;
+  }
+  .chosen {
+    display: flex;
+    align-items: center;
+    gap: 4px;
+    min-width: 0;
+    padding: 2px 4px 2px 10px;
+    border-radius: var(--radius-small);
+    background: var(--accent-soft);
+    font-size: 0.88rem;
+    white-space: nowrap;
+  }
+  .wrong {
+    display: grid;
+    gap: 2px;
+    padding: 6px 14px;
+    border-bottom: 1px solid var(--line);
+    background: var(--danger-soft);
+  }
+  .wrong code {
+    font-family: var(--mono);
+    white-space: pre-wrap;
+    overflow-wrap: anywhere;
+  }
+  .wrong mark {
+    background: var(--danger);
+    color: var(--surface);
+  }
+  .scroller {
+    flex: 1;
+    position: relative;
+    min-height: 0;
+    overflow: auto;
+    font-size: 0.9rem;
+    outline: 0;
+    scrollbar-gutter: stable;
+  }
+  .scroller:focus-visible .cell.active,
+  .scroller:focus-within .cell.active {
+    box-shadow: inset 0 0 0 2px var(--accent);
+  }
+  .head,
+  .line {
+    display: grid;
+    grid-template-columns: var(--columns);
+    width: max-content;
+    min-width: 100%;
+  }
+  .head {
+    position: sticky;
+    z-index: 3;
+    top: 0;
+    grid-auto-rows: 33px;
+    height: 34px;
+    border-bottom: 1px solid var(--line-strong);
+    background: var(--paper);
+  }
+  .body {
+    position: relative;
+  }
+  .line {
+    position: absolute;
+    left: 0;
+    height: var(--row);
+    border-bottom: 1px solid var(--line);
+    background: var(--raised);
+  }
+  .line.chosen-row,
+  .line.chosen-row .cell.key {
+    background: var(--accent-soft);
+  }
+  .cell {
+    display: flex;
+    align-items: center;
+    min-width: 0;
+    padding: 0 9px;
+    border-right: 1px solid var(--line);
+    cursor: default;
+  }
+  .cell.number {
+    justify-content: flex-end;
+  }
+  .cell.key {
+    position: sticky;
+    z-index: 1;
+    left: 0;
+    gap: 8px;
+    background: var(--surface);
+    cursor: pointer;
+  }
+  .cell.key .swatch {
+    width: 12px;
+    height: 12px;
+  }
+  .cell.saving {
+    color: var(--ink-soft);
+    font-style: italic;
+  }
+  .cell.refused {
+    box-shadow: inset 0 0 0 2px var(--danger);
+    background: var(--danger-soft);
+  }
+  .cell.computed {
+    color: var(--ink-soft);
+  }
+  .head .cell {
+    position: relative;
+    padding: 0 0 0 2px;
+  }
+  .head .cell.key {
+    position: sticky;
+    z-index: 1;
+    background: var(--paper);
+  }
+  .head .sort {
+    flex: 1;
+    justify-content: flex-start;
+    min-width: 0;
+    min-height: 28px;
+    padding: 0 6px;
+    border: 0;
+    background: none;
+    font-weight: 600;
+    font-size: 0.86rem;
+    gap: 4px;
+  }
+  .head .number .sort {
+    justify-content: flex-end;
+  }
+  .head .unit {
+    font-weight: 400;
+    color: var(--ink-soft);
+  }
+  .head .required {
+    color: var(--danger);
+  }
+  .head svg.glyph {
+    width: 14px;
+    height: 14px;
+  }
+  .edge {
+    position: absolute;
+    z-index: 2;
+    right: -4px;
+    top: 0;
+    bottom: 0;
+    width: 8px;
+    cursor: col-resize;
+    touch-action: none;
+  }
+  .edge:hover {
+    background: var(--accent-soft);
+  }
+  .editor {
+    position: absolute;
+    z-index: 4;
+    padding: 1px;
+    border-radius: var(--radius-small);
+    background: var(--raised);
+    box-shadow: var(--shadow);
+  }
+  .bubble {
+    position: absolute;
+    z-index: 5;
+    display: grid;
+    gap: 6px;
+    width: max-content;
+    max-width: 380px;
+    padding: 8px 12px;
+    border: 1px solid var(--danger);
+    border-radius: var(--radius-small);
+    background: var(--raised);
+    box-shadow: var(--shadow);
+    font-size: 0.86rem;
+    white-space: normal;
+    cursor: default;
+  }
+  .bubble .row {
+    flex-wrap: wrap;
+    gap: 6px;
+  }
+  .bubble button {
+    min-height: 28px;
+  }
+  .empty {
+    display: grid;
+    gap: 8px;
+    justify-items: start;
+    padding: 18px;
+    color: var(--ink-soft);
+  }
+  @media (max-width: 820px) {
+    .bar {
+      flex-wrap: wrap;
+    }
+    .bar > .grow {
+      display: none;
+    }
+    .filter {
+      order: 9;
+      flex-basis: 100%;
+      max-width: none;
+      margin-left: 0;
+    }
+  }
+`;

@@ -1,0 +1,131 @@
+// The tables of the project that this page has needed so far: their columns, and what their records are called.
+
+import { ApiError, type Api } from "../core/api";
+import type { RecordEvent, Table, TableEvent } from "../core/protocol.gen";
+import type { Layer } from "../core/types";
+import { notices } from "./notices";
+import { RecordNames } from "./record-names";
+import { TableView } from "./table-view";
+
+export interface TablesHost {
+  model_id: string;
+  project(): string | null;
+  changed(): void;
+}
+
+export class Tables {
+  /** The table that is open below the stage. */
+  view: TableView | null = null;
+
+  private readonly tables_ = new Map<number, Table | "asked">();
+  private readonly names_ = new Map<number, RecordNames>();
+
+  constructor(
+    private readonly api_: Api,
+    private readonly host_: TablesHost,
+  ) {}
+
+  /** Null until it is here; it is asked for. */
+  find(id: number): Table | null {
+    const known = this.tables_.get(id);
+    if (known === undefined) void this.load(id);
+    return typeof known === "object" ? known : null;
+  }
+
+  /** Null until its columns are known. */
+  names(id: number): RecordNames | null {
+    const table = this.find(id);
+    if (!table) return null;
+    let names = this.names_.get(id);
+    if (!names) {
+      names = new RecordNames(this.api_, () => this.find(id) ?? table, this.host_.changed);
+      this.names_.set(id, names);
+    }
+    return names;
+  }
+
+  /** What a record of the table is called; null where it has no name, or none that is known yet. */
+  label(id: number, key: number): string | null {
+    return this.names(id)?.label(key) ?? null;
+  }
+
+  /** All of the project, for a choice among them. */
+  async all(): Promise<Table[]> {
+    const project = this.host_.project();
+    if (project === null) return [];
+    const tables = await this.api_.tables(project);
+    for (const table of tables) this.tables_.set(table.id, table);
+    return tables;
+  }
+
+  open(layer: Layer): void {
+    if (layer.table === undefined || this.view?.layer_id === layer.id) return;
+    this.view?.stop();
+    this.view = new TableView(this.api_, {
+      model_id: this.host_.model_id,
+      layer_id: layer.id,
+      table_id: layer.table,
+      table: () => this.find(layer.table!),
+      changed: this.host_.changed,
+      columns_changed: () => this.load(layer.table!),
+    });
+    this.host_.changed();
+  }
+
+  close(): void {
+    this.view?.stop();
+    this.view = null;
+    this.host_.changed();
+  }
+
+  /** The connection was away: what happened meanwhile was not told. */
+  refresh(): void {
+    for (const id of this.tables_.keys()) void this.load(id);
+    for (const names of this.names_.values()) names.refresh();
+    this.view?.rows.refresh();
+  }
+
+  on_record(event: RecordEvent): void {
+    const names = this.names_.get(event.table);
+    if (event.event === "deleted") names?.remove(event.key);
+    else if (event.record) names?.put(event.record);
+    if (this.view?.table_id === event.table) this.view.on_record(event);
+  }
+
+  on_table(event: TableEvent): void {
+    if (event.event === "deleted") {
+      this.tables_.delete(event.table_id);
+      this.names_.delete(event.table_id);
+    } else if (event.table && this.tables_.has(event.table_id)) {
+      this.tables_.set(event.table_id, event.table);
+      this.names_.get(event.table_id)?.refresh();
+    }
+    if (this.view?.table_id === event.table_id) this.view.refresh_soon();
+    this.host_.changed();
+  }
+
+  on_layer_edited(layer: number): void {
+    if (this.view?.layer_id === layer) this.view.refresh_soon();
+  }
+  on_layer_deleted(layer: number): void {
+    if (this.view?.layer_id === layer) this.close();
+  }
+
+  /** This person changed its columns: the rows are read anew with them. */
+  async reload(id: number): Promise<void> {
+    await this.load(id);
+    this.names_.get(id)?.refresh();
+    if (this.view?.table_id === id) this.view.rows.refresh();
+  }
+
+  private async load(id: number): Promise<void> {
+    if (!this.tables_.has(id)) this.tables_.set(id, "asked");
+    try {
+      this.tables_.set(id, await this.api_.table(id));
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (error.status !== 404) notices.error(error);
+    }
+    this.host_.changed();
+  }
+}
