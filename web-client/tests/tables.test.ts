@@ -4,9 +4,11 @@ import { CellEdits } from "../src/app/cell-edits";
 import { column_changes, of_kind, type ColumnWanted } from "../src/app/column-changes";
 import { RecordNames } from "../src/app/record-names";
 import { kPageRows, RecordRows } from "../src/app/record-rows";
+import { Tables } from "../src/app/tables";
 import { Api, ApiError, type RecordQuery } from "../src/core/api";
 import { label_column, label_of, label_of_record, named_keys, parse_cell } from "../src/core/cells";
-import type { CellValue, Column, ColumnKind, Table, TableRecord } from "../src/core/protocol.gen";
+import type { CellValue, Column, ColumnKind, Picked, Table, TableRecord } from "../src/core/protocol.gen";
+import type { Layer } from "../src/core/types";
 
 const column = (id: number, slug: string, kind: ColumnKind = "text", more: Partial<Column> = {}): Column => ({
   id, name: slug, slug, labels: {}, kind, required: false, unique: false, comment: "", order: id, ...more,
@@ -299,6 +301,56 @@ describe("the names of records", () => {
     expect(names.search("su 1").map(({ key }) => key)).toEqual([1, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 50]);
     expect(names.search("50").map(({ key }) => key)).toEqual([50]);
     expect(names.search("nothing of it")).toEqual([]);
+  });
+});
+
+describe("the card of a record", () => {
+  const layer = { id: 8, table: 3, slug: "finds" } as Layer;
+  const picked = (value: number): Picked => ({ op: "picked", id: "x", hit: true, values: { finds: { valid: true, value } } }) as unknown as Picked;
+  let asked: string[];
+  let area_m2: number;
+  let tables: Tables;
+
+  beforeEach(() => {
+    asked = [];
+    area_m2 = 1;
+    const api = new Api(async (path) => {
+      asked.push(path.replace("/api/v1/models/1/layers/8/records/", ""));
+      const key = Number(path.split("/").at(-1));
+      return key < 9 ? new Response(JSON.stringify({ ...record(key), area_m2 })) : new Response("{}", { status: 404 });
+    });
+    tables = new Tables(api, { model_id: "1", project: () => null, changed: () => {} });
+  });
+
+  it("shows what was taken from the surface, and follows its record and its area", async () => {
+    tables.show_card(layer, picked(2));
+    await settle();
+    expect(tables.card).toMatchObject({ key: 2, record: { key: 2, area_m2: 1 } });
+    area_m2 = 5;
+    tables.on_layer_edited(8);
+    await settle();
+    expect(tables.card?.record?.area_m2).toBe(5);
+    tables.on_layer_edited(9);
+    tables.on_record({ op: "record", event: "changed", table: 3, key: 7 });
+    await settle();
+    expect(asked).toEqual(["2", "2"]);
+    tables.on_record({ op: "record", event: "deleted", table: 3, key: 2 });
+    expect(tables.card).toBeNull();
+  });
+
+  it("is that of the last place, and goes where nothing is painted or the record is gone", async () => {
+    tables.show_card(layer, picked(2));
+    tables.show_card(layer, picked(3));
+    await settle();
+    expect(tables.card?.record?.key).toBe(3);
+    tables.show_card(layer, picked(9)); // paint without a record
+    await settle();
+    expect(tables.card).toBeNull();
+    tables.show_card(layer, picked(3));
+    tables.show_card(layer, { op: "picked", id: "x", hit: true, values: { finds: { valid: false } } } as unknown as Picked);
+    expect(tables.card).toBeNull();
+    tables.show_card({ ...layer, table: undefined } as unknown as Layer, picked(3));
+    expect(tables.card).toBeNull();
   });
 });
 

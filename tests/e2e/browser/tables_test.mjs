@@ -214,6 +214,34 @@ try {
   await shot("table-painted");
   await cell(kMany + 1, "Area").getByText(/mm²|cm²/).waitFor();
 
+  say("a click with the pick tool shows the record's card, with its form and its row; the brush finds records by name");
+  await page.getByRole("combobox", { name: "Record to paint, by its name" }).fill("SU 55");
+  await page.getByRole("option", { name: /^SU 55 55$/ }).click();
+  await browser.drag([[0.6, 0.6], [0.62, 0.62]]);
+  await browser.saved();
+  await page.keyboard.press("i");
+  const stage = await browser.stage_box();
+  await page.mouse.click(stage.x + 0.47 * stage.width, stage.y + 0.607 * stage.height);
+  const card = page.locator("strata-record-card");
+  await card.getByText("Pit", { exact: true }).waitFor();
+  await card.getByText("3 m", { exact: true }).waitFor();
+  await shot("record-card");
+  await button("Edit the record").last().click();
+  await dialog.getByLabel("Note").fill("seen from above");
+  await button("Save").click();
+  await card.getByText("seen from above").waitFor();
+  await page.mouse.click(stage.x + 0.61 * stage.width, stage.y + 0.61 * stage.height);
+  await card.getByText("SU 55", { exact: true }).waitFor();
+  await page.locator("strata-value-readout").getByText("SU 55").waitFor();
+  await button("Show in table").click();
+  await cell(55, "Code").getByText("SU 55").waitFor();
+  await button("Close the record").click();
+  assert.equal(await card.count(), 0);
+  await server.json("POST", `${base}/layers/units/edits`, { op: "fill", mode: "where", where: "units = 55", erase: true });
+  await cell(55, "Code").click();
+  await page.keyboard.press("Control+End");
+  await cell(kMany + 1, "Key").click();
+
   say("a painted record that is to be deleted asks what becomes of that");
   await button("Delete the record").click();
   await button("Delete").click();

@@ -261,7 +261,7 @@ export class StrataBrushPanel extends LitElement {
   }
 
   private async fill(layer: Layer): Promise<void> {
-    const what = describe_value(layer, this.session.painting.brush.value_of(layer));
+    const what = describe_value(layer, this.session.painting.brush.value_of(layer), this.session.tables);
     const words = texts.brush;
     if (await ask({ heading: words.fill_title(layer.name), lead: words.fill_lead(`“${what}”`), yes: words.fill })) {
       this.session.painting.fill(layer);

@@ -68,11 +68,18 @@ export function value_problem(layer: Layer, value: number): string | null {
   return null;
 }
 
-/** A value as people read it: the label of its class, or the number with its unit. */
-export function describe_value(layer: Layer, value: number): string {
+/** What records are called; null where that is not known. */
+export interface RecordLabels {
+  label(table: number, key: number): string | null;
+}
+
+/** A value as people read it: the label of its class, the name of its record, or the number with its unit. */
+export function describe_value(layer: Layer, value: number, records: RecordLabels | null = null): string {
   const label = layer.palette.mode === "categorical" ? layer.palette.points.find((p) => p.at === value)?.label : "";
   if (label) return label;
-  if (layer.kind === "database") return texts.layers.record_number(value);
+  if (layer.kind === "database") {
+    return (layer.table === undefined ? null : records?.label(layer.table, value)) ?? texts.layers.record_number(value);
+  }
   if (layer.palette.mode === "categorical") return texts.layers.class_number(value);
   return `${format_number(value, 4)}${layer.unit ? ` ${layer.unit}` : ""}`;
 }

@@ -305,7 +305,7 @@ export class StrataLayerPanel extends LitElement {
     const { session } = this;
     const opacity = session.layers.opacity(layer);
     return html`<div class="more">
-      ${layer.description ? html`<p class="description">${layer.description}</p>` : nothing} ${legend(layer)}
+      ${layer.description ? html`<p class="description">${layer.description}</p>` : nothing} ${legend(layer, session.tables)}
       ${layer.table === undefined
         ? nothing
         : html`<button aria-pressed=${session.tables.view?.layer_id === layer.id} title="${texts.tables.open} (T)" @click=${() => session.toggle_table()}>

@@ -4,7 +4,7 @@ import { css, html, type TemplateResult } from "lit";
 import { format_number, ticks } from "../core/measure";
 import { css_color, css_gradient } from "../core/palette";
 import type { Layer } from "../core/types";
-import { describe_value } from "./brush-settings";
+import { describe_value, type RecordLabels } from "./brush-settings";
 import { styled } from "./styled";
 import { texts } from "./texts";
 
@@ -65,7 +65,7 @@ export const legend_styles = css`
   }
 `;
 
-export function legend(layer: Layer): TemplateResult {
+export function legend(layer: Layer, records: RecordLabels): TemplateResult {
   const { palette, unit } = layer;
   if (palette.mode === "categorical") {
     if (palette.points.length === 0) {
@@ -76,7 +76,7 @@ export function legend(layer: Layer): TemplateResult {
         (point) =>
           html`<li>
             <span class="swatch" ${styled({ background: css_color(point.color) })}></span>
-            <span class="ellipsis">${describe_value(layer, point.at)}</span>
+            <span class="ellipsis">${describe_value(layer, point.at, records)}</span>
           </li>`,
       )}
     </ul>`;

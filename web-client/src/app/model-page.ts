@@ -25,6 +25,7 @@ import "./orthophoto-dialog";
 import { model_styles } from "./model-styles";
 import { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import "./record-card";
 import "./record-dialog";
 import { follow } from "./routes";
 import "./scale-dialog";
@@ -147,7 +148,15 @@ export class StrataModelPage extends LitElement {
         <main>
           <strata-stage .session=${session}></strata-stage>
           ${this.banner(session)}
-          <strata-value-readout .session=${session}></strata-value-readout>
+          <div class="readings">
+            ${session.tables.card
+              ? html`<strata-record-card
+                  .session=${session}
+                  @request=${(event: CustomEvent<TablePanelRequest>) => (this.dialog_ = event.detail)}
+                ></strata-record-card>`
+              : nothing}
+            <strata-value-readout .session=${session}></strata-value-readout>
+          </div>
         </main>
         ${session.tables.view ? this.table(session, session.tables.view) : nothing} ${this.panel_shown_ ? this.panel(session) : nothing}
       </div>

@@ -87,7 +87,10 @@ export class ModelSession {
       ready: () => this.connection_state === "open",
       ask: (id, { x, y }) => this.connection_.pick(id, x, y),
       tell_others: (pointer) => this.connection_.presence(pointer),
-      taken: (message) => this.painting.take_picked(message),
+      taken: (message) => {
+        this.painting.take_picked(message);
+        this.tables.show_card(this.layers.selected, message);
+      },
       changed,
     });
     this.painting = new Painting({
@@ -96,6 +99,7 @@ export class ModelSession {
       layers: this.layers,
       pointer: this.pointer,
       model: () => this.model,
+      records: { label: (table, key) => this.tables.label(table, key) },
       may_paint: () => this.can_paint,
       changed,
     });
@@ -138,7 +142,7 @@ export class ModelSession {
           this.painting.on_applied(message);
           this.pointer.ask_again();
         },
-        saved: () => this.tables.view?.refresh_soon(), // with the areas that this person's own strokes leave
+        saved: () => this.tables.refresh_areas(), // with the areas that this person's own strokes leave
         layer: (event) => this.on_layer(event),
         look: (event) => this.appearance.on_event(event),
         tool: (event) => this.shapes.on_event(event),

@@ -140,7 +140,11 @@ export const model_styles = css`
   .banner button {
     color: var(--ink);
   }
-  strata-value-readout {
+  .readings {
+    display: grid;
+    gap: 8px;
+    justify-items: end;
+    pointer-events: none;
     position: absolute;
     right: 14px;
     bottom: 14px;
@@ -240,7 +244,7 @@ export const model_styles = css`
     h1 {
       font-size: 1.02rem;
     }
-    strata-value-readout {
+    .readings {
       right: 10px;
       bottom: 10px;
       max-width: calc(100% - 20px);

@@ -6,7 +6,7 @@ import type { PointerSample } from "../core/input";
 import { format_area, metres_per } from "../core/measure";
 import type { Applied, Edit, Picked } from "../core/protocol.gen";
 import type { Layer, Model } from "../core/types";
-import { BrushSettings, describe_value, value_problem } from "./brush-settings";
+import { BrushSettings, describe_value, type RecordLabels, value_problem } from "./brush-settings";
 import type { LayerList } from "./layer-list";
 import { notices } from "./notices";
 import type { PointerWatch } from "./pointer-watch";
@@ -19,6 +19,7 @@ export interface PaintingHost {
   readonly layers: LayerList;
   readonly pointer: PointerWatch;
   model(): Model | null;
+  records: RecordLabels;
   may_paint(): boolean;
   changed(): void;
 }
@@ -157,7 +158,7 @@ export class Painting {
     const found = message.values?.[layer.slug];
     if (found?.valid && found.value !== undefined) {
       this.brush.set_value(layer, found.value);
-      notices.show("info", texts.value.picked(describe_value(layer, found.value), layer.name));
+      notices.show("info", texts.value.picked(describe_value(layer, found.value, this.host_.records), layer.name));
     } else {
       notices.show("info", texts.value.picked_nothing(layer.name));
     }

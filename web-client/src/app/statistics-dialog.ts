@@ -7,6 +7,7 @@ import { color_of, css_color } from "../core/palette";
 import type { Layer, Statistics } from "../core/types";
 import { describe_value } from "./brush-settings";
 import "./dialog";
+import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
@@ -20,6 +21,11 @@ export class StrataStatisticsDialog extends LitElement {
   @property({ attribute: false }) layer!: Layer;
   @state() private statistics_: Statistics | null = null;
   @state() private problem_ = "";
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
 
   static override styles = [
     shared_styles,
@@ -144,7 +150,7 @@ export class StrataStatisticsDialog extends LitElement {
         return html`<li>
           <div class="words">
             <span class="swatch" ${styled({ background })}></span>
-            <span class="grow ellipsis">${describe_value(this.layer, key.key)}</span>
+            <span class="grow ellipsis">${describe_value(this.layer, key.key, this.session.tables)}</span>
             <span class="numeric">${format_area(key.area_m2)}</span>
           </div>
           <div class="track"><i ${styled({ width: `${(key.area_m2 / largest) * 100}%`, background })}></i></div>

@@ -3,7 +3,7 @@
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { cell_text, is_number, label_of, named_keys, names_records } from "../core/cells";
+import { is_number, label_of } from "../core/cells";
 import { format_area } from "../core/measure";
 import { color_of, css_color } from "../core/palette";
 import type { CellValue, Column, Table, TableRecord } from "../core/protocol.gen";
@@ -16,6 +16,7 @@ import { icon } from "./icons";
 import "./menu";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { shown_value } from "./shown-value";
 import { shared_styles } from "./styles";
 import { styled } from "./styled";
 import { table_styles } from "./table-styles";
@@ -344,19 +345,7 @@ export class StrataTablePanel extends LitElement {
   }
 
   private shown(column: Column, value: CellValue): unknown {
-    if (value === null) return "";
-    if (names_records(column)) {
-      const target = column.target ?? 0;
-      return named_keys(value)
-        .map((key) => this.session.tables.label(target, key) ?? texts.tables.record(key))
-        .join(", ");
-    }
-    if (column.kind === "boolean") return value ? texts.tables.yes : texts.tables.no;
-    const text = cell_text(value);
-    if (column.kind === "url" && /^(https?|mailto):/i.test(text)) {
-      return html`<a class="text" href=${text} target="_blank" rel="noopener noreferrer" tabindex="-1">${text}</a>`;
-    }
-    return text;
+    return shown_value(this.session, column, value);
   }
 
   // ── writing into a cell ───────────────────────────────────────────────────────────────────────────────────────────

@@ -1,7 +1,7 @@
 // The tables of the project that this page has needed so far: their columns, and what their records are called.
 
 import { ApiError, type Api } from "../core/api";
-import type { RecordEvent, Table, TableEvent } from "../core/protocol.gen";
+import type { Picked, RecordEvent, Table, TableEvent, TableRecord } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 import { notices } from "./notices";
 import { RecordNames } from "./record-names";
@@ -16,6 +16,9 @@ export interface TablesHost {
 export class Tables {
   /** The table that is open below the stage. */
   view: TableView | null = null;
+
+  /** The record that somebody took from the surface; `record` once it is here. */
+  card: { layer: Layer; key: number; record: TableRecord | null } | null = null;
 
   private readonly tables_ = new Map<number, Table | "asked">();
   private readonly names_ = new Map<number, RecordNames>();
@@ -78,6 +81,30 @@ export class Tables {
     this.host_.changed();
   }
 
+  /** The card of the record that was taken; none where the layer has no records, or is not painted. */
+  show_card(layer: Layer | null, { values }: Picked): void {
+    const found = layer ? values?.[layer.slug] : undefined;
+    const key = found?.valid ? found.value : undefined;
+    this.card = layer?.table === undefined || key === undefined ? null : { layer, key, record: null };
+    this.host_.changed();
+    void this.load_card();
+  }
+  close_card(): void {
+    this.card = null;
+    this.host_.changed();
+  }
+  /** Brings the record's row into sight, in the table of its layer. */
+  show_row(layer: Layer, key: number): void {
+    this.open(layer);
+    this.view?.show(key);
+  }
+
+  /** With the areas that strokes leave. */
+  refresh_areas(): void {
+    this.view?.refresh_soon();
+    void this.load_card();
+  }
+
   /** The connection was away: what happened meanwhile was not told. */
   refresh(): void {
     for (const id of this.tables_.keys()) void this.load(id);
@@ -90,6 +117,9 @@ export class Tables {
     if (event.event === "deleted") names?.remove(event.key);
     else if (event.record) names?.put(event.record);
     if (this.view?.table_id === event.table) this.view.on_record(event);
+    if (this.card?.layer.table !== event.table || this.card.key !== event.key) return;
+    if (event.event === "deleted") this.close_card();
+    else void this.load_card();
   }
 
   on_table(event: TableEvent): void {
@@ -106,9 +136,11 @@ export class Tables {
 
   on_layer_edited(layer: number): void {
     if (this.view?.layer_id === layer) this.view.refresh_soon();
+    if (this.card?.layer.id === layer) void this.load_card();
   }
   on_layer_deleted(layer: number): void {
     if (this.view?.layer_id === layer) this.close();
+    if (this.card?.layer.id === layer) this.close_card();
   }
 
   /** This person changed its columns: the rows are read anew with them. */
@@ -116,6 +148,20 @@ export class Tables {
     await this.load(id);
     this.names_.get(id)?.refresh();
     if (this.view?.table_id === id) this.view.rows.refresh();
+  }
+
+  private async load_card(): Promise<void> {
+    const { card } = this;
+    if (!card) return;
+    try {
+      const record = await this.api_.record({ model: this.host_.model_id, layer: card.layer.id }, card.key);
+      if (this.card?.key !== card.key || this.card.layer.id !== card.layer.id) return;
+      this.card = { ...card, record };
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (this.card === card) this.card = null; // paint that an undo brought back, without its record
+    }
+    this.host_.changed();
   }
 
   private async load(id: number): Promise<void> {

@@ -8,6 +8,7 @@ import type { Layer } from "../core/types";
 import { describe_value, value_problem } from "./brush-settings";
 import type { ModelSession } from "./model-session";
 import { radio_group } from "./radio-group";
+import "./record-chooser";
 import { styled } from "./styled";
 import { number_field_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -106,6 +107,15 @@ export class StrataValuePicker extends LitElement {
           <span>${layer.unit}</span>
         </span>
       </label>
+      ${layer.table === undefined
+        ? nothing
+        : html`<strata-record-chooser
+            .session=${this.session}
+            .table=${layer.table}
+            .chosen=${[value]}
+            label=${texts.brush.find_record}
+            @chosen=${(event: CustomEvent<number[]>) => this.set_record(layer, event.detail[0] ?? value)}
+          ></strata-record-chooser>`}
       ${layer.table === undefined
         ? nothing
         : this.record_buttons(layer, layer.table)}

@@ -85,7 +85,7 @@ export class StrataValueReadout extends LitElement {
     return html`<span class="line">
       ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
       <span class="ellipsis">${layer.name}</span>
-      <b class=${valid ? "numeric" : "none"}>${valid ? describe_value(layer, found.value!) : texts.value.nothing}</b>
+      <b class=${valid ? "numeric" : "none"}>${valid ? describe_value(layer, found.value!, this.session.tables) : texts.value.nothing}</b>
     </span>`;
   }
 }

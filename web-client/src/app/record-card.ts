@@ -1,0 +1,116 @@
+// <strata-record-card>: the record that was taken from the surface: what it is called, what is known of it, and its area.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { label_column, label_of } from "../core/cells";
+import { format_area } from "../core/measure";
+import { color_of, css_color } from "../core/palette";
+import type { Table, TableRecord } from "../core/protocol.gen";
+import { follow_session } from "./follow-session";
+import { icon } from "./icons";
+import type { ModelSession } from "./model-session";
+import { shown_value } from "./shown-value";
+import { shared_styles } from "./styles";
+import { styled } from "./styled";
+import type { TablePanelRequest } from "./table-panel";
+import { texts } from "./texts";
+
+const kMostLines = 6;
+
+@customElement("strata-record-card")
+export class StrataRecordCard extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+        width: min(300px, 100%);
+        pointer-events: auto;
+      }
+      section {
+        display: grid;
+        gap: 8px;
+        padding: 8px 8px 10px 13px;
+        border: 1px solid var(--line);
+        border-radius: var(--radius);
+        background: var(--raised);
+        box-shadow: var(--shadow);
+        font-size: 0.88rem;
+      }
+      .row b {
+        font: 600 1.02rem var(--serif);
+      }
+      .row button.icon {
+        width: 28px;
+        min-height: 28px;
+      }
+      dl {
+        display: grid;
+        grid-template-columns: auto minmax(0, 1fr);
+        gap: 3px 14px;
+        margin: 0;
+        max-height: 130px;
+        overflow: auto;
+      }
+      dt {
+        color: var(--ink-soft);
+      }
+      dd {
+        margin: 0;
+        overflow-wrap: anywhere;
+      }
+      .row button {
+        min-height: 30px;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const words = texts.tables;
+    const { card } = session.tables;
+    const { table: id } = card?.layer ?? {};
+    const table = id === undefined ? null : session.tables.find(id);
+    if (!card || !table || !card.record) return html``;
+    const { layer, key, record } = card;
+    const color = color_of(layer.palette, key);
+    const request = (detail: TablePanelRequest): boolean => this.dispatchEvent(new CustomEvent("request", { detail }));
+    return html`<section aria-label=${words.card}>
+      <div class="row">
+        ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
+        <b class="grow ellipsis">${session.tables.label(table.id, key) ?? words.record(key)}</b>
+        <button class="icon quiet" aria-label=${words.card_close} title=${words.card_close} @click=${() => session.tables.close_card()}>${icon("close")}</button>
+      </div>
+      ${this.lines(table, record)}
+      <div class="row">
+        ${session.can_paint ? html`<button @click=${() => request({ dialog: "record", layer, key })}>${words.edit}</button>` : nothing}
+        <button @click=${() => session.tables.show_row(layer, key)}>${words.show_row}</button>
+      </div>
+    </section>`;
+  }
+
+  /** The first columns that say something; the one that names the record is its heading. */
+  private lines(table: Table, record: TableRecord): TemplateResult {
+    const words = texts.tables;
+    const name = label_column(table);
+    const told = table.columns.filter((column) => column !== name && (record.values[column.slug] ?? null) !== null);
+    return html`<dl>
+      <dt>${words.key}</dt>
+      <dd class="numeric">${record.key}</dd>
+      ${told.slice(0, kMostLines).map(
+        (column) =>
+          html`<dt>${label_of(column)}</dt>
+            <dd>${shown_value(this.session, column, record.values[column.slug] ?? null)}${column.unit ? ` ${column.unit}` : nothing}</dd>`,
+      )}
+      <dt>${words.area}</dt>
+      <dd class="numeric">${format_area(record.area_m2 ?? 0)}</dd>
+    </dl>`;
+  }
+}
