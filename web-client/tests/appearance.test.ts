@@ -7,6 +7,7 @@ import { OrbitCamera } from "../src/core/camera";
 import { angles_of, direction_of, on_pad, pad_point } from "../src/core/light";
 import type { Light, Look, LookShown, Plane } from "../src/core/protocol.gen";
 import { no_section, section_planes, with_box_side } from "../src/core/section";
+import { with_range } from "../src/core/palette";
 
 const bounds = { min: [0, 10, -4] as [number, number, number], max: [2, 20, 4] as [number, number, number] };
 const above = (plane: Plane, [x, y, z]: [number, number, number]): boolean =>
@@ -171,5 +172,14 @@ describe("how a person sees the model", () => {
     expect(appearance.light.mode).toBe("museum");
     for (let i = 0; i < 4; ++i) appearance.next_section();
     expect(appearance.section.mode).toBe("off");
+  });
+});
+
+describe("the range of a palette", () => {
+  it("moves with the same colours at the same shares of it", () => {
+    const points = [{ at: 10, color: "#000000ff" }, { at: 15, color: "#888888ff" }, { at: 20, color: "#ffffffff" }]; // prettier-ignore
+    const moved = with_range({ mode: "linear", min: 10, max: 20, points }, 0, 4);
+    expect([moved.min, moved.max, ...moved.points.map(({ at }) => at)]).toEqual([0, 4, 0, 2, 4]);
+    expect(moved.points.map(({ color }) => color)).toEqual(points.map(({ color }) => color));
   });
 });

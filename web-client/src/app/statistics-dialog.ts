@@ -3,8 +3,8 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { format_area, format_number } from "../core/measure";
-import { color_of, css_color } from "../core/palette";
-import type { Layer, Statistics } from "../core/types";
+import { color_of, css_color, with_range } from "../core/palette";
+import type { Layer, Palette, Statistics } from "../core/types";
 import { describe_value } from "./brush-settings";
 import "./dialog";
 import { follow_session } from "./follow-session";
@@ -21,6 +21,9 @@ export class StrataStatisticsDialog extends LitElement {
   @property({ attribute: false }) layer!: Layer;
   @state() private statistics_: Statistics | null = null;
   @state() private problem_ = "";
+  @state() private tried_: Palette | null = null; // while a limit of the colours is moved
+  private saving_ = false;
+  private counted_ = 0; // the layer's sequence then
 
   constructor() {
     super();
@@ -90,6 +93,35 @@ export class StrataStatisticsDialog extends LitElement {
         flex: 1;
         border-radius: 2px 2px 0 0;
       }
+      .limits {
+        position: relative;
+        height: 24px;
+      }
+      .limits input {
+        position: absolute;
+        inset: 0;
+        background: none;
+        pointer-events: none;
+        appearance: none;
+      }
+      .limits input::-webkit-slider-thumb {
+        width: 14px;
+        height: 20px;
+        border: 2px solid var(--raised);
+        border-radius: 5px;
+        background: var(--accent);
+        cursor: ew-resize;
+        pointer-events: auto;
+        appearance: none;
+      }
+      .limits input::-moz-range-thumb {
+        width: 12px;
+        height: 18px;
+        border-radius: 5px;
+        background: var(--accent);
+        cursor: ew-resize;
+        pointer-events: auto;
+      }
       .ends {
         display: flex;
         justify-content: space-between;
@@ -105,8 +137,14 @@ export class StrataStatisticsDialog extends LitElement {
     void this.load();
   }
 
+  /** Counted again where somebody painted. */
+  override updated(): void {
+    if (this.statistics_ && this.layer.sequence > this.counted_) void this.load();
+  }
+
   private async load(): Promise<void> {
     this.problem_ = "";
+    this.counted_ = this.layer.sequence;
     try {
       this.statistics_ = await this.session.api.statistics(this.session.model_id, this.layer.id);
     } catch (error) {
@@ -170,6 +208,7 @@ export class StrataStatisticsDialog extends LitElement {
     ];
     const bins = statistics.histogram;
     const largest = Math.max(...bins.map((bin) => bin.area_m2), Number.MIN_VALUE);
+    const palette = this.tried_ ?? this.layer.palette;
     return html`<dl class="numeric">
         ${rows.map(([name, value]) =>
           value === null || value === undefined ? nothing : html`<div><dt>${name}</dt><dd>${format_number(value, 4)}${unit}</dd></div>`,
@@ -180,16 +219,59 @@ export class StrataStatisticsDialog extends LitElement {
             <p class="caption">${words.spread}</p>
             <div class="histogram" role="img" aria-label=${words.spread}>
               ${bins.map((bin) => {
-                const color = color_of(this.layer.palette, (bin.from + bin.to) / 2);
+                const color = color_of(palette, (bin.from + bin.to) / 2);
                 const height = `${((bin.area_m2 / largest) * 100).toFixed(1)}%`;
                 return html`<i ${styled({ height, background: color ? css_color(color) : "var(--calm)" })}></i>`;
               })}
             </div>
+            ${this.session.can_curate ? this.limits(palette, bins[0]!.from, bins[bins.length - 1]!.to, unit) : nothing}
             <div class="ends numeric">
               <span>${format_number(bins[0]!.from, 4)}${unit}</span>
               <span>${format_number(bins[bins.length - 1]!.to, 4)}${unit}</span>
             </div>
           </div>`
         : nothing}`;
+  }
+
+  /** Two handles, for the pointer and the arrow keys: the colours run from the one to the other. */
+  private limits(palette: Palette, from: number, to: number, unit: string): TemplateResult {
+    const words = texts.statistics;
+    const handle = (label: string, value: number, range: (moved: number) => [number, number]): TemplateResult =>
+      html`<input
+        type="range"
+        aria-label=${label}
+        aria-valuetext="${format_number(value, 4)}${unit}"
+        min=${from}
+        max=${to}
+        step=${(to - from) / 200}
+        .value=${String(value)}
+        @input=${(event: Event) => {
+          const [min, max] = range(Number((event.target as HTMLInputElement).value));
+          if (min < max) this.tried_ = with_range(this.layer.palette, min, max);
+        }}
+        @change=${() => void this.save_range()}
+      />`;
+    return html`<div class="limits">
+        ${handle(words.range_from, palette.min, (moved) => [moved, palette.max])} ${handle(words.range_to, palette.max, (moved) => [palette.min, moved])}
+      </div>
+      <p class="hint numeric" role="status">${words.range(`${format_number(palette.min, 4)}${unit}`, `${format_number(palette.max, 4)}${unit}`)}</p>`;
+  }
+
+  /** One after the other: each key press is a change, and the newest is what stays. */
+  private async save_range(): Promise<void> {
+    if (this.saving_) return;
+    this.saving_ = true;
+    try {
+      while (this.tried_) {
+        const palette = this.tried_;
+        await this.session.layers.change(this.layer, { palette });
+        if (this.tried_ === palette) this.tried_ = null;
+      }
+    } catch (error) {
+      this.tried_ = null;
+      this.problem_ = error instanceof Error ? error.message : texts.problems.unexpected;
+    } finally {
+      this.saving_ = false;
+    }
   }
 }

@@ -678,6 +678,9 @@ export const texts = {
     std: "Standard deviation",
     refresh: "Count again",
     spread: "Area by value",
+    range_from: "Colours begin at",
+    range_to: "Colours end at",
+    range: (from: string, to: string) => `Colours run from ${from} to ${to}, for everyone.`,
   },
 
   help: {
@@ -733,6 +736,7 @@ export const texts = {
     layer_rows: [
       ["A layer's ⋯ → Paint from a file", "readings, maps, shapefiles, GeoTIFF and scanned maps; numbers for the vertices of the scan"],
       ["View → Looks → Add an orthophoto", "a picture laid onto the surface along an axis"],
+      ["A layer's ⋯ → Areas", "of measurements a histogram, with handles (or arrow keys) for the range of the colours"],
       ["New layer → From the shape", "values computed from the mesh; they can be undone like strokes"],
       ["Layers ⋯ → Bring layers over", "what was painted on an earlier scan of the object, with a report of what was lost"],
     ],

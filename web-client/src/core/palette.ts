@@ -111,6 +111,13 @@ export function same_palette(a: Palette, b: Palette): boolean {
   );
 }
 
+/** The same colours over another range. */
+export function with_range(palette: Palette, min: number, max: number): Palette {
+  const span = palette.max - palette.min || 1;
+  const points = palette.points.map((point) => ({ ...point, at: min + ((point.at - palette.min) / span) * (max - min) }));
+  return { ...palette, min, max, points };
+}
+
 export const class_palette = (classes: { label: string; color: string; at: number }[]): Palette => {
   const points = [...classes].sort((a, b) => a.at - b.at).map(({ at, color, label }) => ({ at, color, label }));
   return {
