@@ -47,6 +47,14 @@ CREATE TABLE public.edits (
     CONSTRAINT edits_sequence_check CHECK ((sequence > 0))
 );
 
+CREATE TABLE public.layer_inputs (
+    layer_id bigint NOT NULL,
+    slug text NOT NULL,
+    input_id bigint,
+    table_id bigint,
+    table_sequence bigint DEFAULT 0 NOT NULL
+);
+
 CREATE TABLE public.layers (
     id bigint NOT NULL,
     model_id bigint NOT NULL,
@@ -64,7 +72,12 @@ CREATE TABLE public.layers (
     sequence bigint DEFAULT 0 NOT NULL,
     version bigint DEFAULT 1 NOT NULL,
     table_id bigint,
+    expression text,
+    automatic boolean DEFAULT false NOT NULL,
+    computed_sequence bigint DEFAULT 0 NOT NULL,
     CONSTRAINT layers_check CHECK (((kind = 'database'::text) = (table_id IS NOT NULL))),
+    CONSTRAINT layers_check1 CHECK (((expression IS NOT NULL) OR (NOT automatic))),
+    CONSTRAINT layers_expression_check CHECK ((expression <> ''::text)),
     CONSTRAINT layers_kind_check CHECK ((kind = ANY (ARRAY['numeric'::text, 'database'::text]))),
     CONSTRAINT layers_name_check CHECK ((name <> ''::text)),
     CONSTRAINT layers_opacity_check CHECK (((opacity >= (0)::double precision) AND (opacity <= (1)::double precision))),
@@ -340,6 +353,9 @@ ALTER TABLE ONLY public.edits
 ALTER TABLE ONLY public.edits
     ADD CONSTRAINT edits_pkey PRIMARY KEY (model_id, sequence);
 
+ALTER TABLE ONLY public.layer_inputs
+    ADD CONSTRAINT layer_inputs_pkey PRIMARY KEY (layer_id, slug);
+
 ALTER TABLE ONLY public.layers
     ADD CONSTRAINT layers_model_id_slug_key UNIQUE (model_id, slug);
 
@@ -413,6 +429,12 @@ CREATE INDEX edits_layer ON public.edits USING btree (layer_id, sequence);
 
 CREATE INDEX edits_undone ON public.edits USING btree (layer_id, user_name, undone_by) WHERE (NOT in_force);
 
+CREATE INDEX layer_inputs_input ON public.layer_inputs USING btree (input_id);
+
+CREATE INDEX layer_inputs_table ON public.layer_inputs USING btree (table_id);
+
+CREATE INDEX layers_automatic ON public.layers USING btree (id) WHERE automatic;
+
 CREATE INDEX layers_table ON public.layers USING btree (table_id);
 
 CREATE INDEX looks_picture ON public.looks USING btree (picture);
@@ -457,6 +479,15 @@ ALTER TABLE ONLY public.edits
 
 ALTER TABLE ONLY public.edits
     ADD CONSTRAINT edits_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.layer_inputs
+    ADD CONSTRAINT layer_inputs_input_id_fkey FOREIGN KEY (input_id) REFERENCES public.layers(id) ON DELETE SET NULL;
+
+ALTER TABLE ONLY public.layer_inputs
+    ADD CONSTRAINT layer_inputs_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.layer_inputs
+    ADD CONSTRAINT layer_inputs_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE SET NULL;
 
 ALTER TABLE ONLY public.layers
     ADD CONSTRAINT layers_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;

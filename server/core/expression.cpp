@@ -6,17 +6,27 @@ namespace strata {
 namespace {
 
 void collect(const Expression& expression, std::vector<std::string>& layers) {
-  if (!expression.layer.empty() && std::find(layers.begin(), layers.end(), expression.layer) == layers.end())
-    layers.push_back(expression.layer);
+  if (!expression.name.empty() && std::find(layers.begin(), layers.end(), expression.name) == layers.end())
+    layers.push_back(expression.name);
   for (const Expression& part : expression.parts) collect(part, layers);
 }
 
 }  // namespace
 
+Problem expression_problem(const std::string& what, std::size_t at, const std::string& field) {
+  Problem problem{422, "Expression not understood", what + " (at character " + std::to_string(at + 1) + ").", field};
+  problem.offset = at;
+  return problem;
+}
+
 std::vector<std::string> layers_of(const Expression& expression) {
   std::vector<std::string> layers;
   collect(expression, layers);
   return layers;
+}
+
+bool reads_records(const Expression& expression) {
+  return expression.is_column() || std::ranges::any_of(expression.parts, reads_records);
 }
 
 }  // namespace strata

@@ -20,6 +20,14 @@ nlohmann::json to_json(const Layer& layer) {
                       {"order", layer.order},
                       {"sequence", layer.sequence}};
   if (layer.table) json["table"] = *layer.table;
+  if (layer.formula) {
+    nlohmann::json inputs = nlohmann::json::array();
+    for (const auto& input : layer.formula->inputs) inputs.push_back(input.slug);
+    json["expression"] = layer.formula->expression;
+    json["recompute"] = layer.formula->automatic ? "automatic" : "manual";
+    json["inputs"] = std::move(inputs);
+    json["stale"] = layer.formula->stale;
+  }
   return json;
 }
 

@@ -4,12 +4,29 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/palette.h"
 
 namespace strata {
 
 enum class LayerKind { numeric, database };
+
+// What a computed layer is made of. Its texels are written by computing alone.
+struct LayerFormula {
+  std::string expression;              // a number or a condition over layers of the model (query/expression_parser)
+  bool automatic = false;              // computed again soon after something that it reads has changed
+  std::int64_t computed_sequence = 0;  // of the model, when it was computed last; 0: never
+  bool records_changed = false;        // of a table that it reads, since then
+  struct Input {
+    std::string slug;                   // as the expression names the layer
+    std::optional<std::int64_t> layer;  // nothing: it was deleted
+    std::optional<std::int64_t> table;  // whose records it reads by the layer's keys
+    bool operator==(const Input&) const = default;
+  };
+  std::vector<Input> inputs;  // by slug
+  bool stale = true;          // as far as it is known here
+};
 
 struct Layer {
   std::int64_t id = 0;
@@ -26,8 +43,9 @@ struct Layer {
   bool visible = true;
   int order = 0;                      // drawn ascending: higher is on top
   std::optional<std::int64_t> table;  // database: the project's table whose keys the texels hold
-  std::int64_t sequence = 0;          // of the last edit in it
-  std::int64_t version = 1;           // of the metadata, for ETag and If-Match
+  std::optional<LayerFormula> formula;
+  std::int64_t sequence = 0;  // of the last edit in it
+  std::int64_t version = 1;   // of the metadata, for ETag and If-Match
 };
 
 nlohmann::json to_json(const Layer& layer);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <utility>
@@ -9,10 +11,11 @@ namespace strata {
 // What a caller did wrong, or what the server cannot do, told so that the caller can act on it. Becomes RFC 9457
 // `application/problem+json` over HTTP and the `problem` message over the WebSocket.
 struct Problem {
-  int status = 400;    // HTTP status code; 499 is "cancelled by the caller"
-  std::string title;   // short and constant for a kind of problem: "Value out of range"
-  std::string detail;  // this occurrence, and what to do about it
-  std::string field;   // JSON pointer-like path of the offending field, empty when none
+  int status = 400;                     // HTTP status code; 499 is "cancelled by the caller"
+  std::string title;                    // short and constant for a kind of problem: "Value out of range"
+  std::string detail;                   // this occurrence, and what to do about it
+  std::string field;                    // JSON pointer-like path of the offending field, empty when none
+  std::optional<std::size_t> offset{};  // where the field is a text that is read: characters before what is wrong
 };
 
 // Bad client or file data is an expected result, not an exception.

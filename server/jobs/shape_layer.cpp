@@ -304,6 +304,15 @@ Result<std::vector<std::uint8_t>> read_source(store::Store& store, const Model& 
   return file;
 }
 
+Result<TileMap> paint_normals(const std::shared_ptr<const mesh::Geometry>& geometry, int axis, int resolution,
+                              Progress& progress) {
+  const mesh::SurfaceNormals normals(geometry);
+  const auto component = [&](std::uint32_t triangle, const glm::vec3& weights) {
+    return normals.at(triangle, weights)[axis];
+  };
+  return paint(*geometry, component, ValueType::f32, resolution, false, 0, progress);
+}
+
 Result<TileMap> paint_vertex_values(const std::shared_ptr<const mesh::Geometry>& geometry, std::vector<double> values,
                                     ValueType type, int resolution, Progress& progress) {
   return paint(*geometry, at_vertices(geometry, std::move(values), type), type, resolution, false, 0, progress);

@@ -26,6 +26,10 @@ Result<ShapeLayer> compute_shape_layer(store::Store& store, const Model& model,
                                        const std::shared_ptr<const mesh::Geometry>& geometry, const ShapeRecipe& recipe,
                                        ValueType type, int resolution, Progress& progress);
 
+// One component (0…2) of the surface's normal at each texel, as f32.
+Result<TileMap> paint_normals(const std::shared_ptr<const mesh::Geometry>& geometry, int axis, int resolution,
+                              Progress& progress);
+
 // A source file of the model, whole, in memory.
 Result<std::vector<std::uint8_t>> read_source(store::Store& store, const Model& model, const std::string& source,
                                               Progress& progress);

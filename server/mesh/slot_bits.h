@@ -1,9 +1,11 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <span>
 
 #include "core/tile.h"
+#include "mesh/gutter_ring.h"
 #include "mesh/surface_map.h"
 
 namespace strata::mesh {
@@ -39,6 +41,28 @@ TileMask gather_tile_bits(const SurfaceMap& map, TileAddress tile, BitsOf&& bits
       }
     }
   return mask;
+}
+
+// Calls visit(gutter, owner) for every gutter texel and the surface texel that it follows.
+template <class Visit>
+void for_each_gutter_texel(const SurfaceMap& map, Visit&& visit) {
+  for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
+    const auto block = static_cast<int>(map.block_of_slot[slot]);
+    const int first_x = block % map.blocks_per_side * kBlockSize, first_y = block / map.blocks_per_side * kBlockSize;
+    for (std::uint64_t rest = ~map.surface_mask[slot]; rest != 0; rest &= rest - 1) {
+      const int texel = std::countr_zero(rest), x = first_x + texel % kBlockSize, y = first_y + texel / kBlockSize;
+      if (map.packed_position[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)] == kNoPosition) continue;
+      for (const TexelOffset o : kGutterRingOffsets) {
+        const int at_x = x + o.x, at_y = y + o.y;
+        if (at_x < 0 || at_y < 0) continue;
+        const SlotTexel owner{slot_at(map, at_x / kBlockSize, at_y / kBlockSize),
+                              at_y % kBlockSize * kBlockSize + at_x % kBlockSize};
+        if (owner.slot == kNoSlot || ((map.surface_mask[owner.slot] >> owner.texel) & 1u) == 0) continue;
+        visit(SlotTexel{slot, texel}, owner);
+        break;
+      }
+    }
+  }
 }
 
 // Given a bit for each surface texel, a word a slot: gutter texels get the bit of the surface texel that they follow.

@@ -52,7 +52,8 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       shared_(make_shared_state(options_, store, tools_)),
       workers_(options_.worker_threads, options_.max_waiting_requests),
       context_{options_,          store,    rooms,  jobs, renderer, auth_, edit_book_, live_sockets_,
-               *shared_->metrics, workers_, *tools_} {
+               *shared_->metrics, workers_, *tools_},
+      recomputer_(context_) {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
   add_project_routes(router_, context_);
@@ -81,6 +82,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
 App::~App() { stop_workers(); }
 
 void App::stop_workers() {
+  recomputer_.stop();
   workers_.stop();
   shared_->queries->stop();
 }

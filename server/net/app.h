@@ -9,6 +9,7 @@
 #include "net/auth.h"
 #include "net/live_session.h"
 #include "net/live_sockets.h"
+#include "net/recomputer.h"
 #include "net/router.h"
 #include "net/routes.h"
 #include "net/server_options.h"
@@ -70,6 +71,7 @@ class App {
   Router router_;
   Route page_;  // everything that is no API address
   const RouteContext context_;
+  Recomputer recomputer_;
 };
 
 // Headers that every answer carries.

@@ -10,16 +10,25 @@ constexpr int kMostTries = 5;
 
 }  // namespace
 
-Result<Layer> NewLayers::add(Layer layer, TileMap tiles, nlohmann::json recipe) {
+Result<Layer> NewLayers::add(Layer layer, const std::function<Result<Layer>(const Layer&)>& fill) {
   const bool visible = layer.visible;
   layer.visible = false;
   auto created = room_->create_layer(std::move(layer));
   if (!created) return created;
   made_.push_back({*created, visible});
+  return fill(*created);
+}
+
+Result<Layer> NewLayers::add(Layer layer, TileMap tiles, nlohmann::json recipe) {
+  return add(std::move(layer),
+             [&](const Layer& created) { return paint(created, std::move(tiles), std::move(recipe)); });
+}
+
+Result<Layer> NewLayers::paint(const Layer& created, TileMap tiles, nlohmann::json recipe) {
   room::EditRequest edit;
   edit.id = random_uuid();
   edit.user = user_;
-  edit.layer_id = created->id;
+  edit.layer_id = created.id;
   edit.record = {{"op", "import"}, {"recipe", std::move(recipe)}};
   edit.edit = room::ImportEdit{std::move(tiles)};
   auto painted = room::await<room::EditAnswer>([&](auto saved) {

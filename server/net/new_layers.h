@@ -13,6 +13,8 @@ class NewLayers {
 
   // Makes the layer and paints it as one edit of the user. `recipe`: for its history.
   Result<Layer> add(Layer layer, TileMap tiles, nlohmann::json recipe);
+  // Makes the layer and has it filled.
+  Result<Layer> add(Layer layer, const std::function<Result<Layer>(const Layer&)>& fill);
   // Shows them as they were asked for. The answer is kept with the last one.
   Result<void> show(const store::FirstAnswer<Layer>& answer);
   void take_back();  // all that were added
@@ -20,6 +22,8 @@ class NewLayers {
   std::vector<std::int64_t> ids() const;
 
  private:
+  Result<Layer> paint(const Layer& created, TileMap tiles, nlohmann::json recipe);
+
   struct Made {
     Layer layer;
     bool visible;  // as asked for

@@ -90,7 +90,7 @@ Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedL
     number.op = Expression::Op::number;
     number.number = static_cast<double>(key);
     of_layer.op = Expression::Op::layer;
-    of_layer.layer = painted.layer.slug;
+    of_layer.name = painted.layer.slug;
     equal.op = Expression::Op::equal;
     equal.parts = {of_layer, number};
     room::FillEdit fill;

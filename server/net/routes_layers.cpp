@@ -2,6 +2,7 @@
 
 #include "net/answer_book.h"
 #include "net/computed_layers.h"
+#include "net/formula_layers.h"
 #include "net/layer_jobs.h"
 #include "net/routes.h"
 #include "net/table_wire.h"
@@ -30,14 +31,20 @@ Result<Response> list_layers(const RouteContext& context, const Request& request
   return response;
 }
 
+bool is_automatic(const std::optional<protocol::Recompute>& asked) { return asked == protocol::Recompute::automatic; }
+
 Result<Palette> palette_of(const std::optional<nlohmann::json>& asked, ValueType type, bool categorical) {
   if (!asked) return default_palette(type, categorical);
   return palette_from_json(*asked);
 }
 
 Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, const std::vector<Layer>& others) {
-  if (asked.compute && asked.kind != LayerKind::numeric)
-    return fail(422, "Kind not usable", "What is computed from the shape is numeric.", "kind");
+  if ((asked.compute || asked.expression) && asked.kind != LayerKind::numeric)
+    return fail(422, "Kind not usable", "What is computed is numeric.", "kind");
+  if (asked.compute && asked.expression)
+    return fail(422, "Two ways to compute", "Give either `compute` or `expression`.", "expression");
+  if (asked.recompute && !asked.expression)
+    return fail(422, "No expression", "`recompute` is for layers with an `expression`.", "recompute");
   Layer layer;
   layer.model_id = model.id;
   layer.name = asked.name;
@@ -45,7 +52,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
   if (!slug) return tl::unexpected(slug.error());
   layer.slug = *slug;
   layer.kind = asked.kind;
-  layer.type = asked.type.value_or(asked.compute ? ValueType::f32 : ValueType::u8);
+  layer.type = asked.type.value_or(asked.compute || asked.expression ? ValueType::f32 : ValueType::u8);
   const bool is_key = layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
   if (layer.kind == LayerKind::database && !is_key)
     return fail(422, "Type not usable", "A database layer holds keys: its type is u8, u16 or u32.", "type");
@@ -90,14 +97,50 @@ Result<Response> create_layer(const RouteContext& context, JobBook& book, const 
   if (asked->columns) columns = new_columns(context.store, model.project_id, *asked->columns);
   if (!columns) return tl::unexpected(columns.error());
   if (asked->compute) return start_computing(context, book, request, *room, *asked, std::move(*layer));
+  if (asked->expression) {
+    auto formula = read_formula(**room, *asked->expression, is_automatic(asked->recompute));
+    if (!formula) return tl::unexpected(formula.error());
+    layer->formula = std::move(*formula);
+  }
   const auto answer = [model_slug = model.slug](const Layer& made) {
     return json_response(to_json(made), 201)
         .with("Location", "/api/v1/models/" + model_slug + "/layers/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
+  if (layer->formula) return create_formula_layer(context, book, request, *room, std::move(*layer), answer);
   auto created = (*room)->create_layer(std::move(*layer), first_answer<Layer>(request, answer), std::move(*columns));
   if (!created) return tl::unexpected(created.error());
   return answer(*created);
+}
+
+// An expression makes a numeric layer a computed one; an empty one makes it a layer like others, with the values that it has.
+Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& asked, Layer& layer) {
+  if (!asked.expression && !asked.recompute) return {};
+  if (layer.kind != LayerKind::numeric)
+    return fail(422, "Kind not usable", "What is computed is numeric.", "expression");
+  if (asked.expression && asked.expression->empty()) {
+    layer.formula.reset();
+    return {};
+  }
+  if (!asked.expression && !layer.formula)
+    return fail(422, "No expression", "`recompute` is for layers with an `expression`.", "recompute");
+  const bool automatic = asked.recompute ? is_automatic(asked.recompute) : layer.formula && layer.formula->automatic;
+  auto formula =
+      read_formula(room, asked.expression ? *asked.expression : layer.formula->expression, automatic, layer.id);
+  if (!formula) return tl::unexpected(formula.error());
+  layer.formula = std::move(*formula);
+  return {};
+}
+
+Result<Response> compute(const RouteContext& context, const Request& request) {
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  auto layer = context.store.layer((*room)->model().id, request.param("layer"));
+  if (!layer) return tl::unexpected(layer.error());
+  Progress progress;
+  auto computed = compute_layer(context, *room, *layer, request.user(), progress);
+  if (!computed) return tl::unexpected(computed.error());
+  return json_response(to_json(*computed)).with("ETag", etag_of(computed->version));
 }
 
 Result<Response> change_layer(const RouteContext& context, const Request& request) {
@@ -119,6 +162,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   if (asked->opacity) layer->opacity = *asked->opacity;
   if (asked->visible) layer->visible = *asked->visible;
   if (asked->order) layer->order = *asked->order;
+  if (auto set = set_formula(**room, *asked, *layer); !set) return tl::unexpected(set.error());
   const auto answer = [](const Layer& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
   auto changed = (*room)->update_layer(std::move(*layer), first_answer<Layer>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
@@ -175,6 +219,10 @@ void add_layer_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context](const Request& request) { return delete_layer(context, request); }),
               .role = Role::curator,
               .keeps_answer = true});
+  router.add({.method = Method::post,
+              .pattern = layers + "/{layer}/compute",
+              .handler = answering([&context](const Request& request) { return compute(context, request); }),
+              .role = Role::annotator});
 }
 
 }  // namespace strata::net

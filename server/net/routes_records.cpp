@@ -7,6 +7,7 @@
 #include "net/routes.h"
 #include "net/table_events.h"
 #include "net/table_wire.h"
+#include "query/expression_parser.h"
 
 namespace strata::net {
 namespace {
@@ -107,6 +108,11 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   if (!place) return tl::unexpected(place.error());
   store::Store::RecordQuery query;
   query.order = order_of(request.query_or("sortby", {}));
+  if (auto filter = request.query.find("filter"); filter != request.query.end() && !filter->second.empty()) {
+    auto condition = query::parse_condition(filter->second, "filter", query::Names::columns);
+    if (!condition) return tl::unexpected(condition.error());
+    query.filter = std::move(*condition);
+  }
   // A table to work on elsewhere is all of it, unless a part is asked for.
   const bool whole = format == "csv" && !request.query.contains("limit");
   query.limit = whole ? store::kMostRecords : page->limit;
@@ -408,7 +414,7 @@ void add_record_routes(Router& router, const RouteContext& context) {
   };
   for (const std::string parent : {"/api/v1/tables/{table}", "/api/v1/models/{model}/layers/{layer}"}) {
     const std::string records = parent + "/records", record = records + "/{key}";
-    add(Method::get, records, list_records, {"f", "separator", "sortby", "limit", "offset", "at"});
+    add(Method::get, records, list_records, {"f", "separator", "filter", "sortby", "limit", "offset", "at"});
     add(Method::post, records, create_records, {"dry_run"}, BodyKind::memory, kMaxRecordsBytes);
     add(Method::get, record, read_record, {"at"});
     add(Method::patch, record, change_record, {}, BodyKind::memory, context.options.max_json_bytes);

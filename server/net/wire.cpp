@@ -345,7 +345,7 @@ nlohmann::json to_json(const store::JournalRow& row) {
   if (row.answer.is_object())
     for (const char* member : {"texels_changed", "area_m2"})
       if (auto found = row.answer.find(member); found != row.answer.end()) json[member] = *found;
-  for (const char* member : {"recipe", "shape", "max_angle_deg", "depth_bias"})
+  for (const char* member : {"recipe", "expression", "shape", "max_angle_deg", "depth_bias"})
     if (auto found = row.record.find(member); found != row.record.end()) json[member] = *found;
   return json;
 }

@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
+#include <mutex>
 #include <numbers>
 
 #include "mesh/parallel.h"
+#include "mesh/slot_bits.h"
 #include "query/texel_values.h"
 #include "query/tile_table.h"
 
@@ -44,17 +49,32 @@ struct Source {
 };
 using Sources = std::map<std::string, Source>;
 
+// What a formula reads; constant while it is evaluated.
+struct Inputs {
+  Sources layers;
+  const std::vector<RecordNumbers>& records;
+  const mesh::SurfaceMap& map;
+  const Frame& frame;
+};
+
 class Block {
  public:
-  Block(const Sources& sources, int resolution, int bx, int by)
-      : sources_(sources), resolution_(resolution), bx_(bx), by_(by) {}
+  Block(const Inputs& inputs, std::uint32_t slot)
+      : inputs_(inputs),
+        slot_(slot),
+        bx_(static_cast<int>(inputs.map.block_of_slot[slot]) % inputs.map.blocks_per_side),
+        by_(static_cast<int>(inputs.map.block_of_slot[slot]) / inputs.map.blocks_per_side) {}
 
   Truths truths(const Expression& e) const {
     const auto part = [&](std::size_t i) { return truths(e.parts[i]); };
     switch (e.op) {
       case Op::truth: return {e.number != 0 ? kAll : 0, kAll};
-      case Op::valid: return {layer(e.layer, false).known, kAll};
+      case Op::valid: return {layer(e.name, false).known, kAll};
       case Op::known: return {numbers(e.parts[0]).known, kAll};
+      case Op::record_truth: {
+        const Numbers answer = of_records(e);
+        return {bits_where([&](int i) { return answer.value[i] != 0; }) & answer.known, answer.known};
+      }
       case Op::negation: {
         const Truths inside = part(0);
         return {inside.known & ~inside.holds, inside.known};
@@ -83,21 +103,15 @@ class Block {
     }
   }
 
- private:
-  Truths comparison(const Expression& e) const {
-    const Numbers a = numbers(e.parts[0]), b = numbers(e.parts[1]);
-    const auto where = [&](auto test) { return bits_where([&](int i) { return test(a.value[i], b.value[i]); }); };
-    const Bits known = a.known & b.known;
-    Bits holds = 0;
-    switch (e.op) {
-      case Op::less: holds = where([](double x, double y) { return x < y; }); break;
-      case Op::less_equal: holds = where([](double x, double y) { return x <= y; }); break;
-      case Op::greater: holds = where([](double x, double y) { return x > y; }); break;
-      case Op::greater_equal: holds = where([](double x, double y) { return x >= y; }); break;
-      case Op::equal: holds = where([](double x, double y) { return x == y; }); break;
-      default: holds = where([](double x, double y) { return x != y; }); break;
-    }
-    return {holds & known, known};
+  // A condition is 1 or 0.
+  Numbers any(const Expression& e) const {
+    if (!e.is_condition()) return numbers(e);
+    const Truths truth = truths(e);
+    Numbers result;
+    for (int i = 0; i < kTexels; ++i)
+      result.value[static_cast<std::size_t>(i)] = static_cast<double>((truth.holds >> i) & 1u);
+    result.known = truth.known;
+    return result;
   }
 
   Numbers numbers(const Expression& e) const {
@@ -109,7 +123,8 @@ class Block {
         constant.known = known ? kAll : 0;
         return constant;
       }
-      case Op::layer: return layer(e.layer, true);
+      case Op::layer: return layer(e.name, true);
+      case Op::record_number: return of_records(e);
       case Op::choose: return choice(e);
       case Op::negate: return mapped(e, [](double x) { return -x; });
       case Op::absolute: return mapped(e, [](double x) { return std::abs(x); });
@@ -135,9 +150,30 @@ class Block {
       case Op::arc_tangent: return mapped(e, [](double x) { return std::atan(x); });
       case Op::radians: return mapped(e, [](double x) { return x * (std::numbers::pi / 180); });
       case Op::degrees: return mapped(e, [](double x) { return x * (180 / std::numbers::pi); });
+      case Op::x:
+      case Op::y:
+      case Op::z: return coordinate(static_cast<int>(e.op) - static_cast<int>(Op::x));
+      case Op::area: return texel_area();
       case Op::least: return folded(e, [](double x, double y) { return std::min(x, y); });
       default: return folded(e, [](double x, double y) { return std::max(x, y); });
     }
+  }
+
+ private:
+  Truths comparison(const Expression& e) const {
+    const Numbers a = numbers(e.parts[0]), b = numbers(e.parts[1]);
+    const auto where = [&](auto test) { return bits_where([&](int i) { return test(a.value[i], b.value[i]); }); };
+    const Bits known = a.known & b.known;
+    Bits holds = 0;
+    switch (e.op) {
+      case Op::less: holds = where([](double x, double y) { return x < y; }); break;
+      case Op::less_equal: holds = where([](double x, double y) { return x <= y; }); break;
+      case Op::greater: holds = where([](double x, double y) { return x > y; }); break;
+      case Op::greater_equal: holds = where([](double x, double y) { return x >= y; }); break;
+      case Op::equal: holds = where([](double x, double y) { return x == y; }); break;
+      default: holds = where([](double x, double y) { return x != y; }); break;
+    }
+    return {holds & known, known};
   }
 
   Numbers choice(const Expression& e) const {
@@ -177,14 +213,51 @@ class Block {
     return result;
   }
 
+  Numbers coordinate(int axis) const {
+    Numbers result;
+    for (std::uint64_t rest = inputs_.map.surface_mask[slot_]; rest != 0; rest &= rest - 1) {
+      const int texel = std::countr_zero(rest);
+      result.value[static_cast<std::size_t>(texel)] =
+          inputs_.frame.origin[axis] + double{inputs_.map.position(slot_, texel)[axis]};
+    }
+    result.known = inputs_.map.surface_mask[slot_];
+    return result;
+  }
+
+  Numbers texel_area() const {
+    Numbers result;
+    const double m2 = inputs_.frame.metres * inputs_.frame.metres;
+    for (std::size_t i = 0; i < kTexels; ++i) result.value[i] = m2 * inputs_.map.area[std::size_t{slot_} * kTexels + i];
+    result.known = inputs_.map.surface_mask[slot_];
+    return result;
+  }
+
+  // What is known of the records whose keys the layer holds.
+  Numbers of_records(const Expression& e) const {
+    const RecordNumbers& records = inputs_.records[e.index];
+    Numbers result = layer(e.name, true);
+    double last = -1, found = std::numeric_limits<double>::quiet_NaN();  // neighbours mostly hold one key
+    for (int i = 0; i < kTexels; ++i) {
+      if (((result.known >> i) & 1u) == 0) continue;
+      if (result.value[i] != last) {
+        last = result.value[i];
+        constexpr double kHighestKey = std::numeric_limits<std::uint32_t>::max();
+        found = last >= 0 && last <= kHighestKey ? records.of(static_cast<std::uint32_t>(last))
+                                                 : std::numeric_limits<double>::quiet_NaN();
+      }
+      result.value[i] = found;
+    }
+    return only_finite(std::move(result));
+  }
+
   // Validity alone costs no decoding.
   Numbers layer(const std::string& slug, bool decoded) const {
-    const Source& source = sources_.at(slug);
-    if (source.resolution == resolution_) return same_block(source, decoded);
+    const Source& source = inputs_.layers.at(slug);
+    if (source.resolution == inputs_.map.resolution) return same_block(source, decoded);
     Numbers result;
     for (int i = 0; i < kTexels; ++i) {
-      const int x = source.tiles.texel_under(bx_ * kBlockSize + i % kBlockSize, resolution_),
-                y = source.tiles.texel_under(by_ * kBlockSize + i / kBlockSize, resolution_);
+      const int x = source.tiles.texel_under(bx_ * kBlockSize + i % kBlockSize, inputs_.map.resolution),
+                y = source.tiles.texel_under(by_ * kBlockSize + i / kBlockSize, inputs_.map.resolution);
       const TileData* tile = source.tiles.of_texel(x, y);
       const int texel = (y % kTileSize) * kTileSize + x % kTileSize;
       if (tile == nullptr || !tile->valid.test(texel)) continue;
@@ -224,17 +297,16 @@ class Block {
     return only_finite(std::move(result));
   }
 
-  const Sources& sources_;
-  const int resolution_;
+  const Inputs& inputs_;
+  const std::uint32_t slot_;
   const int bx_, by_;
 };
 
-}  // namespace
-
-Result<TexelSelection> select_where(const Expression& condition, const std::vector<LayerView>& layers,
-                                    const mesh::SurfaceMap& map, const std::string& field, int threads) {
+// The layers that the formula names, by slug. Refused: one that is not there.
+Result<Sources> sources_of(const Expression& expression, const std::vector<LayerView>& layers,
+                           const std::string& field) {
   Sources sources;
-  for (const std::string& slug : layers_of(condition)) {
+  for (const std::string& slug : layers_of(expression)) {
     const auto found = std::find_if(layers.begin(), layers.end(), [&](const auto& v) { return v.layer.slug == slug; });
     if (found == layers.end())
       return fail(
@@ -244,18 +316,105 @@ Result<TexelSelection> select_where(const Expression& condition, const std::vect
     const Layer& layer = found->layer;
     sources.try_emplace(slug, Source{TileTable(found->snapshot.tiles, layer.resolution), layer.type, layer.resolution});
   }
+  return sources;
+}
+
+// Numbers of one block become texels of its tile. The bits where a number does not fit the type.
+Bits write_block(const Numbers& numbers, Bits wanted, ValueType type, int block_x, int block_y, TileData& tile) {
+  Bits unfit = 0;
+  for (Bits rest = numbers.known & wanted; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const double number = numbers.value[static_cast<std::size_t>(i)];
+    const auto bits = encode_value(type, is_float(type) ? number : std::round(number));
+    const int x = block_x % kBlocksPerTile * kBlockSize + i % kBlockSize,
+              y = block_y % kBlocksPerTile * kBlockSize + i / kBlockSize;
+    if (bits)
+      tile.write(y * kTileSize + x, *bits);
+    else
+      unfit |= Bits{1} << i;
+  }
+  return unfit;
+}
+
+}  // namespace
+
+Result<TexelSelection> select_where(const BoundExpression& condition, const std::vector<LayerView>& layers,
+                                    const mesh::SurfaceMap& map, const std::string& field, int threads,
+                                    const Frame& frame) {
+  auto sources = sources_of(condition.expression, layers, field);
+  if (!sources) return tl::unexpected(sources.error());
+  const Inputs inputs{std::move(*sources), condition.records, map, frame};
   const std::size_t slots = map.block_of_slot.size();
   TexelSelection selection(slots, 0);
   constexpr std::size_t kSlotsAtOnce = 1024;
   mesh::parallel_for(threads, static_cast<int>((slots + kSlotsAtOnce - 1) / kSlotsAtOnce), [&](int part) {
     for (std::size_t slot = part * kSlotsAtOnce; slot < std::min(slots, (part + 1) * kSlotsAtOnce); ++slot) {
-      const auto block = static_cast<int>(map.block_of_slot[slot]);
       if (map.surface_mask[slot] == 0) continue;
-      const Block values(sources, map.resolution, block % map.blocks_per_side, block / map.blocks_per_side);
-      selection[slot] = values.truths(condition).holds & map.surface_mask[slot];
+      const Block block(inputs, static_cast<std::uint32_t>(slot));
+      selection[slot] = block.truths(condition.expression).holds & map.surface_mask[slot];
     }
   });
   return selection;
+}
+
+Result<TileMap> compute_tiles(const BoundExpression& expression, const std::vector<LayerView>& layers,
+                              const mesh::SurfaceMap& map, const Frame& frame, ValueType type, const std::string& field,
+                              int threads) {
+  auto sources = sources_of(expression.expression, layers, field);
+  if (!sources) return tl::unexpected(sources.error());
+  const Inputs inputs{std::move(*sources), expression.records, map, frame};
+  const int tiles_per_side = map.resolution / kTileSize;
+  std::vector<std::shared_ptr<TileData>> tiles(static_cast<std::size_t>(tiles_per_side) *
+                                               static_cast<std::size_t>(tiles_per_side));
+  std::atomic<bool> fits = true;
+  std::mutex mutex;
+  double unfit = 0;
+  mesh::parallel_for(threads, static_cast<int>(tiles.size()), [&](int number) {
+    auto tile = std::make_shared<TileData>(type);
+    for (int i = 0; i < kBlocksPerTile * kBlocksPerTile && fits; ++i) {
+      const int bx = number % tiles_per_side * kBlocksPerTile + i % kBlocksPerTile,
+                by = number / tiles_per_side * kBlocksPerTile + i / kBlocksPerTile;
+      const std::uint32_t slot = mesh::slot_at(map, bx, by);
+      if (slot == mesh::kNoSlot || map.surface_mask[slot] == 0) continue;
+      const Numbers numbers = Block(inputs, slot).any(expression.expression);
+      const Bits wrong = write_block(numbers, map.surface_mask[slot], type, bx, by, *tile);
+      if (wrong == 0) continue;
+      const std::lock_guard lock(mutex);
+      fits = false;
+      unfit = numbers.value[static_cast<std::size_t>(std::countr_zero(wrong))];
+    }
+    if (tile->valid.any()) tiles[static_cast<std::size_t>(number)] = std::move(tile);
+  });
+  if (!fits) {
+    Problem problem = encode_value(type, is_float(type) ? unfit : std::round(unfit)).error();
+    problem.field = "type";
+    return tl::unexpected(std::move(problem));
+  }
+  const auto tile_of = [&](std::uint32_t slot) -> std::shared_ptr<TileData>& {
+    const int block = static_cast<int>(map.block_of_slot[slot]);
+    return tiles[static_cast<std::size_t>(block / map.blocks_per_side / kBlocksPerTile * tiles_per_side +
+                                          block % map.blocks_per_side / kBlocksPerTile)];
+  };
+  const auto texel_of = [&](mesh::SlotTexel place) {
+    const int block = static_cast<int>(map.block_of_slot[place.slot]);
+    const int x = block % map.blocks_per_side % kBlocksPerTile * kBlockSize + place.texel % kBlockSize,
+              y = block / map.blocks_per_side % kBlocksPerTile * kBlockSize + place.texel / kBlockSize;
+    return y * kTileSize + x;
+  };
+  mesh::for_each_gutter_texel(map, [&](mesh::SlotTexel gutter, mesh::SlotTexel owner) {
+    const auto& from = tile_of(owner.slot);
+    const int texel = texel_of(owner);
+    if (!from || !from->valid.test(texel)) return;
+    auto& to = tile_of(gutter.slot);
+    if (!to) to = std::make_shared<TileData>(type);
+    to->write(texel_of(gutter), from->bits(texel));
+  });
+  TileMap content;
+  for (std::size_t i = 0; i < tiles.size(); ++i)
+    if (tiles[i])
+      content[{static_cast<std::uint16_t>(i % static_cast<std::size_t>(tiles_per_side)),
+               static_cast<std::uint16_t>(i / static_cast<std::size_t>(tiles_per_side))}] = std::move(tiles[i]);
+  return content;
 }
 
 }  // namespace strata::query

@@ -8,6 +8,10 @@
 #include <optional>
 #include <utility>
 
+#include "core/edtf.h"
+#include "core/timestamp.h"
+#include "core/utf8.h"
+
 namespace strata::query {
 namespace {
 
@@ -18,17 +22,17 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 struct Token {
-  enum class Kind { end, number, word, quoted, symbol };
+  enum class Kind { end, number, word, quoted, text, symbol };
   Kind kind = Kind::end;
   std::size_t at = 0;  // position in the text
   std::string text;    // words in lower case
   double number = 0;
 };
 
-constexpr std::array kKeywords{"and",  "or",   "not", "true", "false",   "valid", "if",   "case", "when",
-                               "then", "else", "end", "is",   "between", "in",    "null", "div"};
+constexpr std::array kKeywords{"and",  "or",  "not", "true",    "false", "case", "when", "then",
+                               "else", "end", "is",  "between", "in",    "null", "like", "div"};
 
-// Of numbers; `least` and `greatest` take two or more.
+// Of numbers; `least` and `greatest` take two or more. A word is the name of a function where a bracket follows it.
 struct Function {
   std::string_view name;
   Op op;
@@ -40,6 +44,15 @@ constexpr std::array kFunctions{
     Function{"round", Op::round},       Function{"sin", Op::sine},        Function{"cos", Op::cosine},
     Function{"tan", Op::tangent},       Function{"asin", Op::arc_sine},   Function{"acos", Op::arc_cosine},
     Function{"atan", Op::arc_tangent},  Function{"radians", Op::radians}, Function{"degrees", Op::degrees}};
+
+// Of a text; of two times; of a relation and keys.
+constexpr std::array kTextFunctions{Function{"casei", Op::fold_case}, Function{"accenti", Op::fold_accents}};
+constexpr std::array kTimeFunctions{Function{"t_before", Op::before},         Function{"t_after", Op::after},
+                                    Function{"t_during", Op::during},         Function{"t_contains", Op::contains},
+                                    Function{"t_intersects", Op::intersects}, Function{"t_disjoint", Op::disjoint},
+                                    Function{"t_equals", Op::coincides}};
+constexpr std::array kKeyFunctions{Function{"a_contains", Op::has_all}, Function{"a_overlaps", Op::has_any},
+                                   Function{"a_containedby", Op::has_only}, Function{"a_equals", Op::has_exactly}};
 
 struct Comparison {
   std::string_view symbol;
@@ -53,27 +66,37 @@ constexpr std::array kComparisons{Comparison{"=", Op::equal},      Comparison{"=
 // Recursive descent. The first refusal is kept and ends the text, so that every level returns, whatever it holds by then.
 class Parser {
  public:
-  Parser(std::string_view text, const std::string& field) : text_(text), field_(field) { advance(); }
+  Parser(std::string_view text, const std::string& field, Names names) : text_(text), field_(field), names_(names) {
+    advance();
+  }
 
   Result<Expression> whole(bool wants_condition) {
     Expression expression = disjunction();
     if (token_.kind != Token::Kind::end) refuse("'" + token_.text + "' was not expected here");
-    if (wants_condition && !expression.is_condition())
-      refuse("A condition is wanted, not a number: compare it with something", 0);
-    if (!wants_condition && expression.is_condition())
+    if (wants_condition) {
+      if (!expression.is_condition() && !expression.is_column())
+        refuse("A condition is wanted, not a number: compare it with something", 0);
+      expression = condition(std::move(expression), 0);
+    } else if (expression.is_condition()) {
       refuse("A number is wanted, not a condition: if(condition, 1, 0) makes one of it", 0);
+    } else {
+      expression = numeric(std::move(expression), 0);
+    }
     if (problem_) return tl::unexpected(*problem_);
     return expression;
   }
 
  private:
   Expression refuse(const std::string& what, std::optional<std::size_t> at = {}) {
-    if (!problem_)
-      problem_ = Problem{422, "Expression not understood",
-                         what + " (at character " + std::to_string(at.value_or(token_.at) + 1) + ").", field_};
+    if (!problem_) problem_ = expression_problem(what, characters_before(at.value_or(token_.at)), field_);
     at_ = text_.size();
     token_ = Token{};
     return {};
+  }
+
+  std::size_t characters_before(std::size_t byte) const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        text_.substr(0, byte), [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }));
   }
 
   // --- tokens
@@ -90,6 +113,7 @@ class Parser {
     if (is_digit(c) || (c == '.' && at_ + 1 < text_.size() && is_digit(text_[at_ + 1]))) return take_number();
     if (is_letter(c)) return take_word();
     if (c == '"') return take_quoted();
+    if (c == '\'') return take_text();
     take_symbol();
   }
 
@@ -128,6 +152,28 @@ class Parser {
     at_ = end + 1;
   }
 
+  // A quote within is written twice.
+  void take_text() {
+    token_.kind = Token::Kind::text;
+    std::size_t at = at_ + 1;
+    for (;; ++at) {
+      if (at == text_.size()) {
+        refuse("The quote is never closed");
+        return;
+      }
+      if (text_[at] == '\'') {
+        if (at + 1 == text_.size() || text_[at + 1] != '\'') break;
+        ++at;
+      }
+      token_.text += text_[at];
+    }
+    if (!is_utf8(token_.text) || token_.text.find('\0') != std::string::npos) {
+      refuse("This text is not UTF-8");
+      return;
+    }
+    at_ = at + 1;
+  }
+
   void take_symbol() {
     token_.kind = Token::Kind::symbol;
     std::size_t length = 1;
@@ -135,7 +181,7 @@ class Parser {
       if (comparison.symbol.size() == 2 && text_.substr(at_, 2) == comparison.symbol) length = 2;
     token_.text = std::string(text_.substr(at_, length));
     at_ += length;
-    if (length == 1 && std::string_view("()+-*/%^,<>=").find(token_.text) == std::string_view::npos)
+    if (length == 1 && std::string_view("()+-*/%^,<>=.").find(token_.text) == std::string_view::npos)
       refuse("This character has no meaning in an expression");
   }
 
@@ -146,6 +192,12 @@ class Parser {
     if (!is(text)) return false;
     advance();
     return true;
+  }
+  bool is_call() const {
+    if (token_.kind != Token::Kind::word) return false;
+    std::size_t next = at_;
+    while (next < text_.size() && is_space(text_[next])) ++next;
+    return next < text_.size() && text_[next] == '(';
   }
   void expect(std::string_view text) {
     if (!take(text)) refuse("Expected '" + std::string(text) + "' instead of '" + token_.text + "'");
@@ -180,51 +232,81 @@ class Parser {
     Expression left = sum();
     for (const Comparison& each : kComparisons) {
       if (!is(each.symbol)) continue;
-      left = numeric(std::move(left), at);
       advance();
       const auto right_at = token_.at;
-      Expression right = numeric(sum(), right_at);
+      Expression right = sum();
       for (const Comparison& next : kComparisons)
-        if (is(next.symbol)) refuse("Only two numbers are compared at a time; join comparisons with 'and'");
-      return make(each.op, at, std::move(left), std::move(right));
+        if (is(next.symbol)) refuse("Only two values are compared at a time; join comparisons with 'and'");
+      return compare(each.op, std::move(left), at, std::move(right), right_at);
     }
-    if (is("is")) return null_test(numeric(std::move(left), at), at);
+    if (is("is")) return null_test(value(std::move(left), at), at);
     const bool negated = is("not");
-    if (!negated && !is("between") && !is("in")) return left;
-    left = numeric(std::move(left), at);
+    if (!negated && !is("between") && !is("in") && !is("like")) return left;
+    left = value(std::move(left), at);
     if (negated) advance();
     Expression test = is("between") ? between(std::move(left), at)
                       : is("in")    ? membership(std::move(left), at)
-                                    : refuse("Expected 'between' or 'in' instead of '" + token_.text + "'");
+                      : is("like")  ? likeness(std::move(left), at)
+                                    : refuse("Expected 'between', 'in' or 'like' instead of '" + token_.text + "'");
     return negated ? make(Op::negation, at, std::move(test)) : test;
   }
 
-  Expression null_test(Expression number, std::size_t at) {
+  // Of two numbers, two texts, two times; of a column of truths and a truth.
+  Expression compare(Op op, Expression left, std::size_t at, Expression right, std::size_t right_at) {
+    if (left.is_column() && right.op == Op::truth && (op == Op::equal || op == Op::not_equal)) {
+      Expression holds = make(Op::holds, at, std::move(left));
+      return (right.number == 1) == (op == Op::equal) ? holds : make(Op::negation, at, std::move(holds));
+    }
+    left = value(std::move(left), at);
+    right = value(std::move(right), right_at);
+    const auto takes_text = [](const Expression& e) { return e.is_text() || e.is_column(); };
+    if ((left.is_text() && !takes_text(right)) || (right.is_text() && !takes_text(left)))
+      refuse("A text is compared with a column of texts, not with a number", left.is_text() ? at : right_at);
+    return make(op, at, std::move(left), std::move(right));
+  }
+
+  // `pattern` is what the text is like.
+  Expression likeness(Expression text, std::size_t at) {
+    if (!text.is_text() && !text.is_column()) refuse("Only texts are like something", at);
+    advance();
+    const auto pattern_at = token_.at;
+    Expression pattern = primary();
+    if (!pattern.is_text()) return refuse("A pattern stands in single quotes, as in like 'crack%'", pattern_at);
+    const auto end = pattern.text.find_last_not_of('\\');
+    if ((pattern.text.size() - (end == std::string::npos ? 0 : end + 1)) % 2 == 1)
+      return refuse("The \\ at the end of this pattern has nothing behind it", pattern_at);
+    return make(Op::like, at, std::move(text), std::move(pattern));
+  }
+
+  Expression null_test(Expression tested, std::size_t at) {
     advance();
     const bool negated = take("not");
     expect("null");
-    Expression known = make(Op::known, at, std::move(number));
+    Expression known = make(Op::known, at, std::move(tested));
     return negated ? known : make(Op::negation, at, std::move(known));
   }
 
   // Both ends belong to it.
-  Expression between(Expression number, std::size_t at) {
+  Expression between(Expression middle, std::size_t at) {
     advance();
     const auto low_at = token_.at;
-    Expression low = numeric(sum(), low_at);
+    Expression low = sum();
     expect("and");
     const auto high_at = token_.at;
-    Expression high = numeric(sum(), high_at);
-    Expression above = make(Op::greater_equal, at, number, std::move(low));
-    return make(Op::all, at, std::move(above), make(Op::less_equal, at, std::move(number), std::move(high)));
+    Expression high = sum();
+    Expression above = compare(Op::greater_equal, again(middle), at, std::move(low), low_at);
+    return make(Op::all, at, std::move(above),
+                compare(Op::less_equal, std::move(middle), at, std::move(high), high_at));
   }
 
-  Expression membership(Expression number, std::size_t at) {
+  Expression membership(Expression member, std::size_t at) {
     advance();
     expect("(");
     Expression any = make(Op::any, at);
-    do any.parts.push_back(make(Op::equal, at, number, argument()));
-    while (take(","));
+    do {
+      const auto each_at = token_.at;
+      any.parts.push_back(compare(Op::equal, again(member), at, disjunction(), each_at));
+    } while (take(","));
     expect(")");
     return any;
   }
@@ -279,9 +361,11 @@ class Parser {
         advance();
         Expression expression;
         expression.number = token.number;
+        expression.position.at = characters_before(token.at);
         return expression;
       }
-      case Token::Kind::quoted: return layer();
+      case Token::Kind::text: return literal();
+      case Token::Kind::quoted: return named();
       case Token::Kind::word: break;
       default:
         if (take("(")) {
@@ -289,7 +373,8 @@ class Parser {
           expect(")");
           return inside;
         }
-        return refuse("Expected a number, a layer or '(' instead of '" + token.text + "'");
+        return refuse("Expected a number, " + std::string(what_names_are()) + " or '(' instead of '" + token.text +
+                      "'");
     }
     if (is("true") || is("false")) {
       Expression truth;
@@ -298,46 +383,162 @@ class Parser {
       advance();
       return truth;
     }
-    if (is("valid")) return validity();
-    if (is("if")) return choice();
     if (is("case")) return cases();
     if (take("null")) return unknown();
-    for (const Function& each : kFunctions)
-      if (is(each.name)) return function(each);
+    if (is_call()) return call();
     for (const char* keyword : kKeywords)
-      if (is(keyword)) return refuse("Expected a number, a layer or '(' instead of '" + token.text + "'");
-    return layer();
+      if (is(keyword))
+        return refuse("Expected a number, " + std::string(what_names_are()) + " or '(' instead of '" + token.text +
+                      "'");
+    return named();
   }
 
-  Expression layer() {
-    const auto is_word_of_language = [&] {
-      return std::ranges::any_of(kKeywords, [&](const char* word) { return is(word); }) ||
-             std::ranges::any_of(kFunctions, [&](const Function& each) { return is(each.name); });
-    };
-    if (token_.kind == Token::Kind::word && is_word_of_language())
-      return refuse("'" + token_.text + "' is a word of the language; a layer of this name stands in double quotes");
+  Expression call() {
+    if (is("valid")) return validity();
+    if (is("if")) return choice();
+    if (is("date") || is("timestamp")) return time();
+    if (is("interval")) return interval();
+    for (const Function& each : kFunctions)
+      if (is(each.name)) return function(each);
+    for (const Function& each : kTextFunctions)
+      if (is(each.name)) return text_function(each);
+    for (const Function& each : kTimeFunctions)
+      if (is(each.name)) return time_function(each);
+    for (const Function& each : kKeyFunctions)
+      if (is(each.name)) return key_function(each);
+    std::string known = "valid, if";
+    for (const Function& each : kFunctions) known += ", " + std::string(each.name);
+    for (const Function& each : kTextFunctions) known += ", " + std::string(each.name);
+    known += ", date, timestamp, interval";
+    for (const Function& each : kTimeFunctions) known += ", " + std::string(each.name);
+    for (const Function& each : kKeyFunctions) known += ", " + std::string(each.name);
+    return refuse("There is no function '" + token_.text + "'; there are " + known);
+  }
+
+  std::string_view what_names_are() const { return names_ == Names::layers ? "a layer" : "a column"; }
+
+  bool is_keyword() const {
+    return std::ranges::any_of(kKeywords, [&](const char* word) { return is(word); });
+  }
+
+  // A layer, a column, or a column of the record that a layer or another column names.
+  Expression named() {
+    const auto at = token_.at;
+    const std::string what = "the name of " + std::string(what_names_are());
+    if (is_keyword())
+      return refuse("'" + token_.text + "' is a word of the language; as " + what + " it stands in double quotes");
     if (token_.kind != Token::Kind::word && token_.kind != Token::Kind::quoted)
-      return refuse("Expected the name of a layer instead of '" + token_.text + "'");
+      return refuse("Expected " + what + " instead of '" + token_.text + "'");
     Expression expression;
-    expression.op = Op::layer;
-    expression.layer = token_.text;
+    expression.position.at = characters_before(at);
+    if (names_ == Names::layers) {
+      expression.op = Op::layer;
+      expression.name = token_.text;
+    } else {
+      expression.op = Op::column;
+      expression.path.push_back(token_.text);
+    }
     advance();
-    if (is("(")) {
-      std::string known = "valid, if";
-      for (const Function& each : kFunctions) known += ", " + std::string(each.name);
-      refuse("There is no function '" + expression.layer + "'; there are " + known);
+    while (take(".")) {
+      if (token_.kind != Token::Kind::word && token_.kind != Token::Kind::quoted)
+        return refuse("Expected the name of a column instead of '" + token_.text + "'");
+      expression.op = Op::column;
+      expression.path.push_back(token_.text);
+      advance();
     }
     return expression;
   }
 
   Expression validity() {
+    if (names_ == Names::columns) return refuse("valid() is for layers; of a column write 'is not null'");
     advance();
     expect("(");
-    Expression expression = layer();
+    Expression expression = named();
+    if (expression.is_column()) refuse("Expected the name of a layer; of a column write 'is not null'");
     expression.op = Op::valid;
     expect(")");
     return expression;
   }
+
+  // --- texts and times
+
+  Expression literal() {
+    Expression expression;
+    expression.op = Op::text;
+    expression.position.at = characters_before(token_.at);
+    expression.text = token_.text;
+    advance();
+    return expression;
+  }
+
+  Expression quoted_time(bool may_be_open) {
+    if (token_.kind != Token::Kind::text) return refuse("A time stands in single quotes, as in date('2024-05-02')");
+    if (!(may_be_open && token_.text == "..") && !parse_edtf(token_.text) && !utc_timestamp(token_.text))
+      return refuse("'" + token_.text.substr(0, 100) + "' is no date; dates are written 2024-05-02");
+    return literal();
+  }
+
+  Expression time() {
+    advance();
+    expect("(");
+    Expression expression = quoted_time(false);
+    expect(")");
+    return expression;
+  }
+
+  // As EDTF writes it.
+  Expression interval() {
+    advance();
+    expect("(");
+    Expression expression = quoted_time(true);
+    expect(",");
+    expression.text += "/" + quoted_time(true).text;
+    expect(")");
+    if (!problem_ && !parse_edtf(expression.text))
+      refuse("'" + expression.text.substr(0, 200) + "' is no interval of days");
+    return expression;
+  }
+
+  Expression text_function(const Function& called) {
+    const auto at = token_.at;
+    advance();
+    expect("(");
+    const auto part_at = token_.at;
+    Expression part = textual(disjunction(), part_at);
+    expect(")");
+    return make(called.op, at, std::move(part));
+  }
+
+  Expression time_function(const Function& called) {
+    const auto at = token_.at;
+    advance();
+    expect("(");
+    const auto first_at = token_.at;
+    Expression first = textual(disjunction(), first_at);
+    expect(",");
+    const auto second_at = token_.at;
+    Expression second = textual(disjunction(), second_at);
+    expect(")");
+    return make(called.op, at, std::move(first), std::move(second));
+  }
+
+  Expression key_function(const Function& called) {
+    const auto at = token_.at;
+    advance();
+    expect("(");
+    Expression relation = named();
+    if (!relation.is_column()) refuse("A column of keys is wanted here", at);
+    expect(",");
+    Expression keys = make(Op::keys, token_.at);
+    expect("(");
+    do keys.parts.push_back(argument());
+    while (take(","));
+    expect(")");
+    expect(")");
+    return make(called.op, at, std::move(relation), std::move(keys));
+  }
+
+  // --- choices
 
   Expression choice() {
     const auto at = token_.at;
@@ -396,14 +597,23 @@ class Parser {
     return numeric(disjunction(), at);
   }
 
-  // --- kinds
+  // --- kinds; what a column holds is not known here
 
   Expression condition(Expression expression, std::size_t at) {
+    if (expression.is_column()) return make(Op::holds, at, std::move(expression));
     if (!expression.is_condition()) refuse("A condition is wanted here, not a number: compare it with something", at);
     return expression;
   }
-  Expression numeric(Expression expression, std::size_t at) {
+  Expression value(Expression expression, std::size_t at) {
     if (expression.is_condition()) refuse("A number is wanted here, not a condition", at);
+    return expression;
+  }
+  Expression numeric(Expression expression, std::size_t at) {
+    if (expression.is_text()) refuse("A number is wanted here, not a text", at);
+    return value(std::move(expression), at);
+  }
+  Expression textual(Expression expression, std::size_t at) {
+    if (!expression.is_text() && !expression.is_column()) refuse("A text or a column is wanted here", at);
     return expression;
   }
 
@@ -419,10 +629,24 @@ class Parser {
     return left;
   }
 
+  // What is written once and used twice: a short text may not become an endless expression.
+  Expression again(const Expression& expression) {
+    repeated_ += size_of(expression);
+    if (repeated_ > kMaxExpressionLength) return refuse("This is too much at once");
+    return expression;
+  }
+
+  static std::size_t size_of(const Expression& expression) {
+    std::size_t size = 1;
+    for (const Expression& part : expression.parts) size += size_of(part);
+    return size;
+  }
+
   template <class... Parts>
   Expression make(Op op, std::size_t at, Parts... parts) {
     Expression expression;
     expression.op = op;
+    expression.position.at = characters_before(at);
     (expression.parts.push_back(std::move(parts)), ...);
     // Also a + b + c + … nests, to the left; and it is evaluated and destroyed by recursion.
     if (depth_of(expression) > kMaxExpressionDepth) refuse("This is nested too deeply", at);
@@ -448,22 +672,28 @@ class Parser {
 
   const std::string_view text_;
   const std::string& field_;
+  const Names names_;
   std::size_t at_ = 0;
   Token token_;
   int depth_ = 0;
+  std::size_t repeated_ = 0;
   std::optional<Problem> problem_;
 };
 
-Result<Expression> parse(std::string_view text, const std::string& field, bool wants_condition) {
+Result<Expression> parse(std::string_view text, const std::string& field, Names names, bool wants_condition) {
   if (text.size() > kMaxExpressionLength)
     return fail(422, "Expression too long",
                 "An expression has at most " + std::to_string(kMaxExpressionLength) + " characters.", field);
-  return Parser(text, field).whole(wants_condition);
+  return Parser(text, field, names).whole(wants_condition);
 }
 
 }  // namespace
 
-Result<Expression> parse_condition(std::string_view text, const std::string& field) { return parse(text, field, true); }
-Result<Expression> parse_number(std::string_view text, const std::string& field) { return parse(text, field, false); }
+Result<Expression> parse_condition(std::string_view text, const std::string& field, Names names) {
+  return parse(text, field, names, true);
+}
+Result<Expression> parse_number(std::string_view text, const std::string& field, Names names) {
+  return parse(text, field, names, false);
+}
 
 }  // namespace strata::query

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "core/history.h"
+#include "mesh/parallel.h"
+#include "room/expression_binding.h"
 
 namespace strata::room {
 namespace {
@@ -61,10 +63,19 @@ Result<ComputedEdit> only_changes(Result<std::vector<TileChange>> changes) {
   return ComputedEdit{std::move(*changes), {}, {}};
 }
 
+Result<TileMap> computed_content(const ComputeEdit& compute, const Layer& layer, const RegionContext& context) {
+  std::vector<query::LayerView> layers = context.layers;
+  layers.insert(layers.end(), compute.shapes.begin(), compute.shapes.end());
+  const auto bound = bind_expression(compute.expression, layers, context.store, std::nullopt, "expression");
+  if (!bound) return tl::unexpected(bound.error());
+  return query::compute_tiles(*bound, layers, context.map, {context.surface.geometry().origin, context.metres},
+                              layer.type, "expression", mesh::background_threads());
+}
+
 }  // namespace
 
-Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer, store::Store& store,
-                                  const RegionContext& context) {
+Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer, const RegionContext& context) {
+  store::Store& store = context.store;
   const TileMap& tiles = context.tiles;
   return std::visit(
       Overloaded{
@@ -73,6 +84,11 @@ Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer
           [&](const ImportEdit& import) {
             return only_changes(import.over ? paint_over(tiles, import.tiles, layer.type, context.map)
                                             : replace_content(tiles, import.tiles, layer.type, context.map));
+          },
+          [&](const ComputeEdit& compute) -> Result<ComputedEdit> {
+            auto content = computed_content(compute, layer, context);
+            if (!content) return tl::unexpected(content.error());
+            return only_changes(replace_content(tiles, *content, layer.type, context.map));
           },
           [&](const RestoreEdit& restore) -> Result<ComputedEdit> {
             auto past = store.load_tiles(layer, restore.sequence);

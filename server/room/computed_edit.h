@@ -15,7 +15,6 @@ struct ComputedEdit {
 };
 
 // Blocks: for worker threads. `layer` is the edited one.
-Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer, store::Store& store,
-                                  const RegionContext& context);
+Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer, const RegionContext& context);
 
 }  // namespace strata::room

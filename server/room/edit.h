@@ -9,6 +9,7 @@
 #include "core/stroke.h"
 #include "core/tile_mirror.h"
 #include "core/uuid.h"
+#include "query/values.h"
 
 namespace strata::room {
 
@@ -53,6 +54,10 @@ struct ImportEdit {
   TileMap tiles;
   bool over = false;  // what is valid in the tiles is painted over the layer; otherwise they replace its whole content
 };
+struct ComputeEdit {  // a computed layer's content, from the layers and records as they are when the edit's turn comes
+  Expression expression;
+  std::vector<query::LayerView> shapes;  // what it reads of the mesh (kShapeNames), as layers `surface.…`
+};
 struct UndoEdit {};  // the author's newest stroke in force on the layer
 struct RedoEdit {};
 struct RestoreEdit {  // the whole layer as it was after a sequence
@@ -63,7 +68,7 @@ struct EditRequest {
   Uuid id;  // of the message: a repeat gets the first answer and paints nothing
   std::string user;
   std::int64_t layer_id = 0;
-  std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, UndoEdit, RedoEdit, RestoreEdit> edit;
+  std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit, RestoreEdit> edit;
   nlohmann::json record;  // the edit as asked, for the journal
 };
 

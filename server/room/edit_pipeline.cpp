@@ -27,8 +27,8 @@ Overloaded(Visitors...) -> Overloaded<Visitors...>;
 const char* op_name(const EditRequest& request) {
   return std::visit(Overloaded{[](const StrokeEdit&) { return "stroke"; }, [](const FillEdit&) { return "fill"; },
                                [](const PolygonEdit&) { return "polygon"; }, [](const ImportEdit&) { return "import"; },
-                               [](const UndoEdit&) { return "undo"; }, [](const RedoEdit&) { return "redo"; },
-                               [](const RestoreEdit&) { return "restore"; }},
+                               [](const ComputeEdit&) { return "compute"; }, [](const UndoEdit&) { return "undo"; },
+                               [](const RedoEdit&) { return "redo"; }, [](const RestoreEdit&) { return "restore"; }},
                     request.edit);
 }
 
@@ -40,6 +40,7 @@ bool reads_journal(const EditRequest& request) {
 
 // What its content is computed from besides its own layer.
 bool reads_layers(const EditRequest& request) {
+  if (std::holds_alternative<ComputeEdit>(request.edit)) return true;
   const auto* fill = std::get_if<FillEdit>(&request.edit);
   return fill && std::holds_alternative<FillEdit::Where>(fill->region);
 }
@@ -208,6 +209,17 @@ bool EditPipeline::start_front() {
     refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
     return true;
   }
+  if (layer->layer.formula.has_value() != std::holds_alternative<ComputeEdit>(front.request.edit)) {
+    const bool computed = layer->layer.formula.has_value();
+    Waiting item = take();
+    refuse(item,
+           {409, computed ? "Computed layer" : "No expression",
+            computed
+                ? "The values of this layer follow from its expression. Take the expression away to edit them by hand."
+                : "This layer has no expression that it could be computed from.",
+            "layer"});
+    return true;
+  }
   if (!map_ready(layer->layer.resolution)) return false;
   if (std::holds_alternative<StrokeEdit>(front.request.edit)) {
     if (in_flight_ >= kStrokesInFlight) return false;
@@ -275,14 +287,15 @@ void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
   if (reads_layers(item->request)) layers = host_->layer_snapshots();
   boost::asio::post(parts_.workers, [this, self = shared_from_this(), item, meta = layer.layer,
                                      tiles = layer.mirror->snapshot().tiles, layers = std::move(layers),
-                                     model = host_->model_handle(), done = std::move(done)]() mutable {
+                                     metres = host_->pipeline_model().metres(), model = host_->model_handle(),
+                                     done = std::move(done)]() mutable {
     const auto map = parts_.maps->get(meta.resolution);
     if (!map)
       return done(
           Result<ComputedEdit>(fail(503, "GPU lost", "The graphics context is being restored; send the edit again.")));
     try {
-      done(compute_edit(item->request, meta, parts_.store,
-                        {*map, tiles, layers, *parts_.surface, parts_.renderer, model}));
+      done(compute_edit(item->request, meta,
+                        {*map, tiles, layers, metres, parts_.store, *parts_.surface, parts_.renderer, model}));
     } catch (const std::bad_alloc&) {
       done(Result<ComputedEdit>(
           fail(503, "Out of memory", "The server lacks the memory for this edit at the moment; try again later.")));

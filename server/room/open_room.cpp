@@ -7,6 +7,7 @@
 
 #include "core/log.h"
 #include "core/slug.h"
+#include "room/expression_binding.h"
 #include "room/gpu_problem.h"
 
 namespace strata::room {
@@ -207,19 +208,61 @@ Result<Layer> OpenRoom::update_layer(Layer layer, const store::FirstAnswer<Layer
   if (auto ok = check_layer(layer, model()); !ok) return tl::unexpected(ok.error());
   auto updated = parts_.store.update_layer(std::move(layer), answer);
   if (!updated) return updated;
-  on_strand([&] {
-    {
-      std::lock_guard lock(mutex_);
-      auto found = layers_.find(updated->id);
-      if (found == layers_.end()) return;
-      updated->sequence = found->second.layer.sequence;
-      found->second.layer = *updated;
-      found->second.palette = std::make_shared<const Palette>(updated->palette);
+  return on_strand([&] { return replace_layer(*updated); });
+}
+
+Layer OpenRoom::replace_layer(const Layer& stored) {
+  Layer now = stored;
+  {
+    std::lock_guard lock(mutex_);
+    auto found = layers_.find(now.id);
+    if (found == layers_.end()) return now;
+    now.sequence = found->second.layer.sequence;
+    found->second.layer = now;
+    found->second.palette = std::make_shared<const Palette>(now.palette);
+  }
+  tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::changed, now); });
+  sort_layers_changed();
+  return now;
+}
+
+Result<Layer> OpenRoom::layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
+                                       const std::map<std::int64_t, std::int64_t>& tables) {
+  auto stored = parts_.store.layer_computed(id, expression, sequence, tables);
+  if (!stored) return stored;
+  return on_strand([&] { return replace_layer(*stored); });
+}
+
+void OpenRoom::outdate(const std::function<bool(const LayerFormula&)>& reads) {
+  std::vector<Layer> stale;
+  {
+    std::lock_guard lock(mutex_);
+    for (auto& [id, state] : layers_) {
+      if (!state.layer.formula || state.layer.formula->stale || !reads(*state.layer.formula)) continue;
+      state.layer.formula->stale = true;
+      stale.push_back(state.layer);
     }
-    tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::changed, *updated); });
-    sort_layers_changed();
+  }
+  for (const Layer& layer : stale) tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::changed, layer); });
+}
+
+void OpenRoom::records_changed(std::int64_t table_id) {
+  on_strand([&] {
+    outdate([&](const LayerFormula& formula) {
+      return std::ranges::any_of(formula.inputs, [&](const auto& input) { return input.table == table_id; });
+    });
   });
-  return updated;
+}
+
+Result<void> OpenRoom::check_expression(const Expression& expression, const std::string& field) const {
+  std::vector<query::LayerView> views;
+  for (const Layer& layer : layers()) views.push_back({layer, {}});
+  for (const std::string& shape : shapes_read(expression, views)) {
+    views.emplace_back();
+    views.back().layer.slug = std::string(kShapePrefix) + shape;
+  }
+  const auto bound = bind_expression(expression, views, parts_.store, std::nullopt, field);
+  return bound ? Result<void>{} : tl::unexpected(bound.error());
 }
 
 Result<void> OpenRoom::delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) {
@@ -238,6 +281,9 @@ Result<void> OpenRoom::delete_layer(std::int64_t id, const store::FirstAnswer<>&
       }
       parts_.renderer.remove_layer(gone.handle);
       tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::deleted, gone.layer); });
+      outdate([&](const LayerFormula& formula) {
+        return std::ranges::any_of(formula.inputs, [&](const auto& input) { return input.layer == id; });
+      });
       sort_layers_changed();
     });
     return {};
@@ -355,7 +401,13 @@ void OpenRoom::edit_applied(const Listener::Edit& edit) {
   tell([&](Listener& l) { l.edit_applied(edit); });
 }
 
-void OpenRoom::edit_saved(const Listener::Edit& edit) { durable_ = edit.sequence; }
+void OpenRoom::edit_saved(const Listener::Edit& edit) {
+  durable_ = edit.sequence;
+  outdate([&](const LayerFormula& formula) {
+    return formula.computed_sequence < edit.sequence &&
+           std::ranges::any_of(formula.inputs, [&](const auto& input) { return input.layer == edit.layer_id; });
+  });
+}
 
 void OpenRoom::edits_unsaved(const std::vector<Listener::Edit>& edits, const Problem& why) {
   sequence_ = pipeline_->sequence();

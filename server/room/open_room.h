@@ -47,6 +47,10 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
                              std::vector<Column> columns) override;
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer) override;
   Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) override;
+  Result<Layer> layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
+                               const std::map<std::int64_t, std::int64_t>& tables) override;
+  void records_changed(std::int64_t table_id) override;
+  Result<void> check_expression(const Expression& expression, const std::string& field) const override;
   Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer) override;
   Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers, At at) override;
   Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
@@ -124,7 +128,10 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void on_journal_read(Result<JournalContents> contents);
   void retry_recovery(const Problem& why);
   void sort_layers_changed();
-  std::uint64_t mirror_bytes() const;  // with `mutex_` held
+  // On the strand: computed layers that `reads` tells become stale, and people are told.
+  void outdate(const std::function<bool(const LayerFormula&)>& reads);
+  Layer replace_layer(const Layer& stored);  // on the strand: what is stored becomes what is here; tells
+  std::uint64_t mirror_bytes() const;        // with `mutex_` held
   void tell_look(Listener::LayerChange change, const Look& look);
   Result<LayerState> state(const std::string& ref) const;
   // queries.cpp

@@ -8,6 +8,7 @@
 #include "query/expression_evaluator.h"
 #include "query/flood.h"
 #include "query/texel_values.h"
+#include "room/expression_binding.h"
 #include "room/open_room.h"
 #include "room/region.h"
 
@@ -106,7 +107,10 @@ Result<std::optional<query::TexelSelection>> OpenRoom::select_texels(const Selec
     std::erase_if(slugs, [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
     const auto views = layer_views(slugs, selection.at);
     if (!views) return tl::unexpected(views.error());
-    auto holds = query::select_where(*selection.where, *views, map, "where", mesh::background_threads());
+    const auto bound = bind_expression(*selection.where, *views, parts_.store, selection.at, "where");
+    if (!bound) return tl::unexpected(bound.error());
+    auto holds = query::select_where(*bound, *views, map, "where", mesh::background_threads(),
+                                     {geometry_->origin, model().metres()});
     if (!holds) return tl::unexpected(holds.error());
     selected = std::move(*holds);
   }

@@ -3,8 +3,8 @@
 #include "core/mask_texels.h"
 #include "core/polygon_area.h"
 #include "mesh/slot_bits.h"
-#include "query/expression_evaluator.h"
 #include "query/flood.h"
+#include "room/expression_binding.h"
 #include "room/gpu_problem.h"
 
 namespace strata::room {
@@ -76,8 +76,12 @@ Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType typ
                         [&](const FillEdit::Everywhere&) -> Changes {
                           return fill_everywhere(context.tiles, type, context.map, value);
                         },
-                        [&](const FillEdit::Where& where) {
-                          return selected(query::select_where(where.condition, context.layers, context.map, "where"));
+                        [&](const FillEdit::Where& where) -> Changes {
+                          const auto bound =
+                              bind_expression(where.condition, context.layers, context.store, std::nullopt, "where");
+                          if (!bound) return tl::unexpected(bound.error());
+                          return selected(query::select_where(*bound, context.layers, context.map, "where", 2,
+                                                              {context.surface.geometry().origin, context.metres}));
                         },
                         [&](const FillEdit::Island& island) {
                           return flooded(island.at, [&](const mesh::TexelGraph& graph, std::uint32_t start) {

@@ -7,6 +7,7 @@
 #include "room/seen_texels.h"
 #include "room/surface_lookup.h"
 #include "room/tile_changes.h"
+#include "store/store.h"
 
 namespace strata::room {
 
@@ -15,6 +16,8 @@ struct RegionContext {
   const mesh::SurfaceMap& map;                  // of the edited layer's resolution
   const TileMap& tiles;                         // of the edited layer
   const std::vector<query::LayerView>& layers;  // of the model
+  double metres;                                // of a model unit
+  store::Store& store;
   SurfaceLookup& surface;
   render::Renderer& renderer;
   render::ModelHandle model = 0;

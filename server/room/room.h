@@ -150,6 +150,13 @@ class Room {
                                      std::vector<Column> columns = {}) = 0;
   virtual Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer = {}) = 0;
   virtual Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer = {}) = 0;
+  // A ComputeEdit of the layer was durable with this sequence, and the tables that its expression reads stood there before it.
+  virtual Result<Layer> layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
+                                       const std::map<std::int64_t, std::int64_t>& tables) = 0;
+  // Records of a table have changed: layers that are computed from them are stale.
+  virtual void records_changed(std::int64_t table_id) = 0;
+  // Whether a formula for a computed layer can be evaluated here. Refused (422 at `field`) as by bind_expression.
+  virtual Result<void> check_expression(const Expression& expression, const std::string& field) const = 0;
   virtual Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer = {}) = 0;
 
   // Queries; may take a while the first time (search tree, surface map), so call from a worker thread. Values of the given
@@ -220,7 +227,8 @@ class Rooms {
   // Blocking: loads the model (geometry and layers) when it is not open. Where memory is used up, rooms that nobody is in are
   // closed for it.
   Result<std::shared_ptr<Room>> open(const std::string& model_ref);
-  void forget(std::int64_t model_id);  // the model was deleted: members are told, the room closes
+  void records_changed(std::int64_t table_id);  // in the models that are open (Room::records_changed)
+  void forget(std::int64_t model_id);           // the model was deleted: members are told, the room closes
   std::size_t open_rooms() const;
   std::uint64_t memory_bytes_used() const;
   // Refuses new edits, and returns when every other is durable or refused, after `drain_for` at the latest: then what still waits

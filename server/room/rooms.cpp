@@ -187,6 +187,15 @@ Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref) {
   return std::static_pointer_cast<Room>(*room);
 }
 
+void Rooms::records_changed(std::int64_t table_id) {
+  std::vector<std::shared_ptr<OpenRoom>> open;
+  {
+    std::lock_guard lock(impl_->mutex);
+    for (const auto& [id, room] : impl_->rooms) open.push_back(room);
+  }
+  for (const auto& room : open) room->records_changed(table_id);
+}
+
 void Rooms::forget(std::int64_t model_id) {
   std::shared_ptr<OpenRoom> room;
   {

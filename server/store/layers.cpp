@@ -4,9 +4,18 @@
 namespace strata::store {
 namespace {
 
+// Something that a computed layer reads is newer than it, or gone.
+#define STRATA_LAYER_STALE                                                                                              \
+  "(expression IS NOT NULL AND (computed_sequence = 0 OR EXISTS (SELECT 1 FROM layer_inputs i LEFT JOIN layers l ON "   \
+  "l.id = i.input_id LEFT JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND (l.id IS NULL OR " \
+  "l.sequence > layers.computed_sequence OR t.sequence > i.table_sequence))))"
 #define STRATA_LAYER_COLUMNS                                                                                           \
   "id, model_id, name, slug::text, kind, type, resolution, unit, description, palette, opacity, visible, draw_order, " \
-  "table_id, sequence, version"
+  "table_id, sequence, version, expression, automatic, computed_sequence, "                                            \
+  "(SELECT coalesce(jsonb_agg(jsonb_build_object('slug', i.slug, 'layer', i.input_id, 'table', i.table_id) "           \
+  "ORDER BY i.slug), '[]') FROM layer_inputs i WHERE i.layer_id = layers.id), "                                        \
+  "EXISTS (SELECT 1 FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND "   \
+  "t.sequence > i.table_sequence), " STRATA_LAYER_STALE
 
 Result<Layer> read_layer(const PgResult& rows, int i) {
   Layer layer;
@@ -30,7 +39,60 @@ Result<Layer> read_layer(const PgResult& rows, int i) {
   if (!rows.null(i, 13)) layer.table = rows.integer(i, 13);
   layer.sequence = rows.integer(i, 14);
   layer.version = rows.integer(i, 15);
+  if (rows.null(i, 16)) return layer;
+  LayerFormula formula{rows.text(i, 16),   rows.boolean(i, 17), rows.integer(i, 18), rows.boolean(i, 20), {},
+                       rows.boolean(i, 21)};
+  for (const nlohmann::json& input : rows.json(i, 19)) {
+    const auto id = [&](const char* member) {
+      const nlohmann::json& value = input.at(member);
+      return value.is_null() ? std::nullopt : std::optional(value.get<std::int64_t>());
+    };
+    formula.inputs.push_back({input.at("slug").get<std::string>(), id("layer"), id("table")});
+  }
+  layer.formula = std::move(formula);
   return layer;
+}
+
+Result<Layer> load_layer(PgConnection& connection, std::int64_t id) {
+  auto row = connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE id = $1", Params().integer(id));
+  if (!row) return tl::unexpected(row.error());
+  if (row->rows() == 0) return not_found("layer", std::to_string(id));
+  return read_layer(*row, 0);
+}
+
+// What the layer is computed from, in place of what it was computed from before. Refused (422): a layer that is computed from
+// itself, however many others stand between.
+Result<void> set_formula(PgConnection& connection, const Layer& layer) {
+  auto gone = connection.query("DELETE FROM layer_inputs WHERE layer_id = $1", Params().integer(layer.id));
+  if (!gone) return tl::unexpected(gone.error());
+  if (!layer.formula) {
+    auto plain =
+        connection.query("UPDATE layers SET expression = NULL, automatic = false, computed_sequence = 0 WHERE id = $1",
+                         Params().integer(layer.id));
+    return plain ? Result<void>{} : tl::unexpected(plain.error());
+  }
+  // One at a time in a model: two changes that make a circle only together are not done together.
+  auto locked =
+      connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE", Params().integer(layer.model_id));
+  if (!locked) return tl::unexpected(locked.error());
+  for (const LayerFormula::Input& input : layer.formula->inputs) {
+    auto put = connection.query(
+        "INSERT INTO layer_inputs (layer_id, slug, input_id, table_id) VALUES ($1, $2, $3, $4)",
+        Params().integer(layer.id).text(input.slug).optional_integer(input.layer).optional_integer(input.table));
+    if (!put) return tl::unexpected(put.error());
+  }
+  auto circle = connection.query(
+      "WITH RECURSIVE reads (id) AS (SELECT input_id FROM layer_inputs WHERE layer_id = $1 UNION "
+      "SELECT i.input_id FROM layer_inputs i JOIN reads r ON i.layer_id = r.id) SELECT 1 FROM reads WHERE id = $1",
+      Params().integer(layer.id));
+  if (!circle) return tl::unexpected(circle.error());
+  if (circle->rows() > 0)
+    return fail(422, "Computed from itself", "This expression reads layers that are computed from " + layer.name + ".",
+                "expression");
+  auto set =
+      connection.query("UPDATE layers SET expression = $2, automatic = $3, computed_sequence = 0 WHERE id = $1",
+                       Params().integer(layer.id).text(layer.formula->expression).boolean(layer.formula->automatic));
+  return set ? Result<void>{} : tl::unexpected(set.error());
 }
 
 Result<void> check(const Layer& layer) {
@@ -39,6 +101,11 @@ Result<void> check(const Layer& layer) {
     return fail(400, "Bad opacity", "`opacity` must be between 0 and 1.", "opacity");
   if (auto good = check_json(to_json(layer.palette), "palette"); !good) return good;
   return check_texts({{&layer.slug, "slug"}, {&layer.unit, "unit"}, {&layer.description, "description"}});
+}
+
+bool same_formula(const std::optional<LayerFormula>& a, const std::optional<LayerFormula>& b) {
+  return a.has_value() == b.has_value() &&
+         (!a || (a->expression == b->expression && a->automatic == b->automatic && a->inputs == b->inputs));
 }
 
 // The table of a database layer: of its model's project, or a new one.
@@ -130,8 +197,10 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
                   .integer(layer.order)
                   .optional_integer(layer.table));
         });
-    if (!row) return tl::unexpected(row.error());
-    return read_layer(*row, 0);
+    if (!row || !layer.formula) return row ? read_layer(*row, 0) : tl::unexpected(row.error());
+    layer.id = row->integer(0, 0);
+    if (auto set = set_formula(connection, layer); !set) return tl::unexpected(set.error());
+    return load_layer(connection, layer.id);
   });
 }
 
@@ -154,11 +223,65 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
             .boolean(layer.visible)
             .integer(layer.order));
     if (!row) return tl::unexpected(row.error());
-    if (row->rows() > 0) return read_layer(*row, 0);
+    if (row->rows() > 0) {
+      auto now = read_layer(*row, 0);
+      if (!now || same_formula(now->formula, layer.formula)) return now;
+      if (auto set = set_formula(connection, layer); !set) return tl::unexpected(set.error());
+      return load_layer(connection, layer.id);
+    }
     auto known = connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(layer.id));
     if (!known) return tl::unexpected(known.error());
     if (known->rows() == 0) return not_found("layer", std::to_string(layer.id));
     return stale("layer");
+  });
+}
+
+Result<std::map<std::int64_t, std::int64_t>> Store::table_sequences_of(std::int64_t layer_id) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::map<std::int64_t, std::int64_t>> {
+    auto rows = connection.query(
+        "SELECT t.id, t.sequence FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = $1",
+        Params().integer(layer_id));
+    if (!rows) return tl::unexpected(rows.error());
+    std::map<std::int64_t, std::int64_t> sequences;
+    for (int i = 0; i < rows->rows(); ++i) sequences[rows->integer(i, 0)] = rows->integer(i, 1);
+    return sequences;
+  });
+}
+
+Result<Layer> Store::layer_computed(std::int64_t layer_id, const std::string& expression, std::int64_t sequence,
+                                    const std::map<std::int64_t, std::int64_t>& tables) {
+  return impl_->pool.write([&](PgConnection& connection) -> Result<Layer> {
+    auto done = connection.query("UPDATE layers SET computed_sequence = $3 WHERE id = $1 AND expression = $2",
+                                 Params().integer(layer_id).text(expression).integer(sequence));
+    if (!done) return tl::unexpected(done.error());
+    PgArray ids(oid::kInt8), sequences(oid::kInt8);
+    for (const auto& [table, at] : tables) {
+      ids.add(table);
+      sequences.add(at);
+    }
+    auto seen = connection.query(
+        "UPDATE layer_inputs i SET table_sequence = v.at FROM unnest($2::bigint[], $3::bigint[]) v (id, at) "
+        "WHERE i.layer_id = $1 AND i.table_id = v.id",
+        Params().integer(layer_id).array(ids).array(sequences));
+    if (!seen) return tl::unexpected(seen.error());
+    return load_layer(connection, layer_id);
+  });
+}
+
+Result<std::vector<Layer>> Store::layers_to_recompute() {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
+    auto rows = connection.query(
+        "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE automatic AND " STRATA_LAYER_STALE
+        " AND NOT EXISTS (SELECT 1 FROM layer_inputs i WHERE i.layer_id = layers.id AND i.input_id IS NULL) "
+        "ORDER BY computed_sequence, id LIMIT 100");
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<Layer> layers;
+    for (int i = 0; i < rows->rows(); ++i) {
+      auto layer = read_layer(*rows, i);
+      if (!layer) return tl::unexpected(layer.error());
+      layers.push_back(std::move(*layer));
+    }
+    return layers;
   });
 }
 

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "core/column_value.h"
+#include "store/record_sql.h"
 #include "store/store_impl.h"
 #include "store/table_past.h"
 #include "store/table_rows.h"
@@ -142,6 +143,18 @@ Result<TableChange> write(PgConnection& connection, std::int64_t table_id, const
   return done;
 }
 
+// The rows after a sequence, with `open` as it was then; nothing where that is now. Refused: what has not happened yet.
+Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection, OpenTable& open,
+                                                        std::optional<std::int64_t> at) {
+  if (at && *at > open.table.sequence)
+    return fail(422, "Not yet there",
+                "The newest sequence of this table is " + std::to_string(open.table.sequence) + ".", "at");
+  if (!at || *at == open.table.sequence) return std::optional<std::vector<Record>>();
+  auto rows = rows_at(connection, open, *at);
+  if (!rows) return tl::unexpected(rows.error());
+  return std::optional(std::move(*rows));
+}
+
 }  // namespace
 
 Result<TableChange> Store::write_records(std::int64_t table_id, const WriteRecords& asked, const std::string& user,
@@ -190,6 +203,29 @@ Result<TableChange> Store::delete_record(std::int64_t table_id, std::int64_t key
   return done;
 }
 
+Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, const Expression& expression,
+                                                     std::optional<std::int64_t> at, const std::string& field) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyNumber>> {
+    auto transaction = Transaction::begin(connection);
+    if (!transaction) return tl::unexpected(transaction.error());
+    auto isolated = connection.script("SET TRANSACTION ISOLATION LEVEL REPEATABLE READ READ ONLY");
+    if (!isolated) return tl::unexpected(isolated.error());
+    auto open = read_table(connection, table_id);
+    if (!open) return tl::unexpected(open.error());
+    auto past = rows_if_past(connection, *open, at);
+    if (!past) return tl::unexpected(past.error());
+    Params params;
+    auto sql = expression.is_condition() ? condition_sql(expression, open->table, connection, params, field)
+                                         : number_sql(expression, open->table, connection, params, field);
+    if (!sql) return tl::unexpected(sql.error());
+    auto numbers = load_numbers(connection, table_id, open->table.columns, *past,
+                                expression.is_condition() ? "(" + *sql + ")::integer" : *sql, std::move(params));
+    if (!numbers) return tl::unexpected(unanswerable(connection, numbers.error(), field));
+    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    return numbers;
+  });
+}
+
 Result<Store::RecordPage> Store::records(std::int64_t table_id, const RecordQuery& query) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<RecordPage> {
     // One moment for the columns and the rows.
@@ -199,16 +235,9 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, const RecordQuer
     if (!isolated) return tl::unexpected(isolated.error());
     auto open = read_table(connection, table_id);
     if (!open) return tl::unexpected(open.error());
-    if (query.at && *query.at > open->table.sequence)
-      return fail(422, "Not yet there",
-                  "The newest sequence of this table is " + std::to_string(open->table.sequence) + ".", "at");
     RecordPage page;
-    std::optional<std::vector<Record>> past;
-    if (query.at && *query.at < open->table.sequence) {
-      auto rows = rows_at(connection, *open, *query.at);
-      if (!rows) return tl::unexpected(rows.error());
-      past = std::move(*rows);
-    }
+    auto past = rows_if_past(connection, *open, query.at);
+    if (!past) return tl::unexpected(past.error());
     page.table = open->table;
     std::vector<RecordOrder> order;
     for (const auto& [ref, descending] : query.order) {
@@ -221,26 +250,32 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, const RecordQuer
         return fail(422, "No such column", "The table has no column `" + ref.substr(0, 100) + "`.", "sortby");
       order.push_back({column->id, descending});
     }
-    Result<std::vector<Record>> rows;
     if (query.keys) {
-      if (past) {
-        std::erase_if(*past, [&](const Record& row) {
+      if (*past) {
+        std::erase_if(**past, [&](const Record& row) {
           return std::find(query.keys->begin(), query.keys->end(), row.key) == query.keys->end();
         });
-        rows = std::move(*past);
+        page.records = std::move(**past);
       } else {
-        rows = load_rows(connection, table_id, open->table.columns, *query.keys);
+        auto rows = load_rows(connection, table_id, open->table.columns, *query.keys);
+        if (!rows) return tl::unexpected(rows.error());
+        page.records = std::move(*rows);
       }
-      if (rows) page.total = static_cast<std::int64_t>(rows->size());
-    } else if (past) {
-      page.total = static_cast<std::int64_t>(past->size());
-      rows = page_of_rows(connection, table_id, open->table.columns, *past, order, query.limit, query.offset);
+      page.total = static_cast<std::int64_t>(page.records.size());
     } else {
-      page.total = open->table.records;
-      rows = load_page(connection, table_id, open->table.columns, order, query.limit, query.offset);
+      Params params;
+      std::string where;
+      if (query.filter) {
+        auto sql = condition_sql(*query.filter, open->table, connection, params, "filter");
+        if (!sql) return tl::unexpected(sql.error());
+        where = std::move(*sql);
+      }
+      auto rows = load_page(connection, table_id, open->table.columns, *past, where, std::move(params), order,
+                            query.limit, query.offset);
+      if (!rows) return tl::unexpected(unanswerable(connection, rows.error(), "filter"));
+      page.records = std::move(rows->rows);
+      page.total = rows->total;
     }
-    if (!rows) return tl::unexpected(rows.error());
-    page.records = std::move(*rows);
     if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
     return page;
   });
@@ -257,6 +292,17 @@ Result<std::int64_t> Store::table_sequence_at(std::int64_t table_id, const std::
         "SELECT coalesce(max(sequence), 0) FROM table_edits "
         "WHERE table_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
         Params().integer(table_id).text(utc));
+    if (!row) return tl::unexpected(row.error());
+    return row->integer(0, 0);
+  });
+}
+
+Result<std::int64_t> Store::table_sequence_when(std::int64_t table_id, std::int64_t model_id, std::int64_t sequence) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
+    auto row = connection.query(
+        "SELECT coalesce(max(sequence), 0) FROM table_edits WHERE table_id = $1 AND "
+        "time <= (SELECT max(time) FROM edits WHERE model_id = $2 AND sequence <= $3)",
+        Params().integer(table_id).integer(model_id).integer(sequence));
     if (!row) return tl::unexpected(row.error());
     return row->integer(0, 0);
   });

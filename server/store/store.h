@@ -2,13 +2,16 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/expression.h"
 #include "core/history.h"
+#include "core/key_numbers.h"
 #include "core/layer.h"
 #include "core/look.h"
 #include "core/model.h"
@@ -114,6 +117,14 @@ class Store {
   Result<Layer> create_layer(Layer layer, const FirstAnswer<Layer>& answer = {}, std::vector<Column> columns = {});
   Result<Layer> update_layer(Layer layer, const FirstAnswer<Layer>& answer = {});
   Result<void> delete_layer(std::int64_t id, const FirstAnswer<>& answer = {});
+  // --- computed layers: their formula is created and changed with them
+  // Where the tables stand that the layer's formula reads, by id.
+  Result<std::map<std::int64_t, std::int64_t>> table_sequences_of(std::int64_t layer_id);
+  // The layer shows what `expression` is of everything up to these sequences of its model and of tables.
+  Result<Layer> layer_computed(std::int64_t layer_id, const std::string& expression, std::int64_t sequence,
+                               const std::map<std::int64_t, std::int64_t>& tables);
+  // Automatic ones that something which they read has left behind; those computed longest ago come first.
+  Result<std::vector<Layer>> layers_to_recompute();
 
   // --- tables of a project, by id or slug. Changes of columns and records are entries of the table's journal, of one person each.
   Result<std::vector<Table>> tables(std::int64_t project_id);  // by name
@@ -138,6 +149,7 @@ class Store {
     std::optional<std::vector<std::int64_t>> keys;    // only these, by key, whatever the page
     std::optional<std::int64_t> at;                   // as after that sequence of the table
     std::int64_t limit = 100, offset = 0;
+    std::optional<Expression> filter{};  // only those where this condition over columns holds
   };
   struct RecordPage {
     Table table;  // with the columns of then
@@ -145,6 +157,10 @@ class Store {
     std::int64_t total = 0;
   };
   Result<RecordPage> records(std::int64_t table_id, const RecordQuery& query);
+  // What a number or a condition over columns is for each record, where it is known; after sequence `at` of the table, or now.
+  // Refused (422 at `field`): what the columns do not fit.
+  Result<std::vector<KeyNumber>> record_numbers(std::int64_t table_id, const Expression& expression,
+                                                std::optional<std::int64_t> at, const std::string& field);
   // All or none: where the change has problems, nothing was written.
   Result<TableChange> write_records(std::int64_t table_id, const WriteRecords& asked, const std::string& user,
                                     const FirstAnswer<TableChange>& answer = {});
@@ -154,6 +170,8 @@ class Store {
   Result<std::vector<std::int64_t>> missing_records(std::int64_t table_id, std::span<const std::int64_t> keys);
   // Of the last change until a time, as `sequence_at`.
   Result<std::int64_t> table_sequence_at(std::int64_t table_id, const std::string& utc);
+  // The same until an edit of a model was made.
+  Result<std::int64_t> table_sequence_when(std::int64_t table_id, std::int64_t model_id, std::int64_t sequence);
   struct TableHistory {
     std::vector<TableEditRow> rows;
     std::int64_t total = 0;

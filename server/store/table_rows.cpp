@@ -95,6 +95,15 @@ std::string order_by(const std::vector<Column>& columns, std::span<const RecordO
   return sql.substr(0, sql.size() - 2);
 }
 
+// The rows as `t`: of the table, or those of the past, which become a parameter.
+std::string from_rows(std::int64_t table_id, const std::vector<Column>& columns,
+                      const std::optional<std::vector<Record>>& past, Params& params) {
+  if (!past) return " FROM " + table_name(table_id) + " t";
+  params.json(rows_json(columns, *past));
+  return " FROM jsonb_populate_recordset(NULL::" + table_name(table_id) + ", $" + std::to_string(params.count()) +
+         ") t";
+}
+
 PgArray array_of(std::span<const std::int64_t> keys) {
   PgArray array(oid::kInt8);
   for (const auto key : keys) array.add(key);
@@ -151,25 +160,38 @@ Result<std::vector<Record>> load_all_rows(PgConnection& connection, std::int64_t
   return read_rows(*rows, columns);
 }
 
-Result<std::vector<Record>> load_page(PgConnection& connection, std::int64_t table_id,
-                                      const std::vector<Column>& columns, std::span<const RecordOrder> order,
-                                      std::int64_t limit, std::int64_t offset) {
-  auto rows = connection.query_once("SELECT key, version, to_jsonb(t) FROM " + table_name(table_id) + " t" +
-                                        order_by(columns, order) + " LIMIT $1 OFFSET $2",
-                                    Params().integer(limit).integer(offset));
+Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id, const std::vector<Column>& columns,
+                           const std::optional<std::vector<Record>>& past, const std::string& where, Params params,
+                           std::span<const RecordOrder> order, std::int64_t limit, std::int64_t offset) {
+  const std::string from = from_rows(table_id, columns, past, params) + (where.empty() ? "" : " WHERE " + where);
+  RowsPage page;
+  auto total = connection.query_once("SELECT count(*)" + from, params);
+  if (!total) return tl::unexpected(total.error());
+  page.total = total->integer(0, 0);
+  params.integer(limit).integer(offset);
+  const int count = params.count();
+  auto rows = connection.query_once("SELECT key, version, to_jsonb(t)" + from + order_by(columns, order) + " LIMIT $" +
+                                        std::to_string(count - 1) + " OFFSET $" + std::to_string(count),
+                                    params);
   if (!rows) return tl::unexpected(rows.error());
-  return read_rows(*rows, columns);
+  page.rows = read_rows(*rows, columns);
+  return page;
 }
 
-Result<std::vector<Record>> page_of_rows(PgConnection& connection, std::int64_t table_id,
-                                         const std::vector<Column>& columns, std::span<const Record> rows,
-                                         std::span<const RecordOrder> order, std::int64_t limit, std::int64_t offset) {
-  auto page = connection.query_once(
-      "SELECT key, version, to_jsonb(t) FROM jsonb_populate_recordset(NULL::" + table_name(table_id) + ", $3) t" +
-          order_by(columns, order) + " LIMIT $1 OFFSET $2",
-      Params().integer(limit).integer(offset).json(rows_json(columns, rows)));
-  if (!page) return tl::unexpected(page.error());
-  return read_rows(*page, columns);
+Result<std::vector<KeyNumber>> load_numbers(PgConnection& connection, std::int64_t table_id,
+                                            const std::vector<Column>& columns,
+                                            const std::optional<std::vector<Record>>& past, const std::string& number,
+                                            Params params) {
+  const std::string from = from_rows(table_id, columns, past, params);
+  auto rows = connection.query_once(
+      "SELECT key, value FROM (SELECT key, (" + number + ")::float8 AS value" + from + ") n WHERE value IS NOT NULL",
+      params);
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<KeyNumber> numbers;
+  numbers.reserve(static_cast<std::size_t>(rows->rows()));
+  for (int i = 0; i < rows->rows(); ++i)
+    numbers.push_back({static_cast<std::uint32_t>(rows->integer(i, 0)), rows->real(i, 1)});
+  return numbers;
 }
 
 Result<void> delete_rows(PgConnection& connection, std::int64_t table_id, std::span<const std::int64_t> keys) {

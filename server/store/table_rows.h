@@ -1,11 +1,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/cell_history.h"
+#include "core/key_numbers.h"
 #include "core/table.h"
 #include "store/pg.h"
 
@@ -32,13 +34,20 @@ Result<std::vector<Record>> load_rows(PgConnection& connection, std::int64_t tab
                                       const std::vector<Column>& columns, std::span<const std::int64_t> keys);
 Result<std::vector<Record>> load_all_rows(PgConnection& connection, std::int64_t table_id,
                                           const std::vector<Column>& columns);
-Result<std::vector<Record>> load_page(PgConnection& connection, std::int64_t table_id,
-                                      const std::vector<Column>& columns, std::span<const RecordOrder> order,
-                                      std::int64_t limit, std::int64_t offset);
-// The same of rows that are given (those of the past), so that they are sorted alike.
-Result<std::vector<Record>> page_of_rows(PgConnection& connection, std::int64_t table_id,
-                                         const std::vector<Column>& columns, std::span<const Record> rows,
-                                         std::span<const RecordOrder> order, std::int64_t limit, std::int64_t offset);
+// A part of the rows, sorted. `where`: a condition over a row `t` (record_sql), empty for all, whose parameters are the first
+// of `params`. `past`: rows that are read in place of the table's, those of another time.
+struct RowsPage {
+  std::vector<Record> rows;
+  std::int64_t total = 0;  // of the rows where the condition holds
+};
+Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id, const std::vector<Column>& columns,
+                           const std::optional<std::vector<Record>>& past, const std::string& where, Params params,
+                           std::span<const RecordOrder> order, std::int64_t limit, std::int64_t offset);
+// The numbers of an expression (record_sql) by key, where they are known; truths are 1 or 0.
+Result<std::vector<KeyNumber>> load_numbers(PgConnection& connection, std::int64_t table_id,
+                                            const std::vector<Column>& columns,
+                                            const std::optional<std::vector<Record>>& past, const std::string& number,
+                                            Params params);
 
 Result<void> delete_rows(PgConnection& connection, std::int64_t table_id, std::span<const std::int64_t> keys);
 Result<void> insert_rows(PgConnection& connection, std::int64_t table_id, const std::vector<Column>& columns,

@@ -127,6 +127,72 @@ TEST_F(RoomQueries, inside_an_outline_lies_what_a_polygon_paints) {
   EXPECT_EQ(room()->select(selection, {})->texels, 0u);
 }
 
+TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
+  Layer wished;
+  wished.name = "Pieces";
+  wished.kind = LayerKind::database;
+  wished.type = ValueType::u16;
+  wished.resolution = 2048;
+  wished.palette = default_palette(wished.type, true);
+  std::vector<Column> columns(2);
+  columns[0].name = "Thickness";
+  columns[0].kind = ColumnKind::numeric;
+  columns[1].name = "State";
+  const auto pieces = room()->create_layer(wished, {}, columns);
+  ASSERT_TRUE(pieces) << pieces.error().detail;
+  const Table table = *store_->table(std::to_string(*pieces->table));
+  const auto write = [&](std::int64_t key, double thickness, const char* state) {
+    store::WriteRecords asked;
+    asked.records = {{key, {{table.columns[0].id, thickness}, {table.columns[1].id, state}}}};
+    ASSERT_TRUE(store_->write_records(table.id, asked, "anna"));
+  };
+  write(1, 4, "loose");
+  write(2, 8, "firm");
+  ASSERT_TRUE(send(stroke(*pieces, 1, {{300, 240}}, 50)));
+  ASSERT_TRUE(send(stroke(*pieces, 2, {{420, 240}}, 30)));
+  ASSERT_TRUE(send(stroke(depth_, 6, {{300, 240}, {420, 240}}, 20)));
+  const auto then = room()->sequence();
+  const auto keys = room()->key_areas("pieces");
+  ASSERT_TRUE(keys);
+  const auto area = [&](const std::string& text, std::optional<std::int64_t> at = {}) {
+    auto selection = where(text);
+    selection.at = at;
+    const auto found = room()->select(selection, {});
+    EXPECT_TRUE(found) << text << ": " << found.error().detail;
+    return found ? found->area_m2 : -1;
+  };
+  const double first = keys->at(1).area_m2, second = keys->at(2).area_m2;
+  EXPECT_NEAR(area("pieces.thickness < 5"), first, 1e-9 * first);
+  EXPECT_NEAR(area("pieces.state = 'firm'"), second, 1e-9 * second);
+  EXPECT_NEAR(area("pieces.state like '%o%' or pieces.thickness > 5"), first + second, 1e-9 * first);
+  EXPECT_EQ(area("pieces.thickness > depth and valid(depth)"), area("pieces = 2 and valid(depth)"));
+  EXPECT_GT(area("pieces.thickness > depth"), 0);
+
+  // As the records are when they are asked, and as they were.
+  write(1, 9, "firm");
+  EXPECT_EQ(area("pieces.thickness < 5"), 0);
+  EXPECT_NEAR(area("pieces.thickness < 5", then), first, 1e-9 * first);
+
+  room::FillEdit fill;
+  fill.value_bits = 5;
+  fill.region =
+      room::FillEdit::Where{*query::parse_condition("pieces.state = 'firm' and pieces.thickness < 9", "where")};
+  const auto filled = send(request(marks_, fill));
+  ASSERT_TRUE(filled) << filled.error().detail;
+  EXPECT_NEAR(filled->area_m2, second, 1e-9 * second);
+
+  for (const auto& [text, says] : std::map<std::string, std::string>{
+           {"pieces.thick > 1", "has no column 'thick'"},
+           {"depth > 1 and marks.thickness > 1",
+            "'marks' holds numbers: only database layers have records with columns (at character 15)"},
+           {"peaces.thickness > 1", "no layer 'peaces'"}}) {
+    const auto refused = room()->select(where(text), {});
+    ASSERT_FALSE(refused) << text;
+    EXPECT_EQ(refused.error().status, 422);
+    EXPECT_NE(refused.error().detail.find(says), std::string::npos) << refused.error().detail;
+  }
+}
+
 TEST_F(RoomQueries, a_cross_table_holds_each_layers_area) {
   ASSERT_TRUE(send(stroke(marks_, 3, {{300, 240}}, 50)));
   const Layer units = make_layer(ValueType::u16, 4096, "units");

@@ -33,41 +33,95 @@ std::string joined(const char* word, const Expression& expression) {
   return text + ")";
 }
 
+std::string quoted(const std::string& text) {
+  std::string all = "'";
+  for (const char c : text) all += c == '\'' ? "''" : std::string(1, c);
+  return all + "'";
+}
+
+std::string named(const Expression& expression) {
+  std::string text = expression.name.empty() ? "" : '"' + expression.name + '"';
+  for (const auto& column : expression.path) text += (text.empty() ? "\"" : ".\"") + column + '"';
+  return text;
+}
+
 std::string text_of(const Expression& expression) {
+  const auto part = [&] { return text_of(expression.parts.at(0)); };
   switch (expression.op) {
     case Op::number: {
+      if (std::isnan(expression.number)) return "null";
       demand(std::isfinite(expression.number) && !std::signbit(expression.number));
       char text[40];
       return {text, std::to_chars(text, text + sizeof text, expression.number).ptr};
     }
-    case Op::layer: return '"' + expression.layer + '"';
+    case Op::layer:
+    case Op::column: return named(expression);
+    case Op::text: return quoted(expression.text);
+    case Op::keys: return call("", expression);
     case Op::add: return joined("+", expression);
     case Op::subtract: return joined("-", expression);
     case Op::multiply: return joined("*", expression);
     case Op::divide: return joined("/", expression);
-    case Op::negate: return "(-" + text_of(expression.parts.at(0)) + ")";
+    case Op::remainder: return joined("%", expression);
+    case Op::whole_division: return joined("div", expression);
+    case Op::power: return joined("^", expression);
+    case Op::negate: return "(-" + part() + ")";
     case Op::absolute: return call("abs", expression);
     case Op::least: return call("min", expression);
     case Op::greatest: return call("max", expression);
+    case Op::square_root: return call("sqrt", expression);
+    case Op::exponential: return call("exp", expression);
+    case Op::natural_log: return call("ln", expression);
+    case Op::decimal_log: return call("log10", expression);
+    case Op::floor: return call("floor", expression);
+    case Op::ceiling: return call("ceil", expression);
+    case Op::round: return call("round", expression);
+    case Op::sine: return call("sin", expression);
+    case Op::cosine: return call("cos", expression);
+    case Op::tangent: return call("tan", expression);
+    case Op::arc_sine: return call("asin", expression);
+    case Op::arc_cosine: return call("acos", expression);
+    case Op::arc_tangent: return call("atan", expression);
+    case Op::radians: return call("radians", expression);
+    case Op::degrees: return call("degrees", expression);
     case Op::choose: return call("if", expression);
+    case Op::fold_case: return call("casei", expression);
+    case Op::fold_accents: return call("accenti", expression);
     case Op::truth: return expression.number == 1 ? "true" : "false";
-    case Op::valid: return "valid(\"" + expression.layer + "\")";
+    case Op::valid: return "valid(" + named(expression) + ")";
+    case Op::known: return "(" + part() + " is not null)";
+    case Op::holds: return "(" + part() + " = true)";
     case Op::less: return joined("<", expression);
     case Op::less_equal: return joined("<=", expression);
     case Op::greater: return joined(">", expression);
     case Op::greater_equal: return joined(">=", expression);
     case Op::equal: return joined("=", expression);
     case Op::not_equal: return joined("<>", expression);
+    case Op::like: return joined("like", expression);
+    case Op::before: return call("t_before", expression);
+    case Op::after: return call("t_after", expression);
+    case Op::during: return call("t_during", expression);
+    case Op::contains: return call("t_contains", expression);
+    case Op::intersects: return call("t_intersects", expression);
+    case Op::disjoint: return call("t_disjoint", expression);
+    case Op::coincides: return call("t_equals", expression);
+    case Op::has_all: return call("a_contains", expression);
+    case Op::has_any: return call("a_overlaps", expression);
+    case Op::has_only: return call("a_containedby", expression);
+    case Op::has_exactly: return call("a_equals", expression);
     case Op::all: return joined("and", expression);
     case Op::any: return joined("or", expression);
-    case Op::negation: return "(not " + text_of(expression.parts.at(0)) + ")";
+    case Op::negation: return "(not " + part() + ")";
+    case Op::record_number:
+    case Op::record_truth: break;
   }
   std::abort();
 }
 
 // The text made of an expression has more brackets than that which it was read from.
 bool is_beyond_limits(const strata::Problem& problem) {
-  return problem.title == "Expression too long" || problem.detail.find("nested too deeply") != std::string::npos;
+  return problem.title == "Expression too long" || problem.detail.find("nested too deeply") != std::string::npos ||
+         problem.detail.find("too much at once") != std::string::npos;
 }
 
 // One block of surface.
@@ -96,26 +150,43 @@ strata::query::LayerView layer(const std::string& slug) {
 
 void evaluate(const Expression& condition) {
   static const strata::mesh::SurfaceMap map = one_block();
+  const auto split = strata::query::split_records(condition, "where");
+  if (!split) return;
+  strata::query::BoundExpression bound{split->expression, {}};
+  for (std::size_t part = 0; part < split->parts.size(); ++part)
+    bound.records.emplace_back(std::vector<strata::KeyNumber>{{1, 0}, {3, static_cast<double>(part)}, {1u << 20, 1}});
   std::vector<strata::query::LayerView> layers;
-  for (const auto& slug : strata::layers_of(condition)) layers.push_back(layer(slug));
-  const auto selection = strata::query::select_where(condition, layers, map, "where", 1);
+  for (const auto& slug : strata::layers_of(bound.expression)) layers.push_back(layer(slug));
+  const auto selection = strata::query::select_where(bound, layers, map, "where", 1);
   demand(selection.has_value() && (selection->at(0) & ~map.surface_mask[0]) == 0);
+}
+
+template <class Parse>
+void read_again(const Expression& expression, Parse parse) {
+  const std::string text = text_of(expression);
+  const auto again = parse(text);
+  demand(again.has_value() ? text_of(*again) == text : is_beyond_limits(again.error()));
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using strata::query::Names;
   const std::string text(reinterpret_cast<const char*>(data), size);
-  if (const auto condition = strata::query::parse_condition(text, "where")) {
-    demand(condition->is_condition());
-    evaluate(*condition);
-    const auto again = strata::query::parse_condition(text_of(*condition), "where");
-    demand(again.has_value() ? *again == *condition : is_beyond_limits(again.error()));
-  }
-  if (const auto number = strata::query::parse_number(text, "value")) {
-    demand(!number->is_condition());
-    const auto again = strata::query::parse_number(text_of(*number), "value");
-    demand(again.has_value() ? *again == *number : is_beyond_limits(again.error()));
+  for (const Names names : {Names::layers, Names::columns}) {
+    const auto as_condition = [&](const std::string& read) {
+      return strata::query::parse_condition(read, "where", names);
+    };
+    const auto as_number = [&](const std::string& read) { return strata::query::parse_number(read, "value", names); };
+    if (const auto condition = as_condition(text)) {
+      demand(condition->is_condition());
+      read_again(*condition, as_condition);
+      if (names == Names::layers) evaluate(*condition);
+    }
+    if (const auto number = as_number(text)) {
+      demand(!number->is_condition());
+      read_again(*number, as_number);
+    }
   }
   return 0;
 }

@@ -86,6 +86,12 @@ class FakeRoom final : public room::Room {
   }
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
   Result<void> delete_layer(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
+  Result<Layer> layer_computed(std::int64_t, const std::string&, std::int64_t,
+                               const std::map<std::int64_t, std::int64_t>&) override {
+    return fail(500, "Not here", "");
+  }
+  void records_changed(std::int64_t) override {}
+  Result<void> check_expression(const Expression&, const std::string&) const override { return {}; }
   Result<Model> update_model(Model model, const store::FirstAnswer<Model>&) override { return model; }
   Result<TileMap> dabs(const Layer&, const std::vector<PlacedValue>&, double, double) override { return TileMap{}; }
   Result<TileMap> project(const Layer&, const glm::dvec3&, const ValueAt&) override { return TileMap{}; }

@@ -28,6 +28,7 @@ mesh::SurfaceMap full_map() {
     for (int i = 0; i < 64; ++i)
       if ((block + static_cast<unsigned>(i)) % 5 != 0) surface |= std::uint64_t{1} << i;
     map.surface_mask.push_back(surface);
+    map.packed_position.insert(map.packed_position.end(), 64, mesh::kNoPosition);
   }
   return map;
 }
@@ -102,7 +103,7 @@ void expect_selected(const std::string& text, const std::function<bool(int x, in
   const auto condition = parse_condition(text, "where");
   ASSERT_TRUE(condition) << condition.error().detail;
   for (const int threads : {1, 3}) {
-    const auto selection = select_where(*condition, views(), map, "where", threads);
+    const auto selection = select_where({*condition}, views(), map, "where", threads);
     ASSERT_TRUE(selection) << selection.error().detail;
     int selected = 0, wrong = 0;
     for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot)
@@ -184,7 +185,7 @@ TEST(Expression, layers_of_every_type_and_resolution_read_alike) {
     const auto own = layer("own", type, kSide, [&](int x, int y) { return value(x / 2, y / 2); }),
                half = layer("half", type, kSide / 2, value);
     const auto selection = [&](const char* text) {
-      return *select_where(*parse_condition(text, ""), {own.view, half.view}, map, "where");
+      return *select_where({*parse_condition(text, "")}, {own.view, half.view}, map, "where");
     };
     EXPECT_EQ(selection("own > 20"), selection("half > 20"));
     EXPECT_EQ(selection("valid(own)"), selection("valid(half)"));
@@ -211,7 +212,7 @@ TEST(Expression, what_is_not_known_is_not_selected_nor_is_its_contrary) {
 TEST(Expression, null_is_unknown_wherever_it_is_used) {
   const auto map = full_map();
   for (const char* text : {"null > 1", "null = null", "wet + null > 0", "not (null is null)", "max(null, wet) > -99"}) {
-    const auto selection = select_where(*parse_condition(text, ""), views(), map, "where");
+    const auto selection = select_where({*parse_condition(text, "")}, views(), map, "where");
     for (const auto bits : *selection) ASSERT_EQ(bits, 0u) << text;
   }
 }
@@ -223,7 +224,7 @@ TEST(Expression, or_binds_loosest_and_a_sign_most_tightly) {
   EXPECT_EQ(*parse_condition("a > 1 or b > 2 and not c > 3", ""),
             *parse_condition("(a > 1) or ((b > 2) and (not (c > 3)))", ""));
   EXPECT_EQ(*parse_number("a + b * -c - d / e", ""), *parse_number("(a + (b * (-c))) - (d / e)", ""));
-  EXPECT_EQ(parse_number("a-b", "")->layer, "a-b");
+  EXPECT_EQ(parse_number("a-b", "")->name, "a-b");
   EXPECT_EQ(parse_number("a -b", "")->op, Expression::Op::subtract);
   EXPECT_THAT(layers_of(*parse_condition("b > a or valid(c) and b = 1", "")), testing::ElementsAre("b", "a", "c"));
 }
@@ -234,6 +235,138 @@ TEST(Expression, a_long_row_of_alternatives_is_not_deep) {
   const auto parsed = parse_condition(text, "where");
   ASSERT_TRUE(parsed) << parsed.error().detail;
   EXPECT_EQ(parsed->parts.size(), 200u);
+}
+
+// The record k of `roof-crack`'s keys.
+struct Finding {
+  double width;
+  bool wet;
+};
+std::optional<Finding> finding(double key) {
+  if (key < 0) return {};
+  return Finding{key * 2 - 1, key == 2};
+}
+
+TEST(Expression, a_computed_layer_holds_what_the_formula_is_at_each_texel) {
+  const auto map = full_map();
+  using Case = std::pair<const char*, std::function<Value(const At&)>>;
+  const std::vector<Case> cases{
+      {"wet * 2 + roof-crack", [](const At& a) { return a.wet && a.crack ? Value(*a.wet * 2 + *a.crack) : Value(); }},
+      {"if(valid(roof-crack), 1, fine)", [](const At& a) { return Value(a.crack ? 1 : a.fine); }},
+      {"1 / roof-crack", [](const At& a) { return a.crack && *a.crack != 0 ? Value(1 / *a.crack) : Value(); }},
+  };
+  for (const auto& [text, expected] : cases)
+    for (const ValueType type : {ValueType::f32, ValueType::i32}) {
+      SCOPED_TRACE(std::string(text) + " " + std::string(name(type)));
+      const auto tiles = compute_tiles({*parse_number(text, "")}, views(), map, {}, type, "", 3);
+      ASSERT_TRUE(tiles) << tiles.error().detail;
+      int wrong = 0, valid = 0;
+      for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot)
+        for (int i = 0; i < 64; ++i) {
+          const int x = static_cast<int>(slot) % map.blocks_per_side * 8 + i % 8,
+                    y = static_cast<int>(slot) / map.blocks_per_side * 8 + i / 8;
+          const bool surface = (map.surface_mask[slot] >> i) & 1u;
+          const auto tile =
+              tiles->find({static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)});
+          const int texel = y % kTileSize * kTileSize + x % kTileSize;
+          const bool is = tile != tiles->end() && tile->second->valid.test(texel);
+          Value wished = surface ? expected(at(x, y)) : Value();
+          if (wished)
+            wished = type == ValueType::f32 ? static_cast<double>(static_cast<float>(*wished)) : std::round(*wished);
+          valid += is;
+          wrong += is != wished.has_value() || (is && decode_value(type, tile->second->bits(texel)) != *wished);
+        }
+      EXPECT_EQ(wrong, 0);
+      EXPECT_GT(valid, 1000);
+    }
+  const auto refused = compute_tiles({*parse_number("fine + 1", "")}, views(), map, {}, ValueType::u8, "");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().field, "type");
+  const auto truth = compute_tiles({*parse_condition("wet > 0", "")}, views(), map, {}, ValueType::u8, "");
+  ASSERT_TRUE(truth);
+}
+
+TEST(Expression, parts_over_records_are_looked_up_by_key) {
+  const auto map = full_map();
+  using Case = std::pair<const char*, std::function<bool(int, int, const At&)>>;
+  const std::vector<Case> cases{
+      {"roof-crack.width > 0", [](int, int, const At& a) { return a.crack && *a.crack > 0; }},
+      {"roof-crack.width + wet > 1",
+       [](int, int, const At& a) { return a.crack && *a.crack >= 0 && a.wet && *a.crack * 2 - 1 + *a.wet > 1; }},
+      {"not roof-crack.wet and wet > 0",
+       [](int, int, const At& a) { return a.crack && *a.crack >= 0 && *a.crack != 2 && a.wet && *a.wet > 0; }},
+      {"roof-crack.width is null", [](int, int, const At&) { return false; }},  // nothing is known of other keys
+  };
+  for (const auto& [text, expected] : cases) {
+    SCOPED_TRACE(text);
+    const auto split = split_records(*parse_condition(text, ""), "");
+    ASSERT_TRUE(split);
+    BoundExpression bound{split->expression, {}};
+    for (const RecordPart& part : split->parts) {
+      EXPECT_EQ(part.layer, "roof-crack");
+      std::vector<KeyNumber> numbers;
+      for (const std::uint32_t key : {0u, 1u, 2u, 3u}) {
+        const Finding found = *finding(key);
+        const bool is_width = layers_of(part.expression).empty() && part.expression.op == Expression::Op::column;
+        const auto text_of_part = [&] { return part.expression; }();
+        if (is_width)
+          numbers.push_back({key, found.width});
+        else if (text_of_part.op == Expression::Op::greater)
+          numbers.push_back({key, found.width > 0 ? 1.0 : 0.0});
+        else if (text_of_part.op == Expression::Op::negation && text_of_part.parts[0].op == Expression::Op::holds)
+          numbers.push_back({key, found.wet ? 0.0 : 1.0});
+        else
+          numbers.push_back({key, 0.0});  // width is null: never, of a record
+      }
+      bound.records.emplace_back(numbers);
+    }
+    const auto selection = select_where(bound, views(), map, "");
+    ASSERT_TRUE(selection);
+    int wrong = 0, selected = 0;
+    for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot)
+      for (int i = 0; i < 64; ++i) {
+        const int x = static_cast<int>(slot) % map.blocks_per_side * 8 + i % 8,
+                  y = static_cast<int>(slot) / map.blocks_per_side * 8 + i / 8;
+        const bool surface = (map.surface_mask[slot] >> i) & 1u, is = ((*selection)[slot] >> i) & 1u;
+        selected += is;
+        wrong += is != (surface && expected(x, y, at(x, y)));
+      }
+    EXPECT_EQ(wrong, 0);
+    if (std::string_view(text).find("null") == std::string_view::npos) {
+      EXPECT_GT(selected, 0);
+    }
+  }
+}
+
+TEST(Expression, the_largest_parts_that_read_one_record_are_answered_once_a_record) {
+  const auto split = [](const char* text) { return *split_records(*parse_condition(text, ""), ""); };
+  EXPECT_EQ(split("a.b = 'x' and a.c > 1 and wet > 0").parts.size(), 2u);
+  EXPECT_EQ(split("(a.b = 'x' and a.c > 1) and wet > 0").parts.size(), 2u);  // `and` joins all three
+  EXPECT_EQ(split("not (a.b = 'x' or a.c > 1) and wet > 0").parts.size(), 1u);
+  EXPECT_EQ(split("a.c + 1 > a.d * 2").parts.size(), 1u);
+  EXPECT_EQ(split("a.c > b.c").parts.size(), 2u);
+  EXPECT_EQ(split("a.c > wet or a.c < 0 - wet").parts.size(), 1u);  // once, though it is named twice
+  EXPECT_EQ(split("wet > 1").parts.size(), 0u);
+  EXPECT_EQ(split("a.material.code = 'x'").parts[0].expression.parts[0].path,
+            (std::vector<std::string>{"material", "code"}));
+  for (const char* text : {"t_before('1560', '1570') and wet > 1", "casei(a.b) = casei(b.b)"})
+    EXPECT_FALSE(split_records(*parse_condition(text, ""), "")) << text;
+}
+
+TEST(Expression, numbers_of_records_are_found_by_any_key) {
+  const RecordNumbers numbers({{4294967295u, 3}, {7, 1}, {70000, 2}, {65535, 4}});
+  EXPECT_EQ(numbers.of(7), 1);
+  EXPECT_EQ(numbers.of(70000), 2);
+  EXPECT_EQ(numbers.of(4294967295u), 3);
+  EXPECT_EQ(numbers.of(65535), 4);
+  for (const std::uint32_t key : {0u, 8u, 65536u, 70001u}) EXPECT_TRUE(std::isnan(numbers.of(key))) << key;
+  EXPECT_TRUE(std::isnan(RecordNumbers().of(0)));
+}
+
+TEST(Expression, a_word_is_a_function_only_before_a_bracket) {
+  EXPECT_EQ(parse_number("date + 1", "", Names::columns)->parts[0].path, std::vector<std::string>{"date"});
+  EXPECT_EQ(parse_number("min", "")->name, "min");
+  EXPECT_EQ(parse_condition("wet", "", Names::columns)->op, Expression::Op::holds);
 }
 
 struct Bad {
@@ -264,17 +397,26 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"wet > 1 wet", "'wet' was not expected here (at character 9)"}, Bad{"(wet > 1", "Expected ')'"},
         Bad{"wet > 1)", "')' was not expected"}, Bad{"wet > (1 > 2)", "number is wanted"},
         Bad{"true > 1", "number is wanted"}, Bad{"not wet", "condition is wanted"},
-        Bad{"wet and true", "condition is wanted"}, Bad{"1 < wet < 2", "two numbers"},
+        Bad{"wet and true", "condition is wanted"}, Bad{"1 < wet < 2", "two values"},
         Bad{"root(wet) > 1", "no function 'root'; there are valid, if, min, max, abs, sqrt"},
         Bad{"2 ^ 3 ^ 4 > 1", "need parentheses"}, Bad{"wet in ()", "instead of ')'"}, Bad{"wet in (1", "Expected ')'"},
         Bad{"wet between 1", "Expected 'and'"}, Bad{"wet is 1", "Expected 'null'"},
-        Bad{"wet not 1", "'between' or 'in'"}, Bad{"case wet end > 1", "Expected 'when'"},
+        Bad{"wet not 1", "'between', 'in' or 'like'"}, Bad{"case wet end > 1", "Expected 'when'"},
         Bad{"case when wet > 1 then 2 > 1", "number is wanted"}, Bad{"case when wet > 1 then 2", "Expected 'end'"},
-        Bad{"(wet > 1) in (1)", "number is wanted"}, Bad{"valid(sqrt)", "double quotes"},
-        Bad{"sqrt > 1", "Expected '('"}, Bad{"valid(1)", "name of a layer"}, Bad{"valid(wet", "Expected ')'"},
-        Bad{"valid wet", "Expected '('"}, Bad{"min(1) > 0", "At least two"}, Bad{"if(wet > 1, 2) > 0", "Expected ','"},
-        Bad{"if(wet, 1, 2) > 0", "condition is wanted"}, Bad{"and > 1", "instead of 'and'"},
-        Bad{"valid(and)", "double quotes"}, Bad{"wet > 1 ; drop", "no meaning"}, Bad{"wet > '1'", "no meaning"},
+        Bad{"(wet > 1) in (1)", "number is wanted"}, Bad{"valid(1)", "name of a layer"},
+        Bad{"valid(wet", "Expected ')'"}, Bad{"valid wet", "'wet' was not expected"}, Bad{"min(1) > 0", "At least two"},
+        Bad{"if(wet > 1, 2) > 0", "Expected ','"}, Bad{"if(wet, 1, 2) > 0", "condition is wanted"},
+        Bad{"and > 1", "instead of 'and'"}, Bad{"valid(and)", "double quotes"}, Bad{"wet > 1 ; drop", "no meaning"},
+        Bad{"wet > '1'", "compared with a column of texts, not with a number (at character 7)"},
+        Bad{"a.b = 'x", "quote is never closed"}, Bad{"a.b = 'x' + 1", "number is wanted here, not a text"},
+        Bad{"a.", "name of a column"}, Bad{"a.1 = 2", "was not expected"}, Bad{"a.b like 1", "stands in single quotes"},
+        Bad{"1 like 'x'", "Only texts"}, Bad{"a.b like 'x\\'", "nothing behind it"},
+        Bad{"casei(1) = 'x'", "text or a column is wanted"}, Bad{"date(1) = a.b", "stands in single quotes"},
+        Bad{"a.b > date('spring')", "is no date"}, Bad{"t_before(a.b, interval('2', '1'))", "is no"},
+        Bad{"t_before(a.b)", "Expected ','"}, Bad{"a_contains(a, (1))", "column of keys"},
+        Bad{"a_contains(a.b, 1)", "Expected '('"}, Bad{"valid(a.b)", "is not null"}, Bad{"a.b = 'w\xff'", "not UTF-8"},
+        Bad{"a.k = '\xc3\xa4\xc3\xb6' and ? = 1", "(at character 16)"},
+        Bad{repeated("if(", 14) + "wet between 0 and 1" + repeated(", 1, 0) between 0 and 1", 14), "too much at once"},
         Bad{"wet > 1.2.3", "A number ends here"}, Bad{"3d > 1", "double quotes"}, Bad{"wet > 1e999", "too large"},
         Bad{"\"wet > 1", "never closed"}, Bad{"\"\" > 1", "name is missing"}, Bad{"wet > 1 or", "the end"},
         Bad{"wet ! 1", "no meaning"}, Bad{"w\xc3\xa4nde > 1", "no meaning"},
@@ -286,7 +428,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Expression, a_layer_that_is_not_there_is_named) {
   const auto condition = parse_condition("wet > 0 and salt > 1", "where");
   ASSERT_TRUE(condition);
-  const auto selection = select_where(*condition, views(), full_map(), "where");
+  const auto selection = select_where({*condition}, views(), full_map(), "where");
   ASSERT_FALSE(selection);
   EXPECT_EQ(selection.error().status, 422);
   EXPECT_THAT(selection.error().detail, testing::HasSubstr("'salt'"));

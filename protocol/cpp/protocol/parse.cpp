@@ -62,6 +62,7 @@ nlohmann::json problem_body(const Problem& problem) {
   nlohmann::json json{
       {"type", "about:blank"}, {"title", problem.title}, {"status", problem.status}, {"detail", problem.detail}};
   if (!problem.field.empty()) json["field"] = problem.field;
+  if (problem.offset) json["offset"] = *problem.offset;
   return json;
 }
 

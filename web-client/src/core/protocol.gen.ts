@@ -205,6 +205,9 @@ export type LayerKind = "numeric" | "database";
 /** Texels a side. */
 export type Resolution = 2048 | 4096 | 8192 | 16384;
 
+/** When a computed layer follows its inputs. manual: when it is asked to; automatic: within seconds after something that it reads has changed. */
+export type Recompute = "manual" | "automatic";
+
 /** Layer. */
 export interface Layer {
   id: number;
@@ -224,6 +227,13 @@ export interface Layer {
   order: number;
   /** Database layers: id of the project's table whose keys the texels hold. */
   table?: number;
+  /** Computed layers: what its values are, over other layers, their records and the surface. */
+  expression?: string;
+  recompute?: Recompute;
+  /** Computed layers: slugs of the layers that the expression reads. */
+  inputs?: string[];
+  /** Computed layers: something that it reads has changed since it was computed. */
+  stale?: boolean;
   /** Of the last edit in the layer. */
   sequence: number;
 }
@@ -701,6 +711,8 @@ export interface Problem {
   detail: string;
   /** Path of the offending member: camera.view[3]. */
   field?: string;
+  /** Where the member is a text in a language: characters (Unicode code points) before what is wrong. */
+  offset?: number;
   instance?: string;
   /** Of records in bulk: what is wrong with which line. */
   rows?: RecordsReport;
@@ -1120,6 +1132,10 @@ export interface LayerCreate {
   /** Database layers without `table`: those of its own one. Absent: one text, Name. */
   columns?: ColumnCreate[];
   compute?: ShapeRecipe;
+  /** A computed layer: a number or a condition (1 or 0) over layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area). */
+  expression?: string;
+  /** With `expression`; absent: manual. */
+  recompute?: Recompute;
 }
 
 /** How a layer's content was computed. A shape recipe with its defaults filled in, or a transfer (`kind` is transfer). */
@@ -1184,6 +1200,9 @@ export interface LayerPatch {
   opacity?: number;
   visible?: boolean;
   order?: number;
+  /** Of a computed layer, which it has to be computed by anew; empty: the layer keeps its values and is edited by hand from now on. */
+  expression?: string;
+  recompute?: Recompute;
 }
 
 /** What an edit did; it is durable. */
@@ -1201,12 +1220,14 @@ export interface HistoryEntry {
   user: string;
   /** UTC, RFC 3339. */
   time: string;
-  op: "stroke" | "fill" | "import" | "undo" | "redo" | "restore";
+  op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore";
   /** False while it is taken back. */
   in_force?: boolean;
   texels_changed?: number;
   area_m2?: number;
   recipe?: Recipe;
+  /** Of a computed layer, as it was computed then. */
+  expression?: string;
   /** Of a stroke; a tool by its id. */
   shape?: ToolShape;
   max_angle_deg?: SlantLimit;

@@ -57,6 +57,22 @@ void read(const nlohmann::json& json, EditFillMode& value) {
 
 nlohmann::json to_json(const EditFillMode& value) { return name(value); }
 
+std::string_view name(Recompute value) {
+  switch (value) {
+    case Recompute::manual: return "manual";
+    case Recompute::automatic: return "automatic";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, Recompute& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "manual") value = Recompute::manual;
+  if (text == "automatic") value = Recompute::automatic;
+}
+
+nlohmann::json to_json(const Recompute& value) { return name(value); }
+
 std::string_view name(Axis value) {
   switch (value) {
     case Axis::x: return "x";
@@ -283,7 +299,9 @@ std::string_view name(HistoryEntryOp value) {
   switch (value) {
     case HistoryEntryOp::stroke: return "stroke";
     case HistoryEntryOp::fill: return "fill";
+    case HistoryEntryOp::polygon: return "polygon";
     case HistoryEntryOp::import: return "import";
+    case HistoryEntryOp::compute: return "compute";
     case HistoryEntryOp::undo: return "undo";
     case HistoryEntryOp::redo: return "redo";
     case HistoryEntryOp::restore: return "restore";
@@ -295,7 +313,9 @@ void read(const nlohmann::json& json, HistoryEntryOp& value) {
   const auto& text = json.get_ref<const std::string&>();
   if (text == "stroke") value = HistoryEntryOp::stroke;
   if (text == "fill") value = HistoryEntryOp::fill;
+  if (text == "polygon") value = HistoryEntryOp::polygon;
   if (text == "import") value = HistoryEntryOp::import;
+  if (text == "compute") value = HistoryEntryOp::compute;
   if (text == "undo") value = HistoryEntryOp::undo;
   if (text == "redo") value = HistoryEntryOp::redo;
   if (text == "restore") value = HistoryEntryOp::restore;
@@ -1473,6 +1493,8 @@ void read(const nlohmann::json& json, LayerCreate& value) {
   read_optional_member(json, "table", value.table);
   read_optional_member(json, "columns", value.columns);
   read_optional_member(json, "compute", value.compute);
+  read_optional_member(json, "expression", value.expression);
+  read_optional_member(json, "recompute", value.recompute);
 }
 
 nlohmann::json to_json(const LayerCreate& value) {
@@ -1491,6 +1513,8 @@ nlohmann::json to_json(const LayerCreate& value) {
   write_optional_member(json, "table", value.table);
   write_optional_member(json, "columns", value.columns);
   write_optional_member(json, "compute", value.compute);
+  write_optional_member(json, "expression", value.expression);
+  write_optional_member(json, "recompute", value.recompute);
   return json;
 }
 
@@ -1554,6 +1578,8 @@ void read(const nlohmann::json& json, LayerPatch& value) {
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "visible", value.visible);
   read_optional_member(json, "order", value.order);
+  read_optional_member(json, "expression", value.expression);
+  read_optional_member(json, "recompute", value.recompute);
 }
 
 nlohmann::json to_json(const LayerPatch& value) {
@@ -1565,6 +1591,8 @@ nlohmann::json to_json(const LayerPatch& value) {
   write_optional_member(json, "opacity", value.opacity);
   write_optional_member(json, "visible", value.visible);
   write_optional_member(json, "order", value.order);
+  write_optional_member(json, "expression", value.expression);
+  write_optional_member(json, "recompute", value.recompute);
   return json;
 }
 
@@ -1593,6 +1621,7 @@ void read(const nlohmann::json& json, HistoryEntry& value) {
   read_optional_member(json, "texels_changed", value.texels_changed);
   read_optional_member(json, "area_m2", value.area_m2);
   read_optional_member(json, "recipe", value.recipe);
+  read_optional_member(json, "expression", value.expression);
   read_optional_member(json, "shape", value.shape);
   read_optional_member(json, "max_angle_deg", value.max_angle_deg);
   read_optional_member(json, "depth_bias", value.depth_bias);
@@ -1610,6 +1639,7 @@ nlohmann::json to_json(const HistoryEntry& value) {
   write_optional_member(json, "texels_changed", value.texels_changed);
   write_optional_member(json, "area_m2", value.area_m2);
   write_optional_member(json, "recipe", value.recipe);
+  write_optional_member(json, "expression", value.expression);
   write_optional_member(json, "shape", value.shape);
   write_optional_member(json, "max_angle_deg", value.max_angle_deg);
   write_optional_member(json, "depth_bias", value.depth_bias);

@@ -57,6 +57,7 @@ enum class Schema {
   ValueType,
   LayerKind,
   Resolution,
+  Recompute,
   Layer,
   Look,
   LookShown,
@@ -181,7 +182,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 155;
+constexpr int kSchemaCount = 156;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -310,6 +311,12 @@ inline constexpr Schema kSchemaOf<PalettePoint> = Schema::PalettePoint;
 using ValueType = strata::ValueType;
 
 using LayerKind = strata::LayerKind;
+
+// When a computed layer follows its inputs. manual: when it is asked to; automatic: within seconds after something that it reads has changed.
+enum class Recompute { manual, automatic };
+std::string_view name(Recompute value);
+void read(const nlohmann::json& json, Recompute& value);
+nlohmann::json to_json(const Recompute& value);
 
 // A look in a view.
 struct LookShown {
@@ -1165,6 +1172,8 @@ struct LayerCreate {
   std::optional<TableRef> table;  // Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own name.
   std::optional<std::vector<ColumnCreate>> columns;  // Database layers without `table`: those of its own one. Absent: one text, Name.
   std::optional<ShapeRecipe> compute;
+  std::optional<std::string> expression;  // A computed layer: a number or a condition (1 or 0) over layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area).
+  std::optional<Recompute> recompute;  // With `expression`; absent: manual.
   bool operator==(const LayerCreate&) const = default;
 };
 void read(const nlohmann::json& json, LayerCreate& value);
@@ -1227,6 +1236,8 @@ struct LayerPatch {
   std::optional<double> opacity;
   std::optional<bool> visible;
   std::optional<int> order;
+  std::optional<std::string> expression;  // Of a computed layer, which it has to be computed by anew; empty: the layer keeps its values and is edited by hand from now on.
+  std::optional<Recompute> recompute;
   bool operator==(const LayerPatch&) const = default;
 };
 void read(const nlohmann::json& json, LayerPatch& value);
@@ -1246,7 +1257,7 @@ nlohmann::json to_json(const EditResult& value);
 template <>
 inline constexpr Schema kSchemaOf<EditResult> = Schema::EditResult;
 
-enum class HistoryEntryOp { stroke, fill, import, undo, redo, restore };
+enum class HistoryEntryOp { stroke, fill, polygon, import, compute, undo, redo, restore };
 std::string_view name(HistoryEntryOp value);
 void read(const nlohmann::json& json, HistoryEntryOp& value);
 nlohmann::json to_json(const HistoryEntryOp& value);
@@ -1263,6 +1274,7 @@ struct HistoryEntry {
   std::optional<std::int64_t> texels_changed;
   std::optional<double> area_m2;
   std::optional<nlohmann::json> recipe;
+  std::optional<std::string> expression;  // Of a computed layer, as it was computed then.
   std::optional<ToolShape> shape;  // Of a stroke; a tool by its id.
   std::optional<double> max_angle_deg;
   std::optional<double> depth_bias;

@@ -1,0 +1,159 @@
+#include "net/formula_layers.h"
+
+#include <algorithm>
+
+#include "jobs/shape_layer.h"
+#include "net/answer_book.h"
+#include "net/layer_jobs.h"
+#include "query/expression_parser.h"
+#include "room/await.h"
+#include "room/expression_binding.h"
+
+namespace strata::net {
+namespace {
+
+// A number or a condition.
+Result<Expression> parse(const std::string& text) {
+  auto number = query::parse_number(text, "expression");
+  if (number) return number;
+  auto condition = query::parse_condition(text, "expression");
+  return condition ? std::move(condition) : std::move(number);
+}
+
+bool reads_records_of(const Expression& e, const std::string& layer) {
+  return (e.is_column() && e.name == layer) ||
+         std::ranges::any_of(e.parts, [&](const Expression& part) { return reads_records_of(part, layer); });
+}
+
+std::vector<query::LayerView> views_of(const std::vector<Layer>& layers) {
+  std::vector<query::LayerView> views;
+  for (const Layer& layer : layers) views.push_back({layer, {}});
+  return views;
+}
+
+Result<TileMap> shape_tiles(const RouteContext& context, const room::Room& room, const std::string& name,
+                            int resolution, Progress& progress) {
+  const Model model = room.model();
+  for (const auto& [normal, axis] : {std::pair("nx", 0), std::pair("ny", 1), std::pair("nz", 2)})
+    if (name == normal) return jobs::paint_normals(room.geometry(), axis, resolution, progress);
+  jobs::ShapeRecipe recipe;
+  recipe.kind = name == "height"  ? jobs::ShapeKind::height
+                : name == "slope" ? jobs::ShapeKind::slope
+                                  : jobs::ShapeKind::mean_curvature;
+  auto complete = jobs::completed(std::move(recipe), model);
+  if (!complete) return tl::unexpected(complete.error());
+  auto shape =
+      jobs::compute_shape_layer(context.store, model, room.geometry(), *complete, ValueType::f32, resolution, progress);
+  if (!shape) return tl::unexpected(shape.error());
+  return std::move(shape->tiles);
+}
+
+Result<std::vector<query::LayerView>> shape_views(const RouteContext& context, const room::Room& room,
+                                                  const Expression& expression, int resolution, Progress& progress) {
+  std::vector<query::LayerView> views;
+  for (const std::string& name : room::shapes_read(expression, views_of(room.layers()))) {
+    auto tiles = shape_tiles(context, room, name, resolution, progress);
+    if (!tiles) return tl::unexpected(tiles.error());
+    query::LayerView view;
+    view.layer.slug = std::string(room::kShapePrefix) + name;
+    view.layer.type = ValueType::f32;
+    view.layer.resolution = resolution;
+    view.snapshot.tiles = std::move(*tiles);
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+}  // namespace
+
+Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
+                                  std::optional<std::int64_t> self) {
+  const auto expression = parse(text);
+  if (!expression) return tl::unexpected(expression.error());
+  const std::vector<Layer> layers = room.layers();
+  const auto shapes = room::shapes_read(*expression, views_of(layers));
+  LayerFormula formula;
+  formula.expression = text;
+  formula.automatic = automatic;
+  for (const std::string& slug : layers_of(*expression)) {
+    const auto layer = std::ranges::find(layers, slug, &Layer::slug);
+    if (layer == layers.end()) continue;  // of the surface, or nothing: the binding says so
+    if (self && layer->id == *self)
+      return fail(422, "Computed from itself", "The expression reads the very layer that it is for.", "expression");
+    LayerFormula::Input input{slug, layer->id, {}};
+    if (reads_records_of(*expression, slug)) input.table = layer->table;
+    formula.inputs.push_back(std::move(input));
+  }
+  std::ranges::sort(formula.inputs, {}, &LayerFormula::Input::slug);
+  if (auto good = room.check_expression(*expression, "expression"); !good) return tl::unexpected(good.error());
+  return formula;
+}
+
+Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<room::Room>& room, const Layer& layer,
+                            const std::string& user, Progress& progress) {
+  if (!layer.formula)
+    return fail(409, "No expression", "This layer has no expression that it could be computed from.", "layer");
+  for (const auto& input : layer.formula->inputs)
+    if (!input.layer)
+      return fail(409, "Input deleted",
+                  "The expression reads the layer '" + input.slug + "', which was deleted. Change the expression.",
+                  "expression");
+  const auto expression = parse(layer.formula->expression);
+  if (!expression) return tl::unexpected(expression.error());
+  auto shapes = shape_views(context, *room, *expression, layer.resolution, progress);
+  if (!shapes) return tl::unexpected(shapes.error());
+  if (progress.cancelled()) return cancelled_problem();
+  // Before the records are read: what changes meanwhile makes the layer stale.
+  const auto tables = context.store.table_sequences_of(layer.id);
+  if (!tables) return tl::unexpected(tables.error());
+  room::EditRequest edit;
+  edit.id = random_uuid();
+  edit.user = user;
+  edit.layer_id = layer.id;
+  edit.record = {{"op", "compute"}, {"expression", layer.formula->expression}};
+  edit.edit = room::ComputeEdit{*expression, std::move(*shapes)};
+  auto done = room::await<room::EditAnswer>([&](auto saved) {
+    room->edit(
+        std::move(edit), [&context](const room::EditAnswer&) { ++context.metrics.edits_applied; }, std::move(saved));
+  });
+  if (!done) {
+    ++context.metrics.edits_refused;
+    return tl::unexpected(done.error());
+  }
+  ++context.metrics.edits_saved;
+  return room->layer_computed(layer.id, layer.formula->expression, done->sequence, *tables);
+}
+
+Result<Response> create_formula_layer(const RouteContext& context, JobBook& book, const Request& request,
+                                      const std::shared_ptr<room::Room>& room, Layer layer,
+                                      const std::function<Response(const Layer&)>& answer) {
+  const auto expression = parse(layer.formula->expression);
+  if (!expression) return tl::unexpected(expression.error());
+  const auto compute = [&context, room, user = request.user()](const Layer& made, Progress& progress) {
+    return compute_layer(context, room, made, user, progress);
+  };
+  if (!room::shapes_read(*expression, views_of(room->layers())).empty())
+    return start_layer_job(
+        context, book, request, room,
+        [layer = std::move(layer), compute](NewLayers& layers, Progress& progress) -> Result<nlohmann::json> {
+          auto made = layers.add(layer, [&](const Layer& empty) { return compute(empty, progress); });
+          if (!made) return tl::unexpected(made.error());
+          return nlohmann::json();
+        });
+  NewLayers layers(room, context.metrics, request.user());
+  Progress progress;
+  Result<void> shown;
+  if (auto made = layers.add(std::move(layer), [&](const Layer& empty) { return compute(empty, progress); }); !made)
+    shown = tl::unexpected(made.error());
+  else
+    shown = layers.show(first_answer<Layer>(request, answer));
+  if (!shown) {
+    layers.take_back();
+    return tl::unexpected(shown.error());
+  }
+  auto now = context.store.layer(room->model().id, std::to_string(layers.ids().front()));
+  if (!now) return tl::unexpected(now.error());
+  return answer(*now);
+}
+
+}  // namespace strata::net

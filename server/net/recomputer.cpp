@@ -1,0 +1,69 @@
+#include "net/recomputer.h"
+
+#include <algorithm>
+#include <exception>
+
+#include "core/log.h"
+#include "net/formula_layers.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::chrono::seconds kBetweenLooks{1}, kFirstPause{5}, kLongestPause{600};
+constexpr const char* kUser = "Strata";  // who computes, in the layer's history
+
+}  // namespace
+
+Recomputer::Recomputer(const RouteContext& context) : context_(context), thread_([this] { run(); }) {}
+
+void Recomputer::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  progress_.cancel();
+  wake_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+bool Recomputer::is_stopping() {
+  const std::lock_guard lock(mutex_);
+  return stopping_;
+}
+
+void Recomputer::run() {
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      if (wake_.wait_for(lock, kBetweenLooks, [this] { return stopping_; })) return;
+    }
+    try {
+      const auto layers = context_.store.layers_to_recompute();
+      if (!layers) continue;  // the database is away
+      for (const Layer& layer : *layers) {
+        if (is_stopping()) return;
+        recompute(layer);
+      }
+    } catch (const std::exception& error) {
+      log::error(std::string("computing layers failed: ") + error.what());
+    }
+  }
+}
+
+void Recomputer::recompute(const Layer& layer) {
+  const auto now = std::chrono::steady_clock::now();
+  const auto failed = failures_.find(layer.id);
+  if (failed != failures_.end() && now < failed->second.again) return;
+  auto room = context_.rooms.open(std::to_string(layer.model_id));
+  Result<Layer> done = room ? compute_layer(context_, *room, layer, kUser, progress_) : tl::unexpected(room.error());
+  if (done) {
+    failures_.erase(layer.id);
+    return;
+  }
+  const auto pause = failed == failures_.end() ? kFirstPause : std::min(kLongestPause, 2 * failed->second.pause);
+  failures_[layer.id] = {now + pause, pause};
+  if (failed == failures_.end() && !is_stopping())
+    log::warning("layer " + std::to_string(layer.id) + " could not be computed: " + done.error().detail);
+}
+
+}  // namespace strata::net

@@ -1,0 +1,85 @@
+#include "room/expression_binding.h"
+
+#include <algorithm>
+
+namespace strata::room {
+namespace {
+
+// Where its text names the layer, for the message.
+std::size_t first_character(const Expression& e) {
+  if (e.is_column() || e.parts.empty()) return e.position.at;
+  std::size_t first = e.position.at;
+  for (const Expression& part : e.parts) first = std::min(first, first_character(part));
+  return first;
+}
+
+bool has_layer(const std::vector<query::LayerView>& layers, const std::string& slug) {
+  return std::ranges::find(layers, slug, [](const auto& each) { return each.layer.slug; }) != layers.end();
+}
+
+// Names of the surface in place of layers that are not there.
+Result<void> name_surface(Expression& e, const std::vector<query::LayerView>& layers, const std::string& field) {
+  for (Expression& part : e.parts)
+    if (auto done = name_surface(part, layers, field); !done) return done;
+  if ((e.op != Expression::Op::layer && e.op != Expression::Op::valid) || has_layer(layers, e.name)) return {};
+  using Place = std::pair<std::string_view, Expression::Op>;
+  for (const auto& [name, op] : {Place{"x", Expression::Op::x}, Place{"y", Expression::Op::y},
+                                 Place{"z", Expression::Op::z}, Place{"area", Expression::Op::area}})
+    if (e.name == name) {
+      e.op = op;
+      e.name.clear();
+      return {};
+    }
+  if (std::ranges::find(kShapeNames, e.name) == kShapeNames.end())
+    return tl::unexpected(expression_problem("This model has no layer '" + e.name.substr(0, 100) +
+                                                 "'; layers are named by their slugs, and a subtraction needs spaces",
+                                             e.position.at, field));
+  const std::string given = std::string(kShapePrefix) + e.name;
+  if (!has_layer(layers, given))
+    return tl::unexpected(expression_problem(
+        "'" + e.name + "' of the surface is for computed layers: compute one of it and name that layer here",
+        e.position.at, field));
+  e.name = given;
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::string> shapes_read(const Expression& expression, const std::vector<query::LayerView>& layers) {
+  std::vector<std::string> shapes;
+  for (const std::string& name : layers_of(expression))
+    if (std::ranges::find(kShapeNames, name) != kShapeNames.end() && !has_layer(layers, name)) shapes.push_back(name);
+  return shapes;
+}
+
+Result<query::BoundExpression> bind_expression(const Expression& expression,
+                                               const std::vector<query::LayerView>& layers, store::Store& store,
+                                               std::optional<std::int64_t> at, const std::string& field) {
+  auto split = query::split_records(expression, field);
+  if (!split) return tl::unexpected(split.error());
+  query::BoundExpression bound{std::move(split->expression), {}};
+  if (auto named = name_surface(bound.expression, layers, field); !named) return tl::unexpected(named.error());
+  for (const query::RecordPart& part : split->parts) {
+    const auto view = std::ranges::find(layers, part.layer, [](const auto& each) { return each.layer.slug; });
+    const std::size_t character = first_character(part.expression);
+    if (view == layers.end())
+      return tl::unexpected(
+          expression_problem("This model has no layer '" + part.layer.substr(0, 100) + "'", character, field));
+    const Layer& layer = view->layer;
+    if (!layer.table)
+      return tl::unexpected(expression_problem(
+          "'" + layer.slug + "' holds numbers: only database layers have records with columns", character, field));
+    std::optional<std::int64_t> then;
+    if (at) {
+      auto sequence = store.table_sequence_when(*layer.table, layer.model_id, *at);
+      if (!sequence) return tl::unexpected(sequence.error());
+      then = *sequence;
+    }
+    auto numbers = store.record_numbers(*layer.table, part.expression, then, field);
+    if (!numbers) return tl::unexpected(numbers.error());
+    bound.records.emplace_back(*numbers);
+  }
+  return bound;
+}
+
+}  // namespace strata::room

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "query/expression_evaluator.h"
+#include "store/store.h"
+
+namespace strata::room {
+
+// Names that a formula may have of the surface itself, where no layer has them: `x y z` (world, model units), `area` (of the texel, m²)
+// everywhere; what needs the whole mesh (kShapeNames) only where it is given as a layer `surface.…`.
+inline constexpr std::array kShapeNames{"nx", "ny", "nz", "height", "slope", "curvature"};
+inline constexpr std::string_view kShapePrefix = "surface.";
+
+// Of kShapeNames, those that the formula reads: it names them, and no layer has that name.
+std::vector<std::string> shapes_read(const Expression& expression, const std::vector<query::LayerView>& layers);
+
+// A formula over layers with what it needs of the records behind their keys, read from the database: as they are, or as they were when
+// the model's edit `at` was made. Blocks. Refused (422 at `field`, with the character): a layer without records, a column that is
+// not there or holds something else.
+Result<query::BoundExpression> bind_expression(const Expression& expression,
+                                               const std::vector<query::LayerView>& layers, store::Store& store,
+                                               std::optional<std::int64_t> at, const std::string& field);
+
+}  // namespace strata::room
