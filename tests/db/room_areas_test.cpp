@@ -29,7 +29,7 @@ class RoomAreas : public RoomTest {
   static Expression layer_value(const std::string& slug) {
     Expression e;
     e.op = Op::layer;
-    e.layer = slug;
+    e.name = slug;
     return e;
   }
   static Expression valid(const std::string& slug) {
