@@ -1,6 +1,7 @@
 #include "net/formula_layers.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "jobs/shape_layer.h"
 #include "net/answer_book.h"
@@ -64,6 +65,17 @@ Result<std::vector<query::LayerView>> shape_views(const RouteContext& context, c
   return views;
 }
 
+// Colours over most of the values.
+Result<Layer> with_colors(room::Room& room, Layer layer) {
+  const auto values = room.statistics(layer.slug, {}, {.quantiles = true});
+  if (!values) return tl::unexpected(values.error());
+  if (!values->quantiles || !(values->max > values->min)) return layer;
+  jobs::ValueRange range{values->min, values->quantiles->front(), values->quantiles->back(), values->max};
+  if (!(range.high > range.low)) std::tie(range.low, range.high) = std::pair(range.least, range.most);
+  layer.palette = jobs::palette_of(jobs::ShapeKind::vertex_property, range);
+  return room.update_layer(std::move(layer));
+}
+
 }  // namespace
 
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
@@ -125,12 +137,13 @@ Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<r
 }
 
 Result<Response> create_formula_layer(const RouteContext& context, JobBook& book, const Request& request,
-                                      const std::shared_ptr<room::Room>& room, Layer layer,
+                                      const std::shared_ptr<room::Room>& room, Layer layer, bool has_palette,
                                       const std::function<Response(const Layer&)>& answer) {
   const auto expression = parse(layer.formula->expression);
   if (!expression) return tl::unexpected(expression.error());
-  const auto compute = [&context, room, user = request.user()](const Layer& made, Progress& progress) {
-    return compute_layer(context, room, made, user, progress);
+  const auto compute = [&context, room, user = request.user(), has_palette](const Layer& made, Progress& progress) {
+    auto computed = compute_layer(context, room, made, user, progress);
+    return computed && !has_palette ? with_colors(*room, std::move(*computed)) : computed;
   };
   if (!room::shapes_read(*expression, views_of(room->layers())).empty())
     return start_layer_job(

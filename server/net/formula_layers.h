@@ -19,9 +19,9 @@ Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<r
                             const std::string& user, Progress& progress);
 
 // POST …/layers with `expression`: makes the layer and computes it; nothing is left of one that cannot be computed. 201, or 202
-// with a job where the surface's shape has to be worked out.
+// with a job where the surface's shape has to be worked out. Without a palette of its own its colours run over the values it has.
 Result<Response> create_formula_layer(const RouteContext& context, JobBook& book, const Request& request,
-                                      const std::shared_ptr<room::Room>& room, Layer layer,
+                                      const std::shared_ptr<room::Room>& room, Layer layer, bool has_palette,
                                       const std::function<Response(const Layer&)>& answer);
 
 }  // namespace strata::net

@@ -107,7 +107,8 @@ Result<Response> create_layer(const RouteContext& context, JobBook& book, const 
         .with("Location", "/api/v1/models/" + model_slug + "/layers/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
-  if (layer->formula) return create_formula_layer(context, book, request, *room, std::move(*layer), answer);
+  if (layer->formula)
+    return create_formula_layer(context, book, request, *room, std::move(*layer), asked->palette.has_value(), answer);
   auto created = (*room)->create_layer(std::move(*layer), first_answer<Layer>(request, answer), std::move(*columns));
   if (!created) return tl::unexpected(created.error());
   return answer(*created);

@@ -2,7 +2,6 @@ import { describe, expect, it } from "vitest";
 
 import { color_keys, color_rows, file_kind, picture_modes, table_kind, unknown_file, world_numbers } from "../src/app/map-file";
 import { formats_of, raster_format } from "../src/app/raster-files";
-import { name_in_text } from "../src/app/where-dialog";
 import type { Layer, MapColor } from "../src/core/types";
 
 describe("raster files", () => {
@@ -20,14 +19,6 @@ describe("raster files", () => {
     expect(formats_of({ type: "u16" } as Layer)).toEqual(["tif", "png", "npy"]);
     expect(formats_of({ type: "f32" } as Layer)).toEqual(["tif", "npy"]);
   });
-});
-
-describe("a layer's name in an expression", () => {
-  it.each([
-    ["roof-height", "roof-height"],
-    ["3d-cracks", '"3d-cracks"'],
-    ["max", '"max"'],
-  ])("%s is %s", (slug, text) => expect(name_in_text(slug)).toBe(text));
 });
 
 describe("files that are painted over a layer", () => {

@@ -228,33 +228,35 @@ export class StrataExpressionField extends LitElement {
     this.focus();
   }
 
-  /** Asks the server, of a number where it is known. */
+  /** Asks the server for what it holds; of a number, where it is known. */
   private async preview(): Promise<void> {
     const text = this.value;
     const asked = ++this.asked_;
     this.told_ = "";
     if (text === "") return;
-    const { api, model_id } = this.session;
-    const area = async (where: string): Promise<string> => format_area((await api.select(model_id, where)).area_m2);
-    try {
-      const told = words.holds(await area(text));
-      if (asked === this.asked_) this.told_ = told;
-    } catch (error) {
-      if (!(error instanceof ApiError) || asked !== this.asked_) return;
-      if (this.computes && (await this.is_number(text, asked, area))) return;
-      if (asked === this.asked_ && error.status === 422) this.problem_ = { text, offset: error.problem.offset ?? null, message: error.message };
-    }
+    let tried = await this.try_out(text, words.holds, 0);
+    if (this.computes && tried.error?.message.startsWith(kWantsCondition)) tried = await this.try_out(`(${text}) is not null`, words.known, 1);
+    if (asked !== this.asked_) return;
+    const { error, told, before } = tried;
+    this.told_ = told;
+    if (!error || error.status !== 422 || (this.computes && is_for_computing(error))) return;
+    const { offset } = error.problem;
+    const message = error.message.replace(/\(at character (\d+)\)/, (_, n: string) => `(at character ${Number(n) - before})`);
+    this.problem_ = { text, offset: offset === undefined ? null : Math.max(0, offset - before), message };
   }
 
-  private async is_number(text: string, asked: number, area: (where: string) => Promise<string>): Promise<boolean> {
+  /** `before`: characters that stand before the person's own text. */
+  private async try_out(where: string, in_words: (area: string) => string, before: number): Promise<{ error?: ApiError; told: string; before: number }> {
+    const { api, model_id } = this.session;
     try {
-      const told = words.known(await area(`(${text}) is not null`));
-      if (asked === this.asked_) this.told_ = told;
-      return true;
+      return { told: in_words(format_area((await api.select(model_id, where)).area_m2)), before };
     } catch (error) {
-      if (!(error instanceof ApiError)) return true;
-      // What only a layer has cannot be tried out before it is made.
-      return kSurface.slice(4).some((name) => error.message.startsWith(`'${name}' of the surface`));
+      if (!(error instanceof ApiError)) throw error;
+      return { error, told: "", before };
     }
   }
 }
+
+const kWantsCondition = "A condition is wanted, not a number";
+/** What only a computed layer can have cannot be tried out before it is made. */
+const is_for_computing = (error: ApiError): boolean => kSurface.slice(4).some((name) => error.message.startsWith(`'${name}' of the surface`));

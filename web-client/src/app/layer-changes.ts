@@ -8,14 +8,18 @@ export interface LayerWanted {
   unit: string;
   description: string;
   palette: Palette;
+  expression?: string; // of a computed layer
+  recompute?: "manual" | "automatic";
 }
 
 /** Only what differs: what this person left alone is not theirs to set. */
-export function layer_changes(layer: Layer, { name, unit, description, palette }: LayerWanted): LayerPatch {
+export function layer_changes(layer: Layer, { name, unit, description, palette, expression, recompute }: LayerWanted): LayerPatch {
   const change: LayerPatch = {};
   if (name !== layer.name) change.name = name;
   if (unit !== layer.unit) change.unit = unit;
   if (description !== layer.description) change.description = description;
   if (!same_palette(palette, layer.palette)) change.palette = palette;
+  if (expression !== undefined && expression !== layer.expression) change.expression = expression;
+  if (recompute !== undefined && recompute !== layer.recompute) change.recompute = recompute;
   return change;
 }

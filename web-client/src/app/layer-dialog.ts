@@ -18,6 +18,8 @@ import {
 import type { Layer, LayerCreate, Palette, Resolution, ValueType } from "../core/types";
 import { ApiError } from "../core/api";
 import "./dialog";
+import "./expression-field";
+import type { StrataExpressionField } from "./expression-field";
 import type { StrataDialog } from "./dialog";
 import { icon } from "./icons";
 import { layer_changes, type LayerWanted } from "./layer-changes";
@@ -36,7 +38,7 @@ interface ClassRow {
 }
 
 /** What a new layer is for: something to paint, or values that are computed. */
-type Purpose = LayerPurpose | "shape";
+type Purpose = LayerPurpose | "shape" | "formula";
 
 const kMostClasses = 255;
 const kTypes: Record<LayerPurpose, ValueType> = { presence: "u8", classes: "u8", measurement: "f32", records: "u32" };
@@ -60,6 +62,7 @@ export class StrataLayerDialog extends LitElement {
   @query("strata-dialog") private dialog_!: StrataDialog;
   @query("form") private form_!: HTMLFormElement;
   @query("strata-shape-fields") private shape_!: StrataShapeFields;
+  @query("strata-expression-field") private expression_!: StrataExpressionField;
 
   static override styles = [
     shared_styles,
@@ -190,7 +193,7 @@ export class StrataLayerDialog extends LitElement {
             ${this.stale_ ? words.reload : texts.try_again}
           </button>`
         : html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>
-            ${layer ? texts.save : this.purpose_ === "shape" ? words.compute : words.create}
+            ${layer ? texts.save : this.purpose_ === "shape" || this.purpose_ === "formula" ? words.compute : words.create}
           </button>`}
     </strata-dialog>`;
   }
@@ -209,6 +212,7 @@ export class StrataLayerDialog extends LitElement {
               @kind-changed=${() => this.requestUpdate()}
             ></strata-shape-fields>`
           : nothing}
+        ${this.purpose_ === "formula" || layer?.expression !== undefined ? this.formula(layer) : nothing}
         <div class="two">
           <label class="field">
             <span>${words.name}</span>
@@ -218,7 +222,7 @@ export class StrataLayerDialog extends LitElement {
               maxlength="200"
               autocomplete="off"
               .value=${layer?.name ?? ""}
-              placeholder=${this.purpose_ === "shape" ? (this.shape_?.kind_title ?? "") : words.name_hint[this.purpose_]}
+              placeholder=${this.purpose_ === "shape" ? (this.shape_?.kind_title ?? "") : this.purpose_ === "formula" ? words.formula_hint : words.name_hint[this.purpose_]}
               aria-invalid=${this.problem_field_ === "name" ? "true" : "false"}
             />
           </label>
@@ -250,6 +254,7 @@ export class StrataLayerDialog extends LitElement {
       ["measurement", words.measurement, words.measurement_lead],
       ["records", words.records, words.records_lead],
       ["shape", words.shape, words.shape_lead],
+      ["formula", words.formula, words.formula_lead],
     ];
     return html`<div>
       <p class="caption" id="question">${words.question}</p>
@@ -261,6 +266,21 @@ export class StrataLayerDialog extends LitElement {
         choose: (purpose) => (this.purpose_ = purpose),
       })}
     </div>`;
+  }
+
+  private formula(layer: Layer | undefined): TemplateResult {
+    return html`<strata-expression-field
+        computes
+        .session=${this.session}
+        label=${words.expression}
+        placeholder=${words.formula_example}
+        .initial=${layer?.expression ?? ""}
+        @submitted=${() => this.form_.requestSubmit()}
+      ></strata-expression-field>
+      <label class="check">
+        <input type="checkbox" name="follows" .checked=${layer?.recompute === "automatic"} />
+        ${words.follows}
+      </label>`;
   }
 
   private classes(): TemplateResult {
@@ -378,11 +398,35 @@ export class StrataLayerDialog extends LitElement {
     if (this.purpose_ === "shape") return this.compute(text("name") || this.shape_.kind_title, text("description"));
     const name = text("name");
     if (!name) return this.refuse("name", words.name_missing);
+    const formula = this.expression_ ? this.wanted_formula(form) : {};
+    if (!formula) return this.refuse("expression", words.expression_missing);
+    if (!this.layer && formula.expression !== undefined) return this.create_computed({ name, description: text("description"), ...formula });
     const palette = this.palette(name, Number(text("min")), Number(text("max")));
     if (!palette) return;
     await this.attempt(async () => {
       const unit = this.purpose_ === "measurement" ? text("unit") : (this.base_?.layer.unit ?? "");
-      await this.send({ name, unit, description: text("description"), palette });
+      await this.send({ name, unit, description: text("description"), palette, ...formula });
+    });
+  }
+
+  /** Null where it is missing. */
+  private wanted_formula(form: FormData): Pick<LayerCreate, "expression" | "recompute"> | null {
+    const expression = this.expression_.value;
+    return expression === "" ? null : { expression, recompute: form.has("follows") ? "automatic" : "manual" };
+  }
+
+  private async create_computed(layer: LayerCreate): Promise<void> {
+    const { session } = this;
+    await this.attempt(async () => {
+      const made = await session.api.create_computed(session.model_id, { ...layer, ...this.resolution() });
+      if ("layer" in made) {
+        session.layers.put(made.layer);
+        session.show_made([made.layer.id]);
+        notices.show("success", texts.expressions.computed(layer.name));
+      } else {
+        session.jobs.watch(layer.name, made.job, (job) => session.show_made(job.layers ?? []));
+        notices.show("success", texts.shape.started(layer.name));
+      }
     });
   }
 
@@ -406,7 +450,8 @@ export class StrataLayerDialog extends LitElement {
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.stale_ = error.status === 412;
-      this.refuse(error.problem.field ?? "", this.stale_ ? words.changed : error.message);
+      if (error.problem.field === "expression" && this.expression_) this.expression_.refuse(error);
+      else this.refuse(error.problem.field ?? "", this.stale_ ? words.changed : error.message);
     } finally {
       this.busy_ = false;
     }
@@ -422,7 +467,8 @@ export class StrataLayerDialog extends LitElement {
   }
 
   private palette(name: string, min: number, max: number): Palette | null {
-    switch (this.purpose_ as LayerPurpose) {
+    if (this.purpose_ === "formula" || this.purpose_ === "shape") return null; // follows from the values
+    switch (this.purpose_) {
       case "presence":
         return presence_palette(name, this.color_);
       case "records":
@@ -455,6 +501,7 @@ export class StrataLayerDialog extends LitElement {
     if (base) {
       const change = layer_changes(base.layer, wanted);
       if (Object.keys(change).length > 0) await session.layers.change(base.layer, change, base.etag);
+      if (change.expression !== undefined) session.layers.put(await session.api.recompute_layer(session.model_id, base.layer.id));
       return;
     }
     const created: LayerCreate = {

@@ -24,6 +24,7 @@ export type LayerPanelRequest =
 export class StrataLayerPanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @state() private dragged_: number | null = null;
+  @state() private computing_: number | null = null;
   @state() private drop_before_: number | null = null; // index in the shown list
 
   constructor() {
@@ -144,6 +145,17 @@ export class StrataLayerPanel extends LitElement {
       }
       .personal button.link {
         color: var(--calm);
+      }
+      .formula {
+        display: grid;
+        gap: 8px;
+        justify-items: start;
+        font-size: 0.88rem;
+      }
+      .formula code {
+        font: 0.86rem var(--mono);
+        white-space: pre-wrap;
+        word-break: break-word;
       }
       .empty {
         display: grid;
@@ -306,6 +318,7 @@ export class StrataLayerPanel extends LitElement {
     const opacity = session.layers.opacity(layer);
     return html`<div class="more">
       ${layer.description ? html`<p class="description">${layer.description}</p>` : nothing} ${legend(layer, session.tables)}
+      ${layer.expression === undefined ? nothing : this.formula(layer)}
       ${layer.table === undefined
         ? nothing
         : html`<button aria-pressed=${session.tables.view?.layer_id === layer.id} title="${texts.tables.open} (T)" @click=${() => session.toggle_table()}>
@@ -324,6 +337,31 @@ export class StrataLayerPanel extends LitElement {
         <output class="numeric">${Math.round(opacity * 100)} %</output>
       </div>
     </div>`;
+  }
+
+  private formula(layer: Layer): TemplateResult {
+    const { session } = this;
+    return html`<div class="formula">
+      <code>${layer.expression}</code>
+      ${layer.stale === true
+        ? html`<span class="hint" role="status">${layer.recompute === "automatic" ? texts.layers.stale_automatic : texts.layers.stale}</span>`
+        : nothing}
+      ${session.can_paint && layer.recompute !== "automatic"
+        ? html`<button ?disabled=${this.computing_ === layer.id} @click=${() => void this.recompute(layer)}>${icon("redo")}${texts.layers.recompute}</button>`
+        : nothing}
+    </div>`;
+  }
+
+  private async recompute(layer: Layer): Promise<void> {
+    const { session } = this;
+    this.computing_ = layer.id;
+    try {
+      session.layers.put(await session.api.recompute_layer(session.model_id, layer.id));
+    } catch (error) {
+      notices.error(error);
+    } finally {
+      this.computing_ = null;
+    }
   }
 
   private request(detail: LayerPanelRequest): void {

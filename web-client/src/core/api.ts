@@ -120,6 +120,11 @@ export class Api {
   async compute_layer(model: Id, layer: LayerCreate): Promise<Job> {
     return this.json("POST", `/models/${encodeURIComponent(model)}/layers`, layer);
   }
+  /** With `expression`: the layer, or a job where the surface's shape has to be worked out first. */
+  async create_computed(model: Id, layer: LayerCreate): Promise<{ layer: Layer } | { job: Job }> {
+    const answer = await this.json<wire.Layer | Job>("POST", `/models/${encodeURIComponent(model)}/layers`, layer);
+    return "slug" in answer ? { layer: complete_layer(answer) } : { job: answer };
+  }
   async transfer(model: Id, wish: Transfer): Promise<Job> {
     return this.json("POST", `/models/${encodeURIComponent(model)}/transfer`, wish);
   }
@@ -136,6 +141,14 @@ export class Api {
   async change_layer(model: Id, layer: Id, change: LayerPatch, etag?: string): Promise<Layer> {
     const version = etag ?? (await this.layer(model, layer)).etag;
     return complete_layer((await this.versioned<wire.Layer>("PATCH", layer_path(model, layer), change, version)).value);
+  }
+  /** The layer of an expression, from what it reads as it is now. */
+  async recompute_layer(model: Id, layer: Id): Promise<Layer> {
+    return complete_layer(await this.json<wire.Layer>("POST", `${layer_path(model, layer)}/compute`));
+  }
+  /** How much of the surface a condition holds for. */
+  async select(model: Id, where: string): Promise<wire.SelectResponse> {
+    return this.json("POST", `/models/${encodeURIComponent(model)}/select`, { where });
   }
   async delete_layer(model: Id, layer: Id): Promise<void> {
     const { etag } = await this.layer(model, layer);
