@@ -9,6 +9,29 @@ CREATE TABLE public.answers (
     "time" timestamp with time zone DEFAULT now() NOT NULL
 );
 
+CREATE TABLE public.attachments (
+    id bigint NOT NULL,
+    table_id bigint NOT NULL,
+    sha256 bytea NOT NULL,
+    name text NOT NULL,
+    media_type text NOT NULL,
+    width integer,
+    height integer,
+    user_name text NOT NULL,
+    "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    CONSTRAINT attachments_check CHECK (((width IS NULL) = (height IS NULL))),
+    CONSTRAINT attachments_name_check CHECK ((name <> ''::text))
+);
+
+ALTER TABLE public.attachments ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.attachments_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.blob_chunks (
     sha256 bytea NOT NULL,
     chunk integer NOT NULL,
@@ -205,7 +228,7 @@ CREATE TABLE public.record_columns (
     target bigint,
     properties jsonb NOT NULL,
     hidden boolean DEFAULT false NOT NULL,
-    CONSTRAINT record_columns_kind_check CHECK ((kind = ANY (ARRAY['text'::text, 'integer'::text, 'numeric'::text, 'boolean'::text, 'date'::text, 'timestamp'::text, 'period'::text, 'enumeration'::text, 'url'::text, 'term'::text, 'relation'::text])))
+    CONSTRAINT record_columns_kind_check CHECK ((kind = ANY (ARRAY['text'::text, 'integer'::text, 'numeric'::text, 'boolean'::text, 'date'::text, 'timestamp'::text, 'period'::text, 'enumeration'::text, 'url'::text, 'term'::text, 'relation'::text, 'picture'::text, 'document'::text])))
 );
 
 ALTER TABLE public.record_columns ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
@@ -273,6 +296,13 @@ CREATE TABLE public.table_edits (
     CONSTRAINT table_edits_sequence_check CHECK ((sequence > 0))
 );
 
+CREATE TABLE public.thumbnails (
+    sha256 bytea NOT NULL,
+    side integer NOT NULL,
+    picture bytea NOT NULL
+);
+ALTER TABLE ONLY public.thumbnails ALTER COLUMN picture SET STORAGE EXTERNAL;
+
 CREATE TABLE public.tile_revisions (
     layer_id bigint NOT NULL,
     tile_y smallint NOT NULL,
@@ -337,6 +367,9 @@ ALTER TABLE public.users ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
 
 ALTER TABLE ONLY public.answers
     ADD CONSTRAINT answers_pkey PRIMARY KEY (key);
+
+ALTER TABLE ONLY public.attachments
+    ADD CONSTRAINT attachments_pkey PRIMARY KEY (id);
 
 ALTER TABLE ONLY public.blob_chunks
     ADD CONSTRAINT blob_chunks_pkey PRIMARY KEY (sha256, chunk);
@@ -404,6 +437,9 @@ ALTER TABLE ONLY public.table_changes
 ALTER TABLE ONLY public.table_edits
     ADD CONSTRAINT table_edits_pkey PRIMARY KEY (table_id, sequence);
 
+ALTER TABLE ONLY public.thumbnails
+    ADD CONSTRAINT thumbnails_pkey PRIMARY KEY (sha256, side);
+
 ALTER TABLE ONLY public.tile_revisions
     ADD CONSTRAINT tile_revisions_pkey PRIMARY KEY (layer_id, tile_y, tile_x, sequence);
 
@@ -420,6 +456,10 @@ ALTER TABLE ONLY public.users
     ADD CONSTRAINT users_pkey PRIMARY KEY (id);
 
 CREATE INDEX answers_time ON public.answers USING btree ("time");
+
+CREATE INDEX attachments_blob ON public.attachments USING btree (sha256);
+
+CREATE INDEX attachments_table ON public.attachments USING btree (table_id);
 
 CREATE INDEX detail_levels_geometry ON public.detail_levels USING btree (geometry);
 
@@ -464,6 +504,12 @@ CREATE INDEX tile_revisions_key ON public.tile_revisions USING btree (layer_id, 
 CREATE INDEX tokens_user ON public.tokens USING btree (user_name);
 
 CREATE UNIQUE INDEX tool_shapes_slug ON public.tool_shapes USING btree (slug) WHERE (deleted IS NULL);
+
+ALTER TABLE ONLY public.attachments
+    ADD CONSTRAINT attachments_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256);
+
+ALTER TABLE ONLY public.attachments
+    ADD CONSTRAINT attachments_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.blob_chunks
     ADD CONSTRAINT blob_chunks_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256) ON DELETE CASCADE;
@@ -527,6 +573,9 @@ ALTER TABLE ONLY public.table_changes
 
 ALTER TABLE ONLY public.table_edits
     ADD CONSTRAINT table_edits_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.thumbnails
+    ADD CONSTRAINT thumbnails_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.tile_revisions
     ADD CONSTRAINT tile_revisions_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE CASCADE;

@@ -91,6 +91,9 @@ int run(const ServeOptions& options) {
   auto database = open_database(options.data);
   if (!database) return report(database.error());
   store::Store& store = *(*database)->store;
+  auto orphans = store.drop_orphans();
+  if (!orphans) return report(orphans.error());
+  if (*orphans > 0) log::info("dropped " + std::to_string(*orphans) + " files that nothing uses");
 
   render::RendererOptions render_options;
   render_options.shader_dir = dirs.shaders.string();

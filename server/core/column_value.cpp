@@ -97,6 +97,21 @@ Result<json> check_relation(const Column& column, const json& value, const std::
   return json(keys);
 }
 
+Result<json> check_attached(const Column& column, const json& value, const std::string& field) {
+  if (!value.is_array() || value.size() > kMostAttached)
+    return refuse(column, "a list of at most " + std::to_string(kMostAttached) + " ids of attachments", field);
+  json ids = json::array();
+  for (const json& item : value) {
+    const double number = item.is_number() ? item.get<double>() : NAN;
+    if (!(number >= 1 && number <= static_cast<double>(kGreatestInteger)) || std::trunc(number) != number)
+      return refuse(column, "a list of ids of attachments", field);
+    const json id = static_cast<std::int64_t>(number);
+    if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+  }
+  if (ids.empty()) return json();
+  return ids;
+}
+
 Result<json> check_present(const Column& column, const json& value, const std::string& field) {
   switch (column.kind) {
     case ColumnKind::integer: return check_integer(column, value, field);
@@ -107,6 +122,8 @@ Result<json> check_present(const Column& column, const json& value, const std::s
       return key ? Result<json>(*key) : refuse(column, "the key of a record, from 0 to 4294967295", field);
     }
     case ColumnKind::relation: return check_relation(column, value, field);
+    case ColumnKind::picture:
+    case ColumnKind::document: return check_attached(column, value, field);
     default: break;
   }
   auto text = check_text(column, value, "text", field);
@@ -200,7 +217,9 @@ Result<json> parse_value(const Column& column, std::string_view text, bool decim
       const auto truth = parse_boolean(bare);
       return check_value(column, truth ? json(*truth) : json(std::string(bare)), field);
     }
-    case ColumnKind::relation: {
+    case ColumnKind::relation:
+    case ColumnKind::picture:
+    case ColumnKind::document: {
       json keys = json::array();
       for (std::size_t at = 0; at < bare.size();) {
         const std::size_t end = std::min(bare.find_first_of(" ;", at), bare.size());
@@ -229,6 +248,8 @@ Result<json> convert_value(const Column& from, const Column& to, const json& val
   const bool from_keys = from.target.has_value(), to_keys = to.target.has_value();
   if (from_keys && to_keys && from.target != to.target)
     return refuse(to, "keys of another table than \"" + from.name + "\"", field);
+  if (holds_attachments(to.kind))
+    return holds_attachments(from.kind) ? check_value(to, value, field) : refuse(to, "files", field);
   const std::string text = plain_text(value);
   if (is_free_text(to.kind)) return check_value(to, text, field);
   return parse_value(to, text, false, field);

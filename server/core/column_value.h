@@ -10,11 +10,12 @@ namespace strata {
 
 inline constexpr std::size_t kLongestText = 100'000;         // bytes of a text
 inline constexpr std::size_t kMostRelated = 10'000;          // keys of a relation
+inline constexpr std::size_t kMostAttached = 1000;           // files in one cell
 inline constexpr std::int64_t kGreatestInteger = 1ll << 53;  // what every reader of JSON keeps exactly
 
 // `value` as the column keeps it, or a Problem (422) that names `field`: another type of JSON, a date that is none, a number
 // outside of the column's limits, what is no choice. Null is no value, which only a required column refuses. Forms are made one:
-// timestamps come out in UTC, keys of a relation ascending and once. Whether keys have records is the store's to say.
+// timestamps come out in UTC, keys of a relation ascending and once, attachments once. Whether keys have records, and ids attachments, is the store's to say.
 Result<nlohmann::json> check_value(const Column& column, const nlohmann::json& value, const std::string& field);
 
 // The value that a text means, as cells of CSV have it: empty is none, keys of a relation stand with spaces or semicolons between

@@ -19,6 +19,9 @@ class MappedFile {
   ~MappedFile();
 
   std::span<const std::uint8_t> bytes() const { return {static_cast<const std::uint8_t*>(data_), size_}; }
+  // Lets go of the memory that holds this part of it, which is read from the file again when it is wanted: who goes through gigabytes
+  // once needs no memory for them.
+  void release(std::string_view part) const;
   std::string_view view() const { return {static_cast<const char*>(data_), size_}; }
 
  private:

@@ -72,14 +72,17 @@ Result<PictureInfo> begin_png(PngReader& reader, std::span<const std::uint8_t> b
   return check_side({PictureFormat::png}, reader.image.width, reader.image.height, largest_side);
 }
 
-Result<Picture> decode_jpeg(std::span<const std::uint8_t> bytes, int largest_side) {
+// `divisor` of the sides: 1, 2, 4 or 8.
+Result<Picture> decode_jpeg(std::span<const std::uint8_t> bytes, int largest_side, int divisor = 1) {
   const auto info = inspect_jpeg(bytes, largest_side);
   if (!info) return tl::unexpected(info.error());
-  Picture picture{info->width, info->height, {}};
-  picture.rgba.resize(std::size_t(info->width) * info->height * 4);
+  const tjscalingfactor scale{1, divisor};
+  Picture picture{TJSCALED(info->width, scale), TJSCALED(info->height, scale), {}};
+  picture.rgba.resize(std::size_t(picture.width) * std::size_t(picture.height) * 4);
   const tjhandle handle = decompressor();
-  if (tjDecompress2(handle, bytes.data(), bytes.size(), picture.rgba.data(), info->width, 0, info->height, TJPF_RGBA,
-                    TJFLAG_ACCURATEDCT) != 0) {
+  // LIMITSCANS: a small file of many scans would take minutes.
+  if (tjDecompress2(handle, bytes.data(), bytes.size(), picture.rgba.data(), picture.width, 0, picture.height,
+                    TJPF_RGBA, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0) {
     // Strange but harmless bytes are only warnings; a picture that ends too early is one, too, and is refused.
     const std::string why = tjGetErrorStr2(handle);
     if (tjGetErrorCode(handle) == TJERR_FATAL || why.find("Premature end") != std::string::npos)
@@ -131,6 +134,15 @@ Result<Picture> decode_picture(std::span<const std::uint8_t> bytes, int largest_
   const auto format = picture_format(bytes);
   if (!format) return neither();
   return *format == PictureFormat::jpeg ? decode_jpeg(bytes, largest_side) : decode_png(bytes, largest_side);
+}
+
+Result<Picture> decode_coarse(std::span<const std::uint8_t> bytes, int side) {
+  const auto info = inspect_picture(bytes);
+  if (!info) return tl::unexpected(info.error());
+  if (info->format != PictureFormat::jpeg) return decode_png(bytes, kLargestPictureSide);
+  int divisor = 1;
+  while (divisor < 8 && std::max(info->width, info->height) / (2 * divisor) >= side) divisor *= 2;
+  return decode_jpeg(bytes, kLargestPictureSide, divisor);
 }
 
 std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int width, int height,

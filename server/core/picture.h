@@ -38,6 +38,9 @@ Result<PictureInfo> inspect_picture(std::span<const std::uint8_t> bytes, int lar
 // data ends before the picture does.
 Result<Picture> decode_picture(std::span<const std::uint8_t> bytes, int largest_side = kLargestPictureSide);
 
+// The same, but a JPEG may come smaller, by halves, as long as its longer side keeps `side` pixels: it then takes little memory.
+Result<Picture> decode_coarse(std::span<const std::uint8_t> bytes, int side);
+
 struct JpegSettings {
   int quality = 80;         // 1…100
   bool full_color = false;  // 4:4:4 instead of 4:2:0

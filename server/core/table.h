@@ -26,9 +26,12 @@ enum class ColumnKind {
   url,
   term,      // the key of a record of `target`
   relation,  // keys of records of `target`: "above", "cuts", "same as"
+  picture,   // ids of attachments of the table, in the order in which they are shown: pictures made of pixels
+  document,  // the same, of any files
 };
 std::string_view name(ColumnKind kind);
 std::optional<ColumnKind> parse_column_kind(std::string_view name);
+inline bool holds_attachments(ColumnKind kind) { return kind == ColumnKind::picture || kind == ColumnKind::document; }
 
 // A column of a project's table. Its id is given once and never again.
 struct Column {

@@ -65,6 +65,8 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_tool_routes(router_, context_);
   add_table_routes(router_, context_);
   add_record_routes(router_, context_);
+  add_attachment_routes(router_, context_);
+  add_attachment_match_routes(router_, context_);
   add_edit_routes(router_, context_);
   add_query_routes(router_, context_);
   add_statistics_routes(router_, context_);

@@ -12,11 +12,19 @@ namespace {
 constexpr std::size_t kLongestBoundary = 70;  // RFC 2046
 constexpr std::size_t kLongestPartHead = 8192;
 
-// std::string_view::find is too slow for gigabytes; memmem is vectorised.
-std::size_t find(std::string_view text, std::string_view what, std::size_t from) {
-  if (from > text.size()) return std::string_view::npos;
-  const void* found = ::memmem(text.data() + from, text.size() - from, what.data(), what.size());
-  return found ? static_cast<std::size_t>(static_cast<const char*>(found) - text.data()) : std::string_view::npos;
+constexpr std::size_t kWindowBytes = 4u << 20;
+
+// std::string_view::find is too slow for gigabytes; memmem is vectorised. What it leaves behind is told, window by window.
+std::size_t find(std::string_view text, std::string_view what, std::size_t from,
+                 const std::function<void(std::string_view)>& passed) {
+  while (from < text.size()) {
+    const std::string_view window = text.substr(from, kWindowBytes + what.size() - 1);
+    const void* found = ::memmem(window.data(), window.size(), what.data(), what.size());
+    if (found) return static_cast<std::size_t>(static_cast<const char*>(found) - text.data());
+    if (passed) passed(window);
+    from += kWindowBytes;
+  }
+  return std::string_view::npos;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -75,7 +83,8 @@ std::string header_parameter(std::string_view header, std::string_view name) {
   }
 }
 
-Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::string_view body) {
+Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::string_view body,
+                                            const std::function<void(std::string_view)>& passed) {
   const auto malformed = [] {
     return fail(400, "Malformed form", "The multipart/form-data body does not follow its boundary.", "body");
   };
@@ -88,10 +97,10 @@ Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::
   while (!body.substr(at).starts_with("--")) {
     if (body.substr(at, 2) != "\r\n") return malformed();
     // Both searches start at a line break that is there already: a head may be empty, and so may a content.
-    const auto head_end = find(body, "\r\n\r\n", at);
+    const auto head_end = find(body, "\r\n\r\n", at, passed);
     if (head_end == std::string_view::npos || head_end - at > kLongestPartHead) return malformed();
     const auto content_begin = head_end + 4;
-    const auto content_end = find(body, separator, content_begin - 2);
+    const auto content_end = find(body, separator, content_begin - 2, passed);
     if (content_end == std::string_view::npos) return malformed();
     const std::string_view head = body.substr(at, head_end - at);
     at = content_end + separator.size();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,9 @@ struct FormFile {
 // The files of a multipart/form-data body (RFC 7578) in their order; its other fields, without a `filename`, are passed over.
 // Refused: a body that does not follow the boundary of `content_type` (400), more than kMostFormFiles files (413), two files of
 // one name (422).
-Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::string_view body);
+// `passed` is told each part of the body, of some megabytes at most, that was looked through.
+Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::string_view body,
+                                            const std::function<void(std::string_view)>& passed = {});
 
 // Value of `name="…"` or `name=…` behind the first semicolon of a header such as Content-Disposition; empty when it is not
 // there. `name` is in lower case. A backslash is no escape: browsers send names of files as they are, with %22 for a quote.

@@ -275,7 +275,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     message.result(static_cast<unsigned>(response.status));
     message.reason(reason_phrase(response.status));
     message.set(http::field::server, "strata");
-    for (const auto& [key, value] : security_headers()) message.insert(key, value);
+    for (const auto& [key, value] : security_headers())
+      if (response.header(key).empty()) message.insert(key, value);
     if (response.header("Cache-Control").empty())
       message.set(http::field::cache_control, response.header("ETag").empty() ? "no-store" : "private, no-cache");
     for (const auto& [key, value] : response.headers) message.insert(key, value);

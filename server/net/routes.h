@@ -45,6 +45,8 @@ void add_look_routes(Router& router, const RouteContext& context);
 void add_tool_routes(Router& router, const RouteContext& context);
 void add_table_routes(Router& router, const RouteContext& context);
 void add_record_routes(Router& router, const RouteContext& context);
+void add_attachment_routes(Router& router, const RouteContext& context);
+void add_attachment_match_routes(Router& router, const RouteContext& context);
 void add_edit_routes(Router& router, const RouteContext& context);
 void add_query_routes(Router& router, const RouteContext& context);
 void add_statistics_routes(Router& router, const RouteContext& context);

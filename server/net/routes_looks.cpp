@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <array>
 
 #include "core/mapped_file.h"
 #include "core/picture.h"
+#include "core/thumbnail.h"
 #include "net/answer_book.h"
 #include "net/routes.h"
 
@@ -10,7 +10,6 @@ namespace strata::net {
 namespace {
 
 constexpr std::uint64_t kLargestLook_bytes = std::uint64_t{256} << 20;
-constexpr int kThumbnailQuality = 85;
 
 Result<Look> stored_look(const RouteContext& context, const Request& request) {
   auto model = context.store.model(request.param("model"));
@@ -99,31 +98,6 @@ Result<Response> delete_look(const RouteContext& context, const Request& request
   return empty_response(204);
 }
 
-// Every pixel of the small picture is the mean of those it stands for.
-Picture shrunk(const Picture& picture, int largest_side) {
-  const double scale = std::min(1.0, double(largest_side) / std::max(picture.width, picture.height));
-  Picture small;
-  small.width = std::max(1, static_cast<int>(picture.width * scale));
-  small.height = std::max(1, static_cast<int>(picture.height * scale));
-  small.rgba.reserve(std::size_t{4} * static_cast<std::size_t>(small.width) * static_cast<std::size_t>(small.height));
-  const auto edge = [](int i, int count, int of) { return static_cast<std::size_t>(std::int64_t{i} * of / count); };
-  for (int y = 0; y < small.height; ++y) {
-    for (int x = 0; x < small.width; ++x) {
-      std::array<std::uint64_t, 4> sum{};
-      std::uint64_t count = 0;
-      for (auto row = edge(y, small.height, picture.height); row < edge(y + 1, small.height, picture.height); ++row)
-        for (auto column = edge(x, small.width, picture.width); column < edge(x + 1, small.width, picture.width);
-             ++column) {
-          const std::uint8_t* pixel = &picture.rgba[4 * (row * static_cast<std::size_t>(picture.width) + column)];
-          for (std::size_t c = 0; c < 4; ++c) sum[c] += pixel[c];
-          ++count;
-        }
-      for (std::size_t c = 0; c < 4; ++c) small.rgba.push_back(static_cast<std::uint8_t>(sum[c] / count));
-    }
-  }
-  return small;
-}
-
 Result<Response> look_picture(const RouteContext& context, const Request& request) {
   auto look = stored_look(context, request);
   if (!look) return tl::unexpected(look.error());
@@ -136,10 +110,10 @@ Result<Response> look_picture(const RouteContext& context, const Request& reques
   auto bytes = context.store.look_picture(look->id);
   if (!bytes) return tl::unexpected(bytes.error());
   if (!side) return bytes_response(std::move(*bytes), look->media_type);
-  auto picture = decode_picture(*bytes);
+  constexpr std::int64_t kAnyLook = std::int64_t{kLargestPictureSide} * kLargestPictureSide;
+  auto picture = make_thumbnail(*bytes, *side, {kAnyLook, kAnyLook});
   if (!picture) return tl::unexpected(picture.error());
-  const Picture small = shrunk(*picture, *side);
-  return bytes_response(encode_jpeg(small.rgba, small.width, small.height, {kThumbnailQuality, false}), "image/jpeg");
+  return bytes_response(std::move(*picture), "image/jpeg");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "net/answer_book.h"
 #include "net/painted_keys.h"
 #include "net/record_csv.h"
+#include "net/record_place.h"
 #include "net/routes.h"
 #include "net/table_events.h"
 #include "net/table_wire.h"
@@ -17,31 +18,7 @@ using TableChange = store::TableChange;
 constexpr std::uint64_t kMaxRecordsBytes = 64u << 20;
 constexpr const char* kCsvType = "text/csv; charset=utf-8";
 
-// The table of the address: its own, or that of a layer.
-struct Place {
-  Table table;
-  std::optional<Model> model;
-  std::optional<Layer> layer;
-};
-
-Result<Place> place_of(const RouteContext& context, const Request& request) {
-  if (!request.params.contains("layer")) {
-    auto table = context.store.table(request.param("table"));
-    if (!table) return tl::unexpected(table.error());
-    return Place{std::move(*table), {}, {}};
-  }
-  auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  auto layer = context.store.layer(model->id, request.param("layer"));
-  if (!layer) return tl::unexpected(layer.error());
-  if (!layer->table)
-    return fail(422, "Numeric layer", layer->name + " holds numbers; only database layers have records.", "layer");
-  auto table = context.store.table(std::to_string(*layer->table));
-  if (!table) return tl::unexpected(table.error());
-  return Place{std::move(*table), std::move(*model), std::move(*layer)};
-}
-
-Result<std::map<std::int64_t, query::KeyArea>> areas_of(const RouteContext& context, const Place& place) {
+Result<std::map<std::int64_t, query::KeyArea>> areas_of(const RouteContext& context, const RecordPlace& place) {
   if (place.layer->sequence == 0) return std::map<std::int64_t, query::KeyArea>();  // nothing was ever painted there
   auto room = context.rooms.open(std::to_string(place.model->id));
   if (!room) return tl::unexpected(room.error());
@@ -76,7 +53,7 @@ Result<char> separator_of(const Request& request) {
 }
 
 // Sorted by the area that they have on the layer: the others' order is the database's.
-Result<store::Store::RecordPage> page_by_area(const RouteContext& context, const Place& place,
+Result<store::Store::RecordPage> page_by_area(const RouteContext& context, const RecordPlace& place,
                                               const std::map<std::int64_t, query::KeyArea>& areas,
                                               store::Store::RecordQuery query) {
   const bool descending = query.order.front().second;
@@ -104,7 +81,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   if (format != "json" && format != "csv") return fail(406, "Unknown format", "`f` is json or csv.", "f");
   auto separator = separator_of(request);
   if (!separator) return tl::unexpected(separator.error());
-  auto place = place_of(context, request);
+  auto place = record_place(context, request);
   if (!place) return tl::unexpected(place.error());
   store::Store::RecordQuery query;
   query.order = order_of(request.query_or("sortby", {}));
@@ -152,28 +129,10 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   return response;
 }
 
-Result<std::int64_t> key_of(const Request& request) {
-  auto key = parse_integer(request.param("key"), 0, kHighestKey, "key");
-  if (!key) return fail(404, "Not found", "Keys of records are whole numbers from 0 to 4294967295.");
-  return key;
-}
-
-Result<Record> stored_record(const RouteContext& context, const Table& table, std::int64_t key,
-                             std::optional<std::int64_t> at, Table* then = nullptr) {
-  store::Store::RecordQuery query;
-  query.keys = std::vector{key};
-  query.at = at;
-  auto page = context.store.records(table.id, query);
-  if (!page) return tl::unexpected(page.error());
-  if (page->records.empty()) return fail(404, "Not found", table.name + " has no record " + std::to_string(key) + ".");
-  if (then) *then = page->table;
-  return page->records.front();
-}
-
 Result<Response> read_record(const RouteContext& context, const Request& request) {
-  auto key = key_of(request);
+  auto key = record_key(request);
   if (!key) return tl::unexpected(key.error());
-  auto place = place_of(context, request);
+  auto place = record_place(context, request);
   if (!place) return tl::unexpected(place.error());
   std::optional<std::int64_t> at;
   if (auto text = request.query.find("at"); text != request.query.end()) {
@@ -201,7 +160,7 @@ Problem first_problem(const TableChange& change, bool is_list) {
   return problem;
 }
 
-Result<Response> create_from_json(const RouteContext& context, const Request& request, const Place& place) {
+Result<Response> create_from_json(const RouteContext& context, const Request& request, const RecordPlace& place) {
   auto asked = body_of<protocol::RecordsCreate>(request, kMaxRecordsBytes);
   if (!asked) return tl::unexpected(asked.error());
   if (asked->records && (asked->key || asked->values))
@@ -269,7 +228,7 @@ nlohmann::json report_of(const RecordRows& rows, const TableChange& change, bool
           {"problems", std::move(problems)}};
 }
 
-Result<Response> import_csv(const RouteContext& context, const Request& request, const Place& place) {
+Result<Response> import_csv(const RouteContext& context, const Request& request, const RecordPlace& place) {
   const std::string tried = request.query_or("dry_run", "false");
   if (tried != "true" && tried != "false") return fail(422, "Bad value", "`dry_run` is true or false.", "dry_run");
   auto rows = read_records_csv(request.body, place.table);
@@ -302,7 +261,7 @@ Result<Response> import_csv(const RouteContext& context, const Request& request,
 }
 
 Result<Response> create_records(const RouteContext& context, const Request& request) {
-  auto place = place_of(context, request);
+  auto place = record_place(context, request);
   if (!place) return tl::unexpected(place.error());
   if (to_lower(request.header("content-type")).starts_with("text/csv")) return import_csv(context, request, *place);
   if (request.query.contains("dry_run"))
@@ -310,24 +269,14 @@ Result<Response> create_records(const RouteContext& context, const Request& requ
   return create_from_json(context, request, *place);
 }
 
-// If-Match, or the member of a body.
-Result<std::optional<std::int64_t>> wished_version(const RouteContext& context, const Request& request,
-                                                   const Table& table, std::int64_t key) {
-  if (request.header("if-match").empty()) return std::optional<std::int64_t>();
-  auto record = stored_record(context, table, key, {});
-  if (!record) return tl::unexpected(record.error());
-  if (auto fresh = check_if_match(request, record->version); !fresh) return tl::unexpected(fresh.error());
-  return request.header("if-match") == "*" ? std::optional<std::int64_t>() : std::optional(record->version);
-}
-
 Result<Response> change_record(const RouteContext& context, const Request& request) {
-  auto key = key_of(request);
+  auto key = record_key(request);
   if (!key) return tl::unexpected(key.error());
   auto asked = body_of<protocol::RecordPatch>(request);
   if (!asked) return tl::unexpected(asked.error());
-  auto place = place_of(context, request);
+  auto place = record_place(context, request);
   if (!place) return tl::unexpected(place.error());
-  auto version = wished_version(context, request, place->table, *key);
+  auto version = wished_record_version(context, request, place->table, *key);
   if (!version) return tl::unexpected(version.error());
   auto values = values_by_column(place->table, asked->values, "values");
   if (!values) return tl::unexpected(values.error());
@@ -354,7 +303,7 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
 }
 
 Result<Response> delete_record(const RouteContext& context, const Request& request) {
-  auto key = key_of(request);
+  auto key = record_key(request);
   if (!key) return tl::unexpected(key.error());
   const std::string texels = request.query_or("texels", "refuse");
   if (texels != "refuse" && texels != "clear" && texels != "reassign")
@@ -362,7 +311,7 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
   std::optional<std::int64_t> to;
   if ((texels == "reassign") != request.query.contains("to"))
     return fail(422, "Which record", "`to` is the key that the texels get, with texels=reassign.", "to");
-  auto place = place_of(context, request);
+  auto place = record_place(context, request);
   if (!place) return tl::unexpected(place.error());
   const Table& table = place->table;
   if (texels == "reassign") {
@@ -374,7 +323,7 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
       return fail(422, "No such record", "`to` is another record of " + table.name + ".", "to");
     to = *number;
   }
-  auto version = wished_version(context, request, table, *key);
+  auto version = wished_record_version(context, request, table, *key);
   if (!version) return tl::unexpected(version.error());
   // Before any texel is touched: may it go?
   auto may = context.store.delete_record(table.id, *key, *version, request.user(), true);

@@ -2,6 +2,7 @@
 
 #include "core/slug.h"
 #include "core/timestamp.h"
+#include "core/utf8.h"
 #include "net/http_types.h"
 #include "net/wire.h"
 
@@ -55,7 +56,9 @@ Result<std::map<std::int64_t, nlohmann::json>> values_by_column(const Table& tab
   std::map<std::int64_t, nlohmann::json> by_column;
   for (const auto& [ref, value] : values.items()) {
     const Column* column = find_column(table.columns, ref);
-    if (!column) return fail(422, "No such column", table.name + " has no column `" + ref + "`.", field + "." + ref);
+    const std::string shown = mended_utf8(ref.substr(0, 100));
+    if (!column)
+      return fail(422, "No such column", table.name + " has no column `" + shown + "`.", field + "." + shown);
     if (!by_column.emplace(column->id, value).second)
       return fail(422, "Column named twice", "`" + column->slug + "` stands here by its slug and by its id.",
                   field + "." + ref);
@@ -73,6 +76,16 @@ nlohmann::json to_json(const store::TableEditRow& row) {
           {"time", utc_text(row.time)},        {"op", row.op},
           {"in_force", row.in_force},          {"changes", std::move(changes)},
           {"total_changes", row.total_changes}};
+}
+
+nlohmann::json to_json(const Attachment& attachment) {
+  nlohmann::json json{{"id", attachment.id},       {"table", attachment.table_id},
+                      {"name", attachment.name},   {"media_type", attachment.media_type},
+                      {"bytes", attachment.bytes}, {"sha256", attachment.sha256},
+                      {"user", attachment.user},   {"time", utc_text(attachment.time)}};
+  if (attachment.width) json["width"] = *attachment.width;
+  if (attachment.height) json["height"] = *attachment.height;
+  return json;
 }
 
 Result<std::int64_t> sequence_at(store::Store& store, const Table& table, const std::string& text) {

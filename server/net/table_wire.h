@@ -23,6 +23,7 @@ Result<std::map<std::int64_t, nlohmann::json>> values_by_column(const Table& tab
                                                                 const std::string& field);
 
 nlohmann::json to_json(const store::TableEditRow& row);
+nlohmann::json to_json(const Attachment& attachment);
 
 // A sequence of the table, or the one that was there at a time (RFC 3339).
 Result<std::int64_t> sequence_at(store::Store& store, const Table& table, const std::string& text);

@@ -13,10 +13,15 @@ namespace {
 namespace fs = std::filesystem;
 
 // The file's bytes as a file of their own.
-Result<Upload> keep_part(const FormFile& part, const fs::path& folder) {
+Result<Upload> keep_part(const FormFile& part, const fs::path& folder, const MappedFile& form) {
+  constexpr std::size_t kWindowBytes = 4u << 20;
   Upload upload{folder / (to_string(random_uuid()) + ".part"), part.filename};
   std::ofstream out(upload.file, std::ios::binary);
-  out.write(part.content.data(), static_cast<std::streamsize>(part.content.size()));
+  for (std::size_t at = 0; at < part.content.size() && out; at += kWindowBytes) {
+    const std::string_view window = part.content.substr(at, kWindowBytes);
+    out.write(window.data(), static_cast<std::streamsize>(window.size()));
+    form.release(window);
+  }
   out.close();
   if (out) return upload;
   std::error_code ignored;
@@ -24,14 +29,14 @@ Result<Upload> keep_part(const FormFile& part, const fs::path& folder) {
   return fail(507, "Disk full", "The upload could not be stored on the server's disk.");
 }
 
-Result<std::vector<Upload>> keep_parts(std::string_view content_type, std::string_view body, const fs::path& folder,
+Result<std::vector<Upload>> keep_parts(std::string_view content_type, const MappedFile& form, const fs::path& folder,
                                        const char* accepted) {
-  const auto parts = files_of_form(content_type, body);
+  const auto parts = files_of_form(content_type, form.view(), [&](std::string_view passed) { form.release(passed); });
   if (!parts) return tl::unexpected(parts.error());
   if (parts->empty()) return fail(415, "No file in the form", accepted, "body");
   std::vector<Upload> uploads;
   for (const FormFile& part : *parts) {
-    auto upload = keep_part(part, folder);
+    auto upload = keep_part(part, folder, form);
     if (!upload) {
       std::error_code ignored;
       for (const Upload& kept : uploads) fs::remove(kept.file, ignored);
@@ -49,7 +54,7 @@ Result<std::vector<Upload>> take_upload(const Request& request, const fs::path& 
   if (!mapped || mapped->view().empty()) return fail(400, "Empty body", accepted, "body");
   const std::string type = to_lower(request.header("content-type"));
   if (type.starts_with("multipart/form-data"))
-    return keep_parts(request.header("content-type"), mapped->view(), folder, accepted);
+    return keep_parts(request.header("content-type"), *mapped, folder, accepted);
   if (type.starts_with("multipart/")) return fail(415, "Form not understood", accepted, "Content-Type");
   std::string name = base_filename(header_parameter(request.header("content-disposition"), "filename"));
   if (name.empty() && type.starts_with("application/zip")) name = "scan.zip";

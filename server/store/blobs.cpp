@@ -1,5 +1,6 @@
 #include "store/blobs.h"
 
+#include <algorithm>
 #include <fstream>
 
 #include "core/progress.h"
@@ -121,6 +122,32 @@ Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha2
   return content;
 }
 
+Result<void> stream_blob(Pool& pool, const std::vector<std::uint8_t>& sha256, std::uint64_t begin, std::uint64_t end,
+                         const std::function<bool(Bytes)>& sink) {
+  for (std::uint64_t at = begin; at < end;) {
+    auto chunk = pool.read([&](PgConnection& connection) {
+      return connection.query("SELECT data FROM blob_chunks WHERE sha256 = $1 AND chunk = $2",
+                              Params().bytes(sha256).integer(static_cast<std::int64_t>(at / kChunkBytes)));
+    });
+    if (!chunk) return tl::unexpected(chunk.error());
+    const std::size_t skipped = at % kChunkBytes;
+    if (chunk->rows() == 0 || chunk->bytes(0, 0).size() <= skipped)
+      return fail(404, "Not found", "The file was deleted while it was read.");
+    Bytes piece = chunk->bytes(0, 0).subspan(skipped);
+    piece = piece.first(static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), end - at)));
+    if (!sink(piece)) break;
+    at += piece.size();
+  }
+  return {};
+}
+
+#define STRATA_IS_UNUSED                                                        \
+  "NOT EXISTS (SELECT 1 FROM models WHERE geometry = b.sha256) "                \
+  "AND NOT EXISTS (SELECT 1 FROM detail_levels d WHERE d.geometry = b.sha256) " \
+  "AND NOT EXISTS (SELECT 1 FROM model_sources s WHERE s.sha256 = b.sha256) "   \
+  "AND NOT EXISTS (SELECT 1 FROM looks WHERE picture = b.sha256) "              \
+  "AND NOT EXISTS (SELECT 1 FROM attachments a WHERE a.sha256 = b.sha256)"
+
 Result<void> drop_unused(PgConnection& connection, const std::vector<std::vector<std::uint8_t>>& hashes) {
   PgArray list(oid::kBytea);
   for (const auto& hash : hashes) list.add(Bytes(hash));
@@ -128,14 +155,20 @@ Result<void> drop_unused(PgConnection& connection, const std::vector<std::vector
   auto locked =
       connection.query("SELECT 1 FROM blobs WHERE sha256 = any($1) ORDER BY sha256 FOR UPDATE", Params().array(list));
   if (!locked) return tl::unexpected(locked.error());
-  auto done = connection.query(
-      "DELETE FROM blobs b WHERE sha256 = any($1) "
-      "AND NOT EXISTS (SELECT 1 FROM models WHERE geometry = b.sha256) "
-      "AND NOT EXISTS (SELECT 1 FROM detail_levels d WHERE d.geometry = b.sha256) "
-      "AND NOT EXISTS (SELECT 1 FROM model_sources s WHERE s.sha256 = b.sha256) "
-      "AND NOT EXISTS (SELECT 1 FROM looks WHERE picture = b.sha256)",
-      Params().array(list));
+  auto done =
+      connection.query("DELETE FROM blobs b WHERE sha256 = any($1) AND " STRATA_IS_UNUSED, Params().array(list));
   return done ? Result<void>{} : tl::unexpected(done.error());
+}
+
+Result<std::int64_t> drop_all_unused(PgConnection& connection) {
+  auto locked = connection.query("SELECT sha256 FROM blobs b WHERE " STRATA_IS_UNUSED " FOR UPDATE SKIP LOCKED");
+  if (!locked) return tl::unexpected(locked.error());
+  PgArray list(oid::kBytea);
+  for (int i = 0; i < locked->rows(); ++i) list.add(locked->bytes(i, 0));
+  auto done =
+      connection.query("DELETE FROM blobs b WHERE sha256 = any($1) AND " STRATA_IS_UNUSED, Params().array(list));
+  if (!done) return tl::unexpected(done.error());
+  return done->affected();
 }
 
 }  // namespace strata::store

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "store/hash.h"
-#include "store/pg.h"
+#include "store/pool.h"
 
 namespace strata::store {
 
@@ -25,7 +25,14 @@ Result<void> keep_blob(PgConnection& connection, const Content& content, const s
 
 Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha256, std::int64_t bytes);
 
-// Deletes those of the blobs that no model uses any more.
+// Hands out the bytes from `begin` to before `end` in pieces of kChunkBytes at most, until `sink` returns false. One query a piece: a
+// slow reader holds no connection while it reads. 404 where the blob goes meanwhile.
+Result<void> stream_blob(Pool& pool, const std::vector<std::uint8_t>& sha256, std::uint64_t begin, std::uint64_t end,
+                         const std::function<bool(Bytes)>& sink);
+
+// Deletes those of the blobs that nothing uses any more.
 Result<void> drop_unused(PgConnection& connection, const std::vector<std::vector<std::uint8_t>>& hashes);
+// All such blobs, but for those that somebody is about to use. Returns how many.
+Result<std::int64_t> drop_all_unused(PgConnection& connection);
 
 }  // namespace strata::store

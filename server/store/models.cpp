@@ -315,7 +315,6 @@ Result<std::vector<std::vector<std::uint8_t>>> Store::detail_levels(std::int64_t
   });
 }
 
-// One query a chunk: a slow reader of the stream holds no connection while it reads.
 Result<SourceFile> Store::read_source(std::int64_t model_id, const std::string& file,
                                       const std::function<bool(std::span<const std::uint8_t>)>& sink) {
   if (!check_text(file, "name")) return not_found("source file", file);
@@ -328,18 +327,9 @@ Result<SourceFile> Store::read_source(std::int64_t model_id, const std::string& 
   if (!known) return tl::unexpected(known.error());
   if (known->rows() == 0) return not_found("source file", file);
   const SourceFile source{file, to_hex(known->bytes(0, 0)), static_cast<std::uint64_t>(known->integer(0, 1))};
-  std::uint64_t sent = 0;
-  for (std::int64_t number = 0; sent < source.bytes; ++number) {
-    auto chunk = impl_->pool.read([&](PgConnection& connection) {
-      return connection.query("SELECT data FROM blob_chunks WHERE sha256 = $1 AND chunk = $2",
-                              Params().bytes(known->bytes(0, 0)).integer(number));
-    });
-    if (!chunk) return tl::unexpected(chunk.error());
-    if (chunk->rows() == 0) return fail(404, "Not found", "The model was deleted while its file was read.");
-    const Bytes data = chunk->bytes(0, 0);
-    if (!sink(data)) break;
-    sent += data.size();
-  }
+  const Bytes hash = known->bytes(0, 0);
+  auto sent = stream_blob(impl_->pool, {hash.begin(), hash.end()}, 0, source.bytes, sink);
+  if (!sent) return tl::unexpected(sent.error());
   return source;
 }
 

@@ -39,7 +39,9 @@ Kind kind_of(const Column& column) {
     case ColumnKind::date:
     case ColumnKind::timestamp:
     case ColumnKind::period: return Kind::time;
-    case ColumnKind::relation: return Kind::keys;
+    case ColumnKind::relation:
+    case ColumnKind::picture:
+    case ColumnKind::document: return Kind::keys;
     default: return Kind::text;
   }
 }

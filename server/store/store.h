@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/attachment.h"
 #include "core/expression.h"
 #include "core/history.h"
 #include "core/key_numbers.h"
@@ -182,6 +183,37 @@ class Store {
   Result<UndoPlan> plan_table_undo(std::int64_t table_id, const std::string& user, bool redo);
   Result<TableChange> undo_table(std::int64_t table_id, const std::string& user, bool redo, std::int64_t planned_at,
                                  const FirstAnswer<TableChange>& answer = {});
+
+  // --- attachments: files that cells of picture and document columns list, streamed both ways
+  struct NewAttachment {
+    std::string name;
+    std::filesystem::path file;
+    std::string media_type;
+    std::optional<int> width, height;
+  };
+  struct Attached {
+    TableChange change;
+    std::vector<Attachment> attachments;  // in the order of the files
+  };
+  // Appends them to a record's cell, as one entry of the journal, or nothing at all. Without a column: the first one of pictures where
+  // all of them are that, otherwise the first one of documents.
+  Result<Attached> attach(std::int64_t table_id, std::int64_t key, std::optional<std::int64_t> column_id,
+                          const std::vector<NewAttachment>& files, std::optional<std::int64_t> version,
+                          const std::string& user, const FirstAnswer<Attached>& answer = {});
+  // Takes it out of all cells that list it; 404 where none does. It stays for undo and for reading the past.
+  Result<TableChange> detach(std::int64_t attachment_id, const std::string& user,
+                             const FirstAnswer<TableChange>& answer = {});
+  Result<Attachment> attachment(std::int64_t id);
+  // Those of the ids that the table has, by id.
+  Result<std::vector<Attachment>> attachments(std::int64_t table_id, std::span<const std::int64_t> ids);
+  // The bytes from `begin` to before `end`, in pieces ≤ 1 MiB; `sink` returns false to stop.
+  Result<void> read_attachment(const Attachment& attachment, std::uint64_t begin, std::uint64_t end,
+                               const std::function<bool(std::span<const std::uint8_t>)>& sink);
+  // Small pictures, kept once made; all attachments of one content share them.
+  Result<std::optional<std::vector<std::uint8_t>>> thumbnail(const Attachment& attachment, int side);
+  Result<void> keep_thumbnail(const Attachment& attachment, int side, std::span<const std::uint8_t> picture);
+  // Deletes contents that no model, look or attachment has any more, and tells how many they were. At start and after a table is deleted.
+  Result<std::int64_t> drop_orphans();
 
   // --- journal (reads; writes go through JournalWriter)
   // All tiles of a layer after `at_sequence` (nothing: the newest).

@@ -22,7 +22,9 @@ const char* sql_type(ColumnKind kind) {
     case ColumnKind::boolean: return "boolean";
     case ColumnKind::date: return "date";
     case ColumnKind::timestamp: return "timestamptz";
-    case ColumnKind::relation: return "bigint[]";
+    case ColumnKind::relation:
+    case ColumnKind::picture:
+    case ColumnKind::document: return "bigint[]";
     default: return "text";
   }
 }
@@ -267,6 +269,17 @@ Result<std::optional<std::pair<std::int64_t, std::int64_t>>> row_naming(PgConnec
   if (!row) return tl::unexpected(row.error());
   if (row->rows() == 0) return std::optional<std::pair<std::int64_t, std::int64_t>>();
   return std::optional(std::pair(row->integer(0, 0), row->integer(0, 1)));
+}
+
+Result<std::vector<std::int64_t>> rows_holding(PgConnection& connection, std::int64_t table_id, const Column& column,
+                                               std::int64_t attachment) {
+  auto rows = connection.query_once(
+      "SELECT key FROM " + table_name(table_id) + " WHERE $1 = any(" + column_name(column) + ") ORDER BY key",
+      Params().integer(attachment));
+  if (!rows) return tl::unexpected(rows.error());
+  std::vector<std::int64_t> keys;
+  for (int i = 0; i < rows->rows(); ++i) keys.push_back(rows->integer(i, 0));
+  return keys;
 }
 
 }  // namespace strata::store

@@ -72,4 +72,8 @@ Result<std::optional<std::pair<std::int64_t, std::int64_t>>> row_naming(PgConnec
                                                                         const Column& column,
                                                                         std::span<const std::int64_t> keys);
 
+// Keys of the records whose cell lists the attachment, ascending.
+Result<std::vector<std::int64_t>> rows_holding(PgConnection& connection, std::int64_t table_id, const Column& column,
+                                               std::int64_t attachment);
+
 }  // namespace strata::store

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/column_value.h"
+#include "core/media_type.h"
 #include "store/store_impl.h"
 #include "store/table_rows.h"
 
@@ -185,9 +186,12 @@ class Writer {
     }
     if (!change_.problems.empty()) return {};
     if (auto inserted = insert_rows(connection_, open_.table.id, open_.all, then); !inserted) return inserted;
-    for (const Column& column : open_.table.columns)
+    for (const Column& column : open_.table.columns) {
       if (column.target)
         if (auto known = check_targets(column, then); !known) return known;
+      if (holds_attachments(column.kind))
+        if (auto known = check_attached(column, then); !known) return known;
+    }
     if (auto free = check_named(); !free) return free;
     change_.records = std::move(then);
     return {};
@@ -227,6 +231,38 @@ class Writer {
                                 field_of(column)});
           break;
         }
+    }
+    return {};
+  }
+
+  // Cells list the table's own attachments, and pictures are pictures.
+  Result<void> check_attached(const Column& column, std::span<const Record> rows) {
+    std::set<std::int64_t> listed;
+    for (const Record& row : rows)
+      if (const auto value = row.values.find(column.id); value != row.values.end()) add_keys(value->second, listed);
+    if (listed.empty()) return {};
+    PgArray ids(oid::kInt8);
+    for (const auto id : listed) ids.add(id);
+    auto known = connection_.query("SELECT id, media_type FROM attachments WHERE table_id = $1 AND id = any($2)",
+                                   Params().integer(open_.table.id).array(ids));
+    if (!known) return tl::unexpected(known.error());
+    std::map<std::int64_t, std::string> types;
+    for (int i = 0; i < known->rows(); ++i) types[known->integer(i, 0)] = known->text(i, 1);
+    for (const Record& row : rows) {
+      const auto value = row.values.find(column.id);
+      if (value == row.values.end() || value->second.is_null()) continue;
+      for (const auto& item : value->second) {
+        const std::string id = std::to_string(item.get<std::int64_t>());
+        const auto type = types.find(item.get<std::int64_t>());
+        const bool is_there = type != types.end();
+        if (is_there && (column.kind == ColumnKind::document || is_raster_picture(type->second))) continue;
+        add_problem(row.key, {422, is_there ? "No picture" : "No such attachment",
+                              "\"" + column.name + "\" lists attachment " + id +
+                                  (is_there ? ", which is " + type->second + ": attach it to a column of documents."
+                                            : ", which the table does not have."),
+                              field_of(column)});
+        break;
+      }
     }
     return {};
   }
@@ -281,8 +317,9 @@ class Writer {
                           std::to_string(kLongestUniqueText) + " bytes.",
                       "unique");
       }
-      if (column.target) {
-        if (auto known = check_targets(column, *rows); !known) return known;
+      if (column.target || holds_attachments(column.kind)) {
+        auto known = column.target ? check_targets(column, *rows) : check_attached(column, *rows);
+        if (!known) return known;
         if (!change_.problems.empty()) {
           Problem problem = change_.problems.front().problem;
           return fail(409, "Values do not fit",

@@ -108,7 +108,7 @@ Result<Table> Store::update_table(const Table& table, const FirstAnswer<Table>& 
 }
 
 Result<void> Store::delete_table(std::int64_t id, const FirstAnswer<>& answer) {
-  return impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
+  auto gone = impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
     auto open = lock_table(connection, id);
     if (!open) return tl::unexpected(open.error());
     auto users = connection.query(
@@ -127,6 +127,9 @@ Result<void> Store::delete_table(std::int64_t id, const FirstAnswer<>& answer) {
     auto gone = connection.query("DELETE FROM record_tables WHERE id = $1", Params().integer(id));
     return gone ? Result<void>{} : tl::unexpected(gone.error());
   });
+  // Afterwards, since those who attach hold a blob while they wait for the tables. What fails here is done at the next start.
+  if (gone) (void)drop_orphans();
+  return gone;
 }
 
 Result<std::vector<Layer>> Store::layers_of_table(std::int64_t table_id) {

@@ -258,7 +258,7 @@ def refusals(server):
         ("a table that is not there", "POST", "/models/north/layers", {"name": "x", "kind": "database", "table": "none"}, {}, 422, "table"),
         ("a table and columns", "POST", "/models/north/layers", {"name": "x", "kind": "database", "table": "units", "columns": []}, {}, 422, "columns"),
         ("a slug of digits", "POST", "/projects/default/tables", {"name": "x", "slug": "12"}, {}, 422, "slug"),
-        ("a column of an unknown kind", "POST", T + "/columns", {"name": "x", "kind": "picture"}, {}, 422, "kind"),
+        ("a column of an unknown kind", "POST", T + "/columns", {"name": "x", "kind": "drawing"}, {}, 422, "kind"),
         ("a term of no table", "POST", T + "/columns", {"name": "x", "kind": "term"}, {}, 422, "target"),
         ("a required column on records that have none", "POST", T + "/columns", {"name": "x", "required": True}, {}, 409, None),
         ("a slug that is taken", "POST", T + "/columns", {"name": "x", "slug": "code"}, {}, 409, "slug"),

@@ -150,6 +150,10 @@ TEST(Filename, loses_its_folders) {
   EXPECT_EQ(base_filename("../../etc/pot.ply"), "pot.ply");
   EXPECT_EQ(base_filename("C:\\scans\\pot.ply"), "pot.ply");
   EXPECT_EQ(base_filename(".."), "");
+  EXPECT_EQ(base_filename("photo\u202egpj.exe"), "photogpj.exe") << "marks that turn what follows are left out";
+  EXPECT_EQ(base_filename(".\u200b."), "") << "also where they hide what is left";
+  EXPECT_EQ(base_filename("\ufeffSU\u00a012 \u00e9t\u00e9 \u4e2d\U0001f3fa\u0085.jpg"),
+            "SU\u00a012 \u00e9t\u00e9 \u4e2d\U0001f3fa.jpg");
   EXPECT_EQ(base_filename("a\r\nb.ply"), "ab.ply");
   EXPECT_EQ(base_filename(std::string(300, 'x') + ".ply").size(), 255u);
 }

@@ -25,9 +25,9 @@ export type TableRef = number | string;
 export type Labels = Record<string, string>;
 
 /** Kind of column. */
-export type ColumnKind = "text" | "integer" | "numeric" | "boolean" | "date" | "timestamp" | "period" | "enumeration" | "url" | "term" | "relation";
+export type ColumnKind = "text" | "integer" | "numeric" | "boolean" | "date" | "timestamp" | "period" | "enumeration" | "url" | "term" | "relation" | "picture" | "document";
 
-/** Value of a record in a column. Texts, dates (2024-02-29), timestamps (RFC 3339, told in UTC), periods (EDTF: 1560~, 156X, -0043/0100, 1560/..), choices and addresses are strings; a term is a key of its target table, a relation a list of keys. Null: no value. */
+/** Value of a record in a column. Texts, dates (2024-02-29), timestamps (RFC 3339, told in UTC), periods (EDTF: 1560~, 156X, -0043/0100, 1560/..), choices and addresses are strings; a term is a key of its target table, a relation a list of keys; pictures and documents are lists of ids of attachments. Null: no value. */
 export type CellValue = string | number | boolean | number[] | null;
 
 /** Values by column. By the slug of the column, or its id. */
@@ -959,6 +959,64 @@ export interface ColumnChanged {
   lost?: number;
   /** The first of the records that had them. */
   lost_keys?: number[];
+}
+
+/** File of a record. */
+export interface Attachment {
+  id: number;
+  /** Id of the table. */
+  table: number;
+  name: string;
+  /** By its bytes, whatever the sender calls it. */
+  media_type: string;
+  bytes: number;
+  sha256: string;
+  /** Of JPEG and PNG pictures, as their rows are stored. */
+  width?: number;
+  height?: number;
+  user: string;
+  time: string;
+  /** In a record's list: slug of the column. */
+  column?: string;
+}
+
+/** Files of a record, column by column. */
+export interface AttachmentList {
+  attachments: Attachment[];
+  total: number;
+}
+
+/** Files that were attached. */
+export interface Attached {
+  attachments: Attachment[];
+  total: number;
+  record: TableRecord;
+}
+
+/** Names of files that say which records they are of. */
+export interface AttachmentMatch {
+  /** A {word} stands for one or more characters; the one called like the column says the record. */
+  pattern: string;
+  /** Slug or id of a column, or `key`. */
+  column: string;
+  names: string[];
+}
+
+/** Name of a file that was looked at. */
+export interface MatchedName {
+  name: string;
+  key?: number;
+  words?: Record<string, string>;
+  /** It is not of the pattern; no record, or more than one, has the value; the record has a file of that name; the name was sent before. */
+  reason?: "pattern" | "record" | "several" | "attached" | "twice";
+}
+
+/** Which records files are of. */
+export interface AttachmentMatches {
+  matched: MatchedName[];
+  unmatched: MatchedName[];
+  duplicate: MatchedName[];
+  total: number;
 }
 
 /** Tables of a project, by name. */

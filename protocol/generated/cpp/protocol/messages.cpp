@@ -18,6 +18,8 @@ std::string_view name(ColumnKind value) {
     case ColumnKind::url: return "url";
     case ColumnKind::term: return "term";
     case ColumnKind::relation: return "relation";
+    case ColumnKind::picture: return "picture";
+    case ColumnKind::document: return "document";
   }
   return {};
 }
@@ -35,6 +37,8 @@ void read(const nlohmann::json& json, ColumnKind& value) {
   if (text == "url") value = ColumnKind::url;
   if (text == "term") value = ColumnKind::term;
   if (text == "relation") value = ColumnKind::relation;
+  if (text == "picture") value = ColumnKind::picture;
+  if (text == "document") value = ColumnKind::document;
 }
 
 nlohmann::json to_json(const ColumnKind& value) { return name(value); }
@@ -1381,6 +1385,20 @@ nlohmann::json to_json(const ColumnPatch& value) {
   write_optional_member(json, "minimum", value.minimum);
   write_optional_member(json, "maximum", value.maximum);
   write_optional_member(json, "order", value.order);
+  return json;
+}
+
+void read(const nlohmann::json& json, AttachmentMatch& value) {
+  read_member(json, "pattern", value.pattern);
+  read_member(json, "column", value.column);
+  read_member(json, "names", value.names);
+}
+
+nlohmann::json to_json(const AttachmentMatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "pattern", value.pattern);
+  write_member(json, "column", value.column);
+  write_member(json, "names", value.names);
   return json;
 }
 

@@ -126,6 +126,12 @@ enum class Schema {
   ColumnPatch,
   ColumnList,
   ColumnChanged,
+  Attachment,
+  AttachmentList,
+  Attached,
+  AttachmentMatch,
+  MatchedName,
+  AttachmentMatches,
   TableList,
   TableCreate,
   TablePatch,
@@ -182,7 +188,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 156;
+constexpr int kSchemaCount = 162;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -200,7 +206,7 @@ using TableRef = std::variant<std::int64_t, std::string>;
 using Labels = std::map<std::string, std::string>;
 
 // Kind of column.
-enum class ColumnKind { text, integer, numeric, boolean, date, timestamp, period, enumeration, url, term, relation };
+enum class ColumnKind { text, integer, numeric, boolean, date, timestamp, period, enumeration, url, term, relation, picture, document };
 std::string_view name(ColumnKind value);
 void read(const nlohmann::json& json, ColumnKind& value);
 nlohmann::json to_json(const ColumnKind& value);
@@ -1073,6 +1079,18 @@ void read(const nlohmann::json& json, ColumnPatch& value);
 nlohmann::json to_json(const ColumnPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ColumnPatch> = Schema::ColumnPatch;
+
+// Names of files that say which records they are of.
+struct AttachmentMatch {
+  std::string pattern;  // A {word} stands for one or more characters; the one called like the column says the record.
+  std::string column;  // Slug or id of a column, or `key`.
+  std::vector<std::string> names;
+  bool operator==(const AttachmentMatch&) const = default;
+};
+void read(const nlohmann::json& json, AttachmentMatch& value);
+nlohmann::json to_json(const AttachmentMatch& value);
+template <>
+inline constexpr Schema kSchemaOf<AttachmentMatch> = Schema::AttachmentMatch;
 
 // New table.
 struct TableCreate {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace strata {
+
+// A file that records of a table have. Its content never changes.
+struct Attachment {
+  std::int64_t id = 0;
+  std::int64_t table_id = 0;
+  std::string name;        // a file's, without folders
+  std::string media_type;  // by its bytes
+  std::uint64_t bytes = 0;
+  std::string sha256;                // hexadecimal
+  std::optional<int> width, height;  // of pictures that can be read, before they are turned as Exif says
+  std::string user;
+  std::chrono::system_clock::time_point time;
+};
+
+}  // namespace strata
