@@ -10,6 +10,7 @@ namespace strata::net {
 namespace {
 
 constexpr std::chrono::seconds kBetweenLooks{1}, kFirstPause{5}, kLongestPause{600};
+constexpr int kMostLooks = 10;
 constexpr const char* kUser = "Strata";  // who computes, in the layer's history
 
 }  // namespace
@@ -50,11 +51,23 @@ void Recomputer::run() {
   }
 }
 
+bool Recomputer::is_quiet(const room::Room& room, std::int64_t layer_id) {
+  Wait& wait = waits_[layer_id];
+  const std::int64_t sequence = room.sequence();
+  if (wait.sequence != sequence && ++wait.looks < kMostLooks) {
+    wait.sequence = sequence;
+    return false;
+  }
+  waits_.erase(layer_id);
+  return true;
+}
+
 void Recomputer::recompute(const Layer& layer) {
   const auto now = std::chrono::steady_clock::now();
   const auto failed = failures_.find(layer.id);
   if (failed != failures_.end() && now < failed->second.again) return;
   auto room = context_.rooms.open(std::to_string(layer.model_id));
+  if (room && !is_quiet(**room, layer.id)) return;
   Result<Layer> done = room ? compute_layer(context_, *room, layer, kUser, progress_) : tl::unexpected(room.error());
   if (done) {
     failures_.erase(layer.id);

@@ -10,9 +10,9 @@
 
 namespace strata::net {
 
-// Computes automatic layers again, one after the other, soon after something that they read has changed: an edit, a record, a
-// layer that is computed itself. Asks the database once a second, so that nothing is forgotten over a restart. What fails is
-// tried again, less and less often.
+// Computes automatic layers again, one after the other, after something that they read has changed: an edit, a record, a layer
+// that is computed itself. Edits of the model wait meanwhile, so it lets a second pass in which nobody paints, but ten at most.
+// Asks the database once a second, so that nothing is forgotten over a restart. What fails is tried again, less and less often.
 class Recomputer {
  public:
   explicit Recomputer(const RouteContext& context);  // which must outlive it
@@ -24,12 +24,18 @@ class Recomputer {
     std::chrono::steady_clock::time_point again;
     std::chrono::seconds pause;
   };
+  struct Wait {
+    std::int64_t sequence = -1;  // of the model when it was looked at last
+    int looks = 0;
+  };
   void run();
+  bool is_quiet(const room::Room& room, std::int64_t layer_id);
   void recompute(const Layer& layer);
   bool is_stopping();
 
   const RouteContext& context_;
   std::map<std::int64_t, Failure> failures_;  // by layer
+  std::map<std::int64_t, Wait> waits_;        // the same
   Progress progress_;
   std::mutex mutex_;
   std::condition_variable wake_;
