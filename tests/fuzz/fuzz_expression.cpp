@@ -112,6 +112,10 @@ std::string text_of(const Expression& expression) {
     case Op::all: return joined("and", expression);
     case Op::any: return joined("or", expression);
     case Op::negation: return "(not " + part() + ")";
+    case Op::x:
+    case Op::y:
+    case Op::z:
+    case Op::area:
     case Op::record_number:
     case Op::record_truth: break;
   }
