@@ -264,6 +264,7 @@ try {
   await shot("csv-report");
   assert.ok(await button("Import").isDisabled());
   await button("Cancel").click();
+  await dialog.getByText('"Depth" holds finite numbers.').waitFor({ state: "hidden" });
   await drop_csv("finds.csv", "key,code,depth,note\n1,SU 1,9,changed\n,New 1,2,\n");
   await dialog.getByText("All rows fit. Nothing has been written yet.").waitFor();
   assert.equal((await record(1)).note, "Charcoal");
