@@ -625,6 +625,8 @@ export const texts = {
       url: "Address (URL)",
       term: "A record of a table, such as a term",
       relation: "Several records of a table: above, cuts, same as",
+      picture: "Pictures: the numbers of files",
+      document: "Documents: the numbers of files",
     },
     retype_hint: "Values that cannot be of the new kind are left out; you will see how many, and can take it back.",
     unit: "Unit",

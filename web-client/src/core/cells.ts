@@ -50,6 +50,8 @@ export function parse_cell(column: Pick<Column, "kind">, text: string): Parsed {
     case "term":
       return { value: Number(typed) };
     case "relation":
+    case "picture":
+    case "document":
       return { value: typed.split(/\s+/).map(Number) };
     default:
       return { value: typed };
