@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 #include "core/utf8.h"
 
@@ -142,6 +143,13 @@ std::string csv_line(const std::vector<std::string>& cells, char separator) {
     line += '"';
   }
   return line + "\r\n";
+}
+
+std::string csv_number(double value, char separator) {
+  char text[40];
+  std::string number(text, std::to_chars(text, text + sizeof text, value).ptr);
+  if (separator == ';') std::ranges::replace(number, '.', ',');
+  return number;
 }
 
 std::string guard_formula(std::string text) {

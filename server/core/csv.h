@@ -34,6 +34,10 @@ inline constexpr std::string_view kUtf8Mark =
 // One row with CRLF at its end; cells are quoted where they must be.
 std::string csv_line(const std::vector<std::string>& cells, char separator);
 
+// The shortest text that reads back as the number; with a decimal comma where semicolons separate the cells, as in the countries
+// whose Excel writes semicolons.
+std::string csv_number(double value, char separator);
+
 // Spreadsheets run a text that begins with = + - @ as a formula. `guard_formula` puts an apostrophe before such a text, which they
 // show as text, and before one that has such an apostrophe already; `unguard_formula` takes it away, so that texts come back
 // as they were.

@@ -155,6 +155,26 @@ nlohmann::json to_json(const Record& record, const std::vector<Column>& columns)
   return {{"key", record.key}, {"version", record.version}, {"values", std::move(values)}};
 }
 
+const Column* name_column(const std::vector<Column>& columns) {
+  const auto first = [&](auto fits) {
+    const auto found = std::ranges::find_if(columns, fits);
+    return found == columns.end() ? nullptr : &*found;
+  };
+  const auto is_text = [](const Column& column) { return column.kind == ColumnKind::text; };
+  const Column* found = first([&](const Column& c) { return is_text(c) && c.required && c.unique; });
+  if (!found) found = first([&](const Column& c) { return is_text(c) && (c.required || c.unique); });
+  if (!found) found = first(is_text);
+  if (!found) found = first([](const Column& c) { return c.unique && !c.target; });
+  return found;
+}
+
+std::string record_name(const Record& record, const std::vector<Column>& columns) {
+  const Column* column = name_column(columns);
+  const auto found = column ? record.values.find(column->id) : record.values.end();
+  if (found == record.values.end() || found->second.is_null()) return {};
+  return found->second.is_string() ? found->second.get<std::string>() : found->second.dump();
+}
+
 const Column* find_column(const std::vector<Column>& columns, const std::string& ref) {
   const bool by_id = is_all_digits(ref);
   for (const Column& column : columns)

@@ -88,6 +88,12 @@ nlohmann::json to_json(const Table& table);
 // `{key, version, values: {slug: value}}`, with every column of `columns`.
 nlohmann::json to_json(const Record& record, const std::vector<Column>& columns);
 
+// The column that tells people which record it is: the first text that is required and unique, otherwise one that is either,
+// otherwise any text, otherwise what is unique and no relation; null: records have no names.
+const Column* name_column(const std::vector<Column>& columns);
+// What the record is called; empty where it has no name.
+std::string record_name(const Record& record, const std::vector<Column>& columns);
+
 // By id or slug; null: there is none.
 const Column* find_column(const std::vector<Column>& columns, const std::string& ref);
 

@@ -1,7 +1,6 @@
 #include "net/record_csv.h"
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 
 #include "core/column_value.h"
@@ -79,11 +78,7 @@ std::string records_csv(const std::vector<Record>& records, const std::vector<Co
       std::string cell = value == records[i].values.end() ? std::string() : print_value(column, value->second);
       cells.push_back(comma && column.kind == ColumnKind::numeric ? with_comma(std::move(cell)) : std::move(cell));
     }
-    if (!areas_m2.empty()) {
-      char number[40];
-      std::string area(number, std::to_chars(number, number + sizeof number, areas_m2[i]).ptr);
-      cells.push_back(comma ? with_comma(std::move(area)) : std::move(area));
-    }
+    if (!areas_m2.empty()) cells.push_back(csv_number(areas_m2[i], separator));
     text += csv_line(cells, separator);
   }
   return text;

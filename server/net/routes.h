@@ -50,6 +50,7 @@ void add_attachment_match_routes(Router& router, const RouteContext& context);
 void add_edit_routes(Router& router, const RouteContext& context);
 void add_query_routes(Router& router, const RouteContext& context);
 void add_statistics_routes(Router& router, const RouteContext& context);
+void add_quantity_routes(Router& router, const RouteContext& context);
 void add_frame_routes(Router& router, const RouteContext& context);
 void add_texel_routes(Router& router, const RouteContext& context);
 void add_shape_routes(Router& router, const RouteContext& context);

@@ -6,6 +6,7 @@
 #include "net/record_csv.h"
 #include "net/record_place.h"
 #include "net/routes.h"
+#include "net/sheet.h"
 #include "net/table_events.h"
 #include "net/table_wire.h"
 #include "query/expression_parser.h"
@@ -44,14 +45,6 @@ std::vector<std::pair<std::string, bool>> order_of(const std::string& text) {
   return order;
 }
 
-Result<char> separator_of(const Request& request) {
-  const std::string text = request.query_or("separator", "comma");
-  if (text == "comma") return ',';
-  if (text == "semicolon") return ';';
-  if (text == "tab") return '\t';
-  return fail(422, "Unknown separator", "`separator` is comma, semicolon or tab.", "separator");
-}
-
 // Sorted by the area that they have on the layer: the others' order is the database's.
 Result<store::Store::RecordPage> page_by_area(const RouteContext& context, const RecordPlace& place,
                                               const std::map<std::int64_t, query::KeyArea>& areas,
@@ -77,9 +70,9 @@ Result<store::Store::RecordPage> page_by_area(const RouteContext& context, const
 Result<Response> list_records(const RouteContext& context, const Request& request) {
   auto page = page_of(request);
   if (!page) return tl::unexpected(page.error());
-  const std::string format = request.query_or("f", "json");
-  if (format != "json" && format != "csv") return fail(406, "Unknown format", "`f` is json or csv.", "f");
-  auto separator = separator_of(request);
+  const auto format = sheet_format(request);
+  if (!format) return tl::unexpected(format.error());
+  auto separator = csv_separator(request);
   if (!separator) return tl::unexpected(separator.error());
   auto place = record_place(context, request);
   if (!place) return tl::unexpected(place.error());
@@ -91,7 +84,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     query.filter = std::move(*condition);
   }
   // A table to work on elsewhere is all of it, unless a part is asked for.
-  const bool whole = format == "csv" && !request.query.contains("limit");
+  const bool whole = *format == SheetFormat::csv && !request.query.contains("limit");
   query.limit = whole ? store::kMostRecords : page->limit;
   query.offset = page->offset;
   if (auto at = request.query.find("at"); at != request.query.end()) {
@@ -109,12 +102,12 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   auto records = by_area ? page_by_area(context, *place, areas, query) : context.store.records(place->table.id, query);
   if (!records) return tl::unexpected(records.error());
   Response response;
-  if (format == "csv") {
+  if (*format == SheetFormat::csv) {
     std::vector<double> areas_m2;
     if (place->layer)
       for (const Record& record : records->records) areas_m2.push_back(area_of(areas, record.key));
     response = text_response(records_csv(records->records, records->table.columns, areas_m2, *separator), kCsvType);
-    response.with("Content-Disposition", "attachment; filename*=UTF-8''" + percent_encode(place->table.slug + ".csv"));
+    name_download(response, place->table.slug + ".csv");
   } else {
     nlohmann::json list = nlohmann::json::array();
     for (const Record& record : records->records) {
@@ -125,7 +118,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     response = json_response({{"records", std::move(list)}, {"total", records->total}});
   }
   if (!whole) add_page_links(response, request, *page, records->total);
-  response.with("Strata-Sequence", std::to_string(records->table.sequence));
+  response.with("Strata-Sequence", std::to_string(records->table.sequence)).with("Vary", "Accept");
   return response;
 }
 

@@ -3,6 +3,7 @@
 #include "net/byte_budget.h"
 #include "net/digest.h"
 #include "net/routes.h"
+#include "net/sheet.h"
 #include "query/raster.h"
 
 namespace strata::net {
@@ -49,8 +50,7 @@ Result<Response> read_texels(const RouteContext& context, ByteBudget& budget, co
   if (!bytes) return tl::unexpected(bytes.error());
   Response response = bytes_response(std::move(*bytes), (*format)->media_type);
   response.held = std::move(*held);
-  response.with("Content-Disposition",
-                "attachment; filename*=UTF-8''" + percent_encode(layer->slug + "." + (*format)->extension));
+  name_download(response, layer->slug + "." + (*format)->extension);
   add_sequences(response, at->value_or(snapshot->sequence), (*room)->durable_sequence());
   return response;
 }

@@ -92,11 +92,7 @@ Result<room::FillEdit> fill_of(const protocol::EditFill& asked, const Layer& lay
   return fill;
 }
 
-std::string number(double value) {
-  char text[40];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return error == std::errc() ? std::string(text, end) : "0";
-}
+std::string number(double value) { return csv_number(value, ','); }
 
 nlohmann::json vec3(const glm::dvec3& v) { return nlohmann::json::array({v.x, v.y, v.z}); }
 nlohmann::json bounds_json(const glm::dvec3& low, const glm::dvec3& high) {

@@ -33,29 +33,30 @@ class Trees {
 }  // namespace
 
 PieceCounts count_pieces(const LayerView& view, const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
-                         const TexelSelection* within) {
+                         const TexelSelection* within, const ValueClasses& classes) {
   const ValueType type = view.layer.type;
-  const bool by_key = !is_float(type);
+  const bool is_one = !classes.each && classes.limits.empty();
   const std::size_t texels = map.block_of_slot.size() * 64;
   Trees trees(texels);
-  std::vector<std::uint32_t> bits_of(by_key ? texels : 0);
+  std::vector<std::uint32_t> class_of(is_one ? 0 : texels);
   for (const auto& [address, tile] : view.snapshot.tiles)
-    for_each_value(*tile, address, type, map, within, [&](std::uint32_t slot, int texel, std::uint32_t bits, double) {
-      const std::uint32_t number = slot * 64 + static_cast<std::uint32_t>(texel);
-      trees.add(number);
-      if (by_key) bits_of[number] = bits;
-    });
+    for_each_value(*tile, address, type, map, within,
+                   [&](std::uint32_t slot, int texel, std::uint32_t bits, double value) {
+                     const std::uint32_t number = slot * 64 + static_cast<std::uint32_t>(texel);
+                     trees.add(number);
+                     if (!is_one) class_of[number] = classes.of(bits, value);
+                   });
   for (std::uint32_t texel = 0; texel < texels; ++texel) {
     if (!trees.has(texel)) continue;
     mesh::for_each_neighbour(map, graph, texel, [&](std::uint32_t other) {
-      if (other < texel && trees.has(other) && (!by_key || bits_of[other] == bits_of[texel])) trees.join(texel, other);
+      if (other < texel && trees.has(other) && (is_one || class_of[other] == class_of[texel])) trees.join(texel, other);
     });
   }
   PieceCounts counts;
   for (std::uint32_t texel = 0; texel < texels; ++texel) {
     if (!trees.has(texel) || !trees.is_root(texel)) continue;
     ++counts.all;
-    if (by_key) ++counts.of_key[bits_of[texel]];
+    ++counts.of_class[is_one ? 0 : class_of[texel]];
   }
   return counts;
 }

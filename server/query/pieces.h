@@ -5,18 +5,19 @@
 
 #include "mesh/texel_graph.h"
 #include "query/texel_selection.h"
+#include "query/value_classes.h"
 #include "query/values.h"
 
 namespace strata::query {
 
 struct PieceCounts {
   std::uint64_t all = 0;
-  std::map<std::uint32_t, std::uint64_t> of_key;  // by the bits of the value; empty for layers of fractions
+  std::map<std::uint32_t, std::uint64_t> of_class;  // by ValueClasses::of
 };
 
-// Areas of the surface that are connected and hold a value, the same one in layers of whole numbers; of texels in `within` (null:
-// all). Seams of the atlas are no borders.
+// Areas of the surface that are connected and hold values of one class; of texels in `within` (null: all). Seams of the atlas are no
+// borders.
 PieceCounts count_pieces(const LayerView& view, const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
-                         const TexelSelection* within);
+                         const TexelSelection* within, const ValueClasses& classes);
 
 }  // namespace strata::query

@@ -144,9 +144,9 @@ Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const 
 
   if (request.quantiles) out.quantiles = quantiles(view, map, request.within, sums);
   if (request.pieces) {
-    const PieceCounts counts = count_pieces(view, map, *request.pieces, request.within);
+    const PieceCounts counts = count_pieces(view, map, *request.pieces, request.within, {.each = !is_float(type)});
     out.pieces = counts.all;
-    for (const auto& [bits, pieces] : counts.of_key)
+    for (const auto& [bits, pieces] : counts.of_class)
       if (const auto key = out.keys.find(decode_value(type, bits)); key != out.keys.end()) key->second.pieces = pieces;
   }
   return out;

@@ -1,7 +1,7 @@
 #include "query/texel_values.h"
 
+#include <algorithm>
 #include <array>
-#include <vector>
 
 namespace strata::query {
 namespace {
@@ -14,6 +14,15 @@ std::vector<double> decode_all(ValueType type) {
 }
 
 }  // namespace
+
+std::vector<std::pair<TileAddress, const TileData*>> sorted_tiles(const TileMap& tiles) {
+  std::vector<std::pair<TileAddress, const TileData*>> sorted;
+  sorted.reserve(tiles.size());
+  for (const auto& [address, tile] : tiles)
+    if (tile) sorted.emplace_back(address, tile.get());
+  std::ranges::sort(sorted, {}, [](const auto& tile) { return tile.first; });
+  return sorted;
+}
 
 const double* values_of_bits(ValueType type) {
   static const std::vector<double> u8 = decode_all(ValueType::u8), i8 = decode_all(ValueType::i8),

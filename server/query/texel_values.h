@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <utility>
+#include <vector>
 
 #include "query/texel_selection.h"
 #include "query/values.h"
@@ -10,6 +12,9 @@
 namespace strata::query {
 
 constexpr int kBlocksPerTile = kTileSize / kBlockSize;
+
+// Ascending by address: sums of floats depend on their order, and the same layer is to have the same sums.
+std::vector<std::pair<TileAddress, const TileData*>> sorted_tiles(const TileMap& tiles);
 
 // The 64 flags of a block of a mask, bit y * 8 + x.
 inline std::uint64_t block_bits(const TileMask& mask, int block_x, int block_y) {

@@ -231,4 +231,15 @@ Result<query::CrossTable> OpenRoom::cross_table(const std::string& rows, const s
   return query::cross_tabulate((*views)[0], (*views)[1], **map, *selected ? &**selected : nullptr, model().metres());
 }
 
+Result<query::Quantities> OpenRoom::quantities(const std::string& layer, At at) {
+  touch();
+  const auto views = layer_views({layer}, at);
+  if (!views) return tl::unexpected(views.error());
+  const auto map = surface_map(views->front().layer.resolution);
+  if (!map) return tl::unexpected(map.error());
+  const auto graph = surface_->graph(**map);
+  if (!graph) return tl::unexpected(graph.error());
+  return query::quantities(views->front(), **map, **graph, query::classes_of(views->front().layer), model().metres());
+}
+
 }  // namespace strata::room

@@ -9,6 +9,7 @@
 #include "query/cross_table.h"
 #include "query/key_areas.h"
 #include "query/profile.h"
+#include "query/quantities.h"
 #include "query/statistics.h"
 #include "query/values.h"
 #include "room/edit.h"
@@ -179,6 +180,8 @@ class Room {
   // What two layers of whole numbers hold together, at the finer one's texels.
   virtual Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
                                                 const Selection& selection = {}) = 0;
+  // How much there is of each class of the layer's legend (query::classes_of).
+  virtual Result<query::Quantities> quantities(const std::string& layer, At at = {}) = 0;
   // What maps and measurements paint (query/flat_map, query/dabs), for an ImportEdit `over` the layer. Values are bits of its type.
   struct PlacedValue {
     glm::dvec3 world{0};

@@ -121,6 +121,7 @@ class FakeRoom final : public room::Room {
   Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string&) override {
     return std::map<std::int64_t, query::KeyArea>();
   }
+  Result<query::Quantities> quantities(const std::string&, At) override { return query::Quantities{}; }
   Result<TileMirror::Snapshot> tiles(const std::string&, std::optional<std::int64_t>) override {
     return TileMirror::Snapshot{};
   }

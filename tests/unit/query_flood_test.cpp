@@ -17,6 +17,7 @@
 #include "mesh/texel_owners.h"
 #include "mesh/uv_islands.h"
 #include "query/pieces.h"
+#include "query/quantities.h"
 #include "query/statistics.h"
 #include "query/tile_table.h"
 #include "support/meshes.h"
@@ -232,13 +233,94 @@ TEST(Flood, the_pieces_that_are_counted_are_those_that_a_flood_finds) {
       for (std::size_t slot = 0; slot < seen.size(); ++slot) seen[slot] |= piece[slot];
     });
     if (floods > 300) continue;  // there are meshes of separate triangles only
-    const PieceCounts counts = count_pieces(view, map, surface.graph, nullptr);
-    EXPECT_EQ(counts.of_key, expected);
+    const PieceCounts counts = count_pieces(view, map, surface.graph, nullptr, {.each = true});
+    EXPECT_EQ(counts.of_class, expected);
     EXPECT_EQ(counts.all, floods);
     const auto statistics = query::statistics(view, map, glm::dvec3(0), 1, {.pieces = &surface.graph});
     EXPECT_EQ(statistics.pieces, floods);
     for (const auto& [bits, pieces] : expected) EXPECT_EQ(statistics.keys.at(bits).pieces, pieces);
   }
+}
+
+// By the legend: each value, or ranges; areas by a plain sum over texels, pieces by flooding a layer that holds the class instead.
+TEST(Quantities, are_those_of_a_sum_over_every_texel_and_of_floods) {
+  const Surface surface = surface_of("torus", test::torus(40), kResolution);
+  const mesh::SurfaceMap& map = surface.map;
+  const double metres = 0.01;
+  for (const auto mode : {PaletteMode::categorical, PaletteMode::step, PaletteMode::linear})
+    for (const auto type : {ValueType::i8, ValueType::u16, ValueType::f16, ValueType::f32}) {
+      SCOPED_TRACE(std::string(name(type)) + " " + std::to_string(static_cast<int>(mode)));
+      LayerView view, classes;
+      view.layer.type = type;
+      view.layer.palette.mode = mode;
+      view.layer.palette.points = {{2, {}, {}}, {4, {}, {}}, {6, {}, {}}};
+      classes.layer.type = ValueType::u8;
+      view.layer.resolution = classes.layer.resolution = kResolution;
+      const double step = is_float(type) && mode != PaletteMode::categorical ? 0.5 : 1;
+      std::map<int, Quantity> expected;
+      double total = 0;
+      std::map<TileAddress, std::shared_ptr<TileData>> values, numbers;
+      for_each_surface_texel(map, [&](std::uint32_t texel) {
+        const auto block = static_cast<int>(map.block_of_slot[texel / 64]), i = static_cast<int>(texel % 64);
+        const int x = block % map.blocks_per_side * 8 + i % 8, y = block / map.blocks_per_side * 8 + i / 8;
+        total += map.area[texel];
+        const glm::ivec3 cell(glm::floor(map.position(texel / 64, i) * 3.0f));
+        const int number = ((cell.x * 5 + cell.y * 3 + cell.z * 7) % 9 + 9) % 9;
+        if (number == 8) return;
+        const double value = number * step;
+        int of = number;
+        if (mode == PaletteMode::step) of = value < 2 ? 0 : value < 4 ? 1 : value < 6 ? 2 : 3;
+        if (mode == PaletteMode::linear) of = value < 2 ? 0 : value < 4 ? 1 : value <= 6 ? 2 : 3;
+        const TileAddress address{static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)};
+        const int in_tile = y % kTileSize * kTileSize + x % kTileSize;
+        for (auto* tiles : {&values, &numbers}) {
+          auto& tile = (*tiles)[address];
+          if (!tile) tile = std::make_shared<TileData>(tiles == &values ? type : ValueType::u8);
+          tile->write(in_tile, *encode_value(tiles == &values ? type : ValueType::u8, tiles == &values ? value : of));
+        }
+        ++expected[of].texels;
+        expected[of].area_m2 += map.area[texel] * metres * metres;
+      });
+      view.snapshot.tiles.insert(values.begin(), values.end());
+      classes.snapshot.tiles.insert(numbers.begin(), numbers.end());
+      TexelSelection seen(map.block_of_slot.size(), 0);
+      const TileTable table(classes.snapshot.tiles, kResolution);
+      for_each_surface_texel(map, [&](std::uint32_t texel) {
+        if (is_in(seen, texel)) return;
+        const auto block = static_cast<int>(map.block_of_slot[texel / 64]), i = static_cast<int>(texel % 64);
+        const int x = block % map.blocks_per_side * 8 + i % 8, y = block / map.blocks_per_side * 8 + i / 8;
+        const TileData* tile = table.of_texel(x, y);
+        const int in_tile = y % kTileSize * kTileSize + x % kTileSize;
+        if (tile == nullptr || !tile->valid.test(in_tile)) return;
+        ++expected[static_cast<int>(tile->bits(in_tile))].pieces;
+        const auto piece = select_connected(map, surface.graph, classes.snapshot.tiles, texel);
+        for (std::size_t slot = 0; slot < seen.size(); ++slot) seen[slot] |= piece[slot];
+      });
+
+      const auto got = quantities(view, map, surface.graph, classes_of(view.layer), metres);
+      ASSERT_TRUE(got);
+      ASSERT_EQ(got->classes.size(), expected.size());
+      EXPECT_NEAR(got->surface_m2, total * metres * metres, 1e-6 * got->surface_m2);
+      Quantity sum;
+      auto entry = got->classes.begin();
+      for (const auto& [of, quantity] : expected) {
+        EXPECT_EQ(entry->texels, quantity.texels) << of;
+        EXPECT_NEAR(entry->area_m2, quantity.area_m2, 1e-9 * quantity.area_m2) << of;
+        EXPECT_EQ(entry->pieces, quantity.pieces) << of;
+        if (mode == PaletteMode::categorical) {
+          EXPECT_EQ(entry->value, of);
+        } else {
+          EXPECT_EQ(entry->value, std::nullopt);
+          EXPECT_EQ(entry->from, of == 0 ? std::nullopt : std::optional(2.0 * of));
+          EXPECT_EQ(entry->to, of == 3 ? std::nullopt : std::optional(2.0 * of + 2));
+        }
+        sum.texels += quantity.texels;
+        sum.pieces += quantity.pieces;
+        ++entry;
+      }
+      EXPECT_EQ(got->sum.texels, sum.texels);
+      EXPECT_EQ(got->sum.pieces, sum.pieces);
+    }
 }
 
 TEST(Flood, a_pot_is_one_piece_though_its_atlas_has_many) {

@@ -1144,6 +1144,75 @@ export interface TableAreas {
   total: number;
 }
 
+/** How much there is in all. */
+export interface QuantitySum {
+  /** Connected areas, across the seams of the atlas. */
+  pieces: number;
+  texels: number;
+  area_m2: number;
+  /** Of the model's surface; of layers. */
+  share?: number;
+}
+
+/** How much there is of a class. `key` of database layers, `value` where each value is a class, `from` and `to` of ranges, which are open where one is absent. */
+export interface LayerQuantity {
+  /** The record's name or the legend's label; the number or the range where there is none. */
+  class: string;
+  key?: number;
+  /** With `key`. */
+  has_record?: boolean;
+  value?: number;
+  from?: number;
+  to?: number;
+  /** Connected areas, across the seams of the atlas. */
+  pieces: number;
+  texels: number;
+  area_m2: number;
+  /** Of the model's surface. */
+  share: number;
+}
+
+/** How much there is of each class of a layer. */
+export interface LayerQuantities {
+  quantities: LayerQuantity[];
+  /** Classes. */
+  total: number;
+  sum: QuantitySum;
+  /** Of the whole model. */
+  surface_m2: number;
+}
+
+/** How much there is of a record on one layer. */
+export interface QuantityOnLayer {
+  model: number;
+  layer: number;
+  /** Connected areas, across the seams of the atlas. */
+  pieces: number;
+  texels: number;
+  area_m2: number;
+}
+
+/** How much there is of a record. */
+export interface TableQuantity {
+  /** The record's name, or its key. */
+  class: string;
+  key: number;
+  has_record: boolean;
+  /** Connected areas, across the seams of the atlas. */
+  pieces: number;
+  texels: number;
+  area_m2: number;
+  layers: QuantityOnLayer[];
+}
+
+/** How much there is of each record of a table. */
+export interface TableQuantities {
+  quantities: TableQuantity[];
+  /** Records. */
+  total: number;
+  sum: QuantitySum;
+}
+
 /** Values computed from the model's shape. The answer is a job; the layer is there once it is done. Unit, palette and description follow from the recipe where they are not given. */
 export interface ShapeRecipe {
   kind: "height" | "slope" | "azimuth" | "mean_curvature" | "gaussian_curvature" | "max_curvature" | "min_curvature" | "roughness" | "ambient_occlusion" | "boundary_distance" | "model_distance" | "vertex_property";

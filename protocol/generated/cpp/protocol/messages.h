@@ -150,6 +150,12 @@ enum class Schema {
   ModelArea,
   KeyArea,
   TableAreas,
+  QuantitySum,
+  LayerQuantity,
+  LayerQuantities,
+  QuantityOnLayer,
+  TableQuantity,
+  TableQuantities,
   LayerCreate,
   ShapeRecipe,
   Recipe,
@@ -188,7 +194,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 162;
+constexpr int kSchemaCount = 168;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}

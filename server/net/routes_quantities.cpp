@@ -1,0 +1,267 @@
+#include <algorithm>
+
+#include "core/csv.h"
+#include "net/as_of.h"
+#include "net/painted_keys.h"
+#include "net/routes.h"
+#include "net/sheet.h"
+
+namespace strata::net {
+namespace {
+
+using Names = std::map<std::int64_t, std::string>;  // of records, by key; those that are there, also without a name
+
+Result<Names> record_names(const RouteContext& context, std::int64_t table_id, std::vector<std::int64_t> keys,
+                           std::optional<std::int64_t> at) {
+  store::Store::RecordQuery query;
+  query.keys = std::move(keys);
+  query.at = at;
+  auto page = context.store.records(table_id, query);
+  if (!page) return tl::unexpected(page.error());
+  Names names;
+  for (const Record& record : page->records) names[record.key] = record_name(record, page->table.columns);
+  return names;
+}
+
+std::string plain_number(double value) { return csv_number(value, ','); }
+
+// What a class is called: the record's name, the label of the legend, or nothing.
+std::string label_of(const query::Quantity& quantity, const Layer& layer, const Names& names) {
+  if (layer.kind == LayerKind::database) {
+    const auto name = names.find(static_cast<std::int64_t>(*quantity.value));
+    return name == names.end() ? std::string() : name->second;
+  }
+  // The colour of a step, and with it its label, begins at its point.
+  if (!quantity.value && (layer.palette.mode != PaletteMode::step || !quantity.from)) return {};
+  const double at = quantity.value ? *quantity.value : *quantity.from;
+  for (const Palette::Point& point : layer.palette.points)
+    if (point.at == at) return point.label;
+  return {};
+}
+
+// As people read it in a column of its own.
+std::string class_text(const query::Quantity& quantity, const std::string& label) {
+  if (!label.empty()) return label;
+  if (quantity.value) return plain_number(*quantity.value);
+  if (quantity.from && quantity.to) return "from " + plain_number(*quantity.from) + " to " + plain_number(*quantity.to);
+  if (quantity.from) return "from " + plain_number(*quantity.from);
+  if (quantity.to) return "below " + plain_number(*quantity.to);
+  return "all";
+}
+
+nlohmann::json sums_json(const query::Quantity& quantity) {
+  return {{"pieces", quantity.pieces}, {"texels", quantity.texels}, {"area_m2", quantity.area_m2}};
+}
+
+double share_of(const query::Quantity& quantity, const query::Quantities& all) {
+  return all.surface_m2 > 0 ? std::min(1.0, quantity.area_m2 / all.surface_m2) : 0;
+}
+
+nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const Names& names) {
+  nlohmann::json list = nlohmann::json::array();
+  const auto add_share = [&](nlohmann::json json, const query::Quantity& quantity) {
+    json["share"] = share_of(quantity, all);
+    return json;
+  };
+  for (const query::Quantity& quantity : all.classes) {
+    nlohmann::json json = add_share(sums_json(quantity), quantity);
+    const std::string label = label_of(quantity, layer, names);
+    json["class"] = class_text(quantity, label);
+    if (quantity.value && layer.kind == LayerKind::database) {
+      const auto key = static_cast<std::int64_t>(*quantity.value);
+      json["key"] = key;
+      json["has_record"] = names.contains(key);
+    } else if (quantity.value) {
+      json["value"] = *quantity.value;
+    }
+    if (quantity.from) json["from"] = *quantity.from;
+    if (quantity.to) json["to"] = *quantity.to;
+    list.push_back(std::move(json));
+  }
+  const std::size_t count = list.size();
+  return {{"quantities", std::move(list)},
+          {"total", count},
+          {"sum", add_share(sums_json(all.sum), all.sum)},
+          {"surface_m2", all.surface_m2}};
+}
+
+Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& names, const std::string& name) {
+  Sheet sheet{name, {"class"}, {}};
+  const bool has_keys = layer.kind == LayerKind::database, has_values = query::classes_of(layer).each;
+  if (has_keys)
+    sheet.heads.emplace_back("key");
+  else if (has_values)
+    sheet.heads.emplace_back("value");
+  else
+    sheet.heads.insert(sheet.heads.end(), {"from", "to"});
+  sheet.heads.insert(sheet.heads.end(), {"pieces", "texels", "area_m2", "percent_of_surface"});
+  const auto number = [](const std::optional<double>& value) { return value ? SheetCell(*value) : SheetCell(); };
+  const auto add = [&](const query::Quantity& quantity, SheetCell name_cell) {
+    std::vector<SheetCell> row{std::move(name_cell)};
+    if (has_keys || has_values)
+      row.push_back(number(quantity.value));
+    else
+      row.insert(row.end(), {number(quantity.from), number(quantity.to)});
+    row.insert(row.end(),
+               {double(quantity.pieces), double(quantity.texels), quantity.area_m2, 100 * share_of(quantity, all)});
+    sheet.rows.push_back(std::move(row));
+  };
+  for (const query::Quantity& quantity : all.classes) {
+    const std::string label = label_of(quantity, layer, names);
+    add(quantity, label.empty() && quantity.value ? SheetCell(*quantity.value) : class_text(quantity, label));
+  }
+  add(all.sum, "total");
+  return sheet;
+}
+
+Result<Response> layer_quantities(const RouteContext& context, const Request& request) {
+  const auto format = sheet_format(request);
+  if (!format) return tl::unexpected(format.error());
+  const auto separator = csv_separator(request);
+  if (!separator) return tl::unexpected(separator.error());
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  const auto layer = (*room)->layer(request.param("layer"));
+  if (!layer) return tl::unexpected(layer.error());
+  const auto at = find_sequence(context, **room, as_of(request));
+  if (!at) return tl::unexpected(at.error());
+  const auto sequence = at->value_or((*room)->sequence());
+  const auto all = (*room)->quantities(layer->slug, *at);
+  if (!all) return tl::unexpected(all.error());
+  Names names;
+  if (layer->table) {
+    std::optional<std::int64_t> records_at;  // as they were when that edit was made
+    if (*at) {
+      auto found = context.store.table_sequence_when(*layer->table, layer->model_id, **at);
+      if (!found) return tl::unexpected(found.error());
+      records_at = *found;
+    }
+    std::vector<std::int64_t> keys;
+    for (const query::Quantity& quantity : all->classes) keys.push_back(static_cast<std::int64_t>(*quantity.value));
+    auto found = record_names(context, *layer->table, std::move(keys), records_at);
+    if (!found) return tl::unexpected(found.error());
+    names = std::move(*found);
+  }
+  Response response;
+  if (*format == SheetFormat::json)
+    response = json_response(to_json(*all, *layer, names));
+  else
+    response = csv_response(to_sheet(*all, *layer, names, layer->slug + "-quantities"), *separator);
+  add_sequences(response, sequence, (*room)->durable_sequence());
+  response.with("Vary", "Accept");
+  return response;
+}
+
+// --- of a table: over all models whose layers hold its keys
+
+struct OfLayer {
+  Model model;
+  Layer layer;
+  std::map<std::int64_t, query::Quantity> of_key;
+};
+
+Result<std::vector<OfLayer>> of_layers(const RouteContext& context, std::int64_t table_id) {
+  auto layers = context.store.layers_of_table(table_id);
+  if (!layers) return tl::unexpected(layers.error());
+  std::vector<OfLayer> found;
+  for (Layer& layer : *layers) {
+    if (layer.sequence == 0) continue;  // nothing was ever painted there
+    auto room = context.rooms.open(std::to_string(layer.model_id));
+    if (!room) return tl::unexpected(room.error());
+    auto all = (*room)->quantities(layer.slug);
+    if (!all && all.error().status == 404) continue;  // deleted meanwhile
+    if (!all) return tl::unexpected(all.error());
+    if (all->classes.empty()) continue;
+    OfLayer of_layer{(*room)->model(), std::move(layer), {}};
+    for (const query::Quantity& quantity : all->classes)
+      of_layer.of_key[static_cast<std::int64_t>(*quantity.value)] = quantity;
+    found.push_back(std::move(of_layer));
+  }
+  return found;
+}
+
+void add(query::Quantity& sum, const query::Quantity& part) {
+  sum.pieces += part.pieces;
+  sum.texels += part.texels;
+  sum.area_m2 += part.area_m2;
+}
+
+Result<Response> table_quantities(const RouteContext& context, const Request& request) {
+  const auto format = sheet_format(request);
+  if (!format) return tl::unexpected(format.error());
+  const auto separator = csv_separator(request);
+  if (!separator) return tl::unexpected(separator.error());
+  const auto table = context.store.table(request.param("table"));
+  if (!table) return tl::unexpected(table.error());
+  const auto layers = of_layers(context, table->id);
+  if (!layers) return tl::unexpected(layers.error());
+  std::map<std::int64_t, query::Quantity> of_key;
+  query::Quantity sum;
+  for (const OfLayer& layer : *layers)
+    for (const auto& [key, quantity] : layer.of_key) {
+      add(of_key[key], quantity);
+      add(sum, quantity);
+    }
+  std::vector<std::int64_t> keys;
+  for (const auto& [key, quantity] : of_key) keys.push_back(key);
+  const auto names = record_names(context, table->id, keys, {});
+  if (!names) return tl::unexpected(names.error());
+  const auto text_of = [&](std::int64_t key) {
+    const auto name = names->find(key);
+    return name == names->end() || name->second.empty() ? std::to_string(key) : name->second;
+  };
+  if (*format == SheetFormat::json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const auto& [key, quantity] : of_key) {
+      nlohmann::json json = sums_json(quantity), parts = nlohmann::json::array();
+      for (const OfLayer& layer : *layers)
+        if (const auto part = layer.of_key.find(key); part != layer.of_key.end()) {
+          parts.push_back(sums_json(part->second));
+          parts.back()["model"] = layer.model.id;
+          parts.back()["layer"] = layer.layer.id;
+        }
+      json["class"] = text_of(key);
+      json["key"] = key;
+      json["has_record"] = names->contains(key);
+      json["layers"] = std::move(parts);
+      list.push_back(std::move(json));
+    }
+    const std::size_t count = list.size();
+    return json_response({{"quantities", std::move(list)}, {"total", count}, {"sum", sums_json(sum)}})
+        .with("Vary", "Accept");
+  }
+  Sheet sheet{table->slug + "-quantities", {"class", "key", "pieces", "texels", "area_m2"}, {}};
+  for (const OfLayer& layer : *layers) sheet.heads.push_back(layer.model.slug + "/" + layer.layer.slug + " area_m2");
+  for (const auto& [key, quantity] : of_key) {
+    std::vector<SheetCell> row{text_of(key), double(key), double(quantity.pieces), double(quantity.texels),
+                               quantity.area_m2};
+    for (const OfLayer& layer : *layers) {
+      const auto part = layer.of_key.find(key);
+      row.push_back(part == layer.of_key.end() ? SheetCell() : SheetCell(part->second.area_m2));
+    }
+    sheet.rows.push_back(std::move(row));
+  }
+  std::vector<SheetCell> last{std::string("total"), {}, double(sum.pieces), double(sum.texels), sum.area_m2};
+  for (const OfLayer& layer : *layers) {
+    query::Quantity of_layer;
+    for (const auto& [key, quantity] : layer.of_key) add(of_layer, quantity);
+    last.push_back(of_layer.area_m2);
+  }
+  sheet.rows.push_back(std::move(last));
+  return csv_response(sheet, *separator).with("Vary", "Accept");
+}
+
+}  // namespace
+
+void add_quantity_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/layers/{layer}/quantities",
+              .handler = answering([&context](const Request& request) { return layer_quantities(context, request); }),
+              .query = {"at", "f", "separator"}});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/tables/{table}/quantities",
+              .handler = answering([&context](const Request& request) { return table_quantities(context, request); }),
+              .query = {"f", "separator"}});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "net/http_types.h"
+
+// Tables that people take into a spreadsheet.
+namespace strata::net {
+
+enum class SheetFormat { json, csv };
+// `f`, or where that is absent what Accept names; JSON where neither says anything. 406 for what is none of them.
+Result<SheetFormat> sheet_format(const Request& request);
+// Of CSV: `separator`; 422 for what is none.
+Result<char> csv_separator(const Request& request);
+
+using SheetCell = std::variant<std::monostate, double, std::string>;
+
+struct Sheet {
+  std::string name;  // of the file, without its ending
+  std::vector<std::string> heads;
+  std::vector<std::vector<SheetCell>> rows;  // of as many cells
+};
+
+// With a byte order mark, as spreadsheets want it; a text that one would run as a formula is guarded.
+Response csv_response(const Sheet& sheet, char separator);
+
+// For a file that is kept and not shown; any characters will do.
+void name_download(Response& response, const std::string& filename);
+
+}  // namespace strata::net

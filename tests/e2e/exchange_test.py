@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""What a project gives to reports, spreadsheets and other programs: quantities."""
+import csv
+import io
+import math
+import os
+import sys
+import urllib.parse
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.meshes import folded_grid
+from support.strata_server import StrataServer
+
+M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
+
+
+def near(a, b, share):
+    assert abs(a - b) <= share * abs(b), (a, b)
+
+
+def dab(server, path, value, x, y, radius):
+    """Paints a disc of `radius` mm around a place, as a reading."""
+    query = urllib.parse.urlencode({"radius_mm": radius})
+    return server.ok("POST", f"{path}/readings?{query}", f"x,y,z,value\n{x},{y},0,{value}\n", headers={"Content-Type": "text/csv"}).json()
+
+
+def rows_of(answer, separator=","):
+    text = answer.body.decode("utf-8-sig")
+    return list(csv.DictReader(io.StringIO(text, newline=""), delimiter=separator))
+
+
+def new_layer(server, body, model=M):
+    return f"{model}/layers/" + server.ok("POST", model + "/layers", {"resolution": 2048, **body}).json()["slug"]
+
+
+def check_quantities_of_records(server):
+    server.ok("POST", "/projects/default/tables", {"name": "Pieces", "columns": [{"name": "Code", "required": True, "unique": True}]})
+    for code in ("Head", "=cmd|'/C calc'!A0", "Base, left"):
+        server.ok("POST", "/tables/pieces/records", {"values": {"code": code}})
+    pieces = new_layer(server, {"name": "Pieces", "kind": "database", "type": "u16", "table": "pieces"})
+    first = dab(server, pieces, 1, 30, 30, 10)["sequence"]
+    dab(server, pieces, 2, 70, 30, 5)
+    dab(server, pieces, 2, 70, 70, 5)
+    now = server.get(pieces + "/quantities").json()
+    keys = {k["key"]: k for k in server.get(pieces + "/statistics?include=pieces").json()["keys"]}
+    assert [(q["class"], q["key"], q["pieces"]) for q in now["quantities"]] == [("Head", 1, 1), ("=cmd|'/C calc'!A0", 2, 2)], now
+    for quantity in now["quantities"]:
+        near(quantity["area_m2"], keys[quantity["key"]]["area_m2"], 1e-9)
+        assert quantity["texels"] == keys[quantity["key"]]["texels"] and quantity["pieces"] == keys[quantity["key"]]["pieces"]
+        near(quantity["share"], quantity["area_m2"] / server.get(M).json()["area_m2"], 1e-3)
+    near(now["sum"]["area_m2"], 150 * math.pi * 1e-6, 0.02)
+    assert now["sum"]["pieces"] == 3 and now["total"] == 2, now
+
+    # Of then, with the names of then.
+    server.ok("PATCH", "/tables/pieces/records/1", {"values": {"code": "Skull"}})
+    assert server.get(pieces + "/quantities").json()["quantities"][0]["class"] == "Skull"
+    past = server.get(f"{pieces}/quantities?at={first}")
+    assert past.headers["Strata-Sequence"] == str(first)
+    assert [q["class"] for q in past.json()["quantities"]] == ["Head"], past.json()
+
+    rows = rows_of(server.get(pieces + "/quantities?f=csv"))
+    assert [row["class"] for row in rows] == ["Skull", "'=cmd|'/C calc'!A0", "total"], rows
+    assert float(rows[0]["area_m2"]) == now["quantities"][0]["area_m2"] and rows[2]["key"] == ""
+    near(sum(float(row["percent_of_surface"]) for row in rows[:2]), float(rows[2]["percent_of_surface"]), 1e-9)
+    other = rows_of(server.get(pieces + "/quantities?f=csv&separator=semicolon"), ";")
+    assert other[0]["area_m2"] == rows[0]["area_m2"].replace(".", ","), other
+    accepted = server.get(pieces + "/quantities", headers={"Accept": "text/csv"})
+    assert accepted.headers["Content-Type"].startswith("text/csv") and accepted.headers["Vary"] == "Accept"
+    for query, status, field in (("f=ods", 406, "f"), ("separator=dot", 422, "separator"), ("at=99999", 422, "at")):
+        answer = server.get(f"{pieces}/quantities?{query}")
+        assert (answer.status, answer.json()["field"]) == (status, field), answer
+    return pieces
+
+
+def check_quantities_of_numbers(server):
+    palette = {"mode": "categorical", "points": [{"at": 3, "color": "#ff0000", "label": "Salt"}]}
+    salt = new_layer(server, {"name": "Salt", "type": "i8", "palette": palette})
+    assert server.get(salt + "/quantities").json()["quantities"] == []
+    dab(server, salt, 3, 30, 30, 10)
+    dab(server, salt, -2, 70, 70, 10)
+    assert [(q["class"], q["value"]) for q in server.get(salt + "/quantities").json()["quantities"]] == [("-2", -2), ("Salt", 3)]
+    rows = rows_of(server.get(salt + "/quantities?f=csv"))
+    assert [(row["class"], row["value"]) for row in rows] == [("-2", "-2"), ("Salt", "3"), ("total", "")], rows
+
+    steps = {"mode": "step", "points": [{"at": 0.1, "color": "#00ff00", "label": "dry"}, {"at": 0.5, "color": "#0000ff", "label": "wet"}]}
+    moisture = new_layer(server, {"name": "Moisture", "type": "f32", "palette": steps})
+    for value, x in ((0.05, 15), (0.2, 40), (0.3, 45), (0.7, 80)):
+        dab(server, moisture, value, x, 50, 10)
+    now = server.get(moisture + "/quantities").json()["quantities"]
+    assert [(q["class"], q.get("from"), q.get("to"), q["pieces"]) for q in now] == [
+        ("below 0.1", None, 0.1, 1), ("dry", 0.1, 0.5, 1), ("wet", 0.5, None, 1)], now
+    for quantity, where in zip(now, ("moisture < 0.1", "moisture >= 0.1 and moisture < 0.5", "moisture >= 0.5")):
+        near(quantity["area_m2"], server.ok("POST", M + "/select", {"where": where}).json()["area_m2"], 1e-6)
+    linear = {"mode": "linear", "points": [{"at": 0, "color": "#000000"}, {"at": 0.25, "color": "#888888"}, {"at": 0.7, "color": "#ffffff"}]}
+    etag = server.get(moisture).headers["ETag"]
+    server.ok("PATCH", moisture, {"palette": linear}, headers={"If-Match": etag})
+    rows = rows_of(server.get(moisture + "/quantities?f=csv"))
+    # 0.7 of a 32-bit float lies below 0.7 of a double.
+    assert [(row["class"], row["from"], row["to"]) for row in rows] == [("from 0 to 0.25", "0", "0.25"), ("from 0.25 to 0.7", "0.25", "0.7"), ("total", "", "")], rows
+
+
+def check_quantities_of_a_table(server, pieces):
+    """One record on two models adds up."""
+    other = server.import_model(folded_grid(fold=0.001, size=50.0), "small.ply", name="Small", unit="mm")
+    there = new_layer(server, {"name": "Pieces", "kind": "database", "type": "u8", "table": "pieces"}, model=f"/models/{other['slug']}")
+    dab(server, there, 2, 20, 20, 4)
+    dab(server, there, 3, 40, 40, 4)
+    here = {q["key"]: q for q in server.get(pieces + "/quantities").json()["quantities"]}
+    away = {q["key"]: q for q in server.get(there + "/quantities").json()["quantities"]}
+    table = server.get("/tables/pieces/quantities").json()
+    assert [q["key"] for q in table["quantities"]] == [1, 2, 3] and table["total"] == 3, table
+    both = table["quantities"][1]
+    near(both["area_m2"], here[2]["area_m2"] + away[2]["area_m2"], 1e-12)
+    assert both["pieces"] == 3 and len(both["layers"]) == 2 and both["has_record"], both
+    near(table["sum"]["area_m2"], sum(q["area_m2"] for q in [*here.values(), *away.values()]), 1e-12)
+    areas = {a["key"]: a["area_m2"] for a in server.get("/tables/pieces/areas").json()["areas"]}
+    assert set(areas) == {1, 2, 3}
+    for quantity in table["quantities"]:
+        near(quantity["area_m2"], areas[quantity["key"]], 1e-9)
+    rows = rows_of(server.get("/tables/pieces/quantities?f=csv"))
+    assert rows[1]["sheet/pieces area_m2"] and rows[1]["small/pieces area_m2"] and rows[0]["small/pieces area_m2"] == "", rows
+    near(float(rows[3]["small/pieces area_m2"]), sum(q["area_m2"] for q in away.values()), 1e-12)
+
+
+def main():
+    with StrataServer() as server:
+        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
+        pieces = check_quantities_of_records(server)
+        check_quantities_of_numbers(server)
+        check_quantities_of_a_table(server, pieces)
+        assert server.stop() == 0
+        server.assert_clean_log()
+
+
+main()
