@@ -123,24 +123,27 @@ bool begins_formula(std::string_view text) {
 
 Result<CsvText> parse_csv(std::string_view text, const CsvLimits& limits) { return Reader(text, limits).read(); }
 
+void append_csv_cell(std::string& line, std::string_view cell, char separator) {
+  const bool quoted = cell.find_first_of("\"\r\n") != std::string_view::npos ||
+                      cell.find(separator) != std::string_view::npos || cell.starts_with(' ') || cell.ends_with(' ');
+  if (!quoted) {
+    line += cell;
+    return;
+  }
+  line += '"';
+  for (const char c : cell) {
+    if (c == '"') line += '"';
+    line += c;
+  }
+  line += '"';
+}
+
 std::string csv_line(const std::vector<std::string>& cells, char separator) {
-  const std::string special = std::string("\"\r\n") + separator;
+  if (cells.size() == 1 && cells.front().empty()) return "\"\"\r\n";  // readers leave out what would be an empty row
   std::string line;
   for (const std::string& cell : cells) {
     if (&cell != cells.data()) line += separator;
-    // A lone empty cell would be an empty row, which readers leave out.
-    const bool quoted = cell.find_first_of(special) != std::string::npos || (cell.empty() && cells.size() == 1) ||
-                        cell.starts_with(' ') || cell.ends_with(' ');
-    if (!quoted) {
-      line += cell;
-      continue;
-    }
-    line += '"';
-    for (const char c : cell) {
-      if (c == '"') line += '"';
-      line += c;
-    }
-    line += '"';
+    append_csv_cell(line, cell, separator);
   }
   return line + "\r\n";
 }

@@ -33,6 +33,8 @@ inline constexpr std::string_view kUtf8Mark =
 
 // One row with CRLF at its end; cells are quoted where they must be.
 std::string csv_line(const std::vector<std::string>& cells, char separator);
+// One cell of a row that has others, without what separates it from them.
+void append_csv_cell(std::string& line, std::string_view cell, char separator);
 
 // The shortest text that reads back as the number; with a decimal comma where semicolons separate the cells, as in the countries
 // whose Excel writes semicolons.

@@ -9,6 +9,7 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <charconv>
 #include <future>
 
 #include "core/log.h"
@@ -119,6 +120,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   asio::awaitable<bool> serve(http::request_parser<http::empty_body>& head) {
     const CountAtWork at_work(connections_->requests_at_work);
     const bool keep_alive = head.keep_alive() && !connections_->stopping;
+    http_version_ = head.get().version();
     auto parsed = request_of(head.get());
     if (!parsed) {
       Response malformed = problem_response(parsed.error());
@@ -326,41 +328,69 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return co_await write(message);
   }
 
-  asio::awaitable<bool> send_head(const Response& response, std::uint64_t length, bool keep_alive) {
+  asio::awaitable<bool> send_head(const Response& response, std::optional<std::uint64_t> length, bool keep_alive) {
     http::response<http::empty_body> message;
     put_head(message, response, keep_alive);
-    if (response.status != 204 && response.status != 304) message.content_length(length);
+    if (length && response.status != 204 && response.status != 304) message.content_length(*length);
     co_return co_await write(message);
   }
 
+  // The head of a body in chunks, and nothing of the body.
+  asio::awaitable<bool> send_chunked_head(const Response& response) {
+    http::response<http::empty_body> message;
+    put_head(message, response, true);
+    message.chunked(true);
+    http::response_serializer<http::empty_body> serializer(message);
+    stream_.expires_after(kStall);
+    auto [error, size] = co_await http::async_write_header(stream_, serializer, kUseResult);
+    co_return !error;
+  }
+
   // A worker makes the bytes and waits for each piece to be sent; few at once, so that slow readers leave workers for others.
+  // Where their number is not known they go in chunks; a client of HTTP/1.0 knows none, and reads until the connection ends.
   asio::awaitable<bool> send_stream(Response& response, Method method, bool keep_alive) {
-    if (method == Method::head) co_return co_await send_head(response, response.stream->length, keep_alive);
+    const auto length = response.stream->length;
+    if (method == Method::head) co_return co_await send_head(response, length, keep_alive);
     const CountAtWork counted(connections_->streams_at_work);
     if (connections_->streams_at_work > std::max(1, app_.options().worker_threads / 2)) {
       Response refusal =
           problem_response({503, "Too many downloads", "Ask again when another download has ended.", {}});
       co_return co_await send(refusal, method, keep_alive);
     }
-    const bool head_sent = co_await send_head(response, response.stream->length, true);
+    const bool in_chunks = !length && http_version_ >= 11;
+    bool head_sent = false;
+    if (in_chunks)
+      head_sent = co_await send_chunked_head(response);
+    else
+      head_sent = co_await send_head(response, length, true);
     if (!head_sent) co_return false;
-    auto sent = std::make_shared<std::uint64_t>(0);
+    auto whole = std::make_shared<bool>(false);
     auto stream = *response.stream;
-    const Work pump = [this, self = shared_from_this(), stream, sent](const Respond& respond) {
-      stream.write([&](std::span<const std::uint8_t> bytes) {
-        if (*sent + bytes.size() > stream.length || !send_piece(bytes)) return false;
-        *sent += bytes.size();
+    const Work pump = [this, self = shared_from_this(), stream, whole, in_chunks](const Respond& respond) {
+      std::uint64_t sent = 0;
+      const bool written = stream.write([&](std::span<const std::uint8_t> bytes) {
+        if (bytes.empty()) return true;  // an empty chunk would be the last one
+        if ((stream.length && sent + bytes.size() > *stream.length) || !send_piece(bytes, in_chunks)) return false;
+        sent += bytes.size();
         return true;
       });
+      *whole = written && (!stream.length || sent == *stream.length) && (!in_chunks || send_piece({}, true));
       respond(empty_response(200));
     };
     const Response done = co_await on_worker(connections_, stream_.get_executor(), pump);
-    co_return done.status == 200 && *sent == response.stream->length&& keep_alive;
+    const bool framed = length || in_chunks;
+    co_return done.status == 200 && *whole&& framed&& keep_alive;
   }
 
-  // On a worker: waits until the piece is sent.
-  bool send_piece(std::span<const std::uint8_t> bytes) {
-    auto data = std::make_shared<const std::vector<std::uint8_t>>(bytes.begin(), bytes.end());
+  // On a worker: waits until the piece is sent. As a chunk an empty one ends the body.
+  bool send_piece(std::span<const std::uint8_t> bytes, bool as_chunk) {
+    auto data = std::make_shared<std::vector<std::uint8_t>>();
+    const auto add = [&](std::string_view text) { data->insert(data->end(), text.begin(), text.end()); };
+    char size[20];
+    const auto end = std::to_chars(size, size + sizeof size, bytes.size(), 16).ptr;
+    if (as_chunk) add(std::string_view(size, static_cast<std::size_t>(end - size))), add("\r\n");
+    data->insert(data->end(), bytes.begin(), bytes.end());
+    if (as_chunk) add("\r\n");
     auto result = std::make_shared<std::promise<bool>>();
     auto future = result->get_future();
     asio::post(stream_.get_executor(), [self = shared_from_this(), data, result] {
@@ -417,6 +447,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   App& app_;
   beast::flat_buffer buffer_;
   TokenBucket bucket_;
+  unsigned http_version_ = 11;  // of the request: 10 or 11
   bool handed_over_ = false;
 };
 

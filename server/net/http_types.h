@@ -62,11 +62,12 @@ struct Response {
   std::vector<std::uint8_t> bytes;   // sent in place of `body` when not empty
   std::filesystem::path file;        // the same
   std::shared_ptr<const void> held;  // let go once the answer is sent
-  // Bytes made while they are sent, in place of `body`. `write` runs on a worker and stops when the sink says false.
+  // Bytes made while they are sent, in place of `body`. `write` runs on a worker, stops when the sink says false, and says whether
+  // all was written: otherwise the connection ends, which tells the client.
   using Sink = std::function<bool(std::span<const std::uint8_t>)>;
   struct Stream {
-    std::uint64_t length = 0;
-    std::function<void(const Sink&)> write;
+    std::optional<std::uint64_t> length;  // nothing: known only at the end
+    std::function<bool(const Sink&)> write;
   };
   std::optional<Stream> stream;
 

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/model.h"
 #include "net/http_types.h"
 
 namespace strata::net {
@@ -48,6 +49,21 @@ Result<glm::dvec3> parse_point(std::string_view text) {
   skip_spaces(text);
   if (!text.empty()) return wrong();
   return point;
+}
+
+Result<double> parse_length(std::string_view text, const std::string& field) {
+  double length = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), length);
+  std::string_view unit = text.substr(static_cast<std::size_t>(end - text.data()));
+  skip_spaces(unit);
+  const auto known = parse_unit(unit);
+  if (error == std::errc() && known) length *= metres_per(*known);
+  if (error != std::errc() || !known || !(length >= 1e-6 && length <= 1e6))
+    return fail(
+        422, "Not a length",
+        "`" + field + "` is a length on the object with its unit, such as 5mm, 2.5cm or 1m, of 0.001 mm at least.",
+        field);
+  return length;
 }
 
 }  // namespace strata::net

@@ -63,9 +63,15 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, const Table& table) {
 
 }  // namespace
 
+std::string record_cell(const Record& record, const Column& column, char separator) {
+  const auto value = record.values.find(column.id);
+  if (value == record.values.end()) return {};
+  std::string cell = print_value(column, value->second);
+  return separator == ';' && column.kind == ColumnKind::numeric ? with_comma(std::move(cell)) : cell;
+}
+
 std::string records_csv(const std::vector<Record>& records, const std::vector<Column>& columns,
                         const std::vector<double>& areas_m2, char separator) {
-  const bool comma = separator == ';';
   std::string text(kUtf8Mark);
   std::vector<std::string> cells{kKey};
   for (const Column& column : columns) cells.push_back(column.slug);
@@ -73,11 +79,7 @@ std::string records_csv(const std::vector<Record>& records, const std::vector<Co
   text += csv_line(cells, separator);
   for (std::size_t i = 0; i < records.size(); ++i) {
     cells = {std::to_string(records[i].key)};
-    for (const Column& column : columns) {
-      const auto value = records[i].values.find(column.id);
-      std::string cell = value == records[i].values.end() ? std::string() : print_value(column, value->second);
-      cells.push_back(comma && column.kind == ColumnKind::numeric ? with_comma(std::move(cell)) : std::move(cell));
-    }
+    for (const Column& column : columns) cells.push_back(record_cell(records[i], column, separator));
     if (!areas_m2.empty()) cells.push_back(csv_number(areas_m2[i], separator));
     text += csv_line(cells, separator);
   }

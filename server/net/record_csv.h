@@ -11,6 +11,9 @@
 // Records as CSV, the way spreadsheets have it: the first row names the columns.
 namespace strata::net {
 
+// A record's cell of CSV; empty where the column has no value.
+std::string record_cell(const Record& record, const Column& column, char separator);
+
 // With a semicolon between the cells numbers have a decimal comma, as in the countries whose Excel writes semicolons. `areas_m2`:
 // empty, or one for each record, told as `area_m2`. Begins with a byte order mark.
 std::string records_csv(const std::vector<Record>& records, const std::vector<Column>& columns,

@@ -208,10 +208,10 @@ Result<Response> content(const RouteContext& context, const Attachment& attachme
                                        std::to_string(asked.range.end - 1) + "/" + std::to_string(attachment.bytes));
   const std::uint64_t length = asked.range.end - asked.range.begin;
   if (length > kAtOnceBytes) {
-    response.stream = Response::Stream{
-        length, [&store = context.store, attachment, range = asked.range](const Response::Sink& sink) {
-          (void)store.read_attachment(attachment, range.begin, range.end, sink);  // a short body tells the client
-        }};
+    response.stream =
+        Response::Stream{length, [&store = context.store, attachment, range = asked.range](const Response::Sink& sink) {
+                           return store.read_attachment(attachment, range.begin, range.end, sink).has_value();
+                         }};
     return response;
   }
   response.bytes.reserve(length);

@@ -107,7 +107,7 @@ Result<Response> source(const RouteContext& context, const Request& request) {
     response.with("Content-Disposition", "attachment; filename*=UTF-8''" + percent_encode(file.name));
     response.stream =
         Response::Stream{file.bytes, [&store = context.store, id = model->id, wanted](const Response::Sink& sink) {
-                           (void)store.read_source(id, wanted, sink);  // a short body tells the client
+                           return store.read_source(id, wanted, sink).has_value();
                          }};
     return response;
   }

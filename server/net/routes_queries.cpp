@@ -1,6 +1,7 @@
 #include "net/as_of.h"
 #include "net/point_text.h"
 #include "net/routes.h"
+#include "net/sheet.h"
 #include "net/wire.h"
 
 namespace strata::net {
@@ -20,8 +21,6 @@ Result<std::vector<Layer>> asked_layers(const room::Room& room,
   for (const auto& ref : *asked) refs.push_back(protocol::to_ref(ref));
   return find_layers(room, refs, "layers");
 }
-
-constexpr const char* kCsvType = "text/csv; charset=utf-8";
 
 Result<Response> position(const RouteContext& context, const Request& request) {
   auto coordinates = parse_point(request.query_or("coords", {}));

@@ -17,7 +17,6 @@ namespace {
 using TableChange = store::TableChange;
 
 constexpr std::uint64_t kMaxRecordsBytes = 64u << 20;
-constexpr const char* kCsvType = "text/csv; charset=utf-8";
 
 Result<std::map<std::int64_t, query::KeyArea>> areas_of(const RouteContext& context, const RecordPlace& place) {
   if (place.layer->sequence == 0) return std::map<std::int64_t, query::KeyArea>();  // nothing was ever painted there

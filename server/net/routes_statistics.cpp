@@ -1,5 +1,6 @@
 #include "net/as_of.h"
 #include "net/routes.h"
+#include "net/sheet.h"
 #include "net/wire.h"
 #include "query/expression_parser.h"
 
@@ -129,9 +130,9 @@ Result<Response> cross_table(const RouteContext& context, const Request& request
   const auto table = (*room)->cross_table(rows->front().slug, columns->front().slug, *selection);
   if (!table) return tl::unexpected(table.error());
   const bool as_csv = request.header("accept").find("text/csv") != std::string_view::npos;
-  Response response = as_csv ? text_response(cross_table_csv(*table, rows->front().slug, columns->front().slug),
-                                             "text/csv; charset=utf-8")
-                             : json_response(to_json(*table));
+  Response response = as_csv
+                          ? text_response(cross_table_csv(*table, rows->front().slug, columns->front().slug), kCsvType)
+                          : json_response(to_json(*table));
   add_sequences(response, sequence, (*room)->durable_sequence());
   response.with("Vary", "Accept");
   return response;

@@ -1,9 +1,14 @@
+#include <set>
+
 #include "core/mapped_file.h"
 #include "net/as_of.h"
 #include "net/byte_budget.h"
 #include "net/digest.h"
+#include "net/point_text.h"
 #include "net/routes.h"
 #include "net/sheet.h"
+#include "net/texel_csv.h"
+#include "query/expression_parser.h"
 #include "query/raster.h"
 
 namespace strata::net {
@@ -24,7 +29,8 @@ constexpr Format kFormats[] = {{"tif", "image/tiff", query::encode_tiff, query::
 Result<const Format*> format_of(const Request& request) {
   for (const Format& format : kFormats)
     if (request.param("format") == format.extension) return &format;
-  return fail(404, "Unknown raster format", "Texels are there as texels.tif, texels.png and texels.npy.", "format");
+  return fail(404, "Unknown raster format", "Texels are there as texels.tif, texels.png, texels.npy and texels.csv.",
+              "format");
 }
 
 // Uncompressed, with the valid plane; TIFF keeps that in the value's type, too.
@@ -103,11 +109,121 @@ void write_texels(const RouteContext& context, ByteBudget& budget, const Request
   apply_edit(context, request, *room, std::move(edit), respond);
 }
 
+// --- as lines of text
+
+constexpr std::size_t kPieceBytes = 1u << 16;
+
+std::vector<std::int64_t> keys_of(const query::SurfaceTexels& texels) {
+  std::set<std::int64_t> keys;
+  std::optional<std::uint32_t> last;  // neighbours mostly share a key
+  query::for_each_sample(texels, [&](const query::TexelSample& sample) {
+    if (last != sample.bits) keys.insert(sample.bits);
+    last = sample.bits;
+    return true;
+  });
+  return {keys.begin(), keys.end()};
+}
+
+// Columns of the records behind the keys, with what they were at `at`.
+Result<void> add_columns(const RouteContext& context, const std::vector<std::string>& wanted,
+                         const query::SurfaceTexels& texels, std::optional<std::int64_t> at, TexelCsv& csv) {
+  const Layer& layer = texels.view.layer;
+  if (!layer.table)
+    return fail(422, "Numeric layer", layer.name + " holds numbers; only database layers have records with columns.",
+                "columns");
+  store::Store::RecordQuery query;
+  query.keys = keys_of(texels);
+  if (at) {
+    auto then = context.store.table_sequence_when(*layer.table, layer.model_id, *at);
+    if (!then) return tl::unexpected(then.error());
+    query.at = *then;
+  }
+  auto page = context.store.records(*layer.table, query);
+  if (!page) return tl::unexpected(page.error());
+  std::vector<Column> columns;
+  for (const std::string& ref : wanted) {
+    const Column* column = find_column(page->table.columns, ref);
+    if (!column)
+      return fail(422, "No such column", page->table.name + " has no column `" + ref.substr(0, 100) + "`.", "columns");
+    columns.push_back(*column);
+  }
+  csv.add_records(page->records, columns);
+  return {};
+}
+
+Result<Response> read_texel_lines(const RouteContext& context, const Request& request) {
+  const auto separator = csv_separator(request);
+  if (!separator) return tl::unexpected(separator.error());
+  std::optional<double> cell_m;
+  if (const auto given = request.query.find("cell"); given != request.query.end()) {
+    auto length = parse_length(given->second, "cell");
+    if (!length) return tl::unexpected(length.error());
+    cell_m = *length;
+  }
+  room::Selection selection;
+  if (const auto given = request.query.find("where"); given != request.query.end()) {
+    auto condition = query::parse_condition(given->second, "where");
+    if (!condition) return tl::unexpected(condition.error());
+    selection.where = std::move(*condition);
+  }
+  auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  const auto layer = (*room)->layer(request.param("layer"));
+  if (!layer) return tl::unexpected(layer.error());
+  const auto at = find_sequence(context, **room, as_of(request));
+  if (!at) return tl::unexpected(at.error());
+  selection.at = *at;
+  auto found = (*room)->surface_texels(layer->slug, selection);
+  if (!found) return tl::unexpected(found.error());
+  const auto texels = std::make_shared<const query::SurfaceTexels>(std::move(*found));
+  auto csv = std::make_shared<TexelCsv>((*room)->model().unit, *separator);
+  if (const auto wanted = split_list(request.query_or("columns", {})); !wanted.empty())
+    if (auto added = add_columns(context, wanted, *texels, *at, *csv); !added) return tl::unexpected(added.error());
+  std::shared_ptr<std::vector<query::TexelSample>> cells;
+  if (cell_m) {
+    auto summed = query::samples_by_cell(*texels, *cell_m / texels->metres_per_unit);
+    if (!summed) return tl::unexpected(summed.error());
+    cells = std::make_shared<std::vector<query::TexelSample>>(std::move(*summed));
+  }
+  Response response;
+  response.with("Content-Type", kCsvType);
+  name_download(response, layer->slug + ".csv");
+  add_sequences(response, at->value_or(texels->view.snapshot.sequence), (*room)->durable_sequence());
+  response.stream =
+      Response::Stream{{}, [texels, csv, cells](const Response::Sink& sink) {
+                         std::string text = csv->head();
+                         const auto send = [&] {
+                           const bool sent = sink({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+                           text.clear();
+                           return sent;
+                         };
+                         bool goes_on = true;
+                         const auto put = [&](const query::TexelSample& sample) {
+                           csv->append(text, sample, cells != nullptr);
+                           if (text.size() >= kPieceBytes) goes_on = send();
+                           return goes_on;
+                         };
+                         if (cells) {
+                           for (const query::TexelSample& sample : *cells)
+                             if (!put(sample)) break;
+                         } else {
+                           query::for_each_sample(*texels, put);
+                         }
+                         return goes_on && send();
+                       }};
+  return response;
+}
+
 }  // namespace
 
 void add_texel_routes(Router& router, const RouteContext& context) {
   const std::string pattern = "/api/v1/models/{model}/layers/{layer}/texels.{format}";
   auto budget = std::make_shared<ByteBudget>(context.options.max_rasters_at_once);
+  // Before the pattern that takes any ending.
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/layers/{layer}/texels.csv",
+              .handler = answering([&context](const Request& request) { return read_texel_lines(context, request); }),
+              .query = {"where", "cell", "columns", "separator", "at"}});
   router.add({.method = Method::get,
               .pattern = pattern,
               .handler = answering(

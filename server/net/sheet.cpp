@@ -3,12 +3,6 @@
 #include "core/csv.h"
 
 namespace strata::net {
-namespace {
-
-constexpr const char* kCsvType = "text/csv; charset=utf-8";
-
-}  // namespace
-
 Result<SheetFormat> sheet_format(const Request& request) {
   const auto asked = request.query.find("f");
   if (asked == request.query.end())

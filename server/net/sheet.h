@@ -10,6 +10,8 @@
 // Tables that people take into a spreadsheet.
 namespace strata::net {
 
+inline constexpr const char* kCsvType = "text/csv; charset=utf-8";
+
 enum class SheetFormat { json, csv };
 // `f`, or where that is absent what Accept names; JSON where neither says anything. 406 for what is none of them.
 Result<SheetFormat> sheet_format(const Request& request);

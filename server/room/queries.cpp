@@ -242,4 +242,16 @@ Result<query::Quantities> OpenRoom::quantities(const std::string& layer, At at) 
   return query::quantities(views->front(), **map, **graph, query::classes_of(views->front().layer), model().metres());
 }
 
+Result<query::SurfaceTexels> OpenRoom::surface_texels(const std::string& layer, const Selection& selection) {
+  touch();
+  auto views = layer_views({layer}, selection.at);
+  if (!views) return tl::unexpected(views.error());
+  auto map = surface_map(views->front().layer.resolution);
+  if (!map) return tl::unexpected(map.error());
+  auto selected = select_texels(selection, **map);
+  if (!selected) return tl::unexpected(selected.error());
+  return query::SurfaceTexels{std::move(views->front()), std::move(*map), std::move(*selected), geometry_->origin,
+                              model().metres()};
+}
+
 }  // namespace strata::room

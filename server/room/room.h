@@ -11,6 +11,7 @@
 #include "query/profile.h"
 #include "query/quantities.h"
 #include "query/statistics.h"
+#include "query/texel_samples.h"
 #include "query/values.h"
 #include "room/edit.h"
 #include "store/store.h"
@@ -182,6 +183,8 @@ class Room {
                                                 const Selection& selection = {}) = 0;
   // How much there is of each class of the layer's legend (query::classes_of).
   virtual Result<query::Quantities> quantities(const std::string& layer, At at = {}) = 0;
+  // A layer with the places of its texels where the selection holds, to be read at leisure.
+  virtual Result<query::SurfaceTexels> surface_texels(const std::string& layer, const Selection& selection = {}) = 0;
   // What maps and measurements paint (query/flat_map, query/dabs), for an ImportEdit `over` the layer. Values are bits of its type.
   struct PlacedValue {
     glm::dvec3 world{0};

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""What a project gives to reports, spreadsheets and other programs: quantities."""
+"""What a project gives to reports, spreadsheets and other programs: quantities, texels as lines."""
 import csv
 import io
 import math
 import os
+import socket
 import sys
 import urllib.parse
 
@@ -122,11 +123,98 @@ def check_quantities_of_a_table(server, pieces):
     near(float(rows[3]["small/pieces area_m2"]), sum(q["area_m2"] for q in away.values()), 1e-12)
 
 
+def lines_of(server, path, **query):
+    answer = server.ok("GET", f"{path}/texels.csv?" + urllib.parse.urlencode(query))
+    assert answer.headers["Transfer-Encoding"] == "chunked" and answer.headers["Content-Type"] == "text/csv; charset=utf-8"
+    return rows_of(answer)
+
+
+def aggregated(rows, edge, keys):
+    """The oracle of `cell`: {cell: (centroid, area, value)} of lines of texels."""
+    cells = {}
+    for row in rows:
+        place, area = [float(row[axis]) for axis in "xyz"], float(row["area_m2"])
+        cell = cells.setdefault(tuple(math.floor(v / edge) for v in place), [0.0, [0.0] * 3, 0.0, {}])
+        cell[0] += area
+        cell[1] = [old + area * new for old, new in zip(cell[1], place)]
+        cell[2] += area * float(row["value"])
+        cell[3][row["value"]] = cell[3].get(row["value"], 0.0) + area
+    return {index: ([v / area for v in centre], area, max(by_key, key=by_key.get) if keys else value / area)
+            for index, (area, centre, value, by_key) in cells.items()}
+
+
+def check_texel_lines(server, pieces):
+    moisture = M + "/layers/moisture"
+    rows = lines_of(server, moisture)
+    statistics = server.get(moisture + "/statistics").json()
+    assert list(rows[0]) == ["x", "y", "z", "area_m2", "value"], rows[0]
+    assert len(rows) == statistics["texels"], (len(rows), statistics["texels"])
+    near(sum(float(row["area_m2"]) for row in rows), statistics["area_m2"], 1e-6)
+    near(sum(float(row["area_m2"]) * float(row["value"]) for row in rows) / statistics["area_m2"], statistics["mean"], 1e-5)
+    some = rows[::997]
+    points = server.ok("POST", M + "/positions", {"points": [[float(row[a]) for a in "xyz"] for row in some], "layers": ["moisture"]}).json()
+    for row, point in zip(some, points["positions"]):
+        assert point["distance"] < 1e-3 and point["values"]["moisture"]["valid"], (row, point)
+        near(float(row["value"]), point["values"]["moisture"]["value"], 1e-6)
+
+    wet = lines_of(server, moisture, where="moisture > 0.25 and pieces.code like '=%' or moisture < 0.1")
+    known = {(row["x"], row["y"], row["z"]): row["value"] for row in rows}
+    assert 0 < len(wet) < len(rows) and all(known[row["x"], row["y"], row["z"]] == row["value"] for row in wet)
+    assert {row["value"] for row in wet} <= {"0.05", "0.3", "0.7"}, {row["value"] for row in wet}
+
+    # Not what lies so close to the side of a cell that rounded places may be in the next one.
+    inside = "abs(z) > 0.0002 and x % 5 between 0.0002 and 4.9998 and y % 5 between 0.0002 and 4.9998"
+    clear = lines_of(server, moisture, where=inside)
+    assert len(clear) > 0.9 * len(rows)
+    for text, edge in (("5mm", 5.0), ("2.5 cm", 25.0), ("1m", 1000.0)):
+        expected = aggregated(clear, edge, False)
+        cells = lines_of(server, moisture, cell=text, where=inside)
+        assert len(cells) == len(expected)
+        for row in cells:
+            centre, area, value = expected[tuple(math.floor(float(row[axis]) / edge) for axis in "xyz")]
+            near(float(row["area_m2"]), area, 1e-6)
+            near(float(row["value"]), value, 1e-5)
+            assert max(abs(float(row[axis]) - at) for axis, at in zip("xyz", centre)) < 2e-3, (row, centre)
+
+    # Keys are never mixed, and bring what their records say.
+    rows = lines_of(server, pieces, columns="code", where="abs(z) > 0.0002")
+    assert {(row["value"], row["code"]) for row in rows} == {("1", "Skull"), ("2", "'=cmd|'/C calc'!A0")}
+    expected = aggregated(rows, 100.0, True)
+    cells = lines_of(server, pieces, cell="10cm", columns="code", where="abs(z) > 0.0002")
+    assert sorted(row["value"] for row in cells) == sorted(value for _, _, value in expected.values()), (cells, expected)
+    past = server.get(pieces + "/edits").json()["edits"][-1]["sequence"]
+    assert {row["code"] for row in lines_of(server, pieces, columns="code", at=past)} == {"Head"}
+    assert lines_of(server, pieces, at=0) == []
+    other = rows_of(server.get(pieces + "/texels.csv?separator=semicolon&cell=1m"), ";")
+    assert "," in other[0]["area_m2"], other
+
+    for query, field in (("cell=5", "cell"), ("cell=0mm", "cell"), ("cell=-5mm", "cell"), ("cell=5mmm", "cell"), ("cell=nanmm", "cell"), ("cell=0.0001mm", "cell"),
+                         ("columns=code", "columns"), ("where=moisture%3E", "where"), ("separator=x", "separator"), ("at=99999", "at")):
+        answer = server.get(f"{moisture}/texels.csv?{query}")
+        assert answer.status == 422 and answer.json()["field"] == field, (query, answer)
+    assert server.get(pieces + "/texels.csv?columns=depth").json()["field"] == "columns"
+    assert server.request("PUT", moisture + "/texels.csv", b"x,y,z\n").status == 404
+
+    # Another call on the same connection; HTTP/1.0 knows no chunks, there the end of the connection ends the answer.
+    link = server.connect()
+    first = server.get(pieces + "/texels.csv", connection=link).body
+    assert server.get(pieces + "/texels.csv", connection=link).body == first
+    assert server.request("HEAD", pieces + "/texels.csv", connection=link).status == 200
+    assert server.get(pieces, connection=link).status == 200
+    link.close()
+    with socket.create_connection((server.host, server.port)) as raw:
+        raw.sendall(f"GET /api/v1{pieces}/texels.csv HTTP/1.0\r\nAuthorization: Bearer {server.token}\r\n\r\n".encode())
+        answer = b"".join(iter(lambda: raw.recv(65536), b""))
+    head, _, body = answer.partition(b"\r\n\r\n")
+    assert b"chunked" not in head and body == first, head
+
+
 def main():
     with StrataServer() as server:
         server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
         pieces = check_quantities_of_records(server)
         check_quantities_of_numbers(server)
+        check_texel_lines(server, pieces)
         check_quantities_of_a_table(server, pieces)
         assert server.stop() == 0
         server.assert_clean_log()

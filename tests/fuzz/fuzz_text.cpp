@@ -64,6 +64,7 @@ void read_numbers(std::string_view text) {
         net::parse_point("POINT Z(" + exact(point->x) + " " + exact(point->y) + " " + exact(point->z) + ")");
     demand(again.has_value() && *again == *point);
   }
+  if (const auto length = net::parse_length(text, "cell")) demand(*length >= 1e-6 && *length <= 1e6);
   if (const auto world = query::parse_world_file(text, "world")) {
     std::string lines;
     for (const double number :

@@ -122,6 +122,9 @@ class FakeRoom final : public room::Room {
     return std::map<std::int64_t, query::KeyArea>();
   }
   Result<query::Quantities> quantities(const std::string&, At) override { return query::Quantities{}; }
+  Result<query::SurfaceTexels> surface_texels(const std::string&, const room::Selection&) override {
+    return query::SurfaceTexels{};
+  }
   Result<TileMirror::Snapshot> tiles(const std::string&, std::optional<std::int64_t>) override {
     return TileMirror::Snapshot{};
   }
