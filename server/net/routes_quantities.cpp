@@ -142,13 +142,13 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
     if (!found) return tl::unexpected(found.error());
     names = std::move(*found);
   }
-  Response response;
-  if (*format == SheetFormat::json)
-    response = json_response(to_json(*all, *layer, names));
-  else
-    response = csv_response(to_sheet(*all, *layer, names, layer->slug + "-quantities"), *separator);
-  add_sequences(response, sequence, (*room)->durable_sequence());
-  response.with("Vary", "Accept");
+  auto response = *format == SheetFormat::json
+                      ? json_response(to_json(*all, *layer, names))
+                      : sheet_response(to_sheet(*all, *layer, names, layer->slug + "-quantities"), *format, *separator,
+                                       context.options.upload_dir);
+  if (!response) return response;
+  add_sequences(*response, sequence, (*room)->durable_sequence());
+  response->with("Vary", "Accept");
   return response;
 }
 
@@ -248,7 +248,9 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
     last.push_back(of_layer.area_m2);
   }
   sheet.rows.push_back(std::move(last));
-  return csv_response(sheet, *separator).with("Vary", "Accept");
+  auto response = sheet_response(sheet, *format, *separator, context.options.upload_dir);
+  if (response) response->with("Vary", "Accept");
+  return response;
 }
 
 }  // namespace

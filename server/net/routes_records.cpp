@@ -9,6 +9,7 @@
 #include "net/sheet.h"
 #include "net/table_events.h"
 #include "net/table_wire.h"
+#include "net/workbook.h"
 #include "query/expression_parser.h"
 
 namespace strata::net {
@@ -66,6 +67,23 @@ Result<store::Store::RecordPage> page_by_area(const RouteContext& context, const
   return page;
 }
 
+// The columns of `records_csv`, with values of their own types.
+Result<Response> records_book(const RouteContext& context, const store::Store::RecordPage& page,
+                              const std::map<std::int64_t, query::KeyArea>* areas) {
+  std::vector<std::string> heads{"key"};
+  for (const Column& column : page.table.columns) heads.push_back(column.slug);
+  if (areas) heads.emplace_back("area_m2");
+  Workbook book(context.options.upload_dir, page.table.slug, heads);
+  std::vector<BookCell> cells;
+  for (const Record& record : page.records) {
+    cells.assign(1, double(record.key));
+    for (const Column& column : page.table.columns) cells.push_back(book_cell(record, column));
+    if (areas) cells.emplace_back(area_of(*areas, record.key));
+    book.add_row(cells);
+  }
+  return book.finish(page.table.slug + ".xlsx");
+}
+
 Result<Response> list_records(const RouteContext& context, const Request& request) {
   auto page = page_of(request);
   if (!page) return tl::unexpected(page.error());
@@ -83,7 +101,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     query.filter = std::move(*condition);
   }
   // A table to work on elsewhere is all of it, unless a part is asked for.
-  const bool whole = *format == SheetFormat::csv && !request.query.contains("limit");
+  const bool whole = *format != SheetFormat::json && !request.query.contains("limit");
   query.limit = whole ? store::kMostRecords : page->limit;
   query.offset = page->offset;
   if (auto at = request.query.find("at"); at != request.query.end()) {
@@ -101,7 +119,11 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   auto records = by_area ? page_by_area(context, *place, areas, query) : context.store.records(place->table.id, query);
   if (!records) return tl::unexpected(records.error());
   Response response;
-  if (*format == SheetFormat::csv) {
+  if (*format == SheetFormat::xlsx) {
+    auto book = records_book(context, *records, place->layer ? &areas : nullptr);
+    if (!book) return book;
+    response = std::move(*book);
+  } else if (*format == SheetFormat::csv) {
     std::vector<double> areas_m2;
     if (place->layer)
       for (const Record& record : records->records) areas_m2.push_back(area_of(areas, record.key));

@@ -1,15 +1,20 @@
 #include "net/sheet.h"
 
 #include "core/csv.h"
+#include "net/workbook.h"
 
 namespace strata::net {
 Result<SheetFormat> sheet_format(const Request& request) {
   const auto asked = request.query.find("f");
-  if (asked == request.query.end())
-    return request.header("accept").find("text/csv") != std::string_view::npos ? SheetFormat::csv : SheetFormat::json;
+  if (asked == request.query.end()) {
+    const std::string_view accepted = request.header("accept");
+    if (accepted.find("text/csv") != std::string_view::npos) return SheetFormat::csv;
+    return accepted.find(kXlsxType) != std::string_view::npos ? SheetFormat::xlsx : SheetFormat::json;
+  }
   if (asked->second == "json") return SheetFormat::json;
   if (asked->second == "csv") return SheetFormat::csv;
-  return fail(406, "Unknown format", "`f` is json or csv.", "f");
+  if (asked->second == "xlsx") return SheetFormat::xlsx;
+  return fail(406, "Unknown format", "`f` is json, csv or xlsx.", "f");
 }
 
 Result<char> csv_separator(const Request& request) {
@@ -19,6 +24,8 @@ Result<char> csv_separator(const Request& request) {
   if (text == "tab") return '\t';
   return fail(422, "Unknown separator", "`separator` is comma, semicolon or tab.", "separator");
 }
+
+namespace {
 
 Response csv_response(const Sheet& sheet, char separator) {
   std::string text(kUtf8Mark);
@@ -39,6 +46,22 @@ Response csv_response(const Sheet& sheet, char separator) {
   Response response = text_response(std::move(text), kCsvType);
   name_download(response, sheet.name + ".csv");
   return response;
+}
+
+}  // namespace
+
+Result<Response> sheet_response(const Sheet& sheet, SheetFormat format, char separator,
+                                const std::filesystem::path& folder) {
+  if (format == SheetFormat::csv) return csv_response(sheet, separator);
+  Workbook book(folder, sheet.name, sheet.heads);
+  std::vector<BookCell> cells;
+  for (const auto& row : sheet.rows) {
+    cells.clear();
+    for (const SheetCell& cell : row) std::visit([&](const auto& value) { cells.emplace_back(value); }, cell);
+    if (&row == &sheet.rows.back()) book.end_filter();
+    book.add_row(cells);
+  }
+  return book.finish(sheet.name + ".xlsx");
 }
 
 void name_download(Response& response, const std::string& filename) {

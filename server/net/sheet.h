@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <variant>
 #include <vector>
@@ -12,7 +13,7 @@ namespace strata::net {
 
 inline constexpr const char* kCsvType = "text/csv; charset=utf-8";
 
-enum class SheetFormat { json, csv };
+enum class SheetFormat { json, csv, xlsx };
 // `f`, or where that is absent what Accept names; JSON where neither says anything. 406 for what is none of them.
 Result<SheetFormat> sheet_format(const Request& request);
 // Of CSV: `separator`; 422 for what is none.
@@ -26,8 +27,10 @@ struct Sheet {
   std::vector<std::vector<SheetCell>> rows;  // of as many cells
 };
 
-// With a byte order mark, as spreadsheets want it; a text that one would run as a formula is guarded.
-Response csv_response(const Sheet& sheet, char separator);
+// As CSV, with a byte order mark, as spreadsheets want it, where a text that one would run as a formula is guarded; or as XLSX by way of
+// a file in `folder`. The filters of its head leave the last row out, which is one of totals.
+Result<Response> sheet_response(const Sheet& sheet, SheetFormat format, char separator,
+                                const std::filesystem::path& folder);
 
 // For a file that is kept and not shown; any characters will do.
 void name_download(Response& response, const std::string& filename);

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""What a project gives to reports, spreadsheets and other programs: quantities, texels as lines."""
+"""What a project gives to reports, spreadsheets and other programs: quantities, texels as lines, workbooks."""
 import csv
+import datetime
 import io
 import math
 import os
@@ -11,7 +12,9 @@ import urllib.parse
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.meshes import folded_grid
 from support.strata_server import StrataServer
+from support.workbook import Workbook
 
+XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
 
 
@@ -123,6 +126,47 @@ def check_quantities_of_a_table(server, pieces):
     near(float(rows[3]["small/pieces area_m2"]), sum(q["area_m2"] for q in away.values()), 1e-12)
 
 
+def check_workbooks(server, pieces):
+    columns = [{"name": "Code", "required": True, "unique": True}, {"name": "Depth", "kind": "numeric"}, {"name": "Count", "kind": "integer"},
+               {"name": "Loose", "kind": "boolean"}, {"name": "Found", "kind": "date"}, {"name": "Seen", "kind": "timestamp"},
+               {"name": "Period", "kind": "period"}, {"name": "Note"}]
+    server.ok("POST", "/projects/default/tables", {"name": "Finds", "columns": columns})
+    hostile = "=cmd|'/C calc'!A0"
+    long = "\N{AMPHORA}" * 20000  # two units of UTF-16 each
+    made = [{"code": "A", "depth": -1.25, "count": 2**53, "loose": True, "found": "2024-02-29", "seen": "2024-05-02T12:34:56.789+02:00", "period": "1560~", "note": hostile},
+            {"code": "+B", "loose": False, "found": "1066-10-14", "note": "two\nlines \u0001 <&> \uffff 'quoted' _x0041_"},
+            {"code": "@C", "depth": 1e-7, "note": long}]
+    server.ok("POST", "/tables/finds/records", {"records": [{"values": values} for values in made]})
+    answer = server.get("/tables/finds/records?f=xlsx")
+    assert answer.headers["Content-Type"] == XLSX and answer.headers["Content-Disposition"].endswith("finds.xlsx"), answer.headers
+    book = Workbook(answer.body)
+    assert book.formulas == [] and book.head_is_bold_and_stays() and book.filtered == "A1:I4" and book.sheet_name == "finds", book.filtered
+    assert book.rows[0] == ["key", "code", "depth", "count", "loose", "found", "seen", "period", "note"]
+    first, second, third = book.records
+    assert first == {"key": 1.0, "code": "A", "depth": -1.25, "count": float(2**53), "loose": True, "found": datetime.date(2024, 2, 29),
+                     "seen": datetime.datetime(2024, 5, 2, 10, 34, 56, 789000), "period": "1560~", "note": hostile}, first
+    assert (second["code"], second["loose"], second["found"], second["depth"]) == ("+B", False, "1066-10-14", None), second
+    assert second["note"].replace("_x005F_x0041_", "_x0041_") == "two\nlines \ufffd <&> \ufffd 'quoted' _x0041_", second["note"]
+    assert third["depth"] == 1e-7 and third["note"] == "\N{AMPHORA}" * 16383 + "\u2026", (third["depth"], len(third["note"]))
+    some = Workbook(server.get("/tables/finds/records?filter=depth%20%3C%200&sortby=-code", headers={"Accept": XLSX}).body)
+    assert [record["code"] for record in some.records] == ["A"]
+
+    on_layer = Workbook(server.get(pieces + "/records?f=xlsx&sortby=-area_m2").body).records
+    areas = {q["key"]: q["area_m2"] for q in server.get(pieces + "/quantities").json()["quantities"]}
+    assert [r["key"] for r in on_layer] == [1, 2, 3] and on_layer[2]["area_m2"] == 0, on_layer
+    near(on_layer[0]["area_m2"], areas[1], 1e-12)
+
+    book = Workbook(server.get(pieces + "/quantities?f=xlsx").body)
+    expected = rows_of(server.get(pieces + "/quantities?f=csv"))
+    assert book.formulas == [] and book.filtered == "A1:F3" and len(book.records) == 3, book.filtered
+    for row, written in zip(book.records, expected):
+        for head in ("pieces", "texels", "area_m2", "percent_of_surface"):
+            near(row[head], float(written[head]), 1e-15)  # a workbook has 16 digits
+    assert [row["class"] for row in book.records] == ["Skull", hostile, "total"]
+    assert [row["class"] for row in Workbook(server.get("/tables/pieces/quantities", headers={"Accept": XLSX}).body).records] == ["Skull", hostile, "total"]
+    assert os.listdir(os.path.join(server.data, "uploads")) == []  # nothing stays
+
+
 def lines_of(server, path, **query):
     answer = server.ok("GET", f"{path}/texels.csv?" + urllib.parse.urlencode(query))
     assert answer.headers["Transfer-Encoding"] == "chunked" and answer.headers["Content-Type"] == "text/csv; charset=utf-8"
@@ -214,6 +258,7 @@ def main():
         server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
         pieces = check_quantities_of_records(server)
         check_quantities_of_numbers(server)
+        check_workbooks(server, pieces)
         check_texel_lines(server, pieces)
         check_quantities_of_a_table(server, pieces)
         assert server.stop() == 0

@@ -274,7 +274,7 @@ def refusals(server):
         ("a column to sort by that is not there", "GET", T + "/records?sortby=none", None, {}, 422, "sortby"),
         ("a moment that is none", "GET", T + "/records?at=yesterday", None, {}, 422, "at"),
         ("a future sequence", "GET", T + "/records?at=100000", None, {}, 422, "at"),
-        ("an unknown format", "GET", T + "/records?f=xlsx", None, {}, 406, "f"),
+        ("an unknown format", "GET", T + "/records?f=ods", None, {}, 406, "f"),
         ("an unknown separator", "GET", T + "/records?f=csv&separator=pipe", None, {}, 422, "separator"),
         ("one and several", "POST", T + "/records", {"key": 5, "records": [{}]}, {}, 422, "records"),
         ("an empty list", "POST", T + "/records", {"records": []}, {}, 422, "records"),
