@@ -4,7 +4,8 @@
 #include "shared/shade.h"
 // Colours the surface of a picture: its lit base colour and the layers bottom to top, sampled by texture coordinate.
 // CHUNK_COUNT (0…6) pairs of value and valid textures are bound; a texel whose chunk is not bound is left to another draw.
-// LAYERS, where defined, says what the layers are, as SHADE_LAYER(index, mode, type, bits of the units that may hold it) each:
+// LAYERS, where defined, says what the layers are, as SHADE_LAYER(index, mode, type, bits of the units that may hold it, whether it
+// has patterns) each:
 // CPUs run every side of a branch, so each layer gets code of its own kind alone. Else there is a loop over layer_count.
 layout(std140, binding = 0) uniform ShadeUniformBlock { ShadeUniforms shade; };
 layout(std430, binding = 0) readonly buffer Tables { uint page_tables[]; };
@@ -49,27 +50,33 @@ vec4 generated_color(uint key) {
   return vec4(0.85 - 0.85 * saturation * clamp(min(k, 4.0 - k), 0.0, 1.0), 1.0);
 }
 
-vec4 step_color(ShadeLayer layer, float value) {
+// What a value is drawn with.
+struct Ink {
+  vec4 color;
+  uint pattern;
+};
+
+Ink ink_of(PalettePoint point) { return Ink(unpackUnorm4x8(point.color), point.pattern); }
+
+Ink step_ink(ShadeLayer layer, float value) {
   uint low = 0u, high = layer.point_count;  // first point above the value lies in [low, high]
   while (low < high) {
     uint middle = (low + high) / 2u;
     if (uintBitsToFloat(points[layer.points + middle].key) <= value) low = middle + 1u;
     else high = middle;
   }
-  return unpackUnorm4x8(points[layer.points + max(low, 1u) - 1u].color);
+  return ink_of(points[layer.points + max(low, 1u) - 1u]);
 }
 
-vec4 category_color(ShadeLayer layer, uint type, uint bits) {
+Ink category_ink(ShadeLayer layer, uint type, uint bits) {
   uint low = 0u, high = layer.point_count;
   while (low < high) {
     uint middle = (low + high) / 2u;
     if (points[layer.points + middle].key < bits) low = middle + 1u;
     else high = middle;
   }
-  if (low < layer.point_count && points[layer.points + low].key == bits) {
-    return unpackUnorm4x8(points[layer.points + low].color);
-  }
-  return generated_color(key_of(bits, type));
+  if (low < layer.point_count && points[layer.points + low].key == bits) return ink_of(points[layer.points + low]);
+  return Ink(layer.has_others != 0u ? unpackUnorm4x8(layer.others) : generated_color(key_of(bits, type)), kPatternSolid);
 }
 
 vec4 linear_color(ShadeLayer layer, float value) {
@@ -77,11 +84,11 @@ vec4 linear_color(ShadeLayer layer, float value) {
   return texelFetch(palettes, ivec2(int(position * float(kPaletteWidth - 1u) + 0.5), int(layer.row)), 0);
 }
 
-vec4 color_of(ShadeLayer layer, uint mode, uint type, uint bits) {
-  if (mode == kPaletteCategorical) return category_color(layer, type, bits);
+Ink ink_of(ShadeLayer layer, uint mode, uint type, uint bits) {
+  if (mode == kPaletteCategorical) return category_ink(layer, type, bits);
   float value = number_of(bits, type);
-  if (mode == kPaletteStep) return step_color(layer, clamp(value, layer.palette_min, layer.palette_max));
-  return linear_color(layer, value);
+  if (mode == kPaletteStep) return step_ink(layer, clamp(value, layer.palette_min, layer.palette_max));
+  return Ink(linear_color(layer, value), kPatternSolid);
 }
 
 #if CHUNK_COUNT > 0
@@ -105,13 +112,44 @@ uvec2 texel_of(ShadeLayer layer, uint units, uint q) {
   return found;
 }
 
+// How much of a pixel hatch or dots cover, 0…1.
+float pattern_cover(uint pattern) {
+  float spacing = unpackHalf2x16(pattern >> 16).x / shade.patterns.z;
+  if (spacing <= 0.0) spacing = kPatternPixels * shade.patterns.w;
+  spacing *= exp2(max(0.0, ceil(log2(kPatternClosestPixels * shade.patterns.w / spacing))));
+  float angle = float(pattern >> 2 & 0x3fffu) / 16384.0 * 3.14159265;
+  vec2 along = vec2(cos(angle), sin(angle));
+  vec2 from = gl_FragCoord.xy - shade.patterns.xy;
+  vec2 place = vec2(dot(from, along), dot(from, vec2(-along.y, along.x))) / spacing;
+  vec2 middle = (place - floor(place) - 0.5) * spacing;  // in pixels from the middle of the cell
+  float inside = (pattern & 3u) == kPatternDots ? kDotRadius * spacing - length(middle) : kHatchShare * 0.5 * spacing - abs(middle.y);
+  return clamp(inside + 0.5, 0.0, 1.0);
+}
+
+bool same_texel(ShadeLayer layer, uint units, ivec2 pixel, uint bits) {
+  uint q = texelFetch(surface_uv, clamp(pixel, ivec2(0), textureSize(surface_uv, 0) - 1), 0).r;
+  return q != kBackground && texel_of(layer, units, q) == uvec2(bits, 1u);
+}
+
+float outline_cover(ShadeLayer layer, uint units, uint bits) {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  bool inside = same_texel(layer, units, pixel + ivec2(kOutlinePixels, 0), bits) &&
+                same_texel(layer, units, pixel - ivec2(kOutlinePixels, 0), bits) &&
+                same_texel(layer, units, pixel + ivec2(0, kOutlinePixels), bits) &&
+                same_texel(layer, units, pixel - ivec2(0, kOutlinePixels), bits);
+  return inside ? 0.0 : 1.0;
+}
+
 // `below` with the layer over it.
-vec4 add_layer(vec4 below, ShadeLayer layer, uint mode, uint type, uint units, uint q, float light) {
+vec4 add_layer(vec4 below, ShadeLayer layer, uint mode, uint type, uint units, uint patterned, uint q, float light) {
   uvec2 texel = texel_of(layer, units, q);
   if (texel.y == 0u) return below;
-  vec4 paint = color_of(layer, mode, type, texel.x);
-  float cover = paint.a * layer.opacity;
-  return vec4(mix(below.rgb, paint.rgb * light, cover), below.a * (1.0 - cover));
+  Ink ink = ink_of(layer, mode, type, texel.x);
+  float cover = ink.color.a * layer.opacity;
+  if (patterned != 0u && (ink.pattern & 3u) != kPatternSolid) {
+    cover *= (ink.pattern & 3u) == kPatternOutline ? outline_cover(layer, units, texel.x) : pattern_cover(ink.pattern);
+  }
+  return vec4(mix(below.rgb, ink.color.rgb * light, cover), below.a * (1.0 - cover));
 }
 #endif
 
@@ -123,11 +161,12 @@ void main() {
   uint q = texelFetch(surface_uv, pixel, 0).r;
   if (q != kBackground) {  // not the inside of a solid that is cut open
 #ifdef LAYERS
-#define SHADE_LAYER(index, mode, type, units) color = add_layer(color, layers[index], mode, type, units, q, surface.a);
+#define SHADE_LAYER(index, mode, type, units, patterned) \
+  color = add_layer(color, layers[index], mode, type, units, patterned, q, surface.a);
   LAYERS
 #else
   for (uint i = 0u; i < shade.layer_count; ++i) {
-    color = add_layer(color, layers[i], layers[i].mode, layers[i].type, 0x3fu, q, surface.a);
+    color = add_layer(color, layers[i], layers[i].mode, layers[i].type, 0x3fu, layers[i].patterned, q, surface.a);
   }
 #endif
   }

@@ -41,6 +41,34 @@ std::string format_color(const Rgba& color) {
   return text;
 }
 
+constexpr const char* kPatterns[] = {"solid", "hatch", "dots", "outline"};
+
+Result<void> read_pattern(const nlohmann::json& item, PaletteMode mode, const std::string& field,
+                          Palette::Point& point) {
+  auto wrong = [&](const char* member, std::string detail) {
+    return fail(422, "Palette not usable", std::move(detail), field + "." + member);
+  };
+  if (const auto asked = item.find("pattern"); asked != item.end()) {
+    const auto known = std::ranges::find_if(kPatterns, [&](const char* name) { return *asked == name; });
+    if (known == std::end(kPatterns)) return wrong("pattern", "A pattern is solid, hatch, dots or outline.");
+    point.pattern = static_cast<Pattern>(known - std::begin(kPatterns));
+    if (mode == PaletteMode::linear && point.pattern != Pattern::solid)
+      return wrong("pattern",
+                   "Colours that run into each other have no patterns: use a step or a categorical palette.");
+  }
+  if (const auto asked = item.find("angle"); asked != item.end()) {
+    if (!asked->is_number() || asked->get<double>() < 0 || asked->get<double>() > 180)
+      return wrong("angle", "The angle of lines is 0 to 180 degrees.");
+    point.angle = asked->get<double>();
+  }
+  if (const auto asked = item.find("spacing_mm"); asked != item.end()) {
+    if (!asked->is_number() || asked->get<double>() < 0 || asked->get<double>() > kWidestSpacing_mm)
+      return wrong("spacing_mm", "Lines and dots are up to 60000 mm apart.");
+    point.spacing_mm = asked->get<double>();
+  }
+  return {};
+}
+
 Palette linear_palette(double min, double max) {
   // Viridis at nine stops: perceptually even, readable with every colour vision and in greyscale.
   static constexpr Rgba kStops[] = {{68, 1, 84, 255},    {71, 45, 123, 255},  {59, 82, 139, 255},
@@ -48,7 +76,7 @@ Palette linear_palette(double min, double max) {
                                     {94, 201, 98, 255},  {173, 220, 48, 255}, {253, 231, 37, 255}};
   Palette palette{PaletteMode::linear, min, max, {}, {}};
   const int n = static_cast<int>(std::size(kStops));
-  for (int i = 0; i < n; ++i) palette.points.push_back({min + (max - min) * i / (n - 1), kStops[i], {}});
+  for (int i = 0; i < n; ++i) palette.points.push_back({min + (max - min) * i / (n - 1), kStops[i]});
   return palette;
 }
 
@@ -89,7 +117,10 @@ Result<Palette> palette_from_json(const nlohmann::json& json, const std::string&
       const double at = item["at"].get<double>();
       if (!palette.points.empty() && at <= palette.points.back().at)
         return wrong(at_field.c_str(), "Points go upward: each `at` is larger than the one before.");
-      palette.points.push_back({at, *color, item.value("label", std::string())});
+      Palette::Point point{at, *color, item.value("label", std::string()), item.value("value", std::string())};
+      if (auto read = read_pattern(item, palette.mode, field + "." + at_field, point); !read)
+        return tl::unexpected(read.error());
+      palette.points.push_back(std::move(point));
     }
   }
   if (palette.points.empty() && palette.mode != PaletteMode::categorical)
@@ -100,6 +131,11 @@ Result<Palette> palette_from_json(const nlohmann::json& json, const std::string&
   if (!std::isfinite(palette.min) || !std::isfinite(palette.max) || palette.max < palette.min)
     return wrong("max", "The upper limit is a number that is not below the lower limit.");
   palette.column = json.value("column", std::string());
+  if (const auto others = json.find("others"); others != json.end()) {
+    auto color = parse_color(*others, field + ".others");
+    if (!color) return tl::unexpected(color.error());
+    palette.others = *color;
+  }
   return palette;
 }
 
@@ -109,11 +145,18 @@ nlohmann::json to_json(const Palette& palette) {
   for (const auto& point : palette.points) {
     nlohmann::json item{{"at", point.at}, {"color", format_color(point.color)}};
     if (!point.label.empty()) item["label"] = point.label;
+    if (!point.value.empty()) item["value"] = point.value;
+    if (point.pattern != Pattern::solid) {
+      item["pattern"] = kPatterns[static_cast<int>(point.pattern)];
+      if (point.pattern != Pattern::outline) item["angle"] = point.angle;
+      if (point.pattern != Pattern::outline && point.spacing_mm > 0) item["spacing_mm"] = point.spacing_mm;
+    }
     points.push_back(std::move(item));
   }
   nlohmann::json json{
       {"mode", kModes[static_cast<int>(palette.mode)]}, {"min", palette.min}, {"max", palette.max}, {"points", points}};
   if (!palette.column.empty()) json["column"] = palette.column;
+  if (palette.others) json["others"] = format_color(*palette.others);
   return json;
 }
 
@@ -123,7 +166,7 @@ Palette default_palette(ValueType type, bool categorical) {
                                          {240, 228, 66, 255}, {0, 114, 178, 255},  {213, 94, 0, 255},
                                          {204, 121, 167, 255}};
     Palette palette{PaletteMode::categorical, 1, 7, {}, {}};
-    for (int i = 0; i < 7; ++i) palette.points.push_back({double(i + 1), kOkabeIto[i], {}});
+    for (int i = 0; i < 7; ++i) palette.points.push_back({double(i + 1), kOkabeIto[i]});
     return palette;
   }
   return is_float(type) ? linear_palette(0, 1) : linear_palette(0, std::min(100.0, highest_value(type)));
@@ -142,20 +185,28 @@ Rgba generated_color(std::uint32_t key) {
   return {channel(5), channel(3), channel(1), 255};
 }
 
-Rgba color_of(const Palette& palette, double value) {
+const Palette::Point* point_of(const Palette& palette, double value) {
   const auto& points = palette.points;
+  if (palette.mode == PaletteMode::linear || points.empty()) return nullptr;
   if (palette.mode == PaletteMode::categorical) {
-    auto found = std::lower_bound(points.begin(), points.end(), value,
-                                  [](const Palette::Point& p, double v) { return p.at < v; });
-    if (found != points.end() && found->at == value) return found->color;
-    return generated_color(static_cast<std::uint32_t>(static_cast<std::int64_t>(value)));
+    const auto found = std::ranges::lower_bound(points, value, {}, &Palette::Point::at);
+    return found != points.end() && found->at == value ? &*found : nullptr;
   }
   const double v = std::clamp(value, palette.min, palette.max);
-  auto above =
-      std::upper_bound(points.begin(), points.end(), v, [](double x, const Palette::Point& p) { return x < p.at; });
+  const auto above = std::ranges::upper_bound(points, v, {}, &Palette::Point::at);
+  return above == points.begin() ? &*above : &*(above - 1);
+}
+
+Rgba color_of(const Palette& palette, double value) {
+  if (const Palette::Point* point = point_of(palette, value)) return point->color;
+  if (palette.mode == PaletteMode::categorical)
+    return palette.others.value_or(generated_color(static_cast<std::uint32_t>(static_cast<std::int64_t>(value))));
+  const auto& points = palette.points;
+  const double v = std::clamp(value, palette.min, palette.max);
+  const auto above = std::ranges::upper_bound(points, v, {}, &Palette::Point::at);
   if (above == points.begin()) return points.front().color;
   const auto below = above - 1;
-  if (palette.mode == PaletteMode::step || above == points.end()) return below->color;
+  if (above == points.end()) return below->color;
   return mix(below->color, above->color, (v - below->at) / (above->at - below->at));
 }
 

@@ -135,11 +135,16 @@ void LiveSession::on(const protocol::LayersUpdate& message) {
       problem.field = field + ".layer";
       return refuse(problem, std::string());
     }
-    room::LayerView view{layer->id, asked.visible, asked.opacity, std::nullopt};
+    room::LayerView view{layer->id, asked.visible, asked.opacity, std::nullopt, std::nullopt};
     if (asked.palette) {
       auto palette = palette_from_json(*asked.palette, field + ".palette");
       if (!palette) return refuse(palette.error(), std::string());
       view.palette = std::move(*palette);
+    }
+    if (asked.highlight) {
+      auto highlight = highlight_of(*asked.highlight, *layer, field + ".highlight");
+      if (!highlight) return refuse(highlight.error(), std::string());
+      view.highlight = std::move(*highlight);
     }
     views.push_back(std::move(view));
   }

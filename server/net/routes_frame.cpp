@@ -27,6 +27,21 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
       wanted.layers->push_back(layer->slug);
     }
   }
+  if (asked->highlights) {
+    for (std::size_t i = 0; i < asked->highlights->size(); ++i) {
+      const auto& wished = (*asked->highlights)[i];
+      const std::string field = "highlights[" + std::to_string(i) + "]";
+      auto layer = (*room)->layer(protocol::to_ref(wished.layer));
+      if (!layer) {
+        Problem problem = layer.error();
+        problem.field = field + ".layer";
+        return tl::unexpected(std::move(problem));
+      }
+      auto highlight = highlight_of(wished.highlight, *layer, field + ".highlight");
+      if (!highlight) return tl::unexpected(highlight.error());
+      wanted.highlights[layer->slug] = std::move(*highlight);
+    }
+  }
   const auto sequence = (*room)->sequence();
   const auto at = find_sequence(context, **room, asked->at);
   if (!at) return tl::unexpected(at.error());

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <map>
 
+#include "core/classification.h"
+#include "core/key_colors.h"
 #include "core/relation_cycles.h"
 #include "net/answer_book.h"
 #include "net/painted_keys.h"
@@ -230,6 +232,59 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
 
 // --- history
 
+Result<Response> classes(const RouteContext& context, const Request& request) {
+  auto table = context.store.table(request.param("table"));
+  if (!table) return tl::unexpected(table.error());
+  auto column = column_of(*table, request);
+  if (!column) return tl::unexpected(column.error());
+  const auto asked = request.query.find("method");
+  const std::string method = asked == request.query.end() ? "unique" : asked->second;
+  const bool unique = method == "unique";
+  if (!unique && method != "equal" && method != "quantile")
+    return fail(422, "No such method", "Classes are equal, quantile or unique.", "method");
+  int count = unique ? 20 : 5;
+  if (const auto wished = request.query.find("count"); wished != request.query.end()) {
+    auto number = parse_integer(wished->second, 1, 1000, "count");
+    if (!number) return tl::unexpected(number.error());
+    count = static_cast<int>(*number);
+  }
+  nlohmann::json list = nlohmann::json::array();
+  std::uint64_t with_value = 0, classified = 0;
+  if (unique) {
+    auto cells = context.store.record_texts(table->id, (*column)->slug, "column");
+    if (!cells) return tl::unexpected(cells.error());
+    std::vector<std::string> values;
+    for (KeyText& cell : *cells) values.push_back(std::move(cell.text));
+    with_value = values.size();
+    for (const TextClass& found : classify(values)) {
+      if (list.size() == static_cast<std::size_t>(count)) break;
+      list.push_back({{"value", found.value}, {"records", found.count}});
+      classified += found.count;
+    }
+  } else {
+    if ((*column)->kind != ColumnKind::integer && (*column)->kind != ColumnKind::numeric)
+      return fail(422, "Column holds no numbers",
+                  "'" + (*column)->name + "' holds no numbers: its classes are its unique values.", "method");
+    Expression number;
+    number.op = Expression::Op::column;
+    number.path = {(*column)->slug};
+    auto cells = context.store.record_numbers(table->id, number, std::nullopt, "column");
+    if (!cells) return tl::unexpected(cells.error());
+    std::vector<double> values;
+    for (const KeyNumber& cell : *cells) values.push_back(cell.number);
+    with_value = classified = values.size();
+    for (const NumberClass& found :
+         classify(values, method == "equal" ? ClassMethod::equal : ClassMethod::quantile, count))
+      list.push_back({{"from", found.from}, {"to", found.to}, {"records", found.count}});
+  }
+  const auto records = static_cast<std::uint64_t>(table->records);
+  return json_response({{"total", list.size()},
+                        {"classes", std::move(list)},
+                        {"records", records},
+                        {"unclassified", with_value - classified},
+                        {"without", records - std::min(records, with_value)}});
+}
+
 Result<Response> history(const RouteContext& context, const Request& request) {
   auto page = page_of(request);
   if (!page) return tl::unexpected(page.error());
@@ -351,6 +406,7 @@ void add_table_routes(Router& router, const RouteContext& context) {
   write(Method::patch, table + "/columns/{column}", change_column);
   write(Method::remove, table + "/columns/{column}", drop_column, BodyKind::none);
   read(table + "/columns/{column}/cycles", cycles);
+  read(table + "/columns/{column}/classes", classes, {"method", "count"});
   read(table + "/edits", history, {"key", "limit", "offset"});
   read(table + "/areas", areas);
   for (const bool redo : {false, true})

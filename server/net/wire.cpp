@@ -95,11 +95,11 @@ Result<room::FillEdit> fill_of(const protocol::EditFill& asked, const Layer& lay
 std::string number(double value) { return csv_number(value, ','); }
 
 nlohmann::json vec3(const glm::dvec3& v) { return nlohmann::json::array({v.x, v.y, v.z}); }
+}  // namespace
+
 nlohmann::json bounds_json(const glm::dvec3& low, const glm::dvec3& high) {
   return {{"min", vec3(low)}, {"max", vec3(high)}};
 }
-
-}  // namespace
 
 room::Place place_of(const protocol::SurfacePlace& place) {
   if (place.point) return *place.point;
@@ -174,6 +174,26 @@ room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, con
   batch.tool.batch.path = std::move(batch.path);
   request.edit = room::StrokeEdit{std::move(batch.tool.batch), stroke, n};
   return request;
+}
+
+Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Layer& layer, const std::string& field) {
+  if (!layer.table)
+    return fail(422, "Layer has no records",
+                "'" + layer.name + "' holds numbers: only records of database layers can be highlighted.", field);
+  room::Highlight highlight;
+  highlight.isolate = asked.isolate;
+  if (asked.filter) {
+    auto filter =
+        query::parse_condition(*asked.filter, field.empty() ? "filter" : field + ".filter", query::Names::columns);
+    if (!filter) return tl::unexpected(filter.error());
+    highlight.records = std::move(*filter);
+  } else {
+    std::vector<std::uint32_t> keys(asked.keys->begin(), asked.keys->end());
+    std::ranges::sort(keys);
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    highlight.records = std::move(keys);
+  }
+  return highlight;
 }
 
 Result<std::vector<room::LookView>> look_views(const room::Room& room, const std::vector<protocol::LookShown>& asked) {

@@ -47,11 +47,15 @@ room::Place place_of(const protocol::SurfacePlace& place);
 // The looks that a view asks for; 404 or 422 with the field's name for one that is not there or comes twice.
 Result<std::vector<room::LookView>> look_views(const room::Room& room, const std::vector<protocol::LookShown>& asked);
 
+// Of a layer of records, for `field`; the filter's columns are found when it is first drawn.
+Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Layer& layer, const std::string& field);
+
 // Where the path of a stroke's batch ended, from its journal record; nothing when the record is of another kind.
 std::optional<glm::dvec2> end_of_path(const nlohmann::json& record);
 
 protocol::SurfacePoint to_protocol(const query::SurfacePoint& point);
 protocol::Picked to_picked(const query::SurfacePoint& point, const std::optional<std::string>& id);
+nlohmann::json bounds_json(const glm::dvec3& low, const glm::dvec3& high);
 nlohmann::json to_json(const query::Statistics& statistics);
 nlohmann::json to_json(const room::SelectedArea& area);
 nlohmann::json to_json(const query::CrossTable& table);

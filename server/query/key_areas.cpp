@@ -7,22 +7,36 @@
 
 namespace strata::query {
 
-std::map<std::int64_t, KeyArea> key_areas(const LayerView& view, const mesh::SurfaceMap& map, double metres_per_unit) {
+namespace {
+
+TileSums::Key texel_key(const mesh::SurfaceMap& map, std::uint32_t slot, int texel, std::uint32_t bits) {
+  const double area = map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
+  const glm::dvec3 position(map.position(slot, texel));
+  return {bits, 1, area, area * position, position, position};
+}
+
+}  // namespace
+
+std::map<std::int64_t, KeyArea> key_areas(const LayerView& view, const mesh::SurfaceMap& map, const glm::dvec3& origin,
+                                          double metres_per_unit, TileSumsCache* cache) {
   if (map.resolution != view.layer.resolution)
     throw std::invalid_argument("The surface map is of another resolution than the layer.");
-  std::unordered_map<std::uint32_t, KeyArea> sums;
-  std::uint32_t last_bits = 0;
-  KeyArea* last = nullptr;  // neighbours mostly share a key; references into the map stay
-  for (const auto& [address, tile] : view.snapshot.tiles)
-    for_each_value(*tile, address, view.layer.type, map, nullptr,
-                   [&](std::uint32_t slot, int texel, std::uint32_t bits, double) {
-                     if (!last || bits != last_bits) last = &sums[bits];
-                     last_bits = bits;
-                     ++last->texels;
-                     last->area_m2 += map.area[std::size_t(slot) * 64 + static_cast<std::size_t>(texel)];
-                   });
+  std::unordered_map<std::uint32_t, TileSums::Key> sums;
+  const auto add = [&](const TileSums::Key& key) {
+    if (const auto [found, fresh] = sums.try_emplace(key.bits, key); !fresh) found->second.add(key);
+  };
+  for (const auto& [address, tile] : view.snapshot.tiles) {
+    const auto make = [&] { return sum_tile(*tile, address, view.layer.type, map, nullptr); };
+    const auto counted = cache ? cache->sums(address, tile, make) : std::make_shared<const TileSums>(make());
+    for (const TileSums::Key& key : counted->keys) add(key);
+    if (counted->too_many_keys)
+      for_each_value(
+          *tile, address, view.layer.type, map, nullptr,
+          [&](std::uint32_t slot, int texel, std::uint32_t bits, double) { add(texel_key(map, slot, texel, bits)); });
+  }
   std::map<std::int64_t, KeyArea> areas;
-  for (const auto& [bits, sum] : sums) areas[bits] = {sum.texels, sum.area_m2 * metres_per_unit * metres_per_unit};
+  for (const auto& [bits, sum] : sums)
+    areas[bits] = {sum.texels, sum.area * metres_per_unit * metres_per_unit, sum.lowest + origin, sum.highest + origin};
   return areas;
 }
 

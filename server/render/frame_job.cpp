@@ -16,6 +16,22 @@ double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
+ShadeInput::Patterns patterns_of(const FrameRequest& request, const mesh::Geometry& geometry) {
+  const Camera& camera = request.camera;
+  const glm::dvec3 middle = geometry.origin + glm::dvec3(geometry.box_min + geometry.box_max) * 0.5;
+  const glm::dvec4 clip = camera.projection * camera.view * glm::dvec4(middle, 1);
+  // From within a model its middle may be at the eye, or behind it: the distance counts.
+  const double w = std::max(std::abs(clip.w), 1e-9);
+  const glm::dvec2 size(request.width, request.height);
+  const glm::dvec2 origin = (glm::dvec2(clip) / w * 0.5 + 0.5) * size;
+  const double pixel = 2 * w / (std::abs(camera.projection[0][0]) * size.x);  // model units
+  // Any cell of the pattern serves as the first; numbers that stay small keep it sharp.
+  const auto near = [](double v) { return static_cast<float>(std::clamp(v, -1e6, 1e6)); };
+  return {{near(origin.x), near(origin.y)},
+          static_cast<float>(std::clamp(pixel * request.unit_mm, 1e-30, 1e30)),
+          static_cast<float>(size.x / camera.width)};
+}
+
 }  // namespace
 
 Step FrameJob::step(GpuScene& scene) {
@@ -196,6 +212,8 @@ Result<void> FrameJob::choose_area(GpuScene& scene, const View& view) {
 
 Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   const FrameRequest& request = task_.request;
+  auto model = scene.model(view.model);
+  if (!model) return tl::unexpected(model.error());
   const PixelRect& rect = frame_.rect;
   const int rows = std::max(1, scene.pixels_per_band() / (rect.width * (1 + static_cast<int>(request.layers.size()))));
   const PixelRect band{rect.x, rect.y + shaded_rows_, rect.width, std::min(rows, rect.height - shaded_rows_)};
@@ -206,7 +224,8 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
                    intersection(band, surface_),
                    request.background_top,
                    request.background_bottom,
-                   {}};
+                   {},
+                   patterns_of(request, (*model)->mesh().geometry())};
   for (const LayerStyle& style : request.layers) {
     auto layer = scene.layer(style.layer);
     if (!layer) return tl::unexpected(layer.error());
@@ -229,6 +248,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   view.layers = request.layers;
   view.background_top = request.background_top;
   view.background_bottom = request.background_bottom;
+  view.unit_mm = request.unit_mm;
   return true;
 }
 

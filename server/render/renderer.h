@@ -83,6 +83,7 @@ struct ViewStyle {  // what a view shows of its model
   std::vector<LayerStyle> layers;
   std::vector<LookStyle> looks;  // kMaxLooksShown at most
   Light light;
+  double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
 };
 
 struct PixelRect {
@@ -98,6 +99,7 @@ struct FrameRequest {
   std::vector<LayerStyle> layers;
   std::vector<LookStyle> looks;  // kMaxLooksShown at most
   Light light;
+  double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
   // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's last frame: the
   // rectangle they cover is shaded and returned. A changed camera, size or style shades everything anyway.
   struct Box {

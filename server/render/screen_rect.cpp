@@ -4,10 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "shared/shade.h"
+
 namespace strata::render {
 namespace {
 
-constexpr double kPadding_px = 1.5;  // a texel's colour reaches the pixels around it
+// A texel's colour reaches the pixels around it, and so does its outline.
+constexpr double kPadding_px = 1.5 + shader::kOutlinePixels;
 constexpr int kAlign = 16;
 
 }  // namespace

@@ -52,7 +52,8 @@ Result<const gl::Program*> ShadePass::program(const Batch& batch) {
   for (std::size_t i = 0; program_per_kinds_ && i < batch.layers.size(); ++i) {
     const auto& layer = batch.layers[i];
     kinds += "SHADE_LAYER(" + std::to_string(i) + "u, " + std::to_string(layer.mode) + "u, " +
-             std::to_string(layer.type) + "u, " + std::to_string(batch.units[i]) + "u) ";
+             std::to_string(layer.type) + "u, " + std::to_string(batch.units[i]) + "u, " +
+             std::to_string(layer.patterned) + "u) ";
   }
   const std::pair key{batch.chunks.size(), kinds};
   const auto built = programs_.find(key);
@@ -85,6 +86,9 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
   out.opacity = std::clamp(layer.opacity, 0.0f, 1.0f);
   out.palette_min = static_cast<float>(layer.palette->min);
   out.palette_max = static_cast<float>(layer.palette->max);
+  out.has_others = layer.palette->others ? 1 : 0;
+  out.others = packed(layer.palette->others.value_or(Rgba{}));
+  out.patterned = entry.patterned ? 1 : 0;
   // Without a range every value takes an end; the shader divides by it.
   const bool has_range = out.palette_max > out.palette_min;
   if (!has_range && layer.palette->mode == PaletteMode::linear)
@@ -141,7 +145,9 @@ Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables)
     do {
       const auto group = left.first(std::min(left.size(), PaletteTextures::kMaxPalettes));
       left = left.subspan(group.size());
-      palettes_.make_room(group.size());
+      std::vector<std::shared_ptr<const Palette>> palettes;
+      for (const ShadeInput::Layer& layer : group) palettes.push_back(layer.palette);
+      if (auto room = palettes_.make_room(palettes); !room) return room;
       for (const Batch& batch : plan(group)) {
         if (auto drawn = draw_surface(input, batch, first, tables); !drawn) return drawn;
         first = false;
@@ -196,6 +202,7 @@ Result<void> ShadePass::draw_surface(const ShadeInput& input, const Batch& batch
   shader::ShadeUniforms uniforms{};
   uniforms.layer_count = static_cast<std::uint32_t>(batch.layers.size());
   uniforms.first_pass = first ? 1 : 0;
+  uniforms.patterns = {input.patterns.origin, input.patterns.mm_per_pixel, input.patterns.pixel_scale};
   return draw(input, **built, input.surface_rect, uniforms);
 }
 

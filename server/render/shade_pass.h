@@ -23,6 +23,12 @@ struct ShadeInput {
     std::shared_ptr<const Palette> palette;
     float opacity;
   };
+  // How patterns lie on the picture's plane.
+  struct Patterns {
+    glm::vec2 origin{0};     // pixel that they are measured from, origin bottom left: the model's middle
+    float mm_per_pixel = 1;  // at the distance of the model's middle
+    float pixel_scale = 1;   // pixels of the picture in one of the camera's window
+  };
   const gl::Texture& uv;
   const gl::Texture& light;
   const gl::Framebuffer& target;  // RGBA8 picture and the g-buffer's depth; row 0 lowest
@@ -30,6 +36,7 @@ struct ShadeInput {
   PixelRect surface_rect;         // holds all pixels of `rect` that may show surface
   Rgba background_top, background_bottom;
   std::vector<Layer> layers;  // bottom to top
+  Patterns patterns{};
 };
 
 // Colours a rectangle of a view's picture from its g-buffer (shaders/shade_pass.frag): the background, then the surface, which

@@ -19,7 +19,7 @@ bool View::shows(const FrameRequest& request) const {
   const auto same = [](const LayerStyle& a, const LayerStyle& b) {
     return a.layer == b.layer && a.palette == b.palette && a.opacity == b.opacity;
   };
-  return picture_complete && background_top == request.background_top &&
+  return picture_complete && unit_mm == request.unit_mm && background_top == request.background_top &&
          background_bottom == request.background_bottom &&
          std::equal(layers.begin(), layers.end(), request.layers.begin(), request.layers.end(), same);
 }

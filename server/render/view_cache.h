@@ -27,6 +27,7 @@ struct View {
   bool picture_complete = false;
   std::vector<LayerStyle> layers;  // of the picture
   Rgba background_top{}, background_bottom{};
+  double unit_mm = 0;
 
   bool has_buffers() const { return static_cast<bool>(picture); }
   void drop_buffers();

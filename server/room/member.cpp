@@ -29,24 +29,44 @@ RoomMember::View* RoomMember::view(std::uint32_t view_id, bool make) {
                                        [listener = listener_, view_id](const Problem& why) {
                                          if (listener) listener->view_refused(view_id, why);
                                        });
-  made.viewer->set_style(style(made));
+  made.viewer->set_style(style(view_id, made));
   return &made;
 }
 
-render::ViewStyle RoomMember::style(const View& view) const {
+render::ViewStyle RoomMember::style(std::uint32_t view_id, View& view) const {
   render::ViewStyle style;
   style.looks = room_->look_shelf().styles(view.looks);
   style.light = view.light;
+  style.unit_mm = room_->model().metres() * 1000;
   for (const auto& state : room_->layer_states()) {
     auto own = view.overrides.find(state.layer.id);
     const LayerView none;
     const LayerView& mine = own == view.overrides.end() ? none : own->second;
     if (!mine.visible.value_or(state.layer.visible)) continue;
-    auto palette = view.palettes.find(state.layer.id);
-    style.layers.push_back({state.handle, palette == view.palettes.end() ? state.palette : palette->second,
-                            static_cast<float>(mine.opacity.value_or(state.layer.opacity))});
+    style.layers.push_back(
+        {state.handle, palette(view_id, view, state), static_cast<float>(mine.opacity.value_or(state.layer.opacity))});
   }
   return style;
+}
+
+std::shared_ptr<const Palette> RoomMember::palette(std::uint32_t view_id, View& view, const LayerState& state) const {
+  static const auto kUncolored =
+      std::make_shared<const Palette>(Palette{PaletteMode::categorical, 0, 1, {}, {}, kNoValueColor});
+  const std::int64_t id = state.layer.id;
+  const auto own = view.palettes.find(id);
+  const auto& palette = own == view.palettes.end() ? state.palette : own->second;
+  const auto asked = view.highlights.find(id);
+  const auto highlight = asked == view.highlights.end() ? nullptr : asked->second;
+  if (!state.layer.table || !RecordColors::needs_records(*palette, highlight)) {
+    view.by_record.erase(id);
+    return palette;
+  }
+  const auto found = room_->record_colors().find({*state.layer.table, palette, highlight});
+  if (found.problem && view.told.insert(found.problem).second && listener_)
+    listener_->view_refused(view_id, *found.problem);
+  if (found.palette) view.by_record[id] = found.palette;
+  if (const auto last = view.by_record.find(id); last != view.by_record.end()) return last->second;
+  return palette->column.empty() ? palette : kUncolored;
 }
 
 void RoomMember::camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) {
@@ -62,13 +82,22 @@ Result<void> RoomMember::show(std::uint32_t view_id, ViewSettings settings) {
                 "view_id");
   v->overrides.clear();
   v->palettes.clear();
+  const auto before = std::exchange(v->highlights, {});
+  v->told.clear();
   v->looks = std::move(settings.looks);
   v->light = settings.light;
   for (auto& own : settings.layers) {
     if (own.palette) v->palettes[own.layer_id] = std::make_shared<const Palette>(*own.palette);
+    if (own.highlight) {
+      // The same records as before need not be looked for again.
+      const auto known = before.find(own.layer_id);
+      v->highlights[own.layer_id] = known != before.end() && *known->second == *own.highlight
+                                        ? known->second
+                                        : std::make_shared<const Highlight>(std::move(*own.highlight));
+    }
     v->overrides[own.layer_id] = std::move(own);
   }
-  v->viewer->set_style(style(*v));
+  v->viewer->set_style(style(view_id, *v));
   return {};
 }
 
@@ -105,12 +134,12 @@ void RoomMember::content_changed(std::int64_t layer_id, const std::optional<rend
 
 void RoomMember::styles_changed() {
   std::lock_guard lock(mutex_);
-  for (auto& [id, view] : views_) view.viewer->set_style(style(view));
+  for (auto& [id, view] : views_) view.viewer->set_style(style(id, view));
 }
 
 void RoomMember::model_changed(render::ModelHandle model) {
   std::lock_guard lock(mutex_);
-  for (auto& [id, view] : views_) view.viewer->reset_model(model, style(view));
+  for (auto& [id, view] : views_) view.viewer->reset_model(model, style(id, view));
 }
 
 }  // namespace strata::room

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <vector>
 
 #include "room/room.h"
@@ -10,6 +11,7 @@
 namespace strata::room {
 
 class OpenRoom;
+struct LayerState;
 
 // A connection of one person: the views they look through and what they show in each.
 class RoomMember final : public Member {
@@ -36,12 +38,18 @@ class RoomMember final : public Member {
   struct View {
     std::shared_ptr<stream::Viewer> viewer;
     std::map<std::int64_t, LayerView> overrides;
-    std::map<std::int64_t, std::shared_ptr<const Palette>> palettes;  // of overrides
+    // Of overrides, by layer.
+    std::map<std::int64_t, std::shared_ptr<const Palette>> palettes;
+    std::map<std::int64_t, std::shared_ptr<const Highlight>> highlights;
+    std::map<std::int64_t, std::shared_ptr<const Palette>>
+        by_record;                                  // last made from records, drawn until the next is there
+    std::set<std::shared_ptr<const Problem>> told;  // why one cannot be made
     std::optional<std::vector<LookView>> looks;
     Light light;
   };
   View* view(std::uint32_t view_id, bool make);
-  render::ViewStyle style(const View& view) const;
+  render::ViewStyle style(std::uint32_t view_id, View& view) const;
+  std::shared_ptr<const Palette> palette(std::uint32_t view_id, View& view, const LayerState& state) const;
 
   const std::shared_ptr<OpenRoom> room_;
   const Uuid session_ = random_uuid();

@@ -88,13 +88,14 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const s
   for (auto& [id, state] : room->layers_) state.handle = gpu->layers.at(id);
   room->model_handle_ = gpu->model;
   room->maps_->set_model(gpu->model);
-  room->look_shelf_ =
-      std::make_shared<LookShelf>(parts.store, parts.renderer, parts.workers, [weak = std::weak_ptr<OpenRoom>(room)] {
-        auto open = weak.lock();
-        if (!open) return;
-        const Strand strand = open->strand_;  // not on the GPU thread
-        boost::asio::post(strand, [open = std::move(open)] { open->sort_layers_changed(); });
-      });
+  const auto restyle = [weak = std::weak_ptr<OpenRoom>(room)] {
+    auto open = weak.lock();
+    if (!open) return;
+    const Strand strand = open->strand_;  // not on the GPU thread
+    boost::asio::post(strand, [open = std::move(open)] { open->sort_layers_changed(); });
+  };
+  room->look_shelf_ = std::make_shared<LookShelf>(parts.store, parts.renderer, parts.workers, restyle);
+  room->record_colors_ = std::make_shared<RecordColors>(parts.store, parts.workers, restyle);
   room->look_shelf_->set_model(gpu->model);
   for (const Look& look : *looks) room->look_shelf_->put(look);
   room->sequence_ = room->durable_ = journal->last_sequence;
@@ -247,6 +248,7 @@ void OpenRoom::outdate(const std::function<bool(const LayerFormula&)>& reads) {
 }
 
 void OpenRoom::records_changed(std::int64_t table_id) {
+  record_colors_->records_changed(table_id);
   on_strand([&] {
     outdate([&](const LayerFormula& formula) {
       return std::ranges::any_of(formula.inputs, [&](const auto& input) { return input.table == table_id; });
@@ -299,6 +301,7 @@ Result<Model> OpenRoom::update_model(Model model, const store::FirstAnswer<Model
       model_ = *updated;
     }
     tell([&](Listener& l) { l.model_changed(*updated); });
+    sort_layers_changed();  // patterns are spaced in millimetres
   });
   return updated;
 }
@@ -478,6 +481,7 @@ bool OpenRoom::deserted(std::chrono::steady_clock::time_point now) const {
 void OpenRoom::shut(const Problem& why) {
   maps_->stop();
   look_shelf_->stop();
+  record_colors_->stop();
   surface_->stop();
   on_strand([&] {
     recovery_.shut = true;
@@ -507,7 +511,8 @@ Result<std::map<std::int64_t, query::KeyArea>> OpenRoom::key_areas(const std::st
   if (!found) return tl::unexpected(found.error());
   const auto map = surface_map(found->layer.resolution);
   if (!map) return tl::unexpected(map.error());
-  return query::key_areas({found->layer, found->mirror->snapshot()}, **map, model().metres());
+  return query::key_areas({found->layer, found->mirror->snapshot()}, **map, geometry_->origin, model().metres(),
+                          found->sums.get());
 }
 
 }  // namespace strata::room

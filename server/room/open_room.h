@@ -10,6 +10,7 @@
 #include "room/edit_pipeline.h"
 #include "room/look_shelf.h"
 #include "room/member.h"
+#include "room/record_colors.h"
 #include "room/room.h"
 
 namespace strata::room {
@@ -99,6 +100,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   // --- for members
   stream::StreamContext stream_context() const { return parts_.stream; }
   LookShelf& look_shelf() const { return *look_shelf_; }
+  RecordColors& record_colors() const { return *record_colors_; }
   std::vector<LayerState> layer_states() const;  // in drawing order
   std::optional<LayerState> layer_state(std::int64_t id) const;
   void leave(RoomMember* member);
@@ -151,6 +153,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   const Strand strand_;
   const std::shared_ptr<SurfaceMaps> maps_;
   std::shared_ptr<LookShelf> look_shelf_;
+  std::shared_ptr<RecordColors> record_colors_;
   const std::shared_ptr<SurfaceLookup> surface_;
   std::shared_ptr<EditPipeline> pipeline_;
 

@@ -51,7 +51,16 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
       handle = *copy;
       borrowed.layers.push_back(handle);
     }
-    request.layers.push_back({handle, item.palette, static_cast<float>(item.layer.opacity)});
+    auto palette = item.palette;
+    const auto asked_for = asked.highlights.find(item.layer.slug);
+    const auto highlight =
+        asked_for == asked.highlights.end() ? nullptr : std::make_shared<const Highlight>(asked_for->second);
+    if (item.layer.table && RecordColors::needs_records(*palette, highlight)) {
+      auto made = record_colors_->make({*item.layer.table, palette, highlight});
+      if (!made) return tl::unexpected(made.error());
+      palette = std::move(*made);
+    }
+    request.layers.push_back({handle, std::move(palette), static_cast<float>(item.layer.opacity)});
   }
   auto view = await<render::ViewHandle>([&](auto done) { parts_.renderer.add_view(model, std::move(done)); });
   if (!view) return tl::unexpected(gpu_problem(view.error()));
@@ -63,6 +72,7 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
   if (!looks) return tl::unexpected(gpu_problem(looks.error()));
   request.looks = std::move(*looks);
   request.light = asked.light;
+  request.unit_mm = this->model().metres() * 1000;
   auto frame = await<render::Frame>([&](auto done) { parts_.renderer.draw(std::move(request), std::move(done)); });
   if (!frame) return tl::unexpected(gpu_problem(frame.error()));
   return frame;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "query/cross_table.h"
@@ -45,12 +47,20 @@ class Listener {
   virtual void view_refused(std::uint32_t view_id, const Problem& why) = 0;
 };
 
+// Records of a database layer that are to be seen before all others.
+struct Highlight {
+  std::variant<std::vector<std::uint32_t>, Expression> records;  // keys, ascending; or a condition over columns
+  bool isolate = false;                                          // the others are not drawn at all
+  bool operator==(const Highlight&) const = default;
+};
+
 // Layers as one person sees them; what is not set follows the layer's default.
 struct LayerView {
   std::int64_t layer_id = 0;
   std::optional<bool> visible;
   std::optional<double> opacity;
   std::optional<Palette> palette;
+  std::optional<Highlight> highlight;  // database layers
 };
 
 struct LookView {
@@ -121,6 +131,7 @@ struct PictureRequest {
   Camera camera;
   std::optional<std::vector<std::string>> layers{};  // by slug; nothing: those visible by default
   std::optional<std::vector<LookView>> looks{};      // the same
+  std::map<std::string, Highlight> highlights{};     // by slug
   Light light{};
   std::optional<std::int64_t> at{};  // layers as they were after that sequence
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <set>
 
 #include "core/column_value.h"
@@ -14,6 +15,15 @@ namespace {
 nlohmann::json keys_json(const std::vector<std::int64_t>& keys) {
   return nlohmann::json(
       std::vector(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(std::min(keys.size(), kMostRowProblems))));
+}
+
+// Whole numbers without a fraction, also of columns that may have one.
+std::string text_of(const nlohmann::json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_number_float()) return value.dump();
+  char text[40];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value.get<double>());
+  return error == std::errc() ? std::string(text, end) : value.dump();
 }
 
 // What was asked for becomes cells, record by record.
@@ -223,6 +233,28 @@ Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, cons
     if (!numbers) return tl::unexpected(unanswerable(connection, numbers.error(), field));
     if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
     return numbers;
+  });
+}
+
+Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, const std::string& ref,
+                                                 const std::string& field) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyText>> {
+    auto open = read_table(connection, table_id);
+    if (!open) return tl::unexpected(open.error());
+    const Column* column = find_column(open->table.columns, ref);
+    if (!column)
+      return fail(422, "No such column", "The table '" + open->table.name + "' has no column '" + ref + "'.", field);
+    if (column->kind == ColumnKind::relation || holds_attachments(column->kind))
+      return fail(422, "Column holds lists", "'" + column->name + "' may hold several values in one record.", field);
+    auto rows = load_all_rows(connection, table_id, {*column});
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<KeyText> texts;
+    for (const Record& row : *rows) {
+      const auto cell = row.values.find(column->id);
+      if (cell == row.values.end() || cell->second.is_null()) continue;
+      texts.push_back({static_cast<std::uint32_t>(row.key), text_of(cell->second)});
+    }
+    return texts;
   });
 }
 

@@ -12,6 +12,7 @@
 #include "core/attachment.h"
 #include "core/expression.h"
 #include "core/history.h"
+#include "core/key_colors.h"
 #include "core/key_numbers.h"
 #include "core/layer.h"
 #include "core/look.h"
@@ -162,6 +163,9 @@ class Store {
   // Refused (422 at `field`): what the columns do not fit.
   Result<std::vector<KeyNumber>> record_numbers(std::int64_t table_id, const Expression& expression,
                                                 std::optional<std::int64_t> at, const std::string& field);
+  // What a column holds for each record that has a value there, now: as text, canonical (of a term, its key). Refused (422 at
+  // `field`): a column that is not there or holds lists.
+  Result<std::vector<KeyText>> record_texts(std::int64_t table_id, const std::string& column, const std::string& field);
   // All or none: where the change has problems, nothing was written.
   Result<TableChange> write_records(std::int64_t table_id, const WriteRecords& asked, const std::string& user,
                                     const FirstAnswer<TableChange>& answer = {});

@@ -284,6 +284,7 @@ void Viewer::step() {
     request.layers = impl_->style.layers;
     request.looks = impl_->style.looks;
     request.light = impl_->style.light;
+    request.unit_mm = impl_->style.unit_mm;
   }
   request.camera = draw.camera;
   request.changed = draw.changed;

@@ -125,6 +125,115 @@ TEST_F(Shade, keys_that_are_not_listed_get_the_generated_colour) {
   }
 }
 
+TEST_F(Shade, keys_that_are_not_listed_get_the_colour_of_the_others_where_there_is_one) {
+  const double lit = light();
+  Palette keys{PaletteMode::categorical, 0, 1, {{3, {10, 200, 30, 255}}}, {}};
+  keys.others = Rgba{120, 130, 140, 255};
+  for (const std::uint32_t key : {2u, 3u, 70000u}) {
+    SCOPED_TRACE(key);
+    expect_color({{filled_layer(ValueType::u32, key), std::make_shared<Palette>(keys), 1}}, rgb(color_of(keys, key)),
+                 lit);
+  }
+}
+
+TEST_F(Shade, a_palette_lists_as_many_keys_as_a_table_has_records) {
+  const double lit = light();
+  Palette keys{PaletteMode::categorical, 0, 1, {}, {}};
+  for (int key = 0; key < 300'000; ++key) {
+    keys.points.push_back(
+        {double(key), {static_cast<std::uint8_t>(key / 2000), static_cast<std::uint8_t>(key % 251), 90, 255}});
+  }
+  const auto palette = std::make_shared<Palette>(keys);
+  for (const std::uint32_t key : {0u, 4095u, 4096u, 70'000u, 299'999u}) {
+    SCOPED_TRACE(key);
+    expect_color({{filled_layer(ValueType::u32, key), palette, 1}}, rgb(color_of(keys, key)), lit);
+  }
+}
+
+// What shaders/shade_pass.frag says of hatch and dots, in plain C++: the share of a pixel (origin bottom left) that is covered.
+double pattern_cover(Pattern pattern, double angle_deg, double spacing_px, glm::dvec2 from) {
+  const double angle = angle_deg / 180 * 3.14159265358979;
+  const glm::dvec2 along(std::cos(angle), std::sin(angle)), across(-along.y, along.x);
+  const glm::dvec2 place(glm::dot(from, along) / spacing_px, glm::dot(from, across) / spacing_px);
+  const glm::dvec2 middle = (place - glm::floor(place) - 0.5) * spacing_px;
+  const double inside =
+      pattern == Pattern::dots ? 0.32 * spacing_px - glm::length(middle) : 0.4 / 2 * spacing_px - std::abs(middle.y);
+  return std::clamp(inside + 0.5, 0.0, 1.0);
+}
+
+TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
+  const double lit = light();
+  const auto lower = filled_layer(ValueType::u8, 1), upper = filled_layer(ValueType::u16, 7);
+  const auto red = std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, {255, 0, 0, 255}}}, {}});
+  // The square is 1 m wide in 256 px of 1000 / 256 mm; its middle is pixel 128, and the camera looks there.
+  const double mm_per_pixel = 1000.0 / kSize;
+  struct Case {
+    Pattern pattern;
+    double angle, spacing_mm, spacing_px;
+  };
+  for (const Case& c : {Case{Pattern::hatch, 0, 0, 9}, Case{Pattern::hatch, 45, 40, 40 / mm_per_pixel},
+                        Case{Pattern::hatch, 90, 10, 4 * 10 / mm_per_pixel / 2}, Case{Pattern::dots, 30, 0, 9},
+                        Case{Pattern::dots, 120, 60, 60 / mm_per_pixel}}) {
+    for (const PaletteMode mode : {PaletteMode::step, PaletteMode::categorical}) {
+      SCOPED_TRACE(std::to_string(int(c.pattern)) + " " + std::to_string(c.angle) + " " + std::to_string(c.spacing_mm));
+      Palette::Point point{7, {0, 0, 255, 255}};
+      point.pattern = c.pattern, point.angle = c.angle, point.spacing_mm = c.spacing_mm;
+      auto inked = std::make_shared<Palette>(Palette{mode, 0, 10, {point}, {}});
+      request_.layers = {{lower, red, 1}, {upper, inked, 1}};
+      const auto frame = renderer_.draw(request_);
+      double worst = 0;
+      std::size_t covered = 0;
+      for (int y = 20; y < 236; ++y) {
+        for (int x = 20; x < 236; ++x) {
+          const glm::dvec2 from(x + 0.5 - kSize / 2.0, kSize - y - 0.5 - kSize / 2.0);
+          const double cover = pattern_cover(c.pattern, c.angle, c.spacing_px, from);
+          const auto got = pixel(frame, x, y);
+          worst = std::max({worst, std::abs(got[0] - 255 * lit * (1 - cover)), std::abs(got[2] - 255 * lit * cover)});
+          covered += cover > 0.5;
+        }
+      }
+      EXPECT_LT(worst, 12) << "of 255: angles and spacings are rounded on their way";
+      EXPECT_GT(covered, 216u * 216 / 5);
+      EXPECT_LT(covered, 216u * 216 / 2);
+    }
+  }
+}
+
+TEST_F(Shade, an_outline_is_drawn_where_the_value_ends_and_not_inside) {
+  // One tile of the four holds 7, the one beside it 8: the square's texels 0…127 and 128…255.
+  const auto layer = renderer_.add_layer(model_, ValueType::u8, 256);
+  std::vector<render::TileUpload> tiles;
+  for (std::uint16_t x = 0; x < 2; ++x) {
+    auto tile = std::make_shared<TileData>(ValueType::u8);
+    for (int i = 0; i < kTexelsPerTile; ++i) tile->write(i, 7u + x);
+    tiles.push_back({{x, 0}, tile});
+  }
+  renderer_.write(layer, tiles);
+  Palette::Point outlined{7, {0, 0, 255, 255}};
+  outlined.pattern = Pattern::outline;
+  const auto palette =
+      std::make_shared<Palette>(Palette{PaletteMode::categorical, 0, 10, {outlined, {8, {0, 255, 0, 255}}}, {}});
+  request_.layers = {{layer, palette, 1}};
+  const auto frame = renderer_.draw(request_);
+  request_.layers = {};
+  const auto bare = renderer_.draw(request_);
+  int outline = 0, inside = 0;
+  for (int y = 10; y < 246; ++y) {
+    for (int x = 10; x < 246; ++x) {
+      const auto got = pixel(frame, x, y);
+      if (got[2] > got[0] + 60 && got[2] > got[1] + 60) {
+        ++outline;
+        // Along the edge to the other value (x = 128) or to what is not painted (y = 128, a row of tiles is half the square).
+        EXPECT_TRUE(std::abs(x + 0.5 - 128) < 3 || std::abs(y + 0.5 - 128) < 3) << x << " " << y;
+      } else if (got == pixel(bare, x, y)) {
+        ++inside;
+      }
+    }
+  }
+  EXPECT_GT(outline, 2 * 100) << "some pixels along two edges of a hundred";
+  EXPECT_GT(inside, 118 * 118 / 2) << "nothing is drawn within";
+}
+
 TEST_F(Shade, layers_cover_each_other_bottom_to_top_by_opacity_and_palette_alpha) {
   const double lit = light();
   const auto plain = [](Rgba color) {

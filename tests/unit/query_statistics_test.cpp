@@ -385,7 +385,7 @@ TEST(QueryStatistics, areas_of_keys_are_those_of_the_statistics_however_many_key
   for (const auto type : {ValueType::u8, ValueType::u16, ValueType::u32}) {
     const auto few = make_layer(type, map, 200, 42);
     const auto expected = statistics(few, map, kOrigin, 0.1);
-    const auto areas = key_areas(few, map, 0.1);
+    const auto areas = key_areas(few, map, kOrigin, 0.1);
     ASSERT_EQ(areas.size(), expected.keys.size());
     for (const auto& [key, of_key] : expected.keys) {
       const auto& area = areas.at(static_cast<std::int64_t>(key));
@@ -394,7 +394,7 @@ TEST(QueryStatistics, areas_of_keys_are_those_of_the_statistics_however_many_key
     }
   }
   const auto many = make_layer(ValueType::u32, map, 50'000, 43);
-  const auto areas = key_areas(many, map, 0.1);
+  const auto areas = key_areas(many, map, kOrigin, 0.1);
   EXPECT_GT(areas.size(), kMaxStatisticsKeys);
   std::uint64_t texels = 0;
   for (const auto& [key, area] : areas) texels += area.texels;

@@ -319,7 +319,7 @@ describe("the card of a record", () => {
       const key = Number(path.split("/").at(-1));
       return key < 9 ? new Response(JSON.stringify({ ...record(key), area_m2 })) : new Response("{}", { status: 404 });
     });
-    tables = new Tables(api, { model_id: "1", project: () => null, changed: () => {} });
+    tables = new Tables(api, { model_id: "1", project: () => null, highlight: () => {}, fly_to: () => {}, changed: () => {} });
   });
 
   it("shows what was taken from the surface, and follows its record and its area", async () => {

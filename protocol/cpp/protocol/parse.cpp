@@ -55,6 +55,7 @@ ProblemMessage problem_message(const Problem& problem, const std::optional<std::
   message.status = std::clamp(problem.status, 400, 599);
   message.detail = problem.detail;
   if (!problem.field.empty()) message.field = problem.field;
+  if (problem.offset) message.offset = static_cast<int>(*problem.offset);
   return message;
 }
 

@@ -129,7 +129,8 @@ class LiveClient:
                 return json.loads(content)
             header = FRAME_HEADER.unpack(content[:FRAME_HEADER.size])
             return {"op": "frame", "flags": header[3], "view_id": header[4], "frame": header[5], "camera_seq": header[6],
-                    "scene_sequence": header[7], "bytes": header[16], "payload": content[FRAME_HEADER.size:]}
+                    "scene_sequence": header[7], "x": header[8], "y": header[9], "width": header[10], "height": header[11],
+                    "full_width": header[12], "full_height": header[13], "bytes": header[16], "payload": content[FRAME_HEADER.size:]}
 
     def receive_until(self, *ops):
         """The next message of these kinds; frames that come meanwhile are acknowledged."""
@@ -141,6 +142,6 @@ class LiveClient:
             if message["op"] in ops:
                 return message
 
-    def hello(self):
-        self.send({"op": "hello", "client": "e2e"})
+    def hello(self, **more):
+        self.send({"op": "hello", "client": "e2e", **more})
         return self.receive_until("welcome")

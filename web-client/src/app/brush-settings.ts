@@ -51,7 +51,7 @@ function first_value(layer: Layer): number {
     case "presence":
     case "classes":
     case "records":
-      return palette.points[0]?.at ?? 1;
+      return palette.column ? 1 : (palette.points[0]?.at ?? 1);
     case "measurement": {
       const middle = (palette.min + palette.max) / 2;
       return holds_fractions(layer.type) ? Number(middle.toPrecision(3)) : Math.round(middle);
@@ -75,7 +75,8 @@ export interface RecordLabels {
 
 /** A value as people read it: the label of its class, the name of its record, or the number with its unit. */
 export function describe_value(layer: Layer, value: number, records: RecordLabels | null = null): string {
-  const label = layer.palette.mode === "categorical" ? layer.palette.points.find((p) => p.at === value)?.label : "";
+  const by_value = layer.palette.mode === "categorical" && !layer.palette.column;
+  const label = by_value ? layer.palette.points.find((p) => p.at === value)?.label : "";
   if (label) return label;
   if (layer.kind === "database") {
     return (layer.table === undefined ? null : records?.label(layer.table, value)) ?? texts.layers.record_number(value);

@@ -5,6 +5,8 @@ import { customElement, property, query } from "lit/decorators.js";
 import { cell_text, is_number, label_of, named_keys, names_records, parse_cell } from "../core/cells";
 import type { CellValue, Column } from "../core/protocol.gen";
 import type { ModelSession } from "./model-session";
+import "./files-field";
+import type { StrataFilesField } from "./files-field";
 import "./record-chooser";
 import type { StrataRecordChooser } from "./record-chooser";
 import { number_field_styles, shared_styles } from "./styles";
@@ -24,6 +26,9 @@ export class StrataCellInput extends LitElement {
   /** What was typed to begin with: it takes the place of the value. */
   @property({ attribute: false }) typed: string | null = null;
   @property({ type: Boolean }) invalid = false;
+  /** Columns of files: the record that they are of, where it is there already. */
+  @property({ attribute: false }) record: { table: number; key: number | null } | null = null;
+  @query("strata-files-field") private files_!: StrataFilesField | null;
   @query("input, select, textarea, strata-record-chooser") private control_!:
     | HTMLInputElement
     | HTMLSelectElement
@@ -72,6 +77,7 @@ export class StrataCellInput extends LitElement {
   /** What is in the field now. */
   read(): CellRead {
     const { column } = this;
+    if (this.files_) return { value: this.files_.ids.length > 0 ? [...this.files_.ids] : null };
     if (names_records(column)) {
       const keys = [...(this.control_ as StrataRecordChooser).chosen];
       return { value: column.kind === "relation" ? (keys.length > 0 ? keys : null) : (keys[0] ?? null) };
@@ -85,9 +91,18 @@ export class StrataCellInput extends LitElement {
 
   /** In place of what was typed. */
   put(value: CellValue): void {
+    if (this.files_) {
+      this.files_.ids = named_keys(value);
+      return;
+    }
     const control = this.control_;
     if ("chosen" in control) control.chosen = named_keys(value);
     else control.value = cell_text(value);
+  }
+
+  /** Files that wait to be sent. */
+  get files(): StrataFilesField | null {
+    return this.files_;
   }
 
   /** To write on: all of the value, or behind what was typed. */
@@ -114,6 +129,15 @@ export class StrataCellInput extends LitElement {
           .invalid=${this.invalid}
           label=${label}
         ></strata-record-chooser>`;
+      case "picture":
+      case "document":
+        return html`<strata-files-field
+          .session=${this.session}
+          .column=${column}
+          .table=${this.record?.table ?? 0}
+          .record=${this.record?.key ?? null}
+          .ids=${named_keys(value)}
+        ></strata-files-field>`;
       case "boolean":
         return this.choice(label, value === null ? "" : String(value), [
           ["true", texts.tables.yes],

@@ -1,8 +1,9 @@
 // The layers of the open model: which there are, which is chosen, and what this person shows and hides.
 
 import type { Api } from "../core/api";
-import type { LayerEvent, LayerOverride } from "../core/protocol.gen";
-import { complete_layer, type Layer, type LayerPatch } from "../core/types";
+import { same_palette } from "../core/palette";
+import type { Highlight, LayerEvent, LayerOverride } from "../core/protocol.gen";
+import { complete_layer, type Layer, type LayerPatch, type Palette } from "../core/types";
 import { notices } from "./notices";
 import { reorder } from "./reorder";
 import { texts } from "./texts";
@@ -10,6 +11,7 @@ import { texts } from "./texts";
 interface Override {
   visible?: boolean;
   opacity?: number;
+  palette?: Palette;
 }
 
 export interface LayerListHost {
@@ -22,6 +24,8 @@ export class LayerList {
   selected_id: number | null = null;
 
   private readonly overrides_ = new Map<number, Override>();
+  /** Records that are looked at just now. */
+  private readonly highlights_ = new Map<number, Highlight>();
 
   constructor(
     private readonly api_: Api,
@@ -50,11 +54,17 @@ export class LayerList {
   opacity(layer: Layer): number {
     return this.overrides_.get(layer.id)?.opacity ?? layer.opacity;
   }
+  palette(layer: Layer): Palette {
+    return this.overrides_.get(layer.id)?.palette ?? layer.palette;
+  }
 
   /** What is shown differs from what everyone sees at first. */
   get has_overrides(): boolean {
     return this.all.some(
-      (layer) => this.visible(layer) !== layer.visible || Math.abs(this.opacity(layer) - layer.opacity) > 1e-6,
+      (layer) =>
+        this.visible(layer) !== layer.visible ||
+        Math.abs(this.opacity(layer) - layer.opacity) > 1e-6 ||
+        !same_palette(this.palette(layer), layer.palette),
     );
   }
 
@@ -64,6 +74,18 @@ export class LayerList {
   set_opacity(layer: Layer, opacity: number): void {
     this.override(layer, { opacity });
   }
+  /** Null: the layer's own. */
+  set_palette(layer: Layer, palette: Palette | null): void {
+    const { palette: _, ...rest } = this.overrides_.get(layer.id) ?? {};
+    this.overrides_.set(layer.id, palette ? { ...rest, palette } : rest);
+    this.send_overrides();
+  }
+  /** Null: no records before others. */
+  set_highlight(layer_id: number, highlight: Highlight | null): void {
+    if (highlight) this.highlights_.set(layer_id, highlight);
+    else if (!this.highlights_.delete(layer_id)) return;
+    this.send_overrides();
+  }
   reset_overrides(): void {
     this.overrides_.clear();
     this.send_overrides();
@@ -71,9 +93,10 @@ export class LayerList {
 
   async save_overrides_as_default(): Promise<void> {
     for (const layer of this.all) {
-      const [visible, opacity] = [this.visible(layer), this.opacity(layer)];
-      if (visible === layer.visible && opacity === layer.opacity) continue;
-      await this.change(layer, { visible, opacity });
+      const [visible, opacity, palette] = [this.visible(layer), this.opacity(layer), this.palette(layer)];
+      const recolored = !same_palette(palette, layer.palette);
+      if (visible === layer.visible && opacity === layer.opacity && !recolored) continue;
+      await this.change(layer, { visible, opacity, ...(recolored ? { palette } : {}) });
     }
     this.reset_overrides();
   }
@@ -107,7 +130,7 @@ export class LayerList {
   take_all(layers: Layer[]): void {
     this.put_all(layers);
     const known = new Set(this.all.map((layer) => layer.id));
-    for (const id of this.overrides_.keys()) if (!known.has(id)) this.overrides_.delete(id);
+    for (const kept of [this.overrides_, this.highlights_]) for (const id of kept.keys()) if (!known.has(id)) kept.delete(id);
     if (!this.selected) this.select_top();
   }
 
@@ -133,7 +156,12 @@ export class LayerList {
   }
 
   private send_overrides(): void {
-    this.host_.send_overrides([...this.overrides_].map(([layer, override]) => ({ layer, ...override })));
+    const ids = new Set([...this.overrides_.keys(), ...this.highlights_.keys()]);
+    const overrides = [...ids].map((layer) => {
+      const highlight = this.highlights_.get(layer);
+      return { layer, ...this.overrides_.get(layer), ...(highlight ? { highlight } : {}) };
+    });
+    this.host_.send_overrides(overrides);
     this.host_.changed();
   }
 
@@ -149,7 +177,8 @@ export class LayerList {
 
   private drop(id: number): void {
     this.all = this.all.filter((layer) => layer.id !== id);
-    if (this.overrides_.delete(id)) this.send_overrides();
+    const had = this.overrides_.delete(id);
+    if (this.highlights_.delete(id) || had) this.send_overrides();
     if (this.selected_id === id) this.select_top();
     this.host_.changed();
   }

@@ -8,6 +8,7 @@ import { ask } from "./dialog";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import { layer_job_row, layer_job_styles } from "./layer-job-row";
+import { can_be_colored } from "./color-dialog";
 import { layer_chip, legend, legend_styles } from "./legend";
 import "./menu";
 import type { ModelSession } from "./model-session";
@@ -18,7 +19,7 @@ import { texts } from "./texts";
 
 export type LayerPanelRequest =
   | { dialog: "create" | "transfer" }
-  | { dialog: "edit" | "statistics" | "map"; layer: Layer };
+  | { dialog: "edit" | "colors" | "statistics" | "map"; layer: Layer };
 
 @customElement("strata-layer-panel")
 export class StrataLayerPanel extends LitElement {
@@ -255,13 +256,16 @@ export class StrataLayerPanel extends LitElement {
           title=${layer.name}
           @click=${() => session.layers.select(layer)}
         >
-          ${layer_chip(layer)}<span class="ellipsis">${layer.name}</span>
+          ${layer_chip(session.layers.palette(layer))}<span class="ellipsis">${layer.name}</span>
         </button>
         <strata-menu label=${words.options(layer.name)}>
           ${session.can_curate
             ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "edit", layer })}>
                 ${icon("edit")}${words.edit}
               </button>`
+            : nothing}
+          ${can_be_colored(layer)
+            ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "colors", layer })}>${icon("palette")}${texts.colors.open}</button>`
             : nothing}
           ${layer.table === undefined
             ? nothing
@@ -317,7 +321,7 @@ export class StrataLayerPanel extends LitElement {
     const { session } = this;
     const opacity = session.layers.opacity(layer);
     return html`<div class="more">
-      ${layer.description ? html`<p class="description">${layer.description}</p>` : nothing} ${legend(layer, session.tables)}
+      ${layer.description ? html`<p class="description">${layer.description}</p>` : nothing} ${legend(layer, session.layers.palette(layer), session.tables)}
       ${layer.expression === undefined ? nothing : this.formula(layer)}
       ${layer.table === undefined
         ? nothing

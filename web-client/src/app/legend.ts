@@ -1,9 +1,11 @@
 // The legend of a palette: gradient with ticks, or swatches with labels.
 
-import { css, html, type TemplateResult } from "lit";
+import { css, html, nothing, type TemplateResult } from "lit";
+import { label_of } from "../core/cells";
 import { format_number, ticks } from "../core/measure";
-import { css_color, css_gradient } from "../core/palette";
-import type { Layer } from "../core/types";
+import { css_color, css_gradient, kNoValueColor, swatch_style } from "../core/palette";
+import type { Layer, Palette, PalettePoint } from "../core/types";
+import type { Column, Table } from "../core/protocol.gen";
 import { describe_value, type RecordLabels } from "./brush-settings";
 import { styled } from "./styled";
 import { texts } from "./texts";
@@ -57,6 +59,10 @@ export const legend_styles = css`
     max-height: 260px;
     overflow: auto;
   }
+  .legend-column {
+    display: grid;
+    gap: 7px;
+  }
   .legend-classes li {
     display: flex;
     align-items: center;
@@ -65,22 +71,63 @@ export const legend_styles = css`
   }
 `;
 
-export function legend(layer: Layer, records: RecordLabels): TemplateResult {
-  const { palette, unit } = layer;
+/** What the legend needs to know of records. */
+export interface LegendNames extends RecordLabels {
+  find(table: number): Table | null;
+}
+
+/** `palette`: what the layer is drawn with for this person. */
+export function legend(layer: Layer, palette: Palette, records: LegendNames): TemplateResult {
+  if (palette.column) return column_legend(layer, palette, records);
+  const { unit } = layer;
   if (palette.mode === "categorical") {
     if (palette.points.length === 0) {
       return html`<p class="hint">${layer.kind === "database" ? texts.layers.no_records : texts.layers.no_labels}</p>`;
     }
     return html`<ul class="legend-classes">
-      ${palette.points.map(
-        (point) =>
-          html`<li>
-            <span class="swatch" ${styled({ background: css_color(point.color) })}></span>
-            <span class="ellipsis">${describe_value(layer, point.at, records)}</span>
-          </li>`,
-      )}
+      ${palette.points.map((point) => line(point, describe_value(layer, point.at, records)))}
     </ul>`;
   }
+  return gradient(palette, unit);
+}
+
+const line = (point: Pick<PalettePoint, "color" | "pattern" | "angle">, text: string): TemplateResult =>
+  html`<li>
+    <span class="swatch" ${styled(swatch_style(point))}></span>
+    <span class="ellipsis">${text}</span>
+  </li>`;
+
+/** By what the records say. */
+function column_legend(layer: Layer, palette: Palette, records: LegendNames): TemplateResult {
+  const column = layer.table === undefined ? undefined : records.find(layer.table)?.columns.find((each) => each.slug === palette.column);
+  const unit = column?.unit ?? "";
+  const lines =
+    palette.mode === "categorical"
+      ? palette.points.map((point) => line(point, value_label(point, column, records)))
+      : palette.points.map((point, index) => line(point, class_range(point.at, palette.points[index + 1]?.at ?? palette.max, unit)));
+  return html`<div class="legend-column">
+    <p class="caption">${texts.colors.by(column ? label_of(column) : (palette.column ?? ""))}</p>
+    ${palette.mode === "linear" ? gradient(palette, unit) : nothing}
+    <ul class="legend-classes">
+      ${palette.mode === "linear" ? nothing : lines}
+      ${line({ color: palette.others ?? kNoValueColor }, palette.mode === "categorical" ? texts.colors.others : texts.colors.without)}
+    </ul>
+  </div>`;
+}
+
+export const class_range = (from: number, to: number, unit: string): string =>
+  `${format_number(from, 4)} – ${format_number(to, 4)}${unit ? ` ${unit}` : ""}`;
+
+/** What a class of a column's values is called. */
+export function value_label({ label, value, at }: PalettePoint, column: Column | undefined, records: RecordLabels): string {
+  if (label) return label;
+  if (value === undefined || value === "") return `${format_number(at, 6)}${column?.unit ? ` ${column.unit}` : ""}`;
+  if (column?.kind === "term") return records.label(column.target ?? 0, Number(value)) ?? texts.tables.record(Number(value));
+  if (column?.kind === "boolean") return value === "true" ? texts.tables.yes : texts.tables.no;
+  return value;
+}
+
+function gradient(palette: Palette, unit: string): TemplateResult {
   const span = palette.max - palette.min || 1;
   const marks = ticks(palette.min, palette.max);
   return html`<div>
@@ -99,8 +146,7 @@ export function legend(layer: Layer, records: RecordLabels): TemplateResult {
 }
 
 /** One small square that stands for the layer. */
-export function layer_chip(layer: Layer): TemplateResult {
-  const { palette } = layer;
+export function layer_chip(palette: Palette): TemplateResult {
   const first = palette.points[0];
   const background =
     palette.mode !== "categorical"

@@ -11,6 +11,7 @@ import { kPaintingTools } from "../tools/tool";
 import "./blank";
 import type { WhereRequest } from "./brush-panel";
 import "./brush-panel";
+import "./color-dialog";
 import "./column-dialog";
 import "./csv-dialog";
 import "./delete-record-dialog";
@@ -26,6 +27,7 @@ import { model_styles } from "./model-styles";
 import { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import "./record-card";
+import "./photos-dialog";
 import "./record-dialog";
 import { follow } from "./routes";
 import "./scale-dialog";
@@ -318,6 +320,8 @@ export class StrataModelPage extends LitElement {
         return html`<strata-transfer-dialog .session=${session} @closed=${closed}></strata-transfer-dialog>`;
       case "edit":
         return html`<strata-layer-dialog .session=${session} .layer=${newest(session, dialog.layer)} @closed=${closed}></strata-layer-dialog>`;
+      case "colors":
+        return html`<strata-color-dialog .session=${session} .layer=${newest(session, dialog.layer)} @closed=${closed}></strata-color-dialog>`;
       case "statistics":
         return html`<strata-statistics-dialog
           .session=${session}
@@ -351,6 +355,8 @@ export class StrataModelPage extends LitElement {
       }
       case "csv":
         return html`<strata-csv-dialog .session=${session} .table=${dialog.table} .file=${dialog.file} @closed=${closed}></strata-csv-dialog>`;
+      case "photos":
+        return html`<strata-photos-dialog .session=${session} .table=${dialog.table} .files=${dialog.files} @closed=${closed}></strata-photos-dialog>`;
       case "map":
         return html`<strata-map-dialog
           .session=${session}

@@ -108,7 +108,13 @@ export class ModelSession {
       choose: (shape) => this.painting.set_brush((brush) => (brush.shape = shape)),
       changed,
     });
-    this.tables = new Tables(api, { model_id, project: () => this.model?.project ?? null, changed });
+    this.tables = new Tables(api, {
+      model_id,
+      project: () => this.model?.project ?? null,
+      highlight: (layer_id, what) => this.layers.set_highlight(layer_id, what),
+      fly_to: (bounds) => this.view.fly_to(bounds),
+      changed,
+    });
     this.tools = this.make_tools();
   }
 

@@ -2,9 +2,9 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { label_column, label_of } from "../core/cells";
+import { label_column, label_of, named_keys } from "../core/cells";
 import { format_area } from "../core/measure";
-import { color_of, css_color } from "../core/palette";
+import { css_color, record_color } from "../core/palette";
 import type { Table, TableRecord } from "../core/protocol.gen";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
@@ -51,6 +51,13 @@ export class StrataRecordCard extends LitElement {
         width: 28px;
         min-height: 28px;
       }
+      .picture img {
+        display: block;
+        width: 100%;
+        max-height: min(180px, 14dvh);
+        object-fit: cover;
+        border-radius: var(--radius-small);
+      }
       dl {
         display: grid;
         grid-template-columns: auto minmax(0, 1fr);
@@ -80,7 +87,7 @@ export class StrataRecordCard extends LitElement {
     const table = id === undefined ? null : session.tables.find(id);
     if (!card || !table || !card.record) return html``;
     const { layer, key, record } = card;
-    const color = color_of(layer.palette, key);
+    const color = record_color(session.layers.palette(layer), record);
     const request = (detail: TablePanelRequest): boolean => this.dispatchEvent(new CustomEvent("request", { detail }));
     return html`<section aria-label=${words.card}>
       <div class="row">
@@ -88,7 +95,7 @@ export class StrataRecordCard extends LitElement {
         <b class="grow ellipsis">${session.tables.label(table.id, key) ?? words.record(key)}</b>
         <button class="icon quiet" aria-label=${words.card_close} title=${words.card_close} @click=${() => session.tables.close_card()}>${icon("close")}</button>
       </div>
-      ${this.lines(table, record)}
+      ${this.picture(table, record)} ${this.lines(table, record)}
       <div class="row">
         ${session.can_paint ? html`<button @click=${() => request({ dialog: "record", layer, key })}>${words.edit}</button>` : nothing}
         <button @click=${() => session.tables.show_row(layer, key)}>${words.show_row}</button>
@@ -96,11 +103,22 @@ export class StrataRecordCard extends LitElement {
     </section>`;
   }
 
+  /** The first one that the record has. */
+  private picture(table: Table, record: TableRecord): TemplateResult | typeof nothing {
+    const { api } = this.session;
+    const column = table.columns.find(({ kind, slug }) => kind === "picture" && named_keys(record.values[slug]).length > 0);
+    const [id] = column ? named_keys(record.values[column.slug]) : [];
+    if (id === undefined) return nothing;
+    return html`<a class="picture" href=${api.attachment_url(id)} target="_blank" rel="noopener">
+      <img src=${api.attachment_url(id, 512)} alt=${texts.files.file(id)} />
+    </a>`;
+  }
+
   /** The first columns that say something; the one that names the record is its heading. */
   private lines(table: Table, record: TableRecord): TemplateResult {
     const words = texts.tables;
     const name = label_column(table);
-    const told = table.columns.filter((column) => column !== name && (record.values[column.slug] ?? null) !== null);
+    const told = table.columns.filter((column) => column !== name && column.kind !== "picture" && (record.values[column.slug] ?? null) !== null);
     return html`<dl>
       <dt>${words.key}</dt>
       <dd class="numeric">${record.key}</dd>

@@ -3,9 +3,9 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
-import { cell_text, label_of, label_of_record, same_value } from "../core/cells";
+import { cell_text, holds_files, label_of, label_of_record, same_value } from "../core/cells";
 import { format_area } from "../core/measure";
-import { color_of, css_color } from "../core/palette";
+import { css_color, record_color } from "../core/palette";
 import type { CellValues, Column, Table, TableRecord } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 import "./cell-input";
@@ -28,6 +28,7 @@ export class StrataRecordDialog extends LitElement {
   @property({ attribute: false }) key: number | null = null;
   @state() private record_: TableRecord | null = null; // as it was read
   @state() private problem_ = "";
+  @state() private sending_ = "";
   @state() private field_problems_ = new Map<string, string>(); // by slug
   @state() private busy_ = false;
   @query("strata-dialog") private dialog_!: StrataDialog;
@@ -87,6 +88,7 @@ export class StrataRecordDialog extends LitElement {
     >
       ${record ? this.facts(record) : nothing}
       ${ready ? this.form(table) : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`}
+      <p class="hint" role="status" ?hidden=${!this.sending_}>${this.sending_}</p>
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
       <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       ${key === null
@@ -97,7 +99,7 @@ export class StrataRecordDialog extends LitElement {
   }
 
   private facts(record: TableRecord): TemplateResult {
-    const color = color_of(this.layer.palette, record.key);
+    const color = record_color(this.session.layers.palette(this.layer), record);
     return html`<div class="facts hint numeric">
       ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
       <span>${words.key_is(record.key)}</span>
@@ -131,6 +133,7 @@ export class StrataRecordDialog extends LitElement {
         .session=${this.session}
         .column=${column}
         .value=${value}
+        .record=${{ table: this.layer.table ?? 0, key: this.record_?.key ?? null }}
         .invalid=${problem !== ""}
       ></strata-cell-input>
       ${column.comment ? html`<span class="hint">${column.comment}</span>` : nothing}
@@ -174,18 +177,45 @@ export class StrataRecordDialog extends LitElement {
     this.busy_ = true;
     try {
       if (record && Object.keys(values).length > 0) {
-        session.tables.view?.rows.put(await session.api.change_record(table.id, record.key, { version: record.version, values }));
+        const changed = await session.api.change_record(table.id, record.key, { version: record.version, values });
+        session.tables.view?.rows.put(changed);
+        this.record_ = { ...record, ...changed };
       } else if (!record) {
         const made = await session.api.create_record(table.id, { values });
+        this.record_ = made; // what is refused from here on is tried again for this record
         session.tables.view?.rows.refresh();
         session.tables.view?.show(made.key);
       }
+      await this.send_files(table, this.record_!.key);
+      if (another) this.record_ = null;
       if (another) this.begin_again();
       else this.dispatchEvent(new CustomEvent("closed"));
     } catch (error) {
       await this.refuse(error, table);
     } finally {
       this.busy_ = false;
+    }
+  }
+
+  /** One after the other; what was sent does not wait any more, whatever becomes of the next. */
+  private async send_files(table: Table, key: number): Promise<void> {
+    const fields = table.columns.filter(holds_files).flatMap((column) => this.input_of(column.slug)?.files ?? []);
+    const of = fields.reduce((sum, field) => sum + field.pending.length, 0);
+    let n = 0;
+    try {
+      for (const field of fields) {
+        for (const file of field.pending) {
+          this.sending_ = texts.files.sending_one(file.name, ++n, of);
+          await this.session.api.attach(table.id, key, field.column.slug, file);
+          field.sent(file);
+        }
+      }
+    } finally {
+      this.sending_ = "";
+      if (n > 0) {
+        this.record_ = await this.session.api.record({ model: this.session.model_id, layer: this.layer.id }, key);
+        this.session.tables.view?.rows.put(this.record_);
+      }
     }
   }
 

@@ -43,6 +43,11 @@ export class RecordRows {
     return this.filter_;
   }
 
+  /** What is here answers the filter. */
+  get settled(): boolean {
+    return this.loaded && !this.replaces_ && !this.problem;
+  }
+
   row(index: number): TableRecord | null {
     return this.pages_.get(Math.floor(index / kPageRows))?.rows[index % kPageRows] ?? null;
   }

@@ -6,6 +6,8 @@ import type { CellValue, Column } from "../core/protocol.gen";
 import type { ModelSession } from "./model-session";
 import { texts } from "./texts";
 
+const kMostPictures = 4; // in a cell
+
 /** For a template; records are called by their names. */
 export function shown_value(session: ModelSession, column: Column, value: CellValue): unknown {
   if (value === null) return "";
@@ -14,6 +16,13 @@ export function shown_value(session: ModelSession, column: Column, value: CellVa
     return named_keys(value)
       .map((key) => session.tables.label(target, key) ?? texts.tables.record(key))
       .join(", ");
+  }
+  if (column.kind === "document") return texts.files.count(named_keys(value).length);
+  if (column.kind === "picture") {
+    const ids = named_keys(value);
+    return html`${ids.slice(0, kMostPictures).map(
+      (id) => html`<img class="thumbnail" src=${session.api.attachment_url(id, 64)} alt=${texts.files.file(id)} loading="lazy" height="24" />`,
+    )}${ids.length > kMostPictures ? ` +${ids.length - kMostPictures}` : ""}`;
   }
   if (column.kind === "boolean") return value ? texts.tables.yes : texts.tables.no;
   const text = cell_text(value);

@@ -3,14 +3,15 @@
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { is_number, label_of } from "../core/cells";
+import { holds_files, is_number, label_of } from "../core/cells";
 import { format_area } from "../core/measure";
-import { color_of, css_color } from "../core/palette";
+import { css_color, record_color } from "../core/palette";
 import type { CellValue, Column, Table, TableRecord } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 import type { CellEdit } from "./cell-edits";
 import "./cell-input";
 import { takes_typing, type StrataCellInput } from "./cell-input";
+import { dropped_files } from "./drop";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import "./menu";
@@ -27,7 +28,8 @@ export type TablePanelRequest =
   | { dialog: "record"; layer: Layer; key: number | null }
   | { dialog: "delete-record"; layer: Layer; key: number }
   | { dialog: "column"; table: number; column: Column | null }
-  | { dialog: "csv"; table: number; file: File };
+  | { dialog: "csv"; table: number; file: File }
+  | { dialog: "photos"; table: number; files: File[] };
 
 const kRow_px = 32;
 const kHead_px = 34;
@@ -155,9 +157,11 @@ export class StrataTablePanel extends LitElement {
             </button>`}
       </div>
       <span class="grow"></span>
-      ${this.chosen(layer)}
+      ${this.chosen(layer)} ${this.on_model()}
       ${this.can_write
-        ? html`<button @click=${() => this.request({ dialog: "record", layer, key: null })}>${icon("plus")}${words.new_record}</button>
+        ? html`<button aria-label=${words.new_record} title=${words.new_record} @click=${() => this.request({ dialog: "record", layer, key: null })}>
+              ${icon("plus")}<span class="words">${words.new_record}</span>
+            </button>
             <button class="icon quiet" aria-label=${words.undo} title=${words.undo} @click=${() => void view.undo()}>${icon("undo")}</button>
             <button class="icon quiet" aria-label=${words.redo} title=${words.redo} @click=${() => void view.redo()}>${icon("redo")}</button>`
         : nothing}
@@ -171,7 +175,10 @@ export class StrataTablePanel extends LitElement {
         <button class="quiet" role="menuitem" @click=${() => this.save_csv(table, "comma")}>${icon("import")}${words.save_csv}</button>
         <button class="quiet" role="menuitem" @click=${() => this.save_csv(table, "semicolon")}>${icon("import")}${words.save_csv_semicolon}</button>
         ${this.can_write
-          ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_csv(table)}>${icon("upload")}${words.import_csv}</button>`
+          ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_csv(table)}>${icon("upload")}${words.import_csv}</button>
+              ${table.columns.some(holds_files)
+                ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_photos(table)}>${icon("picture")}${texts.files.add_menu}</button>`
+                : nothing}`
           : nothing}
       </strata-menu>
       <button class="icon quiet" aria-label=${words.close} title="${words.close} (T)" @click=${() => session.tables.close()}>${icon("close")}</button>
@@ -182,12 +189,12 @@ export class StrataTablePanel extends LitElement {
     const words = texts.tables;
     const keys = [...this.view.selected];
     if (keys.length === 0) return nothing;
-    const areas = keys.map((key) => this.view.rows.find(key)?.area_m2 ?? 0);
+    const area = this.view.extent?.area_m2 ?? keys.reduce((sum, key) => sum + (this.view.rows.find(key)?.area_m2 ?? 0), 0);
     const [key] = keys;
     const one = keys.length === 1 && key !== undefined;
     const name = one ? (this.session.tables.label(this.view.table_id, key) ?? words.record(key)) : words.chosen(keys.length);
     return html`<div class="chosen" role="group" aria-label=${words.chosen(keys.length)}>
-      <span class="numeric ellipsis">${name} · ${format_area(areas.reduce((sum, each) => sum + each, 0))}</span>
+      <span class="numeric ellipsis">${name} · ${format_area(area)}</span>
       ${one && this.can_write
         ? html`<button class="icon quiet" aria-label=${words.paint_with} title=${words.paint_with} @click=${() => this.paint_with(layer, key)}>
               ${icon("brush")}
@@ -200,6 +207,38 @@ export class StrataTablePanel extends LitElement {
             </button>`
         : nothing}
       <button class="icon quiet" aria-label=${words.choose_none} title=${words.choose_none} @click=${() => this.view.select_none()}>${icon("close")}</button>
+    </div>`;
+  }
+
+  /** Whether the rows that are chosen, or that the filter finds, stand out on the model. */
+  private on_model(): TemplateResult {
+    const words = texts.tables;
+    const { view } = this;
+    const { extent, highlight } = view;
+    const by_filter = extent !== null && view.selected.size === 0;
+    return html`<div class="on-model" role="group" aria-label=${words.on_model}>
+      ${by_filter ? html`<span class="hint numeric" title=${words.painted_of(extent.painted, extent.records)}>${format_area(extent.area_m2)}</span>` : nothing}
+      <button
+        class="icon quiet"
+        aria-pressed=${view.lights_up}
+        aria-label=${words.light_up}
+        title="${words.light_up}. ${words.light_up_hint}"
+        @click=${() => view.set_lights_up(!view.lights_up)}
+      >
+        ${icon("bulb")}
+      </button>
+      <button class="icon quiet" aria-pressed=${view.isolates} aria-label=${words.isolate} title=${words.isolate} @click=${() => view.set_isolates(!view.isolates)}>
+        ${icon("isolate")}
+      </button>
+      <button
+        class="icon quiet"
+        ?disabled=${highlight === null || extent?.painted === 0}
+        aria-label=${words.fly}
+        title=${extent?.painted === 0 ? words.nothing_painted : words.fly}
+        @click=${() => view.fly()}
+      >
+        ${icon("fit")}
+      </button>
     </div>`;
   }
 
@@ -305,7 +344,7 @@ export class StrataTablePanel extends LitElement {
     const record = this.view.rows.row(index);
     const chosen = record !== null && this.view.selected.has(record.key);
     const is_active = (column: number): string => (this.active_.row === index && this.active_.column === column ? "active" : "");
-    const color = record ? color_of(layer.palette, record.key) : null;
+    const color = record ? record_color(this.session.layers.palette(layer), record) : null;
     return html`<div
       class="line ${chosen ? "chosen-row" : ""}"
       role="row"
@@ -435,6 +474,10 @@ export class StrataTablePanel extends LitElement {
     const record = this.view.rows.row(row);
     const column = this.view.table?.columns[at - 1];
     if (!this.can_write || !record || !column) return;
+    if (holds_files(column)) {
+      this.request({ dialog: "record", layer: this.layer!, key: record.key });
+      return;
+    }
     this.activate(row, at);
     this.scroll_to_active(this.view.table!);
     const edit = this.view.edits.of(record.key, column.slug);
@@ -663,6 +706,16 @@ export class StrataTablePanel extends LitElement {
     link.click();
   }
 
+  private choose_photos(table: Table): void {
+    const input = document.createElement("input");
+    input.type = "file";
+    input.multiple = true;
+    input.addEventListener("change", () => {
+      const files = [...(input.files ?? [])];
+      if (files.length > 0) this.request({ dialog: "photos", table: table.id, files });
+    });
+    input.click();
+  }
   private choose_csv(table: Table): void {
     const input = document.createElement("input");
     input.type = "file";
@@ -682,10 +735,16 @@ export class StrataTablePanel extends LitElement {
 
   private on_drop(event: DragEvent): void {
     this.over_ = false;
-    const [file] = event.dataTransfer?.files ?? [];
-    if (!file || !this.can_write) return;
+    if (!event.dataTransfer || !this.can_write) return;
     event.preventDefault();
-    this.request({ dialog: "csv", table: this.view.table_id, file });
+    void dropped_files(event.dataTransfer).then((dropped) => this.take_files(dropped.map(({ file }) => file)));
+  }
+  /** One text is records; everything else is files of records. */
+  private take_files(files: File[]): void {
+    const table = this.view.table_id;
+    const [file] = files;
+    if (files.length === 1 && file && /\.(csv|tsv|txt)$/i.test(file.name)) this.request({ dialog: "csv", table, file });
+    else if (files.length > 0) this.request({ dialog: "photos", table, files });
   }
 
   private request(detail: TablePanelRequest): void {

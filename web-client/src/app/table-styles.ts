@@ -7,6 +7,7 @@ export const table_styles = css`
     min-width: 0;
     min-height: 0;
     background: var(--surface);
+    container-type: inline-size;
   }
   :host(.over) {
     box-shadow: inset 0 0 0 3px var(--accent);
@@ -49,11 +50,50 @@ export const table_styles = css`
     right: 0;
     top: 0;
   }
+  .on-model {
+    display: flex;
+    flex: none;
+    align-items: center;
+    gap: 2px;
+    white-space: nowrap;
+  }
+  .on-model button[aria-pressed="true"] {
+    background: var(--accent-soft);
+    color: var(--accent);
+  }
+  .on-model .hint {
+    padding-right: 6px;
+  }
+  .chosen > .ellipsis {
+    min-width: 64px;
+  }
+  .chosen > button {
+    flex: none;
+  }
+  /* beside a choice there is no room for words */
+  @container (max-width: 1000px) {
+    .bar .words {
+      display: none;
+    }
+    .bar:has(.chosen) .count {
+      max-width: 84px;
+      overflow: hidden;
+      text-overflow: ellipsis;
+    }
+  }
+  .thumbnail {
+    height: 24px;
+    width: 32px;
+    margin-right: 3px;
+    object-fit: cover;
+    border-radius: 3px;
+    vertical-align: middle;
+  }
   .chosen {
     display: flex;
     align-items: center;
-    gap: 4px;
-    min-width: 0;
+    flex: 0 1 auto;
+    gap: 2px;
     padding: 2px 4px 2px 10px;
     border-radius: var(--radius-small);
     background: var(--accent-soft);

@@ -1,7 +1,7 @@
 // The tables of the project that this page has needed so far: their columns, and what their records are called.
 
 import { ApiError, type Api } from "../core/api";
-import type { Picked, RecordEvent, Table, TableEvent, TableRecord } from "../core/protocol.gen";
+import type { Bounds, Highlight, Picked, RecordEvent, Table, TableEvent, TableRecord } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 import { notices } from "./notices";
 import { RecordNames } from "./record-names";
@@ -9,6 +9,8 @@ import { TableView } from "./table-view";
 
 export interface TablesHost {
   model_id: string;
+  highlight(layer_id: number, what: Highlight | null): void;
+  fly_to(bounds: Bounds): void;
   project(): string | null;
   changed(): void;
 }
@@ -71,6 +73,8 @@ export class Tables {
       table: () => this.find(layer.table!),
       changed: this.host_.changed,
       columns_changed: () => this.load(layer.table!),
+      highlight: (what) => this.host_.highlight(layer.id, what),
+      fly_to: this.host_.fly_to,
     });
     this.host_.changed();
   }

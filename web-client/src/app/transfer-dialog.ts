@@ -143,7 +143,7 @@ export class StrataTransferDialog extends LitElement {
                   .checked=${this.chosen_.has(layer.id)}
                   @change=${(event: Event) => this.check(layer, (event.target as HTMLInputElement).checked)}
                 />
-                ${layer_chip(layer)}<span class="ellipsis">${layer.name}</span>
+                ${layer_chip(layer.palette)}<span class="ellipsis">${layer.name}</span>
               </label>`,
           )}
         </div>

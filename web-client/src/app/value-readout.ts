@@ -81,7 +81,7 @@ export class StrataValueReadout extends LitElement {
   private line(layer: Layer): TemplateResult {
     const found = this.session.pointer.picked?.values?.[layer.slug];
     const valid = found?.valid === true && found.value !== undefined;
-    const color = valid ? color_of(layer.palette, found.value!) : null;
+    const color = valid ? color_of(this.session.layers.palette(layer), found.value!) : null;
     return html`<span class="line">
       ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
       <span class="ellipsis">${layer.name}</span>

@@ -1,10 +1,11 @@
 // The camera of this page's view: it moves while nothing is painted, and the server hears of every move.
 
-import { OrbitCamera, type StandardView } from "../core/camera";
+import { between, OrbitCamera, place_of, type Bounds, type StandardView } from "../core/camera";
 import type { Plane } from "../core/protocol.gen";
 import type { Model } from "../core/types";
 
 const kStillAfter_ms = 120; // without input the camera counts as still
+const kFlight_ms = 600;
 
 export interface ViewHost {
   send(moving: boolean): void;
@@ -24,6 +25,7 @@ export class ViewControl {
   private has_model_ = false;
   private fitted_ = false;
   private still_timer_: ReturnType<typeof setTimeout> | null = null;
+  private flight_ = 0; // of requestAnimationFrame; 0: none
 
   constructor(private readonly host_: ViewHost) {}
 
@@ -69,6 +71,32 @@ export class ViewControl {
   fit(): void {
     this.move(() => this.camera.fit(), false);
   }
+  /** To a part of the model, in a moment; at once for people who want less motion. Any other move ends the flight. */
+  fly_to(box: Bounds): void {
+    if (this.host_.is_painting()) return;
+    this.end_flight();
+    const from = place_of(this.camera);
+    this.camera.look_at(box);
+    const to = place_of(this.camera);
+    if (matchMedia("(prefers-reduced-motion: reduce)").matches) {
+      this.moved(false);
+      return;
+    }
+    Object.assign(this.camera, from);
+    const start = performance.now();
+    const step = (): void => {
+      const share = Math.min(1, (performance.now() - start) / kFlight_ms);
+      Object.assign(this.camera, between(from, to, share * share * (3 - 2 * share)));
+      this.flight_ = share < 1 && !this.host_.is_painting() ? requestAnimationFrame(step) : 0;
+      this.moved(this.flight_ !== 0);
+    };
+    this.flight_ = requestAnimationFrame(step);
+  }
+  private end_flight(): void {
+    if (this.flight_) cancelAnimationFrame(this.flight_);
+    this.flight_ = 0;
+  }
+
   set_perspective(perspective: boolean): void {
     this.move(() => (this.camera.perspective = perspective), false);
   }
@@ -87,6 +115,11 @@ export class ViewControl {
   }
 
   stop(): void {
+    this.end_flight();
+    this.stop_waiting();
+  }
+
+  private stop_waiting(): void {
     if (this.still_timer_) clearTimeout(this.still_timer_);
     this.still_timer_ = null;
   }
@@ -101,13 +134,14 @@ export class ViewControl {
 
   private move(change: () => void, moving = true): void {
     if (this.host_.is_painting()) return;
+    this.end_flight();
     change();
     this.moved(moving);
   }
 
   private moved(moving: boolean): void {
     if (this.fitted_) this.host_.send(moving);
-    this.stop();
+    this.stop_waiting();
     if (moving) {
       this.still_timer_ = setTimeout(() => {
         this.still_timer_ = null;

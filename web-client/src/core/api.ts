@@ -222,6 +222,22 @@ export class Api {
     const query = new URLSearchParams({ texels: texels.what, ...(texels.what === "reassign" ? { to: `${texels.to}` } : {}) });
     await this.request("DELETE", `${records_path({ table })}/${key}?${query}`);
   }
+  /** Files of a record. */
+  async attachments(table: Id, key: number): Promise<wire.Attachment[]> {
+    return (await this.json<wire.AttachmentList>("GET", `${records_path({ table })}/${key}/attachments`)).attachments;
+  }
+  /** Where a file is had, or a small JPEG of a picture, of at most so many pixels a side. */
+  attachment_url(id: number, thumbnail?: 64 | 128 | 256 | 512 | 1024): string {
+    return `${kBase}/attachments/${id}${thumbnail ? `?thumbnail=${thumbnail}` : ""}`;
+  }
+  async attach(table: Id, key: number, column: string, file: File): Promise<void> {
+    const query = new URLSearchParams({ name: file.name, column });
+    await this.request_raw("POST", `${records_path({ table })}/${key}/attachments?${query}`, file, { "Content-Type": "application/octet-stream" });
+  }
+  /** Which records files are of, by their names. */
+  async match_attachments(table: Id, match: wire.AttachmentMatch): Promise<wire.AttachmentMatches> {
+    return this.json("POST", `${table_path(table)}/attachments/match`, match);
+  }
   /** Where records are had as CSV. */
   records_url(place: RecordPlace, query: Record<string, string>): string {
     return `${kBase}${records_path(place)}?${new URLSearchParams({ f: "csv", ...query })}`;
@@ -253,6 +269,15 @@ export class Api {
   }
   async delete_tool(tool: Id): Promise<void> {
     await this.request("DELETE", `/tools/${encodeURIComponent(tool)}`);
+  }
+  /** Where records of the layer lie, and how much surface they have. */
+  async extent(model: Id, layer: Id, highlight: wire.Highlight): Promise<wire.Extent> {
+    return this.json("POST", `${layer_path(model, layer)}/extent`, highlight);
+  }
+  /** What a column holds, in classes; without a count the server's own. */
+  async classes(table: Id, column: Id, method: "equal" | "quantile" | "unique", count?: number): Promise<wire.ColumnClasses> {
+    const query = new URLSearchParams({ method, ...(count === undefined ? {} : { count: `${count}` }) });
+    return this.json("GET", `${table_path(table)}/columns/${encodeURIComponent(column)}/classes?${query}`);
   }
   async statistics(model: Id, layer: Id): Promise<Statistics> {
     return this.json("GET", `${layer_path(model, layer)}/statistics`);

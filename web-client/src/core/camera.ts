@@ -92,6 +92,29 @@ export class OrbitCamera {
     this.distance = Math.max(distance * kFitMargin, bounding_radius(this.bounds_) * kMinZoom);
   }
 
+  /** A box that is a part of the model, seen from its own side of the model; the model's middle has no side. */
+  look_at(box: Bounds): void {
+    const middle = centre(box);
+    const outwards = subtract(middle, centre(this.bounds_));
+    const { back } = this.axes();
+    // What faces away is turned to; what is seen already is left as it is.
+    if (length(outwards) > 0.15 * bounding_radius(this.bounds_) && dot(outwards, back) < 0.3 * length(outwards)) this.face(outwards);
+    this.target = middle;
+    const least = bounding_radius(this.bounds_) * 0.08; // some of what is around a small thing
+    const radius = Math.max(bounding_radius(box), least);
+    const half_width = (kHalfFieldTangent * this.width) / this.height;
+    this.distance = (radius * 1.25) / Math.sin(Math.atan(Math.min(kHalfFieldTangent, half_width)));
+  }
+
+  /** Turns so that `outwards` points to the viewer. */
+  private face(outwards: Vec3): void {
+    const frame = kFrames[this.up_];
+    const [x, y, z] = [dot(outwards, frame.right), dot(outwards, frame.into), dot(outwards, frame.up)];
+    const level = Math.hypot(x, y);
+    if (level > 1e-3 * Math.abs(z)) this.azimuth = Math.atan2(x, -y);
+    this.elevation = Math.min(1.2, Math.max(-1.2, Math.atan2(z, level)));
+  }
+
   /** A little from the right and above: shows that the thing is solid. */
   first_view(): void {
     this.azimuth = 0.4;
@@ -237,6 +260,24 @@ export class OrbitCamera {
     if (!this.perspective) return { near: middle - radius, far: Math.max(far, middle - radius + 1e-9) };
     return { near: Math.max(middle - radius, far * 2e-4), far };
   }
+}
+
+/** Where a camera stands; `between` two of them, at a share of the way. */
+export interface Place {
+  target: Vec3;
+  distance: number;
+  azimuth: number;
+  elevation: number;
+}
+export const place_of = ({ target, distance, azimuth, elevation }: OrbitCamera): Place => ({ target, distance, azimuth, elevation });
+export function between(from: Place, to: Place, share: number): Place {
+  const mix = (a: number, b: number): number => a + (b - a) * share;
+  return {
+    target: add(scale(from.target, 1 - share), scale(to.target, share)),
+    distance: Math.exp(mix(Math.log(from.distance), Math.log(to.distance))),
+    azimuth: wrap(from.azimuth + wrap(to.azimuth - from.azimuth) * share),
+    elevation: mix(from.elevation, to.elevation),
+  };
 }
 
 function wrap(angle: number): number {

@@ -14,6 +14,7 @@ export function label_of(thing: { name: string; labels: Labels }, languages: rea
 }
 
 export const is_number = (column: Column): boolean => column.kind === "integer" || column.kind === "numeric";
+export const holds_files = (column: Column): boolean => column.kind === "picture" || column.kind === "document";
 export const names_records = (column: Column): boolean => column.kind === "term" || column.kind === "relation";
 
 /** Keys of the records that a term or a relation names. */

@@ -184,6 +184,14 @@ export interface PalettePoint {
   /** #rrggbb or #rrggbbaa, sRGB. */
   color: string;
   label?: string;
+  /** With a `column` that holds no numbers, in a categorical palette: the value that is meant, as text (of a term, its key). `at` then only orders the points. */
+  value?: string;
+  /** How the colour is laid on; step and categorical palettes only. Default: "solid". */
+  pattern?: "solid" | "hatch" | "dots" | "outline";
+  /** Of hatch and dots, in degrees on the picture: 0 runs to the right, 90 up. Default: 45. */
+  angle?: number;
+  /** Between lines or dots, at the distance of the model's middle (exact in an orthographic view). 0: some pixels, as in the legend. Default: 0. */
+  spacing_mm?: number;
 }
 
 /** Palette. Turns values into colours. `points` ascend by `at`; a linear or step palette has at least one. `min` and `max` default to the outer points. */
@@ -194,6 +202,8 @@ export interface Palette {
   points?: PalettePoint[];
   /** Database layers: the column that colours; absent: the key. */
   column?: string;
+  /** Categorical: colour of what no point lists; absent: one made from the value. With a `column`: of records that have no value there, too; absent: grey. */
+  others?: string;
 }
 
 /** Type of a layer's values. */
@@ -254,6 +264,15 @@ export interface Look {
   visible: boolean;
   /** Blended ascending: higher is on top. */
   order: number;
+}
+
+/** Records that are to be seen before all others. Of a database layer. Their texels keep their colours, those of others turn grey, or with `isolate` are not drawn at all. */
+export interface Highlight {
+  keys?: number[];
+  /** A condition over the columns of the layer's table (OGC CQL2 text); follows the records as they change. */
+  filter?: string;
+  /** Default: false. */
+  isolate?: boolean;
 }
 
 /** A look in a view. */
@@ -408,6 +427,7 @@ export interface LayerOverride {
   visible?: boolean;
   opacity?: number;
   palette?: Palette;
+  highlight?: Highlight;
 }
 
 /** What a view shows, for this viewer. Replaces all that was said before of the view; layers not listed show their defaults. */
@@ -676,6 +696,8 @@ export interface ProblemMessage {
   detail: string;
   /** Where in the message: camera.view[3]. */
   field?: string;
+  /** Where the member is a text in a language: characters (Unicode code points) before what is wrong. */
+  offset?: number;
 }
 
 /** What is wrong with a row. */
@@ -1552,6 +1574,24 @@ export interface CrossTable {
   texels: number[][];
 }
 
+/** Where records lie on a model. */
+export interface Extent {
+  /** That are meant. */
+  records: number;
+  /** Of them, those that are painted on the layer. */
+  painted: number;
+  texels: number;
+  area_m2: number;
+  /** Of their texels; absent where there is none. */
+  bounds?: Bounds;
+}
+
+/** Records of a layer that are to be seen. */
+export interface LayerHighlight {
+  layer: LayerRef;
+  highlight: Highlight;
+}
+
 /** One rendered picture. */
 export interface FrameRequest {
   /** Its width × height is the size of the picture. */
@@ -1562,9 +1602,31 @@ export interface FrameRequest {
   looks?: LookShown[];
   /** Absent: museum. */
   light?: Light;
+  highlights?: LayerHighlight[];
   at?: At;
   /** Default: "jpeg". */
   format?: "jpeg" | "png";
+}
+
+/** Class of a column's values. Of numbers from `from` (included) to `to`, which only the last class includes; of others `value`. */
+export interface ColumnClass {
+  from?: number;
+  to?: number;
+  /** As text: of a number as JSON, of a term its key. */
+  value?: string;
+  records: number;
+}
+
+/** Values of a column in classes. */
+export interface ColumnClasses {
+  classes: ColumnClass[];
+  total: number;
+  /** Of the table. */
+  records: number;
+  /** Whose values are rarer than those of the classes. */
+  unclassified: number;
+  /** That have no value in this column. */
+  without: number;
 }
 
 /** Whether the server can work. */

@@ -61,6 +61,26 @@ void read(const nlohmann::json& json, EditFillMode& value) {
 
 nlohmann::json to_json(const EditFillMode& value) { return name(value); }
 
+std::string_view name(PalettePointPattern value) {
+  switch (value) {
+    case PalettePointPattern::solid: return "solid";
+    case PalettePointPattern::hatch: return "hatch";
+    case PalettePointPattern::dots: return "dots";
+    case PalettePointPattern::outline: return "outline";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, PalettePointPattern& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "solid") value = PalettePointPattern::solid;
+  if (text == "hatch") value = PalettePointPattern::hatch;
+  if (text == "dots") value = PalettePointPattern::dots;
+  if (text == "outline") value = PalettePointPattern::outline;
+}
+
+nlohmann::json to_json(const PalettePointPattern& value) { return name(value); }
+
 std::string_view name(Recompute value) {
   switch (value) {
     case Recompute::manual: return "manual";
@@ -490,6 +510,10 @@ void read(const nlohmann::json& json, PalettePoint& value) {
   read_member(json, "at", value.at);
   read_member(json, "color", value.color);
   read_optional_member(json, "label", value.label);
+  read_optional_member(json, "value", value.value);
+  read_optional_member(json, "pattern", value.pattern);
+  read_optional_member(json, "angle", value.angle);
+  read_optional_member(json, "spacing_mm", value.spacing_mm);
 }
 
 nlohmann::json to_json(const PalettePoint& value) {
@@ -497,6 +521,24 @@ nlohmann::json to_json(const PalettePoint& value) {
   write_member(json, "at", value.at);
   write_member(json, "color", value.color);
   write_optional_member(json, "label", value.label);
+  write_optional_member(json, "value", value.value);
+  write_member(json, "pattern", value.pattern);
+  write_member(json, "angle", value.angle);
+  write_member(json, "spacing_mm", value.spacing_mm);
+  return json;
+}
+
+void read(const nlohmann::json& json, Highlight& value) {
+  read_optional_member(json, "keys", value.keys);
+  read_optional_member(json, "filter", value.filter);
+  read_optional_member(json, "isolate", value.isolate);
+}
+
+nlohmann::json to_json(const Highlight& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "keys", value.keys);
+  write_optional_member(json, "filter", value.filter);
+  write_member(json, "isolate", value.isolate);
   return json;
 }
 
@@ -655,6 +697,7 @@ void read(const nlohmann::json& json, LayerOverride& value) {
   read_optional_member(json, "visible", value.visible);
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "palette", value.palette);
+  read_optional_member(json, "highlight", value.highlight);
 }
 
 nlohmann::json to_json(const LayerOverride& value) {
@@ -663,6 +706,7 @@ nlohmann::json to_json(const LayerOverride& value) {
   write_optional_member(json, "visible", value.visible);
   write_optional_member(json, "opacity", value.opacity);
   write_optional_member(json, "palette", value.palette);
+  write_optional_member(json, "highlight", value.highlight);
   return json;
 }
 
@@ -1126,6 +1170,7 @@ void read(const nlohmann::json& json, ProblemMessage& value) {
   read_member(json, "status", value.status);
   read_member(json, "detail", value.detail);
   read_optional_member(json, "field", value.field);
+  read_optional_member(json, "offset", value.offset);
 }
 
 nlohmann::json to_json(const ProblemMessage& value) {
@@ -1137,6 +1182,7 @@ nlohmann::json to_json(const ProblemMessage& value) {
   write_member(json, "status", value.status);
   write_member(json, "detail", value.detail);
   write_optional_member(json, "field", value.field);
+  write_optional_member(json, "offset", value.offset);
   return json;
 }
 
@@ -2016,11 +2062,42 @@ nlohmann::json to_json(const CrossTable& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, Extent& value) {
+  read_member(json, "records", value.records);
+  read_member(json, "painted", value.painted);
+  read_member(json, "texels", value.texels);
+  read_member(json, "area_m2", value.area_m2);
+  read_optional_member(json, "bounds", value.bounds);
+}
+
+nlohmann::json to_json(const Extent& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "records", value.records);
+  write_member(json, "painted", value.painted);
+  write_member(json, "texels", value.texels);
+  write_member(json, "area_m2", value.area_m2);
+  write_optional_member(json, "bounds", value.bounds);
+  return json;
+}
+
+void read(const nlohmann::json& json, LayerHighlight& value) {
+  read_member(json, "layer", value.layer);
+  read_member(json, "highlight", value.highlight);
+}
+
+nlohmann::json to_json(const LayerHighlight& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "layer", value.layer);
+  write_member(json, "highlight", value.highlight);
+  return json;
+}
+
 void read(const nlohmann::json& json, FrameRequest& value) {
   read_member(json, "camera", value.camera);
   read_optional_member(json, "layers", value.layers);
   read_optional_member(json, "looks", value.looks);
   read_optional_member(json, "light", value.light);
+  read_optional_member(json, "highlights", value.highlights);
   read_optional_member(json, "at", value.at);
   read_optional_member(json, "format", value.format);
 }
@@ -2031,6 +2108,7 @@ nlohmann::json to_json(const FrameRequest& value) {
   write_optional_member(json, "layers", value.layers);
   write_optional_member(json, "looks", value.looks);
   write_optional_member(json, "light", value.light);
+  write_optional_member(json, "highlights", value.highlights);
   write_optional_member(json, "at", value.at);
   write_member(json, "format", value.format);
   return json;
@@ -2039,6 +2117,40 @@ nlohmann::json to_json(const FrameRequest& value) {
 Result<void> check(const FrameRequest& value, const std::string& field) {
   if (auto ok = strata::validate(value.camera, join_field(field, "camera")); !ok) return ok;
   return {};
+}
+
+void read(const nlohmann::json& json, ColumnClass& value) {
+  read_optional_member(json, "from", value.from);
+  read_optional_member(json, "to", value.to);
+  read_optional_member(json, "value", value.value);
+  read_member(json, "records", value.records);
+}
+
+nlohmann::json to_json(const ColumnClass& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "from", value.from);
+  write_optional_member(json, "to", value.to);
+  write_optional_member(json, "value", value.value);
+  write_member(json, "records", value.records);
+  return json;
+}
+
+void read(const nlohmann::json& json, ColumnClasses& value) {
+  read_member(json, "classes", value.classes);
+  read_member(json, "total", value.total);
+  read_member(json, "records", value.records);
+  read_member(json, "unclassified", value.unclassified);
+  read_member(json, "without", value.without);
+}
+
+nlohmann::json to_json(const ColumnClasses& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "classes", value.classes);
+  write_member(json, "total", value.total);
+  write_member(json, "records", value.records);
+  write_member(json, "unclassified", value.unclassified);
+  write_member(json, "without", value.without);
+  return json;
 }
 
 void read(const nlohmann::json& json, Readiness& value) {

@@ -60,6 +60,7 @@ enum class Schema {
   Recompute,
   Layer,
   Look,
+  Highlight,
   LookShown,
   LightMode,
   Light,
@@ -187,14 +188,18 @@ enum class Schema {
   Profile,
   CrossTableRequest,
   CrossTable,
+  Extent,
+  LayerHighlight,
   FrameRequest,
+  ColumnClass,
+  ColumnClasses,
   HistogramBin,
   KeyStatistics,
   Quantiles,
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 168;
+constexpr int kSchemaCount = 173;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -308,11 +313,20 @@ Result<void> check(const Edit& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<Edit> = Schema::Edit;
 
+enum class PalettePointPattern { solid, hatch, dots, outline };
+std::string_view name(PalettePointPattern value);
+void read(const nlohmann::json& json, PalettePointPattern& value);
+nlohmann::json to_json(const PalettePointPattern& value);
+
 // Control point of a palette.
 struct PalettePoint {
   double at = 0;
   std::string color;  // #rrggbb or #rrggbbaa, sRGB.
   std::optional<std::string> label;
+  std::optional<std::string> value;  // With a `column` that holds no numbers, in a categorical palette: the value that is meant, as text (of a term, its key). `at` then only orders the points.
+  PalettePointPattern pattern = PalettePointPattern::solid;  // How the colour is laid on; step and categorical palettes only.
+  double angle = 45;  // Of hatch and dots, in degrees on the picture: 0 runs to the right, 90 up.
+  double spacing_mm = 0;  // Between lines or dots, at the distance of the model's middle (exact in an orthographic view). 0: some pixels, as in the legend.
   bool operator==(const PalettePoint&) const = default;
 };
 void read(const nlohmann::json& json, PalettePoint& value);
@@ -329,6 +343,18 @@ enum class Recompute { manual, automatic };
 std::string_view name(Recompute value);
 void read(const nlohmann::json& json, Recompute& value);
 nlohmann::json to_json(const Recompute& value);
+
+// Records that are to be seen before all others. Of a database layer. Their texels keep their colours, those of others turn grey, or with `isolate` are not drawn at all.
+struct Highlight {
+  std::optional<std::vector<std::int64_t>> keys;
+  std::optional<std::string> filter;  // A condition over the columns of the layer's table (OGC CQL2 text); follows the records as they change.
+  bool isolate = false;
+  bool operator==(const Highlight&) const = default;
+};
+void read(const nlohmann::json& json, Highlight& value);
+nlohmann::json to_json(const Highlight& value);
+template <>
+inline constexpr Schema kSchemaOf<Highlight> = Schema::Highlight;
 
 // A look in a view.
 struct LookShown {
@@ -481,6 +507,7 @@ struct LayerOverride {
   std::optional<bool> visible;
   std::optional<double> opacity;
   std::optional<nlohmann::json> palette;
+  std::optional<Highlight> highlight;
   bool operator==(const LayerOverride&) const = default;
 };
 void read(const nlohmann::json& json, LayerOverride& value);
@@ -890,6 +917,7 @@ struct ProblemMessage {
   int status = 0;
   std::string detail;
   std::optional<std::string> field;  // Where in the message: camera.view[3].
+  std::optional<int> offset;  // Where the member is a text in a language: characters (Unicode code points) before what is wrong.
   bool operator==(const ProblemMessage&) const = default;
 };
 void read(const nlohmann::json& json, ProblemMessage& value);
@@ -1586,6 +1614,31 @@ nlohmann::json to_json(const CrossTable& value);
 template <>
 inline constexpr Schema kSchemaOf<CrossTable> = Schema::CrossTable;
 
+// Where records lie on a model.
+struct Extent {
+  std::int64_t records = 0;  // That are meant.
+  std::int64_t painted = 0;  // Of them, those that are painted on the layer.
+  std::int64_t texels = 0;
+  double area_m2 = 0;
+  std::optional<Bounds> bounds;  // Of their texels; absent where there is none.
+  bool operator==(const Extent&) const = default;
+};
+void read(const nlohmann::json& json, Extent& value);
+nlohmann::json to_json(const Extent& value);
+template <>
+inline constexpr Schema kSchemaOf<Extent> = Schema::Extent;
+
+// Records of a layer that are to be seen.
+struct LayerHighlight {
+  LayerRef layer;
+  Highlight highlight;
+  bool operator==(const LayerHighlight&) const = default;
+};
+void read(const nlohmann::json& json, LayerHighlight& value);
+nlohmann::json to_json(const LayerHighlight& value);
+template <>
+inline constexpr Schema kSchemaOf<LayerHighlight> = Schema::LayerHighlight;
+
 enum class FrameRequestFormat { jpeg, png };
 std::string_view name(FrameRequestFormat value);
 void read(const nlohmann::json& json, FrameRequestFormat& value);
@@ -1597,6 +1650,7 @@ struct FrameRequest {
   std::optional<std::vector<LayerRef>> layers;  // Exactly these are drawn, bottom to top; absent: those visible by default.
   std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top; absent: those visible by default.
   std::optional<strata::Light> light;  // Absent: museum.
+  std::optional<std::vector<LayerHighlight>> highlights;
   std::optional<At> at;
   FrameRequestFormat format = FrameRequestFormat::jpeg;
   bool operator==(const FrameRequest&) const = default;
@@ -1606,6 +1660,33 @@ nlohmann::json to_json(const FrameRequest& value);
 Result<void> check(const FrameRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<FrameRequest> = Schema::FrameRequest;
+
+// Class of a column's values. Of numbers from `from` (included) to `to`, which only the last class includes; of others `value`.
+struct ColumnClass {
+  std::optional<double> from;
+  std::optional<double> to;
+  std::optional<std::string> value;  // As text: of a number as JSON, of a term its key.
+  std::int64_t records = 0;
+  bool operator==(const ColumnClass&) const = default;
+};
+void read(const nlohmann::json& json, ColumnClass& value);
+nlohmann::json to_json(const ColumnClass& value);
+template <>
+inline constexpr Schema kSchemaOf<ColumnClass> = Schema::ColumnClass;
+
+// Values of a column in classes.
+struct ColumnClasses {
+  std::vector<ColumnClass> classes;
+  int total = 0;
+  std::int64_t records = 0;  // Of the table.
+  std::int64_t unclassified = 0;  // Whose values are rarer than those of the classes.
+  std::int64_t without = 0;  // That have no value in this column.
+  bool operator==(const ColumnClasses&) const = default;
+};
+void read(const nlohmann::json& json, ColumnClasses& value);
+nlohmann::json to_json(const ColumnClasses& value);
+template <>
+inline constexpr Schema kSchemaOf<ColumnClasses> = Schema::ColumnClasses;
 
 // Whether the server can work.
 struct Readiness {

@@ -1,0 +1,131 @@
+// Pictures and documents of records on the page: added in the form, seen in the table and on the card of the surface, taken away, undone;
+// and a folder of photos whose names say which records they are of.
+import assert from "node:assert/strict";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { Browser } from "../support/browser.mjs";
+import { encode_png } from "../support/png.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const browser = await Browser.open();
+const { page } = browser;
+const server = new StrataServer({ demo: true });
+const folder = mkdtempSync(join(tmpdir(), "strata-photos-"));
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const base = "/models/demo-pot";
+const T = "/tables/finds";
+const button = (name) => page.getByRole("button", { name, exact: true });
+const panel = page.locator("strata-table-panel");
+const form = page.locator("strata-record-dialog");
+const photos = page.locator("strata-photos-dialog");
+const card = page.locator("strata-record-card");
+const shot = async (name) => {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+};
+/** A picture that is all of one colour, so that two are two. */
+function photo(name, red) {
+  const path = join(folder, name);
+  const data = Buffer.alloc(64 * 48 * 4);
+  for (let at = 0; at < data.length; at += 4) data.set([red, 120, 200 - red / 2, 255], at);
+  writeFileSync(path, encode_png({ width: 64, height: 48, data }));
+  return path;
+}
+const files = async (key) => (await server.json("GET", `${T}/records/${key}/attachments`)).attachments.map(({ name, column }) => [name, column]);
+const shown = (images) => wait_for(() => images.evaluateAll((all) => all.length > 0 && all.every((image) => image.complete && image.naturalWidth > 0)), "thumbnails to be drawn");
+
+try {
+  await server.start();
+  await server.json("POST", `${base}/layers`, {
+    name: "Finds", kind: "database", type: "u16", resolution: 2048,
+    columns: [{ name: "Code", required: true, unique: true }, { name: "Photos", kind: "picture" }, { name: "Reports", kind: "document" }],
+  });
+  for (const code of ["SU 1", "SU 2", "SU 3"]) await server.json("POST", `${T}/records`, { values: { code } });
+  await server.json("POST", `${base}/layers/finds/edits`, { op: "fill", value: 1, mode: "where", where: "true" });
+
+  await page.goto(server.link);
+  await page.getByRole("link", { name: /Demo pot/ }).click();
+  await browser.drawn();
+  const later = page.getByRole("button", { name: "Decide later" });
+  if (await later.isVisible()) await later.click();
+  await button("Paint on Finds").click();
+  await page.keyboard.press("t");
+  await panel.getByText("3 records").waitFor();
+
+  say("files are added in the record's form, and sent when it is saved");
+  await panel.getByRole("rowheader", { name: "1", exact: true }).click();
+  await button("Edit the record").click();
+  await form.getByRole("group", { name: "Photos" }).locator("input").setInputFiles([photo("north.png", 230), photo("south.png", 30)]);
+  await form.getByText("south.png").waitFor();
+  assert.deepEqual(await files(1), [], "not yet");
+  writeFileSync(join(folder, "report.pdf"), "%PDF-1.4\n% a report\n");
+  await form.getByRole("group", { name: "Reports" }).locator("input").setInputFiles(join(folder, "report.pdf"));
+  await shot("files-waiting");
+  await button("Save").click();
+  await wait_for(async () => (await form.count()) === 0, "the form to close");
+  assert.deepEqual((await files(1)).sort(), [["north.png", "photos"], ["report.pdf", "reports"], ["south.png", "photos"]]);
+
+  say("the table shows pictures small, and how many files there are");
+  await wait_for(async () => (await panel.locator("img.thumbnail").count()) === 2, "two thumbnails");
+  await shown(panel.locator("img.thumbnail"));
+  await panel.getByText("1 file", { exact: true }).waitFor();
+  await shot("files-in-table");
+
+  say("a file that is no picture is refused by its column, and the form stays");
+  await panel.getByRole("rowheader", { name: "2", exact: true }).click();
+  await button("Edit the record").click();
+  await form.getByRole("group", { name: "Photos" }).locator("input").setInputFiles(join(folder, "report.pdf"));
+  await button("Save").click();
+  await form.getByRole("alert").getByText(/./).first().waitFor();
+  await form.getByRole("group", { name: "Photos" }).getByText("report.pdf").waitFor();
+  await shot("files-refused");
+  await button("Cancel").click();
+  assert.deepEqual(await files(2), []);
+
+  say("a file that is taken away comes back by undo");
+  await panel.getByRole("rowheader", { name: "1", exact: true }).click();
+  await button("Edit the record").click();
+  await shown(form.locator("figure img"));
+  await button("Take south.png away").click();
+  await button("Save").click();
+  await wait_for(async () => (await files(1)).length === 2, "one file less");
+  await button("Take back my last change of the table").click();
+  await wait_for(async () => (await files(1)).length === 3, "the file to be back");
+
+  say("the surface shows the record with its picture");
+  await page.getByRole("button", { name: /^Pick a value/ }).click();
+  const box = await browser.stage_box();
+  await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+  await card.getByText("SU 1").first().waitFor();
+  await shown(card.locator("img"));
+  await shot("card-with-picture");
+
+  say("a folder of photos finds its records by their names");
+  await button("More about the table").click();
+  const chooser = page.waitForEvent("filechooser");
+  await page.getByRole("menuitem", { name: "Add photos by their names…" }).click();
+  await (await chooser).setFiles([photo("SU-2_north_1.png", 10), photo("su 3_north_1.png", 60), photo("SU 9_north_1.png", 90), photo("IMG1.png", 99)]);
+  await photos.getByText("2 files have a record").waitFor();
+  await photos.getByText("No such record").waitFor();
+  await photos.getByText("Not named by the pattern").waitFor();
+  await shot("photos-matched");
+  await button("Send 2 files").click();
+  await wait_for(async () => (await photos.count()) === 0, "the dialog to close");
+  assert.deepEqual([await files(2), await files(3)], [[["SU-2_north_1.png", "photos"]], [["su 3_north_1.png", "photos"]]]);
+  await wait_for(async () => (await panel.locator("img.thumbnail").count()) === 4, "their thumbnails in the table");
+
+  say("the end");
+  browser.assert_no_complaints(["415", "422"]);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`);
+  await shot("attachments-failed");
+  throw error;
+} finally {
+  rmSync(folder, { recursive: true, force: true });
+  await browser.close();
+  await server.remove();
+}

@@ -1,0 +1,157 @@
+// Records on the model: coloured by what a column says, with patterns, for this person or for all; rows that are chosen and rows that a
+// filter finds stand out, alone where that is wanted, and the camera goes to them.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser, rgb } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kSherds = 14;
+const kEnough = 1500; // pixels of a sherd or more
+const [kLoose, kFirm] = ["#ff00ff", "#00e0ff"];
+
+const browser = await Browser.open();
+const { page } = browser;
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const base = "/models/demo-pot";
+const L = `${base}/layers/sherds`;
+const button = (name) => page.getByRole("button", { name, exact: true });
+const dialog = page.locator("strata-color-dialog");
+const panel = page.locator("strata-table-panel");
+const legend = page.locator("strata-layer-panel .legend-column");
+const shot = async (name) => {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+};
+const palette = async () => (await server.json("GET", L)).palette;
+const shows = (color, least, what) => wait_for(async () => (await browser.count(rgb(color))) > least, what, 150);
+const hides = (color, what) => wait_for(async () => (await browser.count(rgb(color))) < 30, what, 150);
+async function open_colors() {
+  await button("Options for Sherds").click();
+  await page.getByRole("menuitem", { name: "Colours and patterns…" }).click();
+  await dialog.getByRole("heading", { name: "Colours of Sherds" }).waitFor();
+}
+const fill_filter = async (text) => {
+  await panel.getByLabel("Filter", { exact: true }).fill(text);
+  await page.keyboard.press("Enter");
+};
+
+try {
+  await server.start();
+  await server.json("POST", `${base}/layers`, {
+    name: "Sherds", kind: "database", type: "u16", resolution: 2048,
+    columns: [{ name: "Name" }, { name: "State", kind: "enumeration", choices: ["loose", "firm"] }, { name: "Thickness", kind: "numeric", unit: "mm" }],
+  });
+  for (let key = 1; key <= kSherds; ++key) {
+    const state = key === kSherds ? {} : { state: key % 3 === 0 ? "loose" : "firm" };
+    await server.json("POST", "/tables/sherds/records", { values: { name: `Sherd ${key}`, thickness: 2 + key / 2, ...state } });
+    await server.json("POST", `${L}/edits`, { op: "fill", value: key, mode: "where", where: `pieces = ${key}` });
+  }
+  for (const other of ["pieces", "cracks"]) await server.json("PATCH", `${base}/layers/${other}`, { visible: false });
+  const { area_m2: loose_area } = await server.json("POST", `${L}/extent`, { filter: "state = 'loose'" });
+
+  await page.goto(server.link);
+  await page.getByRole("link", { name: /Demo pot/ }).click();
+  await browser.drawn();
+  const later = page.getByRole("button", { name: "Decide later" });
+  if (await later.isVisible()) await later.click();
+  await button("Paint on Sherds").click();
+
+  say("the layer is coloured by a column, as it is chosen");
+  await open_colors();
+  await dialog.getByLabel("Colour by").selectOption({ label: "State" });
+  await dialog.locator("li", { hasText: "firm" }).getByText("9", { exact: true }).waitFor();
+  await dialog.getByText("1 record has no value.").waitFor();
+  await dialog.getByLabel("Colour of loose").fill(kLoose);
+  await dialog.getByLabel("Colour of firm").fill(kFirm);
+  await shows(kLoose, kEnough, "loose sherds in their colour");
+  await shows(kFirm, kEnough, "firm sherds in theirs");
+  assert.equal((await palette()).column, undefined, "nobody else sees it yet");
+  await shot("colors-by-column");
+
+  say("with patterns, half of the colour makes room for what lies below");
+  const plain = await browser.count(rgb(kFirm));
+  await dialog.getByLabel("Patterns for all").check();
+  await wait_for(async () => (await browser.count(rgb(kFirm))) < 0.75 * plain, "hatches to be drawn", 150);
+  await dialog.getByLabel("Pattern of loose").selectOption("outline");
+  await shot("colors-patterns");
+  await dialog.getByLabel("Patterns for all").uncheck();
+  await wait_for(async () => (await browser.count(rgb(kFirm))) > 0.95 * plain, "plain colours", 150);
+
+  say("for everyone: the layer keeps it, and the legend says what is what");
+  await dialog.getByRole("button", { name: "For everyone" }).click();
+  await wait_for(async () => (await palette()).column === "state", "the layer to keep its colours");
+  assert.deepEqual((await palette()).points.map((point) => [point.value, point.color]), [["firm", `${kFirm}ff`], ["loose", `${kLoose}ff`]]);
+  await legend.getByText("By State").waitFor();
+  await legend.getByText("Others, or no value").waitFor();
+
+  say("numbers make classes, and what is for me alone is nobody else's");
+  await open_colors();
+  await dialog.getByLabel("Colour by").selectOption({ label: "Thickness" });
+  await dialog.getByLabel("How many").fill("4");
+  await dialog.getByLabel("How many").blur();
+  await wait_for(async () => (await dialog.locator("li").count()) === 4, "four classes");
+  await dialog.getByRole("button", { name: "Light to dark red" }).click();
+  await dialog.getByText("2.5 – 4 mm").waitFor();
+  await shot("colors-classes");
+  await dialog.getByLabel("Classes").selectOption({ label: "Smooth gradient" });
+  await wait_for(async () => (await dialog.locator("li").count()) === 0, "a gradient has no classes");
+  await dialog.getByRole("button", { name: "Only for me" }).click();
+  await legend.getByText("By Thickness").waitFor();
+  assert.equal((await palette()).column, "state");
+  await hides(kLoose, "the gradient in place of the states");
+  await button("Back to the default").click();
+  await shows(kLoose, kEnough, "the colours that everyone sees");
+
+  say("a dialog that is closed without a choice changes nothing");
+  await open_colors();
+  await dialog.getByLabel("Colour by").selectOption({ label: "Each record its own colour" });
+  await hides(kLoose, "a colour for each");
+  await page.keyboard.press("Escape");
+  await shows(kLoose, kEnough, "the colours of before");
+
+  say("rows that are chosen stand out");
+  await page.keyboard.press("t");
+  await panel.getByText("14 records").waitFor();
+  await shows(kFirm, kEnough, "the model beside the table");
+  await panel.getByRole("rowheader", { name: "3", exact: true }).click();
+  await hides(kFirm, "the others to turn grey");
+  await shot("rows-lit");
+  await button("Hide all other records").click();
+  await button("Go to where they are").click();
+  await shows(kLoose, 4 * kEnough, "the camera before the sherd");
+  await shot("row-alone");
+  await button("Hide all other records").click();
+  await button("Choose none").click();
+  await shows(kFirm, kEnough, "all of them again");
+
+  say("and rows that a filter finds, as long as it finds them");
+  await fill_filter("state = 'loose'");
+  await panel.getByText("4 of 14 records").waitFor();
+  await hides(kFirm, "only what the filter finds");
+  const told = await panel.locator(".on-model .hint").textContent();
+  assert.match(told, loose_area < 0.1 ? /cm²/ : /m²/, told);
+  await server.json("PATCH", "/tables/sherds/records/1", { values: { state: "loose" } });
+  await server.json("PATCH", "/tables/sherds/records/2", { values: { state: "loose" } });
+  await wait_for(async () => (await panel.locator(".on-model .hint").textContent()) !== told, "the area with two more");
+  await shot("filter-lit");
+  await button("Show the chosen records on the model").click();
+  await shows(kFirm, kEnough, "the filter to stay in the table");
+  await button("Show the chosen records on the model").click();
+  await hides(kFirm, "and back");
+  await button("Close the table").click();
+  await shows(kFirm, kEnough, "what stood out to go with the table");
+
+  say("the end");
+  browser.assert_no_complaints();
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`);
+  await shot("record-colors-failure");
+  throw error;
+} finally {
+  await browser.close();
+  await server.remove();
+}

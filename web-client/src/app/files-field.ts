@@ -1,0 +1,181 @@
+// <strata-files-field>: the pictures or documents of a record in its form. Files that are added wait until the form is saved.
+
+import { css, html, LitElement, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { ApiError } from "../core/api";
+import { format_bytes } from "../core/measure";
+import type { Attachment, Column } from "../core/protocol.gen";
+import { dropped_files } from "./drop";
+import { icon } from "./icons";
+import type { ModelSession } from "./model-session";
+import { notices } from "./notices";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+const words = texts.files;
+
+@customElement("strata-files-field")
+export class StrataFilesField extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) column!: Column;
+  /** Ids of the table and the record; null: a record that is not there yet. */
+  @property({ attribute: false }) table = 0;
+  @property({ attribute: false }) record: number | null = null;
+  /** Of the files that the record has, in their order. */
+  @property({ attribute: false }) ids: number[] = [];
+  @state() private pending_: File[] = [];
+  @state() private known_ = new Map<number, Attachment>();
+  @state() private over_ = false;
+  @query("input") private input_!: HTMLInputElement;
+
+  static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+      }
+      .field {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 8px;
+        align-items: stretch;
+        padding: 8px;
+        border: 1px dashed var(--line-strong);
+        border-radius: var(--radius-small);
+      }
+      .field.over {
+        border-color: var(--accent);
+        background: var(--accent-soft, var(--calm-soft));
+      }
+      figure {
+        position: relative;
+        display: grid;
+        grid-template-rows: 72px auto;
+        gap: 3px;
+        width: 104px;
+        margin: 0;
+        font-size: 0.76rem;
+      }
+      figure a {
+        display: grid;
+        place-items: center;
+        overflow: hidden;
+        border: 1px solid var(--line);
+        border-radius: 6px;
+        background: var(--raised);
+        color: var(--ink-soft);
+      }
+      figure img {
+        width: 100%;
+        height: 100%;
+        object-fit: cover;
+      }
+      figure.waits {
+        opacity: 0.6;
+      }
+      figure button.icon {
+        position: absolute;
+        top: 2px;
+        right: 2px;
+        width: 26px;
+        min-height: 26px;
+        background: var(--raised);
+      }
+      .add {
+        min-width: 104px;
+      }
+      input {
+        display: none;
+      }
+    `,
+  ];
+
+  override willUpdate(changed: PropertyValues<this>): void {
+    if ((changed.has("record") || changed.has("ids")) && this.record !== null && this.ids.some((id) => !this.known_.has(id))) void this.load();
+  }
+
+  /** Files that are to be sent once the record is there. */
+  get pending(): readonly File[] {
+    return this.pending_;
+  }
+  /** It is sent. */
+  sent(file: File): void {
+    this.pending_ = this.pending_.filter((each) => each !== file);
+  }
+
+  private async load(): Promise<void> {
+    try {
+      const files = await this.session.api.attachments(this.table, this.record!);
+      this.known_ = new Map(files.map((file) => [file.id, file]));
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      notices.error(error);
+    }
+  }
+
+  private get is_pictures(): boolean {
+    return this.column.kind === "picture";
+  }
+
+  override render(): TemplateResult {
+    return html`<div class="field ${this.over_ ? "over" : ""}" role="group" aria-label=${this.column.name} @dragover=${this.on_over} @dragleave=${() => (this.over_ = false)} @drop=${this.on_drop}>
+      ${this.ids.map((id) => this.kept(id))} ${this.pending_.map((file) => this.waiting(file))}
+      <button type="button" class="add" @click=${() => this.input_.click()}>${icon("plus")}${this.is_pictures ? words.add_pictures : words.add_documents}</button>
+      <input type="file" multiple tabindex="-1" aria-label=${words.choose} accept=${this.is_pictures ? "image/*" : ""} @change=${this.on_chosen} />
+    </div>`;
+  }
+
+  private kept(id: number): TemplateResult {
+    const file = this.known_.get(id);
+    const name = file?.name ?? words.file(id);
+    return html`<figure>
+      <a href=${this.session.api.attachment_url(id)} target="_blank" rel="noopener" title=${file ? `${name}, ${format_bytes(file.bytes)}` : name}>
+        ${this.is_pictures ? html`<img src=${this.session.api.attachment_url(id, 256)} alt=${name} loading="lazy" />` : icon("document")}
+      </a>
+      <figcaption class="ellipsis">${name}</figcaption>
+      <button
+        type="button"
+        class="icon quiet"
+        aria-label=${words.remove(name)}
+        title=${words.remove(name)}
+        @click=${() => (this.ids = this.ids.filter((each) => each !== id))}
+      >
+        ${icon("close")}
+      </button>
+    </figure>`;
+  }
+
+  private waiting(file: File): TemplateResult {
+    return html`<figure class="waits">
+      <a title=${words.waits}>${icon("upload")}</a>
+      <figcaption class="ellipsis">${file.name}</figcaption>
+      <button type="button" class="icon quiet" aria-label=${words.remove(file.name)} title=${words.remove(file.name)} @click=${() => this.sent(file)}>${icon("close")}</button>
+    </figure>`;
+  }
+
+  private readonly on_chosen = (): void => {
+    this.pending_ = [...this.pending_, ...(this.input_.files ?? [])];
+    this.input_.value = "";
+  };
+
+  private readonly on_over = (event: DragEvent): void => {
+    event.preventDefault();
+    this.over_ = true;
+  };
+
+  private readonly on_drop = (event: DragEvent): void => {
+    event.preventDefault();
+    event.stopPropagation();
+    this.over_ = false;
+    if (!event.dataTransfer) return;
+    void dropped_files(event.dataTransfer).then((files) => (this.pending_ = [...this.pending_, ...files.map(({ file }) => file)]));
+  };
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "strata-files-field": StrataFilesField;
+  }
+}
