@@ -43,6 +43,11 @@ struct Palette {
       others{};  // categorical: of what no point lists. With a column: of records that have no value there, too
 };
 
+// Whether its points are a legend of the values themselves, and not of what records hold.
+inline bool lists_values(const Palette& palette) {
+  return palette.mode == PaletteMode::categorical && palette.column.empty();
+}
+
 constexpr double kWidestSpacing_mm = 60'000;  // of a pattern
 // Of records that have no value in the column that colours, where the palette says nothing.
 constexpr Rgba kNoValueColor{154, 154, 154, 128};

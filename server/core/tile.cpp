@@ -35,6 +35,16 @@ void TileData::clear(int texel) {
   valid.reset(texel);
 }
 
+TileData widened(const TileData& tile, ValueType type) {
+  TileData wide(type);
+  wide.valid = tile.valid;
+  const auto from = static_cast<std::size_t>(tile.texel_bytes()), to = static_cast<std::size_t>(wide.texel_bytes());
+  for (std::size_t texel = 0; texel < kTexelsPerTile; ++texel)
+    std::copy_n(tile.values.begin() + static_cast<std::ptrdiff_t>(texel * from), from,
+                wide.values.begin() + static_cast<std::ptrdiff_t>(texel * to));
+  return wide;
+}
+
 void copy_texels(const TileData& from, const TileMask& mask, TileData& to) {
   for (int w = 0; w < kMaskWords; ++w)
     for (std::uint64_t left = mask.words[w]; left; left &= left - 1) {

@@ -51,6 +51,9 @@ struct TileData {
   int texel_bytes() const { return static_cast<int>(values.size() / kTexelsPerTile); }
 };
 
+// The same bits in texels of another type, that has room for them (widens_to).
+TileData widened(const TileData& tile, ValueType type);
+
 // Copies the texels of `mask`, of tiles of one type.
 void copy_texels(const TileData& from, const TileMask& mask, TileData& to);
 

@@ -17,6 +17,9 @@ std::string_view name(ValueType type);
 std::optional<ValueType> parse_value_type(std::string_view name);
 bool is_float(ValueType type);
 
+// Whether every value of `from` is one of `to`, with the same bits: of whole numbers without a sign.
+bool widens_to(ValueType from, ValueType to);
+
 // Smallest and largest finite value of the type.
 double lowest_value(ValueType type);
 double highest_value(ValueType type);

@@ -11,7 +11,7 @@ constexpr std::size_t kMostNamed = 5;
 }  // namespace
 
 Result<std::optional<query::KeyNames>> keys_of(room::Room& room, const Layer& layer, const std::set<double>& records) {
-  if (layer.palette.mode != PaletteMode::categorical) return std::nullopt;
+  if (!lists_values(layer.palette)) return std::nullopt;
   const auto statistics = room.statistics(layer.slug);
   if (!statistics) return tl::unexpected(statistics.error());
   std::set<double> taken = records;

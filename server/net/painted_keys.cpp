@@ -138,7 +138,7 @@ std::vector<std::int64_t> painted_by(const Layer& layer, const room::EditRequest
 
 Result<void> records_from_legend(const RouteContext& context, const Layer& layer, const std::vector<std::int64_t>& keys,
                                  const std::string& user) {
-  if (keys.empty() || !layer.table || layer.palette.mode != PaletteMode::categorical) return {};
+  if (keys.empty() || !layer.table || !lists_values(layer.palette)) return {};
   const auto missing = context.store.missing_records(*layer.table, keys);
   if (!missing) return tl::unexpected(missing.error());
   auto table = context.store.table(std::to_string(*layer.table));

@@ -152,6 +152,15 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
   if (auto fresh = check_if_match(request, layer->version); !fresh) return tl::unexpected(fresh.error());
+  const auto answer = [](const Layer& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
+  if (asked->type) {
+    protocol::LayerPatch alone;
+    alone.type = asked->type;
+    if (!(*asked == alone))
+      return fail(422, "Type with other changes", "Change the type of a layer in a call of its own.", "type");
+    auto widened = (*room)->widen_layer(*layer, *asked->type, first_answer<Layer>(request, answer));
+    return widened ? Result<Response>(answer(*widened)) : tl::unexpected(widened.error());
+  }
   if (asked->name) layer->name = *asked->name;
   if (asked->unit) layer->unit = *asked->unit;
   if (asked->description) layer->description = *asked->description;
@@ -164,7 +173,6 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   if (asked->visible) layer->visible = *asked->visible;
   if (asked->order) layer->order = *asked->order;
   if (auto set = set_formula(**room, *asked, *layer); !set) return tl::unexpected(set.error());
-  const auto answer = [](const Layer& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
   auto changed = (*room)->update_layer(std::move(*layer), first_answer<Layer>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   return answer(*changed);

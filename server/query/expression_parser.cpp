@@ -396,6 +396,7 @@ class Parser {
   Expression call() {
     if (is("valid")) return validity();
     if (is("if")) return choice();
+    if (is("reclass")) return reclass();
     if (is("date") || is("timestamp")) return time();
     if (is("interval")) return interval();
     for (const Function& each : kFunctions)
@@ -406,7 +407,7 @@ class Parser {
       if (is(each.name)) return time_function(each);
     for (const Function& each : kKeyFunctions)
       if (is(each.name)) return key_function(each);
-    std::string known = "valid, if";
+    std::string known = "valid, if, reclass";
     for (const Function& each : kFunctions) known += ", " + std::string(each.name);
     for (const Function& each : kTextFunctions) known += ", " + std::string(each.name);
     known += ", date, timestamp, interval";
@@ -576,6 +577,24 @@ class Parser {
     expect("end");
     for (auto branch = branches.rbegin(); branch != branches.rend(); ++branch)
       chain = make(Op::choose, at, std::move(branch->first), std::move(branch->second), std::move(chain));
+    return chain;
+  }
+
+  // A table of limits: from each limit on its value, below the first one the value before it.
+  Expression reclass() {
+    const auto at = token_.at;
+    advance();
+    expect("(");
+    const Expression number = argument();
+    expect(",");
+    Expression chain = argument();
+    if (!is(",")) refuse("A limit and the value from there on are missing");
+    while (take(",")) {
+      Expression above = make(Op::greater_equal, at, again(number), argument());
+      expect(",");
+      chain = make(Op::choose, at, std::move(above), argument(), std::move(chain));
+    }
+    expect(")");
     return chain;
   }
 

@@ -21,6 +21,7 @@ enum class Names { layers, columns };
 //   + - · * / % div · ^ · - (sign)
 //   numbers (0.3, 2e-4), texts ('it''s'), true, false, null (unknown), names, ( … )
 //   valid(layer), if(condition, number, number), case when condition then number … [else number] end
+//   reclass(number, below, limit, value, limit, value, …): with ascending limits, from each limit on its value
 //   min(a, b, …), max(a, b, …), abs, sqrt, exp, ln, log10, floor, ceil, round, sin, cos, tan, asin, acos, atan (radians), radians, degrees
 //   casei(text), accenti(text): without regard to case, to accents
 //   date('2024-05-02'), timestamp('…'), interval('1560', '..'), and any EDTF in quotes; t_before, t_after, t_during, t_contains,

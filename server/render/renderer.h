@@ -68,8 +68,9 @@ struct TileUpload {
 
 struct LayerStyle {  // one layer in a view, bottom to top
   LayerHandle layer = 0;
-  std::shared_ptr<const Palette> palette;
+  std::shared_ptr<const Palette> palette;  // told apart by the object: nothing of it may change
   float opacity = 1;
+  bool operator==(const LayerStyle&) const = default;
 };
 
 struct LookStyle {  // one picture of the surface in a view, bottom to top, over the colours of the vertices
@@ -84,6 +85,7 @@ struct ViewStyle {  // what a view shows of its model
   std::vector<LookStyle> looks;  // kMaxLooksShown at most
   Light light;
   double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
+  bool operator==(const ViewStyle&) const = default;
 };
 
 struct PixelRect {

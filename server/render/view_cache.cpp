@@ -16,12 +16,8 @@ void View::drop_buffers() {
 }
 
 bool View::shows(const FrameRequest& request) const {
-  const auto same = [](const LayerStyle& a, const LayerStyle& b) {
-    return a.layer == b.layer && a.palette == b.palette && a.opacity == b.opacity;
-  };
   return picture_complete && unit_mm == request.unit_mm && background_top == request.background_top &&
-         background_bottom == request.background_bottom &&
-         std::equal(layers.begin(), layers.end(), request.layers.begin(), request.layers.end(), same);
+         background_bottom == request.background_bottom && layers == request.layers;
 }
 
 Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths, GpuMemory& memory) {

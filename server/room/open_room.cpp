@@ -267,6 +267,46 @@ Result<void> OpenRoom::check_expression(const Expression& expression, const std:
   return bound ? Result<void>{} : tl::unexpected(bound.error());
 }
 
+Result<Layer> OpenRoom::widen_layer(const Layer& layer, ValueType type, const store::FirstAnswer<Layer>& answer) {
+  if (layer.formula || !widens_to(layer.type, type))
+    return fail(422, "Type not usable",
+                "A layer of whole numbers without a sign becomes a wider one of them (u8 to u16 or u32, u16 to u32); "
+                "computed layers have the type that they were made with.",
+                "type");
+  return exclusively<Layer>([this, layer, type, answer]() -> Result<Layer> {
+    const auto held = state(std::to_string(layer.id));
+    if (!held) return tl::unexpected(held.error());
+    // The GPU first, as for a new layer. Nothing is on its way to the journal: the mirror is what it holds.
+    TileMirror::Snapshot content = held->mirror->snapshot();
+    for (auto& [address, tile] : content.tiles) tile = std::make_shared<const TileData>(widened(*tile, type));
+    auto mirror = std::make_shared<TileMirror>(type, layer.resolution);
+    mirror->assign(std::move(content.tiles), content.sequence);
+    auto handle = add_layer(parts_.renderer, model_handle(), mirror);
+    if (!handle) return tl::unexpected(gpu_problem(handle.error()));
+    auto stored = parts_.store.widen_layer(layer, type, answer);
+    if (!stored) {
+      parts_.renderer.remove_layer(*handle);
+      return stored;
+    }
+    on_strand([&] {
+      render::LayerHandle old = 0;
+      {
+        std::lock_guard lock(mutex_);
+        const auto found = layers_.find(layer.id);
+        if (found == layers_.end()) return;
+        old = std::exchange(found->second.handle, *handle);
+        found->second.mirror = mirror;
+        found->second.sums = std::make_shared<query::TileSumsCache>();
+        found->second.layer.type = type;
+        mirrors_share_.recount(mirror_bytes());
+      }
+      *stored = replace_layer(*stored);
+      parts_.renderer.remove_layer(old);
+    });
+    return stored;
+  });
+}
+
 Result<void> OpenRoom::delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) {
   // In the order of edits: none of the layer's may be on its way to a journal that no longer knows it.
   return exclusively<void>([this, id, answer]() -> Result<void> {

@@ -47,6 +47,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer,
                              std::vector<Column> columns) override;
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer) override;
+  Result<Layer> widen_layer(const Layer& layer, ValueType type, const store::FirstAnswer<Layer>& answer) override;
   Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) override;
   Result<Layer> layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
                                const std::map<std::int64_t, std::int64_t>& tables) override;

@@ -162,6 +162,10 @@ class Room {
   virtual Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer = {},
                                      std::vector<Column> columns = {}) = 0;
   virtual Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer = {}) = 0;
+  // The layer with room for larger keys or values, its history too; `layer` as it was read. Refused (422, `type`): a type that
+  // it does not widen to, and a computed layer.
+  virtual Result<Layer> widen_layer(const Layer& layer, ValueType type,
+                                    const store::FirstAnswer<Layer>& answer = {}) = 0;
   virtual Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer = {}) = 0;
   // A ComputeEdit of the layer was durable with this sequence, and the tables that its expression reads stood there before it.
   virtual Result<Layer> layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,

@@ -285,6 +285,62 @@ Result<std::vector<Layer>> Store::layers_to_recompute() {
   });
 }
 
+namespace {
+
+constexpr int kRevisionsAtOnce = 256;
+
+// Bits of differences become those of the wider type as they are: the bits above are the same before and after.
+Result<void> widen_revisions(PgConnection& connection, const Layer& layer, ValueType type) {
+  for (std::int64_t y = -1, x = 0, sequence = 0;;) {
+    auto rows = connection.query(
+        "SELECT tile_y, tile_x, sequence, difference, key_tile FROM tile_revisions WHERE layer_id = $1 AND "
+        "(tile_y, tile_x, sequence) > ($2, $3, $4) ORDER BY tile_y, tile_x, sequence LIMIT $5",
+        Params().integer(layer.id).integer(y).integer(x).integer(sequence).integer(kRevisionsAtOnce));
+    if (!rows) return tl::unexpected(rows.error());
+    if (rows->rows() == 0) return {};
+    PgArray ys(oid::kInt8), xs(oid::kInt8), sequences(oid::kInt8), differences(oid::kBytea), keys(oid::kBytea);
+    for (int i = 0; i < rows->rows(); ++i) {
+      y = rows->integer(i, 0), x = rows->integer(i, 1), sequence = rows->integer(i, 2);
+      const TileAddress address{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+      auto revision = decode_revision(address, layer.type, rows->bytes(i, 3));
+      if (!revision) return tl::unexpected(revision.error());
+      revision->difference = widened(revision->difference, type);
+      ys.add(y), xs.add(x), sequences.add(sequence);
+      differences.add(Bytes(encode_revision(*revision)));
+      if (rows->null(i, 4)) {
+        keys.add_null();
+        continue;
+      }
+      auto tile = decode_tile(layer.type, rows->bytes(i, 4));
+      if (!tile) return tl::unexpected(tile.error());
+      keys.add(Bytes(encode_tile(widened(*tile, type))));
+    }
+    auto written = connection.query(
+        "UPDATE tile_revisions r SET difference = n.difference, key_tile = n.key_tile FROM "
+        "unnest($2::bigint[], $3::bigint[], $4::bigint[], $5::bytea[], $6::bytea[]) AS n (y, x, sequence, difference, "
+        "key_tile) WHERE r.layer_id = $1 AND r.tile_y = n.y AND r.tile_x = n.x AND r.sequence = n.sequence",
+        Params().integer(layer.id).array(ys).array(xs).array(sequences).array(differences).array(keys));
+    if (!written) return tl::unexpected(written.error());
+  }
+}
+
+}  // namespace
+
+Result<Layer> Store::widen_layer(const Layer& layer, ValueType type, const FirstAnswer<Layer>& answer) {
+  return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
+    auto row = connection.query(
+        "UPDATE layers SET type = $3, version = version + 1 WHERE id = $1 AND version = $2 AND type = $4 RETURNING id",
+        Params().integer(layer.id).integer(layer.version).text(name(type)).text(name(layer.type)));
+    if (!row) return tl::unexpected(row.error());
+    if (row->rows() == 0) {
+      auto known = load_layer(connection, layer.id);
+      return known ? stale("layer") : tl::unexpected(known.error());
+    }
+    if (auto done = widen_revisions(connection, layer, type); !done) return tl::unexpected(done.error());
+    return load_layer(connection, layer.id);
+  });
+}
+
 Result<void> Store::delete_layer(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
     auto done = connection.query("DELETE FROM layers WHERE id = $1", Params().integer(id));

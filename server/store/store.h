@@ -119,6 +119,8 @@ class Store {
   Result<Layer> create_layer(Layer layer, const FirstAnswer<Layer>& answer = {}, std::vector<Column> columns = {});
   Result<Layer> update_layer(Layer layer, const FirstAnswer<Layer>& answer = {});
   Result<void> delete_layer(std::int64_t id, const FirstAnswer<>& answer = {});
+  // Room for larger keys or values: its content, with all of its history, in a type that it widens_to. Where version equals.
+  Result<Layer> widen_layer(const Layer& layer, ValueType type, const FirstAnswer<Layer>& answer = {});
   // --- computed layers: their formula is created and changed with them
   // Where the tables stand that the layer's formula reads, by id.
   Result<std::map<std::int64_t, std::int64_t>> table_sequences_of(std::int64_t layer_id);

@@ -218,6 +218,7 @@ void Viewer::wait_for_quiet() {
 void Viewer::set_style(render::ViewStyle style) {
   {
     std::lock_guard lock(impl_->mutex);
+    if (style == impl_->style) return;  // others' looks and layers of the model changed
     impl_->style = std::move(style);
     impl_->flow.on_style();
   }

@@ -11,10 +11,12 @@
 
 #include "bench/bench_commands.h"
 #include "bench/bench_mesh.h"
+#include "bench/frame_client.h"
 #include "bench/harness.h"
 #include "jobs/import_job.h"
 #include "jobs/job_queue.h"
 #include "net/server.h"
+#include "query/expression_parser.h"
 
 namespace strata::bench {
 namespace {
@@ -127,6 +129,7 @@ class Queries {
     add("an expression over three layers", 100, repeated(5, [&] {
           return client_->post(model + "/select", R"({"where": "moisture * 2 + salt > 0.5 and units <> 3"})");
         }));
+    light_up();
     add("a cross-table", 0,
         repeated(3, [&] { return client_->post(model + "/cross-table", R"({"rows": "units", "columns": "units"})"); }));
     const auto gpu = site_.renderer->info();
@@ -134,6 +137,66 @@ class Queries {
   }
 
  private:
+  // From the filter of a person's view to the picture in which the records that it finds stand out: at the socket, 720p.
+  void light_up() {
+    make_parts();
+    FrameClient viewer;
+    auto member = room_->join("bench", nullptr, [&](stream::FrameBytes frame) { viewer.receive(std::move(frame)); });
+    const auto show = [&](const char* filter) {
+      room::LayerView parts{layers_.at("parts").id, true, {}, {}, {}};
+      if (filter)
+        parts.highlight = room::Highlight{must(query::parse_condition(filter, "filter", query::Names::columns)), false};
+      if (const auto shown = member->show(0, {{parts}, {}, {}}); !shown)
+        must(Result<int>(tl::unexpected(shown.error())));
+    };
+    show(nullptr);
+    member->camera(0, 1, camera(), false);
+    std::size_t content =
+        viewer.wait_for(*member, [](const auto& a) { return a.header.still && a.header.last; }).content;
+    Samples samples;
+    for (int i = 0; i < 20; ++i) {
+      const std::string filter = "thickness > " + std::to_string(1 + 0.1 * i) + " and state = 'loose'";
+      const double start = now_ms();
+      show(filter.c_str());
+      const auto lit = viewer.wait_for(*member, [&](const auto& a) { return a.header.last && a.content != content; });
+      content = lit.content;
+      samples.add(lit.at_ms - start);
+    }
+    add("a filter over 10 000 records, to lit pixels", 50, samples);
+  }
+  // As many records as a large excavation has, each in a patch of the surface.
+  void make_parts() {
+    constexpr int kParts = 10'000, kSide = 100;  // patches along a side of the atlas
+    Layer layer;
+    layer.name = layer.slug = "parts";
+    layer.kind = LayerKind::database;
+    layer.type = ValueType::u16;
+    layer.resolution = kResolution;
+    layer.palette = default_palette(layer.type, true);
+    Column thickness, state;
+    thickness.name = thickness.slug = "thickness", thickness.kind = ColumnKind::numeric;
+    state.name = state.slug = "state", state.kind = ColumnKind::enumeration, state.choices = {"loose", "firm"};
+    const Layer made = layers_["parts"] = must(room_->create_layer(layer, {}, {thickness, state}));
+    const Table table = must(site_.store->table(std::to_string(*made.table)));
+    store::WriteRecords records;
+    for (int i = 0; i < kParts; ++i)
+      records.records.push_back(
+          {{}, {{table.columns[0].id, (i * 7 % 1000) / 100.0}, {table.columns[1].id, i % 3 ? "firm" : "loose"}}});
+    must(site_.store->write_records(table.id, records, "bench"));
+    TileMap tiles;
+    for (int ty = 0; ty < kResolution / kTileSize; ++ty) {
+      for (int tx = 0; tx < kResolution / kTileSize; ++tx) {
+        auto tile = std::make_shared<TileData>(layer.type);
+        for (int texel = 0; texel < kTexelsPerTile; ++texel) {
+          const int x = tx * kTileSize + texel % kTileSize, y = ty * kTileSize + texel / kTileSize;
+          tile->write(texel, static_cast<std::uint32_t>(1 + y * kSide / kResolution * kSide + x * kSide / kResolution));
+        }
+        tiles[{static_cast<std::uint16_t>(tx), static_cast<std::uint16_t>(ty)}] = std::move(tile);
+      }
+    }
+    edit_and_wait(*room_,
+                  {random_uuid(), "bench", made.id, room::ImportEdit{std::move(tiles), false}, {{"op", "import"}}});
+  }
   void make_layer(const std::string& name, ValueType type, double value) {
     Layer layer;
     layer.name = layer.slug = name;

@@ -1,7 +1,5 @@
 // One client at 720p, up to the socket: from a stroke to its pixels, frames of a moving camera, bytes kept of steady painting.
 #include <cmath>
-#include <condition_variable>
-#include <deque>
 #include <future>
 #include <iostream>
 #include <map>
@@ -11,9 +9,9 @@
 
 #include "bench/bench_commands.h"
 #include "bench/bench_mesh.h"
+#include "bench/frame_client.h"
 #include "bench/harness.h"
 #include "jobs/import_job.h"
-#include "protocol/frame_header.h"
 
 namespace strata::bench {
 namespace {
@@ -22,44 +20,6 @@ struct Options {
   std::string model = "pot:100000", cache = "build/bench", json;
   int layers = 3, strokes = 200, frames = 300;
   double radius = 40;
-};
-
-// Stands where the socket is: notes when a frame leaves, and acknowledges it as a client that draws at once.
-class Client {
- public:
-  struct Arrival {
-    double at_ms;
-    protocol::FrameHeader header;
-    std::size_t bytes;
-  };
-  void receive(stream::FrameBytes frame) {
-    const double at = now_ms();
-    auto header = must(protocol::decode_frame_header(*frame));
-    std::lock_guard lock(mutex_);
-    arrivals_.push_back({at, header, frame->size()});
-    changed_.notify_all();
-  }
-  template <class Wanted>
-  Arrival wait_for(room::Member& member, Wanted wanted) {
-    std::unique_lock lock(mutex_);
-    while (true) {
-      if (!changed_.wait_for(lock, std::chrono::seconds(30), [&] { return !arrivals_.empty(); })) {
-        std::cerr << "strata-bench: no frame came in 30 s" << std::endl;
-        std::exit(1);
-      }
-      const Arrival arrival = arrivals_.front();
-      arrivals_.pop_front();
-      lock.unlock();
-      if (arrival.header.last) member.ack(arrival.header.view_id, arrival.header.frame);
-      if (wanted(arrival)) return arrival;
-      lock.lock();
-    }
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<Arrival> arrivals_;
 };
 
 class Stream {
@@ -238,7 +198,7 @@ class Stream {
   Model model_;
   std::shared_ptr<room::Room> room_;
   std::vector<Layer> layers_;
-  Client client_;
+  FrameClient client_;
   std::shared_ptr<room::Member> member_;
   std::atomic<std::uint64_t> camera_number_{0};
   std::mt19937 random_{7};

@@ -246,6 +246,47 @@ def circles(server):
     assert server.get(T + "/columns/condition/cycles").status == 422
 
 
+def widen(server, camera):
+    """A layer whose keys have run out gets room for more: what is painted, its history and its undo stay."""
+    path = "/models/north/layers/few"
+    server.ok("POST", "/models/north/layers", {"name": "Few", "kind": "database", "type": "u8", "resolution": 2048, "columns": [{"name": "Name"}]})
+    server.ok("POST", "/tables/few/records", {"records": [{"key": key, "values": {}} for key in (1, 255, 70000)]})
+
+    def stroke(value, x, expect=200):
+        body = {"op": "stroke", "value": value, "camera": camera, "radius_px": 30, "path": [[x, 240], [x + 20, 240]]}
+        return server.ok("POST", path + "/edits", body, expect=(expect,)).json()
+
+    def keys(query=""):
+        return {each["key"]: each["texels"] for each in server.ok("GET", path + "/statistics" + query).json()["keys"]}
+
+    stroke(1, 280)
+    first = keys()
+    then = server.get(path).json()["sequence"]
+    stroke(255, 300)
+    painted = keys()
+    assert set(painted) == {1, 255} and painted[1] < first[1]
+    refused = stroke(70000, 320, expect=422)
+    assert "wider type" in refused["detail"], refused
+    for body, field in (({"type": "u8"}, "type"), ({"type": "f32"}, "type"), ({"type": "u32", "name": "Many"}, "type"), ({"type": "x"}, "type")):
+        answer = server.request("PATCH", path, body)
+        assert answer.status == 422 and answer.json()["field"] == field, (body, answer)
+    before = server.ok("GET", path)
+    wide = server.ok("PATCH", path, {"type": "u32"}, headers={"If-Match": before.headers["ETag"], "Idempotency-Key": "wide"}).json()
+    assert (wide["type"], wide["sequence"]) == ("u32", before.json()["sequence"]), wide
+    assert server.request("PATCH", path, {"type": "u32"}, headers={"If-Match": before.headers["ETag"]}).status == 412
+    assert keys() == painted and keys(f"?at={then}") == first
+    stroke(70000, 320)
+    assert set(keys()) == {1, 255, 70000}
+    for expected in (painted, first):
+        server.ok("POST", path + "/undo")
+        assert keys() == expected, "what was painted before is undone after"
+    server.ok("POST", path + "/redo")
+    assert keys() == painted
+    server.ok("POST", path + "/restore", {"sequence": then})
+    assert keys() == first
+    return path, first
+
+
 def refusals(server):
     for what, method, path, body, headers, status, field in [
         ("unknown table", "GET", "/tables/none", None, {}, 404, None),
@@ -320,11 +361,13 @@ def main():
         map_brings_records(server)
         change_columns(server)
         circles(server)
+        wide, painted = widen(server, cameras["north"])
         refusals(server)
         content = records(server)
         assert server.stop() == 0
         server.start()
         assert records(server) == content, "all of it is durable"
+        assert {each["key"]: each["texels"] for each in server.ok("GET", wide + "/statistics").json()["keys"]} == painted
         assert server.stop() == 0
         server.assert_clean_log()
     print("tables, columns, records, their history and what is painted of them: good")

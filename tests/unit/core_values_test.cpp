@@ -9,6 +9,7 @@
 #include "core/filename.h"
 #include "core/palette.h"
 #include "core/slug.h"
+#include "core/tile.h"
 #include "core/utf8.h"
 #include "core/uuid.h"
 #include "core/value_type.h"
@@ -42,6 +43,25 @@ TEST(ValueType, refuses_what_the_type_cannot_hold) {
     EXPECT_EQ(encode_value(type, 0.5).has_value(), is_float(type));
   }
   EXPECT_EQ(encode_value(ValueType::u8, 256).error().field, "value");
+}
+
+TEST(ValueType, whole_numbers_without_a_sign_widen_with_their_bits) {
+  using enum ValueType;
+  for (const auto& [from, to] : {std::pair{u8, u16}, {u8, u32}, {u16, u32}}) {
+    EXPECT_TRUE(widens_to(from, to));
+    EXPECT_FALSE(widens_to(to, from));
+    TileData tile(from);
+    tile.write(0, 255);
+    tile.write(77, 3);
+    tile.write(kTexelsPerTile - 1, from == u16 ? 65535u : 200u);
+    tile.write(5, 0);
+    const TileData wide = widened(tile, to);
+    EXPECT_EQ(wide.texel_bytes(), bytes_per_texel(to));
+    EXPECT_EQ(wide.valid, tile.valid);
+    for (const int texel : {0, 1, 5, 77, kTexelsPerTile - 1}) EXPECT_EQ(wide.bits(texel), tile.bits(texel));
+  }
+  for (const auto& [from, to] : {std::pair{u8, u8}, {i8, i16}, {u8, i16}, {u16, f32}, {f16, f32}, {u32, u32}})
+    EXPECT_FALSE(widens_to(from, to));
 }
 
 TEST(Palette, survives_json) {

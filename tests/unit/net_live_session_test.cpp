@@ -85,6 +85,7 @@ class FakeRoom final : public room::Room {
     return layer;
   }
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
+  Result<Layer> widen_layer(const Layer& layer, ValueType, const store::FirstAnswer<Layer>&) override { return layer; }
   Result<void> delete_layer(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
   Result<Layer> layer_computed(std::int64_t, const std::string&, std::int64_t,
                                const std::map<std::int64_t, std::int64_t>&) override {

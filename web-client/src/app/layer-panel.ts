@@ -3,7 +3,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import type { Layer } from "../core/types";
+import { value_range, type Layer } from "../core/types";
 import { ask } from "./dialog";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
@@ -270,6 +270,9 @@ export class StrataLayerPanel extends LitElement {
           ${layer.table === undefined
             ? nothing
             : html`<button class="quiet" role="menuitem" @click=${() => session.tables.open(layer)}>${icon("table")}${texts.tables.open}</button>`}
+          ${layer.table !== undefined && layer.type !== "u32" && session.can_curate
+            ? html`<button class="quiet" role="menuitem" @click=${() => void this.widen(layer)}>${icon("plus")}${words.widen}</button>`
+            : nothing}
           <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "statistics", layer })}>
             ${icon("chart")}${words.statistics}
           </button>
@@ -385,6 +388,17 @@ export class StrataLayerPanel extends LitElement {
     } catch (error) {
       notices.error(error);
     }
+  }
+
+  /** Room for the keys of more records. */
+  private async widen(layer: Layer): Promise<void> {
+    const words = texts.layers;
+    const [, highest] = value_range(layer.type);
+    if (!(await ask({ heading: words.widen_title(layer.name), lead: words.widen_lead(highest), yes: words.widen_yes }))) return;
+    await this.session.layers
+      .change(layer, { type: "u32" })
+      .then(() => notices.show("success", words.widened))
+      .catch((error: unknown) => notices.error(error));
   }
 
   private async delete_layer(layer: Layer): Promise<void> {

@@ -1349,6 +1349,8 @@ export interface LayerPatch {
   opacity?: number;
   visible?: boolean;
   order?: number;
+  /** Alone: a layer of u8 or u16 gets room for larger keys or values (u16, u32), its history too. */
+  type?: ValueType;
   /** Of a computed layer, which it has to be computed by anew; empty: the layer keeps its values and is edited by hand from now on. */
   expression?: string;
   recompute?: Recompute;

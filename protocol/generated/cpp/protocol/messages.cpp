@@ -1642,6 +1642,7 @@ void read(const nlohmann::json& json, LayerPatch& value) {
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "visible", value.visible);
   read_optional_member(json, "order", value.order);
+  read_optional_member(json, "type", value.type);
   read_optional_member(json, "expression", value.expression);
   read_optional_member(json, "recompute", value.recompute);
 }
@@ -1655,6 +1656,7 @@ nlohmann::json to_json(const LayerPatch& value) {
   write_optional_member(json, "opacity", value.opacity);
   write_optional_member(json, "visible", value.visible);
   write_optional_member(json, "order", value.order);
+  write_optional_member(json, "type", value.type);
   write_optional_member(json, "expression", value.expression);
   write_optional_member(json, "recompute", value.recompute);
   return json;

@@ -1288,6 +1288,7 @@ struct LayerPatch {
   std::optional<double> opacity;
   std::optional<bool> visible;
   std::optional<int> order;
+  std::optional<strata::ValueType> type;  // Alone: a layer of u8 or u16 gets room for larger keys or values (u16, u32), its history too.
   std::optional<std::string> expression;  // Of a computed layer, which it has to be computed by anew; empty: the layer keeps its values and is edited by hand from now on.
   std::optional<Recompute> recompute;
   bool operator==(const LayerPatch&) const = default;
