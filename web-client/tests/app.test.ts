@@ -6,7 +6,7 @@ import { choose_scans } from "../src/app/imports";
 import { arrow_step } from "../src/app/keyboard";
 import { layer_changes } from "../src/app/layer-changes";
 import { notices } from "../src/app/notices";
-import { PickProbe } from "../src/app/pick-probe";
+import { PickProbe, type PickPurpose } from "../src/app/pick-probe";
 import { route_of } from "../src/app/routes";
 import { texts } from "../src/app/texts";
 import { class_palette, measurement_palette, presence_palette, record_palette } from "../src/core/palette";
@@ -148,11 +148,11 @@ describe("the probe under the pointer", () => {
 
   const setup = () => {
     const asked: { id: string; x: number }[] = [];
-    const answered: [number | undefined, boolean][] = [];
+    const answered: [number | undefined, PickPurpose][] = [];
     const probe = new PickProbe({
       ready: () => true,
       ask: (id, { x }) => void asked.push({ id, x }),
-      answered: (message, take) => void answered.push([message.position?.[0], take]),
+      answered: (message, purpose) => void answered.push([message.position?.[0], purpose]),
     });
     const answer = (id: string, x: number): void => probe.answer({ op: "picked", id, hit: true, position: [x, 0, 0] });
     return { asked, answered, probe, answer };
@@ -178,13 +178,13 @@ describe("the probe under the pointer", () => {
   it("a press is not forgotten when the pointer moves on before the question leaves", () => {
     const { asked, answered, probe, answer } = setup();
     probe.ask({ x: 1, y: 0 });
-    probe.ask({ x: 2, y: 0 }, true);
+    probe.ask({ x: 2, y: 0 }, "take");
     probe.ask({ x: 3, y: 0 });
     vi.advanceTimersByTime(70);
     answer(asked[0]!.id, 1);
     answer("another's question", 9);
     answer(asked[1]!.id, 3);
-    expect(answered).toEqual([[1, false], [3, true]]); // prettier-ignore
+    expect(answered).toEqual([[1, "hover"], [3, "take"]]); // prettier-ignore
   });
   it("an answer that never comes, or a refusal, does not stop it", () => {
     const { asked, probe } = setup();

@@ -83,7 +83,7 @@ describe("brush", () => {
 
   it("choosing another tool ends the stroke", () => {
     const brush = new BrushTool("brush", host);
-    const orbit = new OrbitTool({ orbit: vi.fn(), pan: vi.fn() });
+    const orbit = new OrbitTool({ orbit: vi.fn(), pan: vi.fn(), tap: vi.fn() });
     const manager = new ToolManager([brush, orbit], "brush");
     manager.down({ x: 0, y: 0 });
     manager.choose("orbit");
@@ -137,7 +137,7 @@ describe("tool manager", () => {
 
 describe("navigation and pick", () => {
   it("drags turn or move by the way from the last point", () => {
-    const navigator = { orbit: vi.fn(), pan: vi.fn() };
+    const navigator = { orbit: vi.fn(), pan: vi.fn(), tap: vi.fn() };
     for (const tool of [new OrbitTool(navigator), new PanTool(navigator)]) {
       tool.move([{ x: 9, y: 9 }]);
       tool.down({ x: 10, y: 10 });
@@ -147,6 +147,23 @@ describe("navigation and pick", () => {
     }
     expect(navigator.orbit.mock.calls).toEqual([[5, 3]]);
     expect(navigator.pan.mock.calls).toEqual([[5, 3]]);
+  });
+
+  it("a press that stays in place is a tap; one that was dragged away and back is none", () => {
+    const navigator = { orbit: vi.fn(), pan: vi.fn(), tap: vi.fn() };
+    const tool = new OrbitTool(navigator);
+    tool.down({ x: 10, y: 10 });
+    tool.move([{ x: 12, y: 13 }]);
+    tool.up();
+    tool.down({ x: 50, y: 50 });
+    tool.move([{ x: 90, y: 50 }, { x: 50, y: 50 }]); // prettier-ignore
+    tool.move([{ x: 70, y: 50 }]);
+    tool.move([{ x: 50, y: 50 }]);
+    tool.up();
+    tool.down({ x: 30, y: 30 });
+    tool.cancel();
+    tool.up();
+    expect(navigator.tap.mock.calls).toEqual([[{ x: 10, y: 10 }]]);
   });
 
   it("pick asks where it is pressed and dragged", () => {

@@ -94,8 +94,7 @@ try {
   await button("Take back my last change of the table").click();
   await wait_for(async () => (await files(1)).length === 3, "the file to be back");
 
-  say("the surface shows the record with its picture");
-  await page.getByRole("button", { name: /^Pick a value/ }).click();
+  say("a click on the surface, while turning, shows the record with its picture");
   const box = await browser.stage_box();
   await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
   await card.getByText("SU 1").first().waitFor();

@@ -5,8 +5,8 @@
 import { Api, ApiError, type Versioned } from "../core/api";
 import { Connection, type ConnectionState, type Point, type SavingState, type SocketLike } from "../core/connection";
 import type { FrameMessage } from "../core/frame-header";
-import type { GestureHandler } from "../core/input";
-import type { LayerEvent, ModelEvent, PresenceUser, ProblemMessage, Welcome } from "../core/protocol.gen";
+import type { GestureHandler, PointerSample } from "../core/input";
+import type { LayerEvent, ModelEvent, Picked, PresenceUser, ProblemMessage, Welcome } from "../core/protocol.gen";
 import { complete_layer, may_curate, may_paint, type Layer, type Model, type ModelPatch, type Role } from "../core/types";
 import { BrushTool } from "../tools/brush";
 import { BucketTool } from "../tools/bucket";
@@ -91,6 +91,7 @@ export class ModelSession {
         this.painting.take_picked(message);
         this.tables.show_card(this.layers.selected, message);
       },
+      looked: (message) => this.tables.show_card(this.layer_with_record(message), message),
       changed,
     });
     this.painting = new Painting({
@@ -172,6 +173,11 @@ export class ModelSession {
       radius_px: () => this.painting.radius_window_px(),
       next_frame: (callback: () => void) => void requestAnimationFrame(callback),
     };
+    const navigator = {
+      orbit: (dx: number, dy: number) => this.view.orbit_pixels(dx, dy),
+      pan: (dx: number, dy: number) => this.view.pan_pixels(dx, dy),
+      tap: (sample: PointerSample) => this.pointer.look(sample),
+    };
     const outline_host = {
       begin_outline: () => this.painting.begin_outline(),
       finish_outline: (path: Point[]) => this.painting.finish_outline(path),
@@ -181,8 +187,8 @@ export class ModelSession {
     };
     return new ToolManager(
       [
-        new OrbitTool(this.gestures),
-        new PanTool(this.gestures),
+        new OrbitTool(navigator),
+        new PanTool(navigator),
         new BrushTool("brush", brush_host),
         new BrushTool("eraser", brush_host),
         new PolygonTool(outline_host),
@@ -248,6 +254,15 @@ export class ModelSession {
 
   private changed(): void {
     for (const listener of this.listeners_) listener();
+  }
+
+  /** The one that is painted on, if there is a record, or the topmost that shows one. */
+  private layer_with_record({ values }: Picked): Layer | null {
+    const { layers } = this;
+    const has_record = (layer: Layer): boolean => layer.table !== undefined && layers.visible(layer) && values?.[layer.slug]?.valid === true;
+    const { selected } = layers;
+    if (selected && has_record(selected)) return selected;
+    return [...layers.all].reverse().find(has_record) ?? null;
   }
 
   /** The table of the layer that is painted on: shown, or no longer. */

@@ -7,22 +7,25 @@ import type { Picked } from "../core/protocol.gen";
 const kAskEvery_ms = 60;
 const kGiveUpAfter_ms = 2000;
 
+/** What somebody does there: only points, taps to look closer, or takes the value. */
+export type PickPurpose = "hover" | "look" | "take";
+
 export interface PickProbeHost {
   ready(): boolean;
   ask(id: string, sample: PointerSample): void;
-  /** `take`: somebody pressed here to take the value. */
-  answered(message: Picked, take: boolean): void;
+  answered(message: Picked, purpose: PickPurpose): void;
 }
 
 export class PickProbe {
-  private asked_: { id: string; at_ms: number; take: boolean } | null = null;
-  private waiting_: { sample: PointerSample; take: boolean } | null = null;
+  private asked_: { id: string; at_ms: number; purpose: PickPurpose } | null = null;
+  private waiting_: { sample: PointerSample; purpose: PickPurpose } | null = null;
   private timer_: ReturnType<typeof setTimeout> | null = null;
 
   constructor(private readonly host_: PickProbeHost) {}
 
-  ask(sample: PointerSample, take = false): void {
-    this.waiting_ = { sample, take: take || (this.waiting_?.take ?? false) };
+  /** A press that still waits keeps its purpose, wherever the pointer goes meanwhile. */
+  ask(sample: PointerSample, purpose: PickPurpose = "hover"): void {
+    this.waiting_ = { sample, purpose: purpose === "hover" ? (this.waiting_?.purpose ?? "hover") : purpose };
     this.send();
   }
 
@@ -35,7 +38,7 @@ export class PickProbe {
     const asked = this.asked_;
     if (!asked || message.id !== asked.id) return;
     this.asked_ = null;
-    this.host_.answered(message, asked.take);
+    this.host_.answered(message, asked.purpose);
     this.send();
   }
 
@@ -63,7 +66,7 @@ export class PickProbe {
     const now_ms = performance.now();
     if (this.asked_ && now_ms - this.asked_.at_ms < kGiveUpAfter_ms) return; // its answer sends the next
     this.waiting_ = null;
-    this.asked_ = { id: new_id(), at_ms: now_ms, take: waiting.take };
+    this.asked_ = { id: new_id(), at_ms: now_ms, purpose: waiting.purpose };
     this.host_.ask(this.asked_.id, waiting.sample);
     this.timer_ = setTimeout(() => {
       this.timer_ = null;

@@ -3,7 +3,7 @@
 import type { OrbitCamera } from "../core/camera";
 import type { PointerSample } from "../core/input";
 import type { Picked } from "../core/protocol.gen";
-import { PickProbe } from "./pick-probe";
+import { PickProbe, type PickPurpose } from "./pick-probe";
 
 const kPresenceEvery_ms = 100;
 
@@ -12,8 +12,9 @@ export interface PointerHost {
   ready(): boolean;
   ask(id: string, sample: PointerSample): void;
   tell_others(pointer: [number, number] | null): void;
-  /** Somebody pressed here to take the value. */
+  /** Somebody pressed here to take the value, or tapped to look closer. */
   taken(message: Picked): void;
+  looked(message: Picked): void;
   changed(): void;
 }
 
@@ -29,7 +30,7 @@ export class PointerWatch {
     this.probe_ = new PickProbe({
       ready: () => host_.ready(),
       ask: (id, sample) => host_.ask(id, sample),
-      answered: (message, take) => this.on_picked(message, take),
+      answered: (message, purpose) => this.on_picked(message, purpose),
     });
   }
 
@@ -42,7 +43,10 @@ export class PointerWatch {
   }
 
   take(sample: PointerSample): void {
-    this.probe_.ask(sample, true);
+    this.probe_.ask(sample, "take");
+  }
+  look(sample: PointerSample): void {
+    this.probe_.ask(sample, "look");
   }
 
   /** The surface or the view may have changed under a pointer that rests. */
@@ -73,10 +77,11 @@ export class PointerWatch {
     return this.depth_ !== null && this.depth_ > 0 ? this.depth_ : this.host_.camera().distance;
   }
 
-  private on_picked(message: Picked, take: boolean): void {
-    if (this.at || take) this.picked = message;
+  private on_picked(message: Picked, purpose: PickPurpose): void {
+    if (this.at || purpose !== "hover") this.picked = message;
     if (message.hit && message.position) this.depth_ = this.host_.camera().depth_of(message.position);
-    if (take) this.host_.taken(message);
+    if (purpose === "take") this.host_.taken(message);
+    if (purpose === "look") this.host_.looked(message);
     this.host_.changed();
   }
 

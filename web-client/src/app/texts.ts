@@ -808,12 +808,14 @@ export const texts = {
     keys: "Keys",
     mouse_rows: [
       ["Left drag", "the chosen tool"],
+      ["Click while turning or moving", "the record that lies there"],
       ["Right drag, or Space + left", "turn the model"],
       ["Middle drag, or Shift + right", "move the model"],
       ["Wheel", "nearer or farther, where the pointer is"],
     ],
     touch_rows: [
       ["One finger", "the chosen tool"],
+      ["Tap while turning or moving", "the record that lies there"],
       ["Two fingers", "move, pinch to come nearer, twist to turn"],
     ],
     key_rows: [

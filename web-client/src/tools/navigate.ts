@@ -7,27 +7,36 @@ import type { Tool } from "./tool";
 export interface Navigator {
   orbit(dx: number, dy: number): void;
   pan(dx: number, dy: number): void;
+  /** Pressed and let go in one place. */
+  tap(sample: PointerSample): void;
 }
+
+const kTapReach = 7; // window pixels that a hand trembles
 
 abstract class DragTool {
   private last_: PointerSample | null = null;
+  private start_: PointerSample | null = null; // null: it was dragged away from there
+
+  constructor(protected readonly navigator_: Navigator) {}
 
   activate(): void {}
   deactivate(): void {}
   down(sample: PointerSample): void {
-    this.last_ = sample;
+    this.last_ = this.start_ = sample;
   }
   move(samples: PointerSample[]): void {
     const now = samples[samples.length - 1];
     if (!now || !this.last_) return;
+    if (this.start_ && Math.hypot(now.x - this.start_.x, now.y - this.start_.y) > kTapReach) this.start_ = null;
     this.dragged(now.x - this.last_.x, now.y - this.last_.y);
     this.last_ = now;
   }
   up(): void {
-    this.last_ = null;
+    if (this.start_) this.navigator_.tap(this.start_);
+    this.cancel();
   }
   cancel(): void {
-    this.last_ = null;
+    this.last_ = this.start_ = null;
   }
 
   protected abstract dragged(dx: number, dy: number): void;
@@ -35,9 +44,6 @@ abstract class DragTool {
 
 export class OrbitTool extends DragTool implements Tool {
   readonly name = "orbit";
-  constructor(private readonly navigator_: Navigator) {
-    super();
-  }
   protected dragged(dx: number, dy: number): void {
     this.navigator_.orbit(dx, dy);
   }
@@ -45,9 +51,6 @@ export class OrbitTool extends DragTool implements Tool {
 
 export class PanTool extends DragTool implements Tool {
   readonly name = "pan";
-  constructor(private readonly navigator_: Navigator) {
-    super();
-  }
   protected dragged(dx: number, dy: number): void {
     this.navigator_.pan(dx, dy);
   }
