@@ -42,7 +42,7 @@ install_packages() {
 build_packages="g++ cmake ninja-build pkg-config ccache mold git python3 python3-yaml ca-certificates
   libegl-dev libgl-dev libepoxy-dev libglm-dev libpq-dev nlohmann-json3-dev libvalijson-dev
   libturbojpeg0-dev libjpeg62-turbo-dev libsodium-dev libssl-dev libspdlog-dev libcli11-dev libzstd-dev libpng-dev libtiff-dev
-  libembree-dev libmeshoptimizer-dev libdraco-dev libzip-dev libshp-dev libxlsxwriter-dev libexpected-dev libcurl4-openssl-dev libgtest-dev libgmock-dev"
+  libembree-dev libmeshoptimizer-dev libdraco-dev libzip-dev libshp-dev libxlsxwriter-dev libraptor2-dev libutf8proc-dev libexpected-dev libcurl4-openssl-dev libgtest-dev libgmock-dev"
 run_packages="libegl1 libegl-mesa0 libgl1-mesa-dri postgresql-15 curl"
 test_packages="chromium fonts-dejavu-core clang-format-14 xz-utils"
 fuzz_packages="clang-14 libclang-rt-14-dev llvm-14"

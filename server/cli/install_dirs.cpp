@@ -13,7 +13,8 @@ InstallDirs install_dirs() {
     const fs::path installed = fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "share" / "strata";
     root = fs::is_directory(installed / "shaders") ? installed : fs::path(STRATA_SOURCE_DIR);
   }
-  return {root / "shaders", root / "db" / "migrations", root / "web-client" / "dist", root / "protocol" / "generated"};
+  return {root / "shaders", root / "db" / "migrations", root / "web-client" / "dist", root / "protocol" / "generated",
+          root / "templates"};
 }
 
 }  // namespace strata::cli

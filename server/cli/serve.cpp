@@ -116,6 +116,7 @@ int run(const ServeOptions& options) {
   server_options.allowed_origins = options.origins;
   server_options.static_dir = dirs.web_client;
   server_options.protocol_dir = dirs.protocol;
+  server_options.templates_dir = dirs.templates;
   server_options.upload_dir = options.data.data / "uploads";
   server_options.owner_token = owner_token();
   auto server = net::Server::start(server_options, store, rooms, jobs, **renderer);

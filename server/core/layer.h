@@ -39,6 +39,7 @@ struct Layer {
   std::string unit;
   std::string description;
   Palette palette;
+  bool palette_of_terms = false;  // it follows the colours of the terms of its table, and is not kept
   double opacity = 1;
   bool visible = true;
   int order = 0;                      // drawn ascending: higher is on top

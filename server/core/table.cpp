@@ -6,6 +6,7 @@
 
 #include "core/column_value.h"
 #include "core/slug.h"
+#include "core/term_list.h"
 #include "core/utf8.h"
 
 namespace strata {
@@ -139,6 +140,7 @@ nlohmann::json to_json(const Table& table) {
           {"project", table.project_id},
           {"name", table.name},
           {"slug", table.slug},
+          {"kind", term_columns(table) ? "terms" : "records"},
           {"labels", table.labels},
           {"description", table.description},
           {"columns", std::move(columns)},

@@ -67,6 +67,7 @@ struct Table {
 };
 
 inline constexpr std::int64_t kHighestKey = 0xffffffff;
+inline constexpr std::int64_t kOwnTable = 0;  // target of a column of a table that is being made: that table
 inline constexpr int kMostColumns = 256;
 inline constexpr int kMostChoices = 1000;
 inline constexpr std::size_t kLongestColumnText = 2000;  // bytes of a unit, a choice, a label, a comment

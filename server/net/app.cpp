@@ -40,7 +40,7 @@ const Headers& security_headers() {
 }
 
 App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
-         render::Renderer& renderer)
+         render::Renderer& renderer, TemplateShelf templates)
     : options_(std::move(options)),
       store_(store),
       rooms_(rooms),
@@ -49,10 +49,11 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       edit_book_(store),
       files_(options_.static_dir),
       tools_(std::make_shared<ToolShelf>(store)),
+      templates_(std::move(templates)),
       shared_(make_shared_state(options_, store, tools_)),
       workers_(options_.worker_threads, options_.max_waiting_requests),
-      context_{options_,          store,    rooms,  jobs, renderer, auth_, edit_book_, live_sockets_,
-               *shared_->metrics, workers_, *tools_},
+      context_{options_,          store,    rooms,   jobs,      renderer, auth_, edit_book_, live_sockets_,
+               *shared_->metrics, workers_, *tools_, templates_},
       recomputer_(context_) {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
@@ -64,6 +65,8 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_look_routes(router_, context_);
   add_tool_routes(router_, context_);
   add_table_routes(router_, context_);
+  add_term_routes(router_, context_);
+  add_template_routes(router_, context_);
   add_record_routes(router_, context_);
   add_attachment_routes(router_, context_);
   add_attachment_match_routes(router_, context_);

@@ -24,7 +24,8 @@ namespace strata::net {
 // Everything between the sockets and the rooms: which route, who asks, may they, was it asked before. Knows no socket library.
 class App {
  public:
-  App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs, render::Renderer& renderer);
+  App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs, render::Renderer& renderer,
+      TemplateShelf templates);
   ~App();
 
   const ServerOptions& options() const { return options_; }
@@ -66,6 +67,7 @@ class App {
   StaticFiles files_;
   LiveSockets live_sockets_;
   const std::shared_ptr<ToolShelf> tools_;
+  const TemplateShelf templates_;
   std::shared_ptr<LiveShared> shared_;
   WorkerPool workers_;
   Router router_;

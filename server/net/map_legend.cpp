@@ -37,6 +37,7 @@ Result<void> extend_legend(const Request& request, room::Room& room, const Layer
       return fail(422, "Name too long", "\"" + name.substr(0, 60) + "…\" is too long for a legend.", "attribute");
   Layer changed = layer;
   changed.palette = keys.extended();
+  changed.palette_of_terms = false;
   if (changed.palette.points.size() > kMostPoints)
     return fail(422, "Too many names", "A legend holds at most " + std::to_string(kMostPoints) + " entries.",
                 "attribute");

@@ -11,6 +11,7 @@
 #include "net/metrics.h"
 #include "net/router.h"
 #include "net/server_options.h"
+#include "net/template_shelf.h"
 #include "net/tool_shelf.h"
 #include "protocol/parse.h"
 #include "render/renderer.h"
@@ -32,6 +33,7 @@ struct RouteContext {
   Metrics& metrics;
   WorkerPool& workers;
   ToolShelf& tools;
+  const TemplateShelf& templates;
 };
 
 void add_system_routes(Router& router, const RouteContext& context);
@@ -44,6 +46,8 @@ void add_layer_routes(Router& router, const RouteContext& context);
 void add_look_routes(Router& router, const RouteContext& context);
 void add_tool_routes(Router& router, const RouteContext& context);
 void add_table_routes(Router& router, const RouteContext& context);
+void add_term_routes(Router& router, const RouteContext& context);
+void add_template_routes(Router& router, const RouteContext& context);
 void add_record_routes(Router& router, const RouteContext& context);
 void add_attachment_routes(Router& router, const RouteContext& context);
 void add_attachment_match_routes(Router& router, const RouteContext& context);

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "core/term_list.h"
 #include "net/answer_book.h"
 #include "net/computed_layers.h"
 #include "net/formula_layers.h"
@@ -90,6 +91,7 @@ Result<Response> create_layer(const RouteContext& context, JobBook& book, const 
     auto table = table_of_project(context.store, model.project_id, *asked->table, "table");
     if (!table) return tl::unexpected(table.error());
     layer->table = table->id;
+    if (!asked->palette && term_columns(*table)) layer->palette = terms_palette({});  // theirs
   }
   Column name;
   name.name = "Name";
@@ -168,6 +170,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
     auto palette = palette_from_json(*asked->palette);
     if (!palette) return tl::unexpected(palette.error());
     layer->palette = std::move(*palette);
+    layer->palette_of_terms = false;
   }
   if (asked->opacity) layer->opacity = *asked->opacity;
   if (asked->visible) layer->visible = *asked->visible;

@@ -215,9 +215,9 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
   if (!table) return tl::unexpected(table.error());
   auto column = column_of(*table, request);
   if (!column) return tl::unexpected(column.error());
-  if ((*column)->kind != ColumnKind::relation || (*column)->target != table->id)
-    return fail(422, "No relation of its own", "Cycles are those of a relation that names records of its own table.",
-                "column");
+  if ((*column)->target != table->id)
+    return fail(422, "No relation of its own",
+                "Cycles are those of a relation or term that names records of its own table.", "column");
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
   auto page = context.store.records(table->id, query);
@@ -225,7 +225,8 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
   Relation relation;
   for (const Record& record : page->records)
     if (const auto named = record.values.find((*column)->id); named != record.values.end())
-      relation[record.key] = named->second.get<std::vector<std::int64_t>>();
+      relation[record.key] = named->second.is_array() ? named->second.get<std::vector<std::int64_t>>()
+                                                      : std::vector{named->second.get<std::int64_t>()};
   const auto found = relation_cycles(relation);
   return json_response({{"cycles", found}, {"total", found.size()}});
 }

@@ -75,8 +75,9 @@ Result<tcp::acceptor> listen(asio::io_context& io, const std::string& host, std:
 }  // namespace
 
 struct Server::Impl {
-  Impl(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs, render::Renderer& renderer)
-      : app(std::move(options), store, rooms, jobs, renderer),
+  Impl(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs, render::Renderer& renderer,
+       TemplateShelf templates)
+      : app(std::move(options), store, rooms, jobs, renderer, std::move(templates)),
         io(std::make_shared<asio::io_context>(app.options().http_threads)),
         connections(new Connections{io, app, 0, 0, false}),
         acceptor(*io) {}
@@ -120,10 +121,12 @@ Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Stor
                 "STRATA_OWNER_TOKEN has at least 32 characters; make one with `openssl rand -hex 32`.",
                 "STRATA_OWNER_TOKEN");
   if (auto ready = prepare_upload_dir(options.upload_dir); !ready) return tl::unexpected(ready.error());
+  auto templates = TemplateShelf::load(options.templates_dir);
+  if (!templates) return tl::unexpected(templates.error());
   const std::string host = options.host;
   const std::uint16_t port = options.port;
   std::unique_ptr<Server> server(new Server);
-  server->impl_ = std::make_unique<Impl>(std::move(options), store, rooms, jobs, renderer);
+  server->impl_ = std::make_unique<Impl>(std::move(options), store, rooms, jobs, renderer, std::move(*templates));
   Impl& impl = *server->impl_;
   auto acceptor = listen(*impl.io, host, port);
   if (!acceptor) {

@@ -15,6 +15,7 @@ struct ServerOptions {
   std::vector<std::string> allowed_origins;  // beside the server's own: "https://museum.example"
   std::filesystem::path static_dir;          // the built page (web-client/dist)
   std::filesystem::path protocol_dir;        // folder of openapi.json
+  std::filesystem::path templates_dir;       // of tables and layers; empty: there are none
   std::filesystem::path upload_dir;          // uploads on their way in; emptied at start
   std::string owner_token;                   // STRATA_OWNER_TOKEN: empty or at least 32 characters
   int http_threads = 2;                      // for sockets; nothing on them blocks

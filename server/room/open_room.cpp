@@ -249,6 +249,13 @@ void OpenRoom::outdate(const std::function<bool(const LayerFormula&)>& reads) {
 
 void OpenRoom::records_changed(std::int64_t table_id) {
   record_colors_->records_changed(table_id);
+  // Layers that take their colours from the terms of the table.
+  for (const Layer& layer : layers()) {
+    if (!layer.palette_of_terms || layer.table != table_id) continue;
+    // One that is gone meanwhile, or cannot be read now, keeps the colours that it has.
+    if (auto stored = parts_.store.layer(model_id_, std::to_string(layer.id)))
+      on_strand([&] { return replace_layer(*stored); });
+  }
   on_strand([&] {
     outdate([&](const LayerFormula& formula) {
       return std::ranges::any_of(formula.inputs, [&](const auto& input) { return input.table == table_id; });

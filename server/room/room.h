@@ -170,7 +170,7 @@ class Room {
   // A ComputeEdit of the layer was durable with this sequence, and the tables that its expression reads stood there before it.
   virtual Result<Layer> layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
                                        const std::map<std::int64_t, std::int64_t>& tables) = 0;
-  // Records of a table have changed: layers that are computed from them are stale.
+  // Records of a table have changed: layers that are computed from them are stale, those that take their colours from its terms others.
   virtual void records_changed(std::int64_t table_id) = 0;
   // Whether a formula for a computed layer can be evaluated here. Refused (422 at `field`) as by bind_expression.
   virtual Result<void> check_expression(const Expression& expression, const std::string& field) const = 0;

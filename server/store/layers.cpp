@@ -1,3 +1,4 @@
+#include "core/term_list.h"
 #include "store/store_impl.h"
 #include "store/table_writer.h"
 
@@ -17,7 +18,23 @@ namespace {
   "EXISTS (SELECT 1 FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND "   \
   "t.sequence > i.table_sequence), " STRATA_LAYER_STALE
 
-Result<Layer> read_layer(const PgResult& rows, int i) {
+// A palette without points is that of the terms, where the layer's table is a list of such.
+Result<void> take_term_colors(PgConnection& connection, Layer& layer) {
+  if (!layer.table || !takes_term_colors(layer.palette)) return {};
+  auto palette = term_palette_of(connection, *layer.table);
+  if (!palette) return tl::unexpected(palette.error());
+  layer.palette_of_terms = palette->has_value();
+  if (layer.palette_of_terms) layer.palette = std::move(**palette);
+  return {};
+}
+
+// As it is kept: one of the terms has no points of its own.
+nlohmann::json palette_to_keep(const Layer& layer) {
+  if (!layer.palette_of_terms) return to_json(layer.palette);
+  return to_json(terms_palette({}));
+}
+
+Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) {
   Layer layer;
   layer.id = rows.integer(i, 0);
   layer.model_id = rows.integer(i, 1);
@@ -37,6 +54,7 @@ Result<Layer> read_layer(const PgResult& rows, int i) {
   layer.visible = rows.boolean(i, 11);
   layer.order = static_cast<int>(rows.integer(i, 12));
   if (!rows.null(i, 13)) layer.table = rows.integer(i, 13);
+  if (auto colored = take_term_colors(connection, layer); !colored) return tl::unexpected(colored.error());
   layer.sequence = rows.integer(i, 14);
   layer.version = rows.integer(i, 15);
   if (rows.null(i, 16)) return layer;
@@ -57,7 +75,7 @@ Result<Layer> load_layer(PgConnection& connection, std::int64_t id) {
   auto row = connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE id = $1", Params().integer(id));
   if (!row) return tl::unexpected(row.error());
   if (row->rows() == 0) return not_found("layer", std::to_string(id));
-  return read_layer(*row, 0);
+  return read_layer(connection, *row, 0);
 }
 
 // What the layer is computed from, in place of what it was computed from before. Refused (422): a layer that is computed from
@@ -143,7 +161,7 @@ Result<std::vector<Layer>> Store::layers(std::int64_t model_id) {
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Layer> layers;
     for (int i = 0; i < rows->rows(); ++i) {
-      auto layer = read_layer(*rows, i);
+      auto layer = read_layer(connection, *rows, i);
       if (!layer) return tl::unexpected(layer.error());
       layers.push_back(std::move(*layer));
     }
@@ -161,7 +179,7 @@ Result<Layer> Store::layer(std::int64_t model_id, const std::string& ref) {
                                       Params().integer(model_id).text(ref));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0) return not_found("layer", ref);
-    return read_layer(*rows, 0);
+    return read_layer(connection, *rows, 0);
   });
 }
 
@@ -191,13 +209,13 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
                   .integer(layer.resolution)
                   .text(layer.unit)
                   .text(layer.description)
-                  .json(to_json(layer.palette))
+                  .json(palette_to_keep(layer))
                   .real(layer.opacity)
                   .boolean(layer.visible)
                   .integer(layer.order)
                   .optional_integer(layer.table));
         });
-    if (!row || !layer.formula) return row ? read_layer(*row, 0) : tl::unexpected(row.error());
+    if (!row || !layer.formula) return row ? read_layer(connection, *row, 0) : tl::unexpected(row.error());
     layer.id = row->integer(0, 0);
     if (auto set = set_formula(connection, layer); !set) return tl::unexpected(set.error());
     return load_layer(connection, layer.id);
@@ -218,13 +236,13 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
             .text(layer.slug)
             .text(layer.unit)
             .text(layer.description)
-            .json(to_json(layer.palette))
+            .json(palette_to_keep(layer))
             .real(layer.opacity)
             .boolean(layer.visible)
             .integer(layer.order));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) {
-      auto now = read_layer(*row, 0);
+      auto now = read_layer(connection, *row, 0);
       if (!now || same_formula(now->formula, layer.formula)) return now;
       if (auto set = set_formula(connection, layer); !set) return tl::unexpected(set.error());
       return load_layer(connection, layer.id);
@@ -277,7 +295,7 @@ Result<std::vector<Layer>> Store::layers_to_recompute() {
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Layer> layers;
     for (int i = 0; i < rows->rows(); ++i) {
-      auto layer = read_layer(*rows, i);
+      auto layer = read_layer(connection, *rows, i);
       if (!layer) return tl::unexpected(layer.error());
       layers.push_back(std::move(*layer));
     }

@@ -18,6 +18,7 @@
 #include "core/look.h"
 #include "core/model.h"
 #include "core/shape_texture.h"
+#include "core/term.h"
 #include "core/tile_mirror.h"
 #include "core/tool.h"
 #include "store/first_answer.h"
@@ -138,6 +139,21 @@ class Store {
   Result<void> delete_table(std::int64_t id,
                             const FirstAnswer<>& answer = {});  // refused (409) while something names it
   Result<std::vector<Layer>> layers_of_table(std::int64_t table_id);
+  // Several tables and the terms of those that are lists, all or none: where one of the changes has problems, nothing was made. 409: the
+  // project has a table of that name. Terms are the first entry of their table's journal.
+  struct NewTable {
+    Table table;
+    std::map<std::size_t, std::size_t>
+        targets{};  // of columns that name one of the tables before it: column → table, by their places
+    std::optional<TermList> terms{};
+  };
+  Result<std::vector<TableChange>> create_tables(const std::vector<NewTable>& tables, bool dry_run,
+                                                 const std::string& user, const std::string& op,
+                                                 const FirstAnswer<std::vector<TableChange>>& answer = {});
+  // Terms come into a list (409: the table is none) as one entry of its journal: those whose URI or code is there change that record, the others
+  // are new, and what the text does not have stays. All or none; problems name the term by its place.
+  Result<TableChange> import_terms(std::int64_t table_id, const TermList& list, bool dry_run, const std::string& user,
+                                   const FirstAnswer<TableChange>& answer = {});
   // Where the kind or target changes, the column makes way for a new one that takes over what it can hold: `record` of the change
   // says how much that was (`converted`, `lost`, `lost_keys`).
   Result<TableChange> create_column(std::int64_t table_id, const Column& column, const std::string& user,

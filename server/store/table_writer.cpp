@@ -5,6 +5,7 @@
 
 #include "core/column_value.h"
 #include "core/media_type.h"
+#include "core/term_list.h"
 #include "store/store_impl.h"
 #include "store/table_rows.h"
 
@@ -358,7 +359,13 @@ class Writer {
             .integer(records_)
             .integer(open_.next_key)
             .integer(open_.table.version));
-    return counted ? Result<void>{} : tl::unexpected(counted.error());
+    if (!counted || !term_columns(open_.table)) return counted ? Result<void>{} : tl::unexpected(counted.error());
+    // Layers that take their colours from the terms are others now (core/term_list, takes_term_colors).
+    auto colored = connection_.query(
+        "UPDATE layers SET version = version + 1 WHERE table_id = $1 AND palette ->> 'mode' = 'categorical' AND "
+        "palette -> 'points' = '[]' AND coalesce(palette ->> 'column', '') = ''",
+        Params().integer(open_.table.id));
+    return colored ? Result<void>{} : tl::unexpected(colored.error());
   }
 
   Result<void> keep_cells(const char* subject, const std::map<std::int64_t, Cells>& written,
@@ -535,6 +542,7 @@ Result<Table> insert_table(PgConnection& connection, Table table) {
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     Column column = std::move(table.columns[i]);
     column.order = static_cast<int>(i);
+    if (column.target == kOwnTable) column.target = id;
     const auto in_place = [&](Problem problem) {
       problem.field = "columns[" + std::to_string(i) + "]" + (problem.field.empty() ? "" : "." + problem.field);
       return tl::unexpected(std::move(problem));

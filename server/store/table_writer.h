@@ -1,8 +1,10 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
+#include "core/palette.h"
 #include "store/pg.h"
 #include "store/table_changes.h"
 
@@ -42,7 +44,11 @@ Result<Column> insert_column(PgConnection& connection, const OpenTable& open, Co
 // `column` with its table's other columns: free slug, known target. Gives it its place.
 Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column& column);
 
-// Makes the table with its columns, which are not in its journal: there is nothing before them.
+// Makes the table with its columns, which are not in its journal: there is nothing before them. A column whose target is kOwnTable names
+// records of the table itself.
 Result<Table> insert_table(PgConnection& connection, Table table);
+
+// The colours of the terms of a list; nothing where the table is none. 404: there is no table.
+Result<std::optional<Palette>> term_palette_of(PgConnection& connection, std::int64_t table_id);
 
 }  // namespace strata::store

@@ -60,6 +60,8 @@ export interface Table {
   project: number;
   name: string;
   slug: string;
+  /** A list of terms has `code`, a text that is required and unique, `label`, a text, and `parent`, a term of the table itself. */
+  kind: "records" | "terms";
   labels: Labels;
   description: string;
   columns: Column[];
@@ -702,8 +704,10 @@ export interface ProblemMessage {
 
 /** What is wrong with a row. */
 export interface RowProblem {
-  /** Of the text, where the row begins. */
+  /** Of the text, where the row begins; 0: it has no lines. */
   line: number;
+  /** Of a term. */
+  code?: string;
   /** As its head calls it. */
   column?: string;
   title: string;
@@ -719,6 +723,10 @@ export interface RecordsReport {
   dry_run: boolean;
   /** Of the entry in the table's journal; 0: nothing was written. */
   sequence: number;
+  /** Of SKOS: further broader terms and further labels of one language, which a list has no place for. */
+  left_out?: number;
+  /** Of terms: the list that they are in. */
+  table?: Table;
   problems: RowProblem[];
 }
 
@@ -1090,6 +1098,105 @@ export interface RecordPatch {
   /** Of the record as it was read; as If-Match. */
   version?: number;
   values: CellValues;
+}
+
+/** Term in its place in a list. */
+export interface ListedTerm {
+  /** What texels hold. */
+  key: number;
+  code: string;
+  /** Key of the term above; absent at the top. */
+  parent?: number;
+  /** What it is called in the language that was asked for, as far as that is known. */
+  name: string;
+  /** Of no language in particular. */
+  label: string;
+  /** By language, in lower case. */
+  labels: Record<string, string>;
+  depth: number;
+  /** How many terms have it as their parent. */
+  below: number;
+  /** It is what was looked for, and not only above such a term. */
+  match: boolean;
+  definition: string;
+  uri: string;
+  /** As it is drawn where a layer takes its colours from the terms: its own, or a shade of the one above. */
+  color: string;
+  pattern: string;
+}
+
+/** Terms of a list. */
+export interface TermTree {
+  terms: ListedTerm[];
+  total: number;
+}
+
+/** Term of a template. */
+export interface TemplateTerm {
+  code: string;
+  /** Code of the term above. */
+  parent?: string;
+  /** In English. */
+  label: string;
+  labels?: Labels;
+  /** Default: "". */
+  definition?: string;
+  color?: string;
+  pattern?: "solid" | "hatch" | "dots" | "outline";
+}
+
+/** Table of a template. It has either terms or columns. */
+export interface TemplateTable {
+  name: string;
+  /** How columns and layers of the template name it. */
+  slug: string;
+  labels?: Labels;
+  /** Default: "". */
+  description?: string;
+  terms?: TemplateTerm[];
+  /** Their targets are tables of the template: those before, or the table itself. */
+  columns?: ColumnCreate[];
+}
+
+/** Layer of a template. */
+export interface TemplateLayer {
+  name: string;
+  labels?: Labels;
+  /** Slug of a table of the template. */
+  table: string;
+  type: "u8" | "u16" | "u32";
+}
+
+/** Template: tables and layers that are made together. */
+export interface Template {
+  /** The name of its file. */
+  slug?: string;
+  name: string;
+  labels?: Labels;
+  /** Default: "". */
+  description?: string;
+  tables: TemplateTable[];
+  layers: TemplateLayer[];
+}
+
+/** Templates. */
+export interface TemplateList {
+  templates: Template[];
+  total: number;
+}
+
+/** Use of a template. */
+export interface TemplateUse {
+  /** Id or slug of a model of the project: its layers are made there. Absent: tables only. */
+  model?: string;
+  /** What things are called, as far as the template has it; English otherwise. */
+  language?: string;
+}
+
+/** What was made of a template. */
+export interface TemplateMade {
+  tables: Table[];
+  layers: Layer[];
 }
 
 /** What undo or redo did to a table. */

@@ -283,6 +283,44 @@ void read(const nlohmann::json& json, JobState& value) {
 
 nlohmann::json to_json(const JobState& value) { return name(value); }
 
+std::string_view name(TemplateTermPattern value) {
+  switch (value) {
+    case TemplateTermPattern::solid: return "solid";
+    case TemplateTermPattern::hatch: return "hatch";
+    case TemplateTermPattern::dots: return "dots";
+    case TemplateTermPattern::outline: return "outline";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, TemplateTermPattern& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "solid") value = TemplateTermPattern::solid;
+  if (text == "hatch") value = TemplateTermPattern::hatch;
+  if (text == "dots") value = TemplateTermPattern::dots;
+  if (text == "outline") value = TemplateTermPattern::outline;
+}
+
+nlohmann::json to_json(const TemplateTermPattern& value) { return name(value); }
+
+std::string_view name(TemplateLayerType value) {
+  switch (value) {
+    case TemplateLayerType::u8: return "u8";
+    case TemplateLayerType::u16: return "u16";
+    case TemplateLayerType::u32: return "u32";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, TemplateLayerType& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "u8") value = TemplateLayerType::u8;
+  if (text == "u16") value = TemplateLayerType::u16;
+  if (text == "u32") value = TemplateLayerType::u32;
+}
+
+nlohmann::json to_json(const TemplateLayerType& value) { return name(value); }
+
 std::string_view name(ShapeRecipeKind value) {
   switch (value) {
     case ShapeRecipeKind::height: return "height";
@@ -1515,6 +1553,96 @@ nlohmann::json to_json(const RecordPatch& value) {
   nlohmann::json json = nlohmann::json::object();
   write_optional_member(json, "version", value.version);
   write_member(json, "values", value.values);
+  return json;
+}
+
+void read(const nlohmann::json& json, TemplateTerm& value) {
+  read_member(json, "code", value.code);
+  read_optional_member(json, "parent", value.parent);
+  read_member(json, "label", value.label);
+  read_optional_member(json, "labels", value.labels);
+  read_optional_member(json, "definition", value.definition);
+  read_optional_member(json, "color", value.color);
+  read_optional_member(json, "pattern", value.pattern);
+}
+
+nlohmann::json to_json(const TemplateTerm& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "code", value.code);
+  write_optional_member(json, "parent", value.parent);
+  write_member(json, "label", value.label);
+  write_optional_member(json, "labels", value.labels);
+  write_member(json, "definition", value.definition);
+  write_optional_member(json, "color", value.color);
+  write_optional_member(json, "pattern", value.pattern);
+  return json;
+}
+
+void read(const nlohmann::json& json, TemplateTable& value) {
+  read_member(json, "name", value.name);
+  read_member(json, "slug", value.slug);
+  read_optional_member(json, "labels", value.labels);
+  read_optional_member(json, "description", value.description);
+  read_optional_member(json, "terms", value.terms);
+  read_optional_member(json, "columns", value.columns);
+}
+
+nlohmann::json to_json(const TemplateTable& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_member(json, "slug", value.slug);
+  write_optional_member(json, "labels", value.labels);
+  write_member(json, "description", value.description);
+  write_optional_member(json, "terms", value.terms);
+  write_optional_member(json, "columns", value.columns);
+  return json;
+}
+
+void read(const nlohmann::json& json, TemplateLayer& value) {
+  read_member(json, "name", value.name);
+  read_optional_member(json, "labels", value.labels);
+  read_member(json, "table", value.table);
+  read_member(json, "type", value.type);
+}
+
+nlohmann::json to_json(const TemplateLayer& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_optional_member(json, "labels", value.labels);
+  write_member(json, "table", value.table);
+  write_member(json, "type", value.type);
+  return json;
+}
+
+void read(const nlohmann::json& json, Template& value) {
+  read_optional_member(json, "slug", value.slug);
+  read_member(json, "name", value.name);
+  read_optional_member(json, "labels", value.labels);
+  read_optional_member(json, "description", value.description);
+  read_member(json, "tables", value.tables);
+  read_member(json, "layers", value.layers);
+}
+
+nlohmann::json to_json(const Template& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "slug", value.slug);
+  write_member(json, "name", value.name);
+  write_optional_member(json, "labels", value.labels);
+  write_member(json, "description", value.description);
+  write_member(json, "tables", value.tables);
+  write_member(json, "layers", value.layers);
+  return json;
+}
+
+void read(const nlohmann::json& json, TemplateUse& value) {
+  read_optional_member(json, "model", value.model);
+  read_optional_member(json, "language", value.language);
+}
+
+nlohmann::json to_json(const TemplateUse& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "model", value.model);
+  write_optional_member(json, "language", value.language);
   return json;
 }
 

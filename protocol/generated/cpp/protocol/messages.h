@@ -142,6 +142,15 @@ enum class Schema {
   RecordPatch,
   RowProblem,
   RecordsReport,
+  ListedTerm,
+  TermTree,
+  TemplateTerm,
+  TemplateTable,
+  TemplateLayer,
+  Template,
+  TemplateList,
+  TemplateUse,
+  TemplateMade,
   TableChanged,
   TableCellChange,
   TableEdit,
@@ -199,7 +208,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 173;
+constexpr int kSchemaCount = 182;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1185,6 +1194,86 @@ void read(const nlohmann::json& json, RecordPatch& value);
 nlohmann::json to_json(const RecordPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordPatch> = Schema::RecordPatch;
+
+enum class TemplateTermPattern { solid, hatch, dots, outline };
+std::string_view name(TemplateTermPattern value);
+void read(const nlohmann::json& json, TemplateTermPattern& value);
+nlohmann::json to_json(const TemplateTermPattern& value);
+
+// Term of a template.
+struct TemplateTerm {
+  std::string code;
+  std::optional<std::string> parent;  // Code of the term above.
+  std::string label;  // In English.
+  std::optional<Labels> labels;
+  std::string definition;
+  std::optional<std::string> color;
+  std::optional<TemplateTermPattern> pattern;
+  bool operator==(const TemplateTerm&) const = default;
+};
+void read(const nlohmann::json& json, TemplateTerm& value);
+nlohmann::json to_json(const TemplateTerm& value);
+template <>
+inline constexpr Schema kSchemaOf<TemplateTerm> = Schema::TemplateTerm;
+
+// Table of a template. It has either terms or columns.
+struct TemplateTable {
+  std::string name;
+  std::string slug;  // How columns and layers of the template name it.
+  std::optional<Labels> labels;
+  std::string description;
+  std::optional<std::vector<TemplateTerm>> terms;
+  std::optional<std::vector<ColumnCreate>> columns;  // Their targets are tables of the template: those before, or the table itself.
+  bool operator==(const TemplateTable&) const = default;
+};
+void read(const nlohmann::json& json, TemplateTable& value);
+nlohmann::json to_json(const TemplateTable& value);
+template <>
+inline constexpr Schema kSchemaOf<TemplateTable> = Schema::TemplateTable;
+
+enum class TemplateLayerType { u8, u16, u32 };
+std::string_view name(TemplateLayerType value);
+void read(const nlohmann::json& json, TemplateLayerType& value);
+nlohmann::json to_json(const TemplateLayerType& value);
+
+// Layer of a template.
+struct TemplateLayer {
+  std::string name;
+  std::optional<Labels> labels;
+  std::string table;  // Slug of a table of the template.
+  TemplateLayerType type{};
+  bool operator==(const TemplateLayer&) const = default;
+};
+void read(const nlohmann::json& json, TemplateLayer& value);
+nlohmann::json to_json(const TemplateLayer& value);
+template <>
+inline constexpr Schema kSchemaOf<TemplateLayer> = Schema::TemplateLayer;
+
+// Template: tables and layers that are made together.
+struct Template {
+  std::optional<std::string> slug;  // The name of its file.
+  std::string name;
+  std::optional<Labels> labels;
+  std::string description;
+  std::vector<TemplateTable> tables;
+  std::vector<TemplateLayer> layers;
+  bool operator==(const Template&) const = default;
+};
+void read(const nlohmann::json& json, Template& value);
+nlohmann::json to_json(const Template& value);
+template <>
+inline constexpr Schema kSchemaOf<Template> = Schema::Template;
+
+// Use of a template.
+struct TemplateUse {
+  std::optional<std::string> model;  // Id or slug of a model of the project: its layers are made there. Absent: tables only.
+  std::optional<std::string> language;  // What things are called, as far as the template has it; English otherwise.
+  bool operator==(const TemplateUse&) const = default;
+};
+void read(const nlohmann::json& json, TemplateUse& value);
+nlohmann::json to_json(const TemplateUse& value);
+template <>
+inline constexpr Schema kSchemaOf<TemplateUse> = Schema::TemplateUse;
 
 enum class ShapeRecipeKind { height, slope, azimuth, mean_curvature, gaussian_curvature, max_curvature, min_curvature, roughness, ambient_occlusion, boundary_distance, model_distance, vertex_property };
 std::string_view name(ShapeRecipeKind value);

@@ -1,0 +1,177 @@
+#include <algorithm>
+
+#include "core/log.h"
+#include "core/search_text.h"
+#include "core/term_list.h"
+#include "net/answer_book.h"
+#include "net/layer_jobs.h"
+#include "net/new_layers.h"
+#include "net/routes.h"
+#include "net/table_events.h"
+#include "net/template_shelf.h"
+
+namespace strata::net {
+namespace {
+
+Result<Response> list_templates(const RouteContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  const auto& templates = context.templates.all();
+  nlohmann::json list = nlohmann::json::array();
+  const int total = static_cast<int>(templates.size());
+  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json(templates[i]));
+  Response response = json_response({{"templates", std::move(list)}, {"total", total}});
+  add_page_links(response, request, *page, total);
+  return response;
+}
+
+Response answer_with(const std::vector<Table>& tables, const std::vector<Layer>& layers) {
+  nlohmann::json made{{"tables", nlohmann::json::array()}, {"layers", nlohmann::json::array()}};
+  for (const Table& table : tables) made["tables"].push_back(to_json(table));
+  for (const Layer& layer : layers) made["layers"].push_back(to_json(layer));
+  return json_response(made, 201);
+}
+
+// The layers as they are to be made, of tables by their places in the template.
+struct WishedLayer {
+  Layer layer;
+  std::size_t table = 0;
+};
+Result<std::vector<WishedLayer>> wished_layers(const protocol::Template& of, const room::Room& room,
+                                               const std::optional<std::string>& language) {
+  const Model model = room.model();
+  const auto others = room.layers();
+  int order = order_on_top(others);
+  std::vector<WishedLayer> wished;
+  for (const protocol::TemplateLayer& told : of.layers) {
+    WishedLayer next;
+    next.layer.model_id = model.id;
+    next.layer.name = name_in(told.name, told.labels, language);
+    const std::string plain = search_text(next.layer.name);
+    for (const Layer& other : others)
+      if (search_text(other.name) == plain)
+        return fail(409, "Name taken",
+                    "The model has a layer \"" + other.name +
+                        "\" already. Rename or delete it first, or use the template without a model.",
+                    "model");
+    auto slug = slug_of({}, told.name);
+    if (!slug) return tl::unexpected(slug.error());
+    next.layer.slug = *slug;
+    next.layer.kind = LayerKind::database;
+    next.layer.type = *parse_value_type(protocol::name(told.type));
+    next.layer.resolution = std::max(model.default_resolution, model.atlas.lowest_resolution);
+    next.layer.order = order++;
+    next.table = static_cast<std::size_t>(
+        std::find_if(of.tables.begin(), of.tables.end(), [&](const auto& table) { return table.slug == told.table; }) -
+        of.tables.begin());
+    next.layer.palette = of.tables.at(next.table).terms ? terms_palette({}) : default_palette(next.layer.type, true);
+    wished.push_back(std::move(next));
+  }
+  return wished;
+}
+
+// Newest first, since columns of later tables name earlier ones.
+void take_back(const RouteContext& context, const std::vector<Table>& tables) {
+  for (auto table = tables.rbegin(); table != tables.rend(); ++table)
+    if (auto gone = context.store.delete_table(table->id); !gone && gone.error().status != 404)
+      log::warning("table " + std::to_string(table->id) +
+                   " of a template that failed could not be removed: " + gone.error().detail);
+}
+
+Result<std::vector<Layer>> make_layers(const RouteContext& context, const Request& request,
+                                       const std::shared_ptr<room::Room>& room, std::vector<WishedLayer> wished,
+                                       const std::vector<Table>& tables) {
+  NewLayers layers(room, context.metrics, request.user());
+  std::vector<Layer> made;
+  const auto refuse = [&](const Problem& problem) {
+    layers.take_back();
+    return tl::unexpected(problem);
+  };
+  for (WishedLayer& next : wished) {
+    next.layer.table = tables.at(next.table).id;
+    auto created = layers.add(std::move(next.layer), [](const Layer& layer) -> Result<Layer> { return layer; });
+    if (!created) return refuse(created.error());
+    made.push_back(std::move(*created));
+  }
+  const auto now = [&](const Layer& last) {
+    for (Layer& layer : made) {
+      if (layer.id == last.id)
+        layer = last;
+      else if (auto shown = room->layer(std::to_string(layer.id)))
+        layer = std::move(*shown);
+    }
+    return answer_with(tables, made);
+  };
+  if (auto shown = layers.show(first_answer<Layer>(request, now)); !shown) return refuse(shown.error());
+  for (Layer& layer : made)
+    if (auto shown = room->layer(std::to_string(layer.id))) layer = std::move(*shown);
+  return made;
+}
+
+Result<Response> use_template(const RouteContext& context, const Request& request) {
+  auto asked = body_of<protocol::TemplateUse>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto project = context.store.project(request.param("project"));
+  if (!project) return tl::unexpected(project.error());
+  const protocol::Template* of = context.templates.find(request.param("template"));
+  if (!of) return fail(404, "Not found", "There is no template `" + request.param("template").substr(0, 100) + "`.");
+  auto tables = new_tables(*of, project->id, asked->language);
+  if (!tables) return tl::unexpected(tables.error());
+  std::shared_ptr<room::Room> room;
+  std::vector<WishedLayer> wished;
+  if (asked->model) {
+    auto opened = context.rooms.open(*asked->model);
+    if (!opened && opened.error().status != 404) return tl::unexpected(opened.error());
+    if (!opened || (*opened)->model().project_id != project->id)
+      return fail(422, "No such model", "The project has no model `" + *asked->model + "`.", "model");
+    room = std::move(*opened);
+    auto layers = wished_layers(*of, *room, asked->language);
+    if (!layers) return tl::unexpected(layers.error());
+    wished = std::move(*layers);
+  }
+  // The answer is kept with what is made last.
+  const auto tables_alone = [](const std::vector<store::TableChange>& changes) {
+    std::vector<Table> all;
+    for (const auto& change : changes) all.push_back(change.table);
+    return answer_with(all, {});
+  };
+  auto changes =
+      context.store.create_tables(*tables, false, request.user(), "template",
+                                  wished.empty() ? first_answer<std::vector<store::TableChange>>(request, tables_alone)
+                                                 : store::FirstAnswer<std::vector<store::TableChange>>{});
+  if (!changes) return tl::unexpected(changes.error());
+  std::vector<Table> made;
+  for (const auto& change : *changes) {
+    if (!change.problems.empty()) return tl::unexpected(change.problems.front().problem);
+    made.push_back(change.table);
+  }
+  std::vector<Layer> layers;
+  if (!wished.empty()) {
+    auto added = make_layers(context, request, room, std::move(wished), made);
+    if (!added) {
+      take_back(context, made);
+      return tl::unexpected(added.error());
+    }
+    layers = std::move(*added);
+  }
+  for (const Table& table : made) tell_table(context, protocol::TableEventEvent::created, table, request.user());
+  return answer_with(made, layers);
+}
+
+}  // namespace
+
+void add_template_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/templates",
+              .handler = answering([&context](const Request& request) { return list_templates(context, request); }),
+              .query = {"limit", "offset"}});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/projects/{project}/templates/{template}",
+              .handler = answering([&context](const Request& request) { return use_template(context, request); }),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true});
+}
+
+}  // namespace strata::net
