@@ -56,6 +56,7 @@ void add_query_routes(Router& router, const RouteContext& context);
 void add_statistics_routes(Router& router, const RouteContext& context);
 void add_quantity_routes(Router& router, const RouteContext& context);
 void add_extent_routes(Router& router, const RouteContext& context);
+void add_vertex_routes(Router& router, const RouteContext& context);
 void add_frame_routes(Router& router, const RouteContext& context);
 void add_texel_routes(Router& router, const RouteContext& context);
 void add_shape_routes(Router& router, const RouteContext& context);

@@ -1,10 +1,11 @@
 #include "net/wire.h"
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "core/csv.h"
+#include "mesh/parallel.h"
 #include "query/expression_parser.h"
 
 namespace strata::net {
@@ -382,12 +383,14 @@ void append_point(const query::SurfacePoint& point, const std::vector<std::strin
   text += "true";
   for (double value :
        {point.position.x, point.position.y, point.position.z, double(point.normal.x), double(point.normal.y),
-        double(point.normal.z), point.distance, double(point.uv.x), double(point.uv.y)})
-    text += "," + number(value);
+        double(point.normal.z), point.distance, double(point.uv.x), double(point.uv.y)}) {
+    text += ',';
+    append_csv_number(text, value, ',');
+  }
   for (const auto& layer : layers) {
-    text += ",";
+    text += ',';
     for (const auto& value : point.values)
-      if (value.layer == layer && value.valid) text += number(value.value);
+      if (value.layer == layer && value.valid) append_csv_number(text, value.value, ',');
   }
   text += "\r\n";
 }
@@ -395,8 +398,15 @@ void append_point(const query::SurfacePoint& point, const std::vector<std::strin
 }  // namespace
 
 std::string points_csv(const std::vector<query::SurfacePoint>& points, const std::vector<std::string>& layers) {
+  constexpr std::size_t kPointsAtOnce = 4096;
+  std::vector<std::string> parts((points.size() + kPointsAtOnce - 1) / kPointsAtOnce);
+  mesh::parallel_for(mesh::background_threads(), static_cast<int>(parts.size()), [&](int number) {
+    const auto part = static_cast<std::size_t>(number);
+    for (std::size_t i = part * kPointsAtOnce; i < std::min(points.size(), (part + 1) * kPointsAtOnce); ++i)
+      append_point(points[i], layers, parts[part]);
+  });
   std::string text = point_header(layers);
-  for (const auto& point : points) append_point(point, layers, text);
+  for (const std::string& part : parts) text += part;
   return text;
 }
 

@@ -7,6 +7,7 @@
 #include "mesh/slot_bits.h"
 #include "query/expression_evaluator.h"
 #include "query/flood.h"
+#include "query/nearest_points.h"
 #include "query/texel_values.h"
 #include "room/expression_binding.h"
 #include "room/open_room.h"
@@ -75,16 +76,7 @@ Result<std::vector<query::SurfacePoint>> OpenRoom::positions(const std::vector<g
   touch();
   auto views = layer_views(layers, at);
   if (!views) return tl::unexpected(views.error());
-  const auto tree = surface_->tree();
-  constexpr std::size_t kPointsAtOnce = 1024;
-  std::vector<query::SurfacePoint> points(world.size());
-  mesh::parallel_for(mesh::background_threads(), static_cast<int>((world.size() + kPointsAtOnce - 1) / kPointsAtOnce),
-                     [&](int part) {
-                       const std::size_t first = static_cast<std::size_t>(part) * kPointsAtOnce;
-                       for (std::size_t i = first; i < std::min(world.size(), first + kPointsAtOnce); ++i)
-                         points[i] = query::nearest_point(*tree, geometry_->origin, world[i], *views);
-                     });
-  return points;
+  return query::nearest_points(*surface_->tree(), geometry_->origin, world, *views, mesh::background_threads());
 }
 
 Result<query::SurfacePoint> OpenRoom::pick(const Camera& camera, double x, double y,

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""What a project gives to reports, spreadsheets and other programs: quantities, texels as lines, workbooks."""
+"""What a project gives to reports, spreadsheets and other programs: quantities, texels as lines, workbooks, vertices."""
 import csv
 import datetime
 import io
 import math
 import os
 import socket
+import struct
 import sys
 import urllib.parse
 
@@ -253,6 +254,54 @@ def check_texel_lines(server, pieces):
     assert b"chunked" not in head and body == first, head
 
 
+def read_ply(content):
+    """What programs see: vertices as dictionaries, faces as triples."""
+    head, _, body = content.partition(b"end_header\n")
+    lines = head.decode("ascii").split("\n")
+    assert lines[0] == "ply" and lines[1] == "format binary_little_endian 1.0"
+    codes = {"float": "f", "double": "d", "uchar": "B", "char": "b", "ushort": "H", "short": "h", "uint": "I", "int": "i"}
+    counts = {words[1]: int(words[2]) for words in (line.split() for line in lines) if words[:1] == ["element"]}
+    properties = [line.split()[1:] for line in lines if line.startswith("property") and "list" not in line]
+    vertex = struct.Struct("<" + "".join(codes[kind] for kind, _ in properties))
+    size = vertex.size * counts["vertex"]
+    vertices = [dict(zip([name for _, name in properties], values)) for values in vertex.iter_unpack(body[:size])]
+    faces = list(struct.iter_unpack("<B3I", body[size:]))
+    assert len(faces) == counts["face"] and all(face[0] == 3 and max(face[1:]) < len(vertices) for face in faces)
+    return vertices, [face[1:] for face in faces], [name for _, name in properties]
+
+
+def check_vertices(server):
+    answer = server.get(M + "/vertices.ply?layers=moisture,salt,pieces")
+    assert answer.headers["Content-Disposition"].endswith("sheet.ply") and int(answer.headers["Content-Length"]) == len(answer.body)
+    vertices, faces, names = read_ply(answer.body)
+    model = server.get(M).json()
+    assert (len(vertices), len(faces)) == (model["vertices"], model["triangles"]), model
+    assert names == ["x", "y", "z", "moisture", "moisture_valid", "salt", "salt_valid", "pieces", "pieces_valid"], names
+    asked = {"points": [[v["x"], v["y"], v["z"]] for v in vertices], "layers": ["moisture", "salt", "pieces"]}
+    points = server.ok("POST", M + "/positions", asked).json()["positions"]
+    painted = 0
+    for vertex, point in zip(vertices, points):
+        assert point["distance"] < 1e-4, point
+        for layer in ("moisture", "salt", "pieces"):
+            value = point["values"][layer]
+            assert vertex[layer + "_valid"] == value["valid"], (vertex, value)
+            assert vertex[layer] == (value["value"] if value["valid"] else 0), (vertex, value)
+            painted += value["valid"]
+    assert painted > 10
+    # The project reads its own file, and finds the layers' values as numbers of the vertices.
+    again = server.import_model(answer.body, "again.ply", name="Again", unit="mm")
+    assert (again["vertices"], again["triangles"]) == (model["vertices"], model["triangles"])
+    near(again["area_m2"], model["area_m2"], 1e-6)
+    nothing, _, names = read_ply(server.get(M + "/vertices.ply?layers=moisture&at=0").body)
+    assert names[3:] == ["moisture", "moisture_valid"] and not any(vertex["moisture_valid"] for vertex in nothing)
+    taken = new_layer(server, {"name": "red", "type": "i16"})
+    assert read_ply(server.get(M + "/vertices.ply?layers=red").body)[2][3:] == ["layer_red", "layer_red_valid"]
+    server.ok("DELETE", taken)
+    for query, status, field in (("layers=nothing", 404, "layers"), ("layers=salt,salt", 422, "layers"), ("at=99999", 422, "at")):
+        answer = server.get(f"{M}/vertices.ply?{query}")
+        assert (answer.status, answer.json()["field"]) == (status, field), (query, answer)
+
+
 def main():
     with StrataServer() as server:
         server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
@@ -260,6 +309,7 @@ def main():
         check_quantities_of_numbers(server)
         check_workbooks(server, pieces)
         check_texel_lines(server, pieces)
+        check_vertices(server)
         check_quantities_of_a_table(server, pieces)
         assert server.stop() == 0
         server.assert_clean_log()
