@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "cli/install_dirs.h"
+#include "store/sql_readers.h"
 
 namespace strata::cli {
 
@@ -26,7 +27,7 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) 
   store::StoreOptions store_options;
   store_options.dsn = options.database;
   if (options.database.empty()) {
-    auto cluster = store::Cluster::start(std::filesystem::absolute(options.data));
+    auto cluster = store::Cluster::start(std::filesystem::absolute(options.data), options.sql);
     if (!cluster) return tl::unexpected(cluster.error());
     open->cluster = std::move(*cluster);
     store_options.dsn = open->cluster->dsn();
@@ -34,6 +35,9 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) 
   auto store = store::Store::open(store_options, install_dirs().migrations);
   if (!store) return tl::unexpected(store.error());
   open->store = std::move(*store);
+  if (options.sql)
+    if (auto admitted = store::admit_readers(store_options.dsn, options.data / "sql-password"); !admitted)
+      return tl::unexpected(admitted.error());
   return open;
 }
 

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "store/cluster.h"
@@ -14,6 +15,7 @@ namespace strata::cli {
 struct DataOptions {
   std::filesystem::path data = "data";
   std::string database;
+  std::optional<store::Cluster::SqlListen> sql{};  // of `serve`
 };
 void add_data_options(CLI::App& command, DataOptions& options);
 

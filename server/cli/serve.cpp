@@ -19,7 +19,7 @@ namespace {
 
 struct ServeOptions {
   DataOptions data;
-  std::string listen = "127.0.0.1:8080";
+  std::string listen = "127.0.0.1:8080", sql_listen;
   std::vector<std::string> origins;
   std::uint64_t gpu_memory = 0, memory = 0;
   bool debug = false;
@@ -30,10 +30,12 @@ struct Address {
   std::uint16_t port = 0;
 };
 
-Result<Address> parse_listen(const std::string& text) {
+bool is_loopback(const std::string& host) { return host == "127.0.0.1" || host == "::1" || host == "localhost"; }
+
+Result<Address> parse_address(const std::string& text, const std::string& option) {
   const auto colon = text.rfind(':');
   if (colon == std::string::npos)
-    return fail(400, "Listen address", "Give HOST:PORT, for example 127.0.0.1:8080.", "--listen");
+    return fail(400, "Listen address", "Give HOST:PORT, for example 127.0.0.1:8080.", option);
   Address address{text.substr(0, colon), 0};
   if (address.host.size() > 2 && address.host.front() == '[')
     address.host = address.host.substr(1, address.host.size() - 2);
@@ -41,10 +43,15 @@ Result<Address> parse_listen(const std::string& text) {
   char* end = nullptr;
   const long number = std::strtol(port.c_str(), &end, 10);
   if (port.empty() || *end != '\0' || number < 0 || number > 65535)
-    return fail(400, "Listen address", "The port is a number from 0 (any free one) to 65535.", "--listen");
+    return fail(400, "Listen address", "The port is a number from 0 (any free one) to 65535.", option);
   address.port = static_cast<std::uint16_t>(number);
+  return address;
+}
+
+Result<Address> parse_listen(const std::string& text) {
+  auto address = parse_address(text, "--listen");
   // Accounts are what would protect a server that others can reach.
-  if (address.host != "127.0.0.1" && address.host != "::1" && address.host != "localhost")
+  if (address && !is_loopback(address->host))
     return fail(
         403, "Listen address not allowed",
         "This server has no accounts, so it listens on loopback only (127.0.0.1). Reach it from elsewhere through an SSH "
@@ -53,9 +60,25 @@ Result<Address> parse_listen(const std::string& text) {
   return address;
 }
 
+Result<store::Cluster::SqlListen> parse_sql_listen(const std::string& text) {
+  auto address = parse_address(text, "--sql-listen");
+  if (!address) return tl::unexpected(address.error());
+  if (address->port == 0)
+    return fail(400, "Listen address", "The database needs a port of its own: give one from 1 to 65535.",
+                "--sql-listen");
+  if (!is_loopback(address->host))
+    return fail(
+        403, "Listen address not allowed",
+        "Passwords and answers would travel unencrypted, so SQL is served on loopback only (127.0.0.1). Reach it from "
+        "elsewhere through an SSH tunnel: ssh -L 5433:127.0.0.1:5433 HOST.",
+        "--sql-listen");
+  return store::Cluster::SqlListen{address->host, address->port};
+}
+
 // For CLI11: what cannot be an address is wrong usage.
-std::string check_listen(const std::string& text) {
-  const auto address = parse_listen(text);
+template <class Parse>
+std::string usage_of(Parse parse, const std::string& text) {
+  const auto address = parse(text);
   return address || address.error().status != 400 ? std::string() : address.error().detail;
 }
 
@@ -82,9 +105,18 @@ void wait_for_end(const sigset_t& ending) {
   }
 }
 
-int run(const ServeOptions& options) {
+int run(ServeOptions options) {
   auto address = parse_listen(options.listen);
   if (!address) return report(address.error());
+  if (!options.sql_listen.empty()) {
+    auto sql = parse_sql_listen(options.sql_listen);
+    if (!sql) return report(sql.error());
+    if (!options.data.database.empty())
+      return report({400, "Not a private database",
+                     "With --database, let analysts into that PostgreSQL itself: docs/sql.md has the statements.",
+                     "--sql-listen"});
+    options.data.sql = std::move(*sql);
+  }
   const sigset_t ending = block_signals();
 
   const InstallDirs dirs = install_dirs();
@@ -127,6 +159,10 @@ int run(const ServeOptions& options) {
   std::cout << "listening on " << url << std::endl;
   auto link = store.create_token(store::Store::TokenKind::owner_link, "owner", "owner", std::chrono::hours(24));
   if (!link) return report(link.error());
+  if (options.data.sql)
+    std::cout << "SQL on " << options.data.sql->host << ":" << options.data.sql->port
+              << ": database strata, user strata_reader, password in " << (options.data.data / "sql-password").string()
+              << std::endl;
   std::cout << "owner link: " << url << "/login?link=" << *link << std::endl;
 
   if ((*database)->cluster) (*database)->cluster->watch();
@@ -145,8 +181,11 @@ Command add_serve(CLI::App& app) {
   add_data_options(*command, options->data);
   command->add_option("--listen", options->listen, "HOST:PORT; port 0 takes a free one")
       ->envname("STRATA_LISTEN")
-      ->check(check_listen)
+      ->check([](const std::string& text) { return usage_of(parse_listen, text); })
       ->capture_default_str();
+  command->add_option("--sql-listen", options->sql_listen, "HOST:PORT where analysts read with SQL (docs/sql.md)")
+      ->envname("STRATA_SQL_LISTEN")
+      ->check([](const std::string& text) { return usage_of(parse_sql_listen, text); });
   command->add_option("--origin", options->origins, "Further web origins that may connect (repeat)")
       ->envname("STRATA_ORIGIN");
   command

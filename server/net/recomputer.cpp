@@ -45,6 +45,12 @@ void Recomputer::run() {
         if (is_stopping()) return;
         recompute(layer);
       }
+      const auto uncounted = context_.store.layers_to_sum();
+      if (!uncounted) continue;
+      for (const Layer& layer : *uncounted) {
+        if (is_stopping()) return;
+        attempt(layer, "counted", [&](const std::shared_ptr<room::Room>& room) { return room->sum_layer(layer.id); });
+      }
     } catch (const std::exception& error) {
       log::error(std::string("computing layers failed: ") + error.what());
     }
@@ -62,13 +68,14 @@ bool Recomputer::is_quiet(const room::Room& room, std::int64_t layer_id) {
   return true;
 }
 
-void Recomputer::recompute(const Layer& layer) {
+void Recomputer::attempt(const Layer& layer, const char* what,
+                         const std::function<Result<void>(const std::shared_ptr<room::Room>&)>& work) {
   const auto now = std::chrono::steady_clock::now();
   const auto failed = failures_.find(layer.id);
   if (failed != failures_.end() && now < failed->second.again) return;
   auto room = context_.rooms.open(std::to_string(layer.model_id));
   if (room && !is_quiet(**room, layer.id)) return;
-  Result<Layer> done = room ? compute_layer(context_, *room, layer, kUser, progress_) : tl::unexpected(room.error());
+  const Result<void> done = room ? work(*room) : tl::unexpected(room.error());
   if (done) {
     failures_.erase(layer.id);
     return;
@@ -76,7 +83,15 @@ void Recomputer::recompute(const Layer& layer) {
   const auto pause = failed == failures_.end() ? kFirstPause : std::min(kLongestPause, 2 * failed->second.pause);
   failures_[layer.id] = {now + pause, pause};
   if (failed == failures_.end() && !is_stopping())
-    log::warning("layer " + std::to_string(layer.id) + " could not be computed: " + done.error().detail);
+    log::warning("layer " + std::to_string(layer.id) + " could not be " + what + ": " + done.error().detail);
+}
+
+void Recomputer::recompute(const Layer& layer) {
+  attempt(layer, "computed", [&](const std::shared_ptr<room::Room>& room) -> Result<void> {
+    auto done = compute_layer(context_, room, layer, kUser, progress_);
+    if (!done) return tl::unexpected(done.error());
+    return {};
+  });
 }
 
 }  // namespace strata::net

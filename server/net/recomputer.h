@@ -1,6 +1,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <thread>
@@ -13,6 +14,7 @@ namespace strata::net {
 // Computes automatic layers again, one after the other, after something that they read has changed: an edit, a record, a layer
 // that is computed itself. Edits of the model wait meanwhile, so it lets a second pass in which nobody paints, but ten at most.
 // Asks the database once a second, so that nothing is forgotten over a restart. What fails is tried again, less and less often.
+// Layers whose surface was never counted for the database (Store::layers_to_sum), as those of older versions, are counted likewise.
 class Recomputer {
  public:
   explicit Recomputer(const RouteContext& context);  // which must outlive it
@@ -30,6 +32,9 @@ class Recomputer {
   };
   void run();
   bool is_quiet(const room::Room& room, std::int64_t layer_id);
+  // `work` opens the room and does what is behind; what fails is told once.
+  void attempt(const Layer& layer, const char* what,
+               const std::function<Result<void>(const std::shared_ptr<room::Room>&)>& work);
   void recompute(const Layer& layer);
   bool is_stopping();
 

@@ -365,6 +365,11 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
     }
     entry.revisions.push_back(std::move(revision));
   }
+  if (map) {
+    std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>> after;
+    for (const TileChange& change : computed.changes) after.emplace_back(change.address, change.after);
+    entry.sum_tiles = [map, about = layer.layer, after = std::move(after)] { return sum_tiles(about, *map, after); };
+  }
   const std::int64_t sequence_before = layer.layer.sequence;
   layer.mirror->put(tiles, sequence);
   host_->set_sequence(layer, sequence);

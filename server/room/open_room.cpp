@@ -9,6 +9,7 @@
 #include "core/slug.h"
 #include "room/expression_binding.h"
 #include "room/gpu_problem.h"
+#include "room/tile_changes.h"
 
 namespace strata::room {
 namespace {
@@ -560,6 +561,18 @@ Result<std::map<std::int64_t, query::KeyArea>> OpenRoom::key_areas(const std::st
   if (!map) return tl::unexpected(map.error());
   return query::key_areas({found->layer, found->mirror->snapshot()}, **map, geometry_->origin, model().metres(),
                           found->sums.get());
+}
+
+Result<void> OpenRoom::sum_layer(std::int64_t layer_id) {
+  touch();
+  const auto found = state(std::to_string(layer_id));
+  if (!found) return tl::unexpected(found.error());
+  const auto map = surface_map(found->layer.resolution);
+  if (!map) return tl::unexpected(map.error());
+  return exclusively<void>([this, layer = found->layer, mirror = found->mirror, map = *map]() -> Result<void> {
+    const auto snapshot = mirror->snapshot();
+    return parts_.store.keep_sums(layer.id, sum_tiles(layer, *map, {snapshot.tiles.begin(), snapshot.tiles.end()}));
+  });
 }
 
 }  // namespace strata::room

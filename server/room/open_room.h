@@ -72,6 +72,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
                        double tolerance) override;
   Result<TileMap> project(const Layer& layer, const glm::dvec3& direction, const ValueAt& value_at) override;
   Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer) override;
+  Result<void> sum_layer(std::int64_t layer_id) override;
   Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) override;
   std::shared_ptr<const mesh::Geometry> geometry() const override { return geometry_; }
   std::shared_ptr<const mesh::SearchTree> search_tree() override { return surface_->tree(); }

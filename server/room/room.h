@@ -214,6 +214,8 @@ class Room {
   virtual Result<TileMap> project(const Layer& layer, const glm::dvec3& direction, const ValueAt& value_at) = 0;
   virtual Result<std::map<std::int64_t, query::KeyArea>> key_areas(
       const std::string& layer) = 0;  // of a database layer
+  // Counts all tiles of a layer for the journal's sums (Store::keep_sums). Edits wait meanwhile.
+  virtual Result<void> sum_layer(std::int64_t layer_id) = 0;
   virtual Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) = 0;
   // What the model is, for work that computes on the whole surface. The tree is built and the map baked when first asked for.
   virtual std::shared_ptr<const mesh::Geometry> geometry() const = 0;

@@ -5,6 +5,7 @@
 
 #include "core/mask_texels.h"
 #include "mesh/slot_bits.h"
+#include "query/surface_keys.h"
 
 namespace strata::room {
 namespace {
@@ -134,6 +135,22 @@ std::vector<TileAddress> differing_tiles(const TileMap& a, const TileMap& b) {
   for (const auto& [address, tile] : b)
     if (!a.contains(address)) addresses.push_back(address);
   return addresses;
+}
+
+std::vector<store::TileKeys> sum_tiles(
+    const Layer& layer, const mesh::SurfaceMap& map,
+    const std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>>& tiles) {
+  const bool apart = query::tells_keys_apart(layer);
+  std::vector<store::TileKeys> out;
+  for (const auto& [address, tile] : tiles) {
+    store::TileKeys& of_tile = out.emplace_back(store::TileKeys{address, {}});
+    for (const auto& key : query::surface_keys(*tile, address, layer, map)) {
+      const auto value = static_cast<std::int64_t>(decode_value(layer.type, key.bits));
+      of_tile.keys.push_back({apart ? std::optional(value) : std::nullopt, key.texels, key.area, key.weighted_position,
+                              key.lowest, key.highest});
+    }
+  }
+  return out;
 }
 
 }  // namespace strata::room

@@ -6,9 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "core/layer.h"
 #include "core/tile_mirror.h"
 #include "mesh/surface_map.h"
 #include "query/texel_selection.h"
+#include "store/journal.h"
 
 namespace strata::room {
 
@@ -27,6 +29,11 @@ struct ChangeCount {
   double area = 0;           // their surface, unit²
 };
 ChangeCount count_changes(const TileChange& change, const mesh::SurfaceMap& map);
+
+// What the tiles hold of each key, as the journal keeps it.
+std::vector<store::TileKeys> sum_tiles(
+    const Layer& layer, const mesh::SurfaceMap& map,
+    const std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>>& tiles);
 
 // What is written: a value's bits, or nothing, which erases.
 using WrittenValue = std::optional<std::uint32_t>;

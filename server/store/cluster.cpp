@@ -18,9 +18,11 @@
 #include <thread>
 
 #include "core/log.h"
+#include "core/slug.h"
 #include "store/cluster_process.h"
 #include "store/hash.h"
 #include "store/pg.h"
+#include "store/sql_readers.h"
 
 namespace strata::store {
 namespace fs = std::filesystem;
@@ -43,12 +45,25 @@ std::string quoted(const std::string& value) {
 
 // Where the socket lies: in the folder, or in a short one where its path would be too long for a socket.
 fs::path socket_folder(const fs::path& folder) {
-  if ((folder / ".s.PGSQL.5432.lock").string().size() <= kLongestSocketPath) return folder;
+  if ((folder / ".s.PGSQL.65535.lock").string().size() <= kLongestSocketPath) return folder;
   return "/tmp/strata-" + to_hex(sha256(folder.string())).substr(0, 16);
 }
 
-std::string dsn_of(const fs::path& sockets, const std::string& database) {
-  return "host=" + quoted(sockets.string()) + " port=5432 user=strata dbname=" + quoted(database);
+constexpr int kUsualPort = 5432;
+
+// PostgreSQL has one port, which names its socket, too.
+std::string dsn_of(const fs::path& sockets, int port, const std::string& database) {
+  return "host=" + quoted(sockets.string()) + " port=" + std::to_string(port) +
+         " user=strata dbname=" + quoted(database);
+}
+
+// Of the postmaster that has the data open, from the fourth line of its file.
+int running_port(const fs::path& data) {
+  std::ifstream file(data / "postmaster.pid");
+  std::string line;
+  for (int i = 0; i < 4; ++i)
+    if (!std::getline(file, line)) return kUsualPort;
+  return is_all_digits(line) && line.size() <= 5 ? std::stoi(line) : kUsualPort;
 }
 
 fs::path postgres_folder(const fs::path& data_dir) {
@@ -71,6 +86,7 @@ struct Cluster::Impl {
   fs::path programs;
   fs::path log_file;
   DatabaseUser user;
+  std::optional<SqlListen> sql;
   int lock_fd = -1;
 
   // The keeper thread runs every fork and wait; others hand it work.
@@ -161,8 +177,25 @@ struct Cluster::Impl {
     auto found = find_programs(major);
     if (!found) return tl::unexpected(found.error());
     programs = *found;
-    return major > 0 ? Result<void>{} : initialise();
+    if (major == 0)
+      if (auto made = initialise(); !made) return made;
+    return write_access_rules();
   }
+
+  // Who may connect: by the socket, in a folder of the database user's own, the server; by TCP analysts alone.
+  Result<void> write_access_rules() {
+    std::ofstream file(access_rules(), std::ios::trunc);
+    file << "local all all trust\n";
+    if (sql)
+      for (const char* address : {"127.0.0.1/32", "::1/128"})
+        file << "host strata " << kReaderRole << " " << address << " scram-sha-256\n";
+    file.close();
+    if (!file || chmod(access_rules().c_str(), 0600) != 0 ||
+        (user.switch_user && chown(access_rules().c_str(), user.uid, user.gid) != 0))
+      return fail(500, "Database folder not writable", "Cannot write " + access_rules().string() + ".");
+    return {};
+  }
+  fs::path access_rules() const { return folder / "access.conf"; }
 
   // In a folder of another name first: an initdb cut short leaves nothing that looks like a database.
   Result<void> initialise() {
@@ -200,7 +233,8 @@ struct Cluster::Impl {
     return owner == postmaster;
   }
 
-  std::string dsn(const std::string& database) const { return dsn_of(sockets, database); }
+  int port() const { return sql ? sql->port : kUsualPort; }
+  std::string dsn(const std::string& database) const { return dsn_of(sockets, port(), database); }
 
   // After a `kill -9` of the postmaster its orphans hold the lock file and the shared memory until they notice, so a
   // start that fails at once is tried again every 100 ms.
@@ -214,9 +248,11 @@ struct Cluster::Impl {
                           "-k",
                           sockets,
                           "-p",
-                          "5432",
+                          std::to_string(port()),
                           "-c",
-                          "listen_addresses=",
+                          "listen_addresses=" + (sql ? sql->host : std::string()),
+                          "-c",
+                          "hba_file=" + access_rules().string(),
                           "-c",
                           "unix_socket_permissions=0700",
                           "-c",
@@ -273,16 +309,17 @@ Cluster::State Cluster::inspect(const fs::path& data_dir) {
   const fs::path folder = postgres_folder(data_dir);
   State state;
   state.version = version_of(folder / "pgdata");
-  state.dsn = dsn_of(socket_folder(folder), "strata");
+  state.dsn = dsn_of(socket_folder(folder), running_port(folder / "pgdata"), "strata");
   state.running = state.version > 0 && PQping((state.dsn + " connect_timeout=5").c_str()) == PQPING_OK;
   if (auto programs = find_programs(state.version); !programs) state.trouble = programs.error();
   if (auto user = database_user(); !user) state.trouble = user.error();
   return state;
 }
 
-Result<std::unique_ptr<Cluster>> Cluster::start(const fs::path& data_dir) {
+Result<std::unique_ptr<Cluster>> Cluster::start(const fs::path& data_dir, const std::optional<SqlListen>& sql) {
   std::unique_ptr<Cluster> cluster(new Cluster);
   Impl& impl = *cluster->impl_;
+  impl.sql = sql;
   impl.keeper = std::thread([&impl] { impl.keep(); });
   auto started = impl.on_keeper([&]() -> Result<void> {
     if (auto prepared = impl.prepare(data_dir); !prepared) return prepared;

@@ -23,9 +23,17 @@ class Cluster {
   };
   static State inspect(const std::filesystem::path& data_dir);
 
+  // TCP for analysts, beside the socket: an address of this machine's loopback, on which the role kReaderRole alone may connect, with
+  // its password (scram-sha-256).
+  struct SqlListen {
+    std::string host;  // without brackets
+    int port = 0;      // 1…65535
+  };
+
   // Everything lies in `data_dir`/postgres. `data_dir` must be reachable by the database user when the server runs as
   // root; the error says what to do. A second server on the same folder is refused (409).
-  static Result<std::unique_ptr<Cluster>> start(const std::filesystem::path& data_dir);
+  static Result<std::unique_ptr<Cluster>> start(const std::filesystem::path& data_dir,
+                                                const std::optional<SqlListen>& sql = {});
   ~Cluster();  // fast shutdown, waits
   Cluster(const Cluster&) = delete;
   Cluster& operator=(const Cluster&) = delete;

@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -11,6 +13,18 @@
 #include "core/uuid.h"
 
 namespace strata::store {
+
+// What a tile holds of a key, in model space and units: the sum of area × position, and the box of its texels.
+struct KeySum {
+  std::optional<std::int64_t> key;  // nothing: values of the layer are not told apart
+  std::uint64_t texels = 0;
+  double area = 0;
+  glm::dvec3 moment{0}, low{0}, high{0};
+};
+struct TileKeys {
+  TileAddress tile;
+  std::vector<KeySum> keys;  // none: nothing in it is valid
+};
 
 // One edit with everything that becomes durable with it, in one transaction.
 struct JournalEntry {
@@ -30,6 +44,9 @@ struct JournalEntry {
     std::vector<std::uint8_t> key_tile;    // strata::encode_tile after the edit; empty except every 64th of a tile
   };
   std::vector<Revision> revisions;
+  // What the tiles of the revisions hold after the edit; asked for on the writer's thread, at each try. Empty: it is not known, and the
+  // layer is to be counted anew (Store::layers_to_sum).
+  std::function<std::vector<TileKeys>()> sum_tiles;
   // undo / redo: the sequences whose `in_force` becomes false / true with this entry
   std::vector<std::int64_t> disable, enable;
 };

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "store/store_impl.h"
+#include "store/tile_sums.h"
 
 namespace strata::store {
 namespace {
@@ -183,6 +184,7 @@ tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
   insert_edits(entries, statements);
   insert_revisions(entries, statements);
   switch_edits(entries, statements);
+  write_tile_sums(entries, statements);
 
   Transaction transaction = Transaction::adopt(connection);
   const auto results = connection.pipeline(statements);

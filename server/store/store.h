@@ -267,6 +267,10 @@ class Store {
   // Of the last edit until a time (core/timestamp.h's text); 0 before the first.
   Result<std::int64_t> sequence_at(std::int64_t model_id, const std::string& utc);
   Result<std::uint64_t> revision_bytes(std::int64_t model_id);
+  // Layers whose tiles must be counted anew, since an edit was journalled without their sums.
+  Result<std::vector<Layer>> layers_to_sum();
+  // What all tiles of the layer hold that hold anything. Nobody may be editing it.
+  Result<void> keep_sums(std::int64_t layer_id, std::vector<TileKeys> tiles);
 
   // --- answers to changing HTTP calls, by Idempotency-Key; kept for 7 days
   Result<std::optional<nlohmann::json>> find_answer(const std::string& key);

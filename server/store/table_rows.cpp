@@ -117,6 +117,11 @@ Result<void> run(PgConnection& connection, const std::string& sql) {
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
+// An analyst's query must not keep a table from being changed (db/migrations/000011).
+Result<void> make_way(PgConnection& connection, std::int64_t table_id) {
+  return run(connection, "SELECT analysis_make_way('" + table_name(table_id) + "')");
+}
+
 }  // namespace
 
 Result<void> make_rows_table(PgConnection& connection, std::int64_t table_id) {
@@ -125,11 +130,13 @@ Result<void> make_rows_table(PgConnection& connection, std::int64_t table_id) {
 }
 
 Result<void> drop_rows_table(PgConnection& connection, std::int64_t table_id) {
-  return run(connection, "DROP TABLE " + table_name(table_id));
+  if (auto free = make_way(connection, table_id); !free) return free;
+  return run(connection, "DROP TABLE " + table_name(table_id) + " CASCADE");  // with its view (db/migrations/000011)
 }
 
 Result<void> add_rows_column(PgConnection& connection, std::int64_t table_id, const Column& column) {
   const std::string name = column_name(column);
+  if (auto free = make_way(connection, table_id); !free) return free;
   std::string sql = "ALTER TABLE " + table_name(table_id) + " ADD COLUMN " + name + " " + sql_type(column.kind);
   if (column.kind == ColumnKind::period)
     sql += ", ADD COLUMN " + name + "_first bigint, ADD COLUMN " + name + "_last bigint";

@@ -122,6 +122,7 @@ class FakeRoom final : public room::Room {
   Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string&) override {
     return std::map<std::int64_t, query::KeyArea>();
   }
+  Result<void> sum_layer(std::int64_t) override { return {}; }
   Result<query::Quantities> quantities(const std::string&, At) override { return query::Quantities{}; }
   Result<query::SurfaceTexels> surface_texels(const std::string&, const room::Selection&) override {
     return query::SurfaceTexels{};

@@ -51,9 +51,10 @@ class Answer:
 
 
 class StrataServer:
-    def __init__(self, demo=False):
+    def __init__(self, demo=False, options=()):
         self.binary = os.environ["STRATA_BINARY"]
         self.token = secrets.token_hex(24)
+        self.options = list(options)  # of `serve`
         # Under /tmp and open to all: PostgreSQL does not run as root, so its user must reach the folder.
         self.data = tempfile.mkdtemp(prefix="strata-e2e-", dir="/tmp")
         os.chmod(self.data, 0o755)
@@ -93,7 +94,7 @@ class StrataServer:
 
     def start(self):
         """Starts it (again) and returns once it listens."""
-        self.process = subprocess.Popen([self.binary, "serve", "--data", self.data, "--listen", "127.0.0.1:0"],
+        self.process = subprocess.Popen([self.binary, "serve", "--data", self.data, "--listen", "127.0.0.1:0", *self.options],
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=self.environment(),
                                         preexec_fn=_end_with_parent)
         threading.Thread(target=self._read_log, args=(self.process.stderr,), daemon=True).start()
