@@ -19,10 +19,18 @@ pkg_check_modules(PNG REQUIRED IMPORTED_TARGET libpng)
 pkg_check_modules(TIFF REQUIRED IMPORTED_TARGET libtiff-4)
 pkg_check_modules(SHAPELIB REQUIRED IMPORTED_TARGET shapelib)
 pkg_check_modules(XLSXWRITER REQUIRED IMPORTED_TARGET xlsxwriter)
-pkg_check_modules(RAPTOR REQUIRED IMPORTED_TARGET raptor2)
 pkg_check_modules(UTF8PROC REQUIRED IMPORTED_TARGET libutf8proc)
 pkg_check_modules(CURL REQUIRED IMPORTED_TARGET libcurl)
 pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
+
+# Raptor's Debian package cannot be installed beside every flavour of libcurl's: where it is not, `./run` and `./test` unpack its
+# headers into build/deps and name them here, and the library is the one that programs run with.
+set(STRATA_RAPTOR_INCLUDE "" CACHE PATH "Folder that holds raptor2.h, when it is not the system's")
+find_path(RAPTOR_INCLUDE raptor2.h HINTS ${STRATA_RAPTOR_INCLUDE} PATH_SUFFIXES raptor2 REQUIRED)
+find_library(RAPTOR_LIBRARY NAMES raptor2 libraptor2.so.0 REQUIRED)
+add_library(strata_raptor INTERFACE)
+target_include_directories(strata_raptor SYSTEM INTERFACE ${RAPTOR_INCLUDE})
+target_link_libraries(strata_raptor INTERFACE ${RAPTOR_LIBRARY})
 
 # Boost 1.81 is used as headers only (Asio, Beast compiled in one unit, Uuid). Where the machine has another version
 # installed, `./run` and `./test` unpack 1.81 into build/deps and name it here; the user's packages stay as they are.

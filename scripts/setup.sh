@@ -42,25 +42,42 @@ install_packages() {
 build_packages="g++ cmake ninja-build pkg-config ccache mold git python3 python3-yaml ca-certificates
   libegl-dev libgl-dev libepoxy-dev libglm-dev libpq-dev nlohmann-json3-dev libvalijson-dev
   libturbojpeg0-dev libjpeg62-turbo-dev libsodium-dev libssl-dev libspdlog-dev libcli11-dev libzstd-dev libpng-dev libtiff-dev
-  libembree-dev libmeshoptimizer-dev libdraco-dev libzip-dev libshp-dev libxlsxwriter-dev libraptor2-dev libutf8proc-dev libexpected-dev libcurl4-openssl-dev libgtest-dev libgmock-dev"
+  libembree-dev libmeshoptimizer-dev libdraco-dev libzip-dev libshp-dev libxlsxwriter-dev libutf8proc-dev libexpected-dev libgtest-dev libgmock-dev"
 run_packages="libegl1 libegl-mesa0 libgl1-mesa-dri postgresql-15 curl"
 test_packages="chromium fonts-dejavu-core clang-format-14 xz-utils"
 fuzz_packages="clang-14 libclang-rt-14-dev llvm-14"
 
-# Boost 1.81 conflicts with Debian's 1.74: where that is installed, 1.81's headers are unpacked beside the build instead.
-setup_boost() {
+# A package that cannot be installed beside one of the user's: its files are unpacked into build/deps instead.
+unpack_beside() {
+  local package=$1 file=$2 deps=$PWD/build/deps
+  [ ! -e "$deps/$file" ] || return 0
+  say "$package conflicts with a package that is installed and stays; unpacking it into build/deps"
+  mkdir -p "$deps"
+  [ -n "$apt_updated" ] || { as_root apt-get update -qq; apt_updated=1; }
+  (cd "$deps" && apt-get -qq download "$package" && dpkg -x "$package"_*.deb . && rm -f "$package"_*.deb) ||
+    die "Could not download $package."
+}
+
+# Sets STRATA_CMAKE_ARGS to where the libraries are that are not the system's.
+setup_conflicting() {
   STRATA_CMAKE_ARGS=()
-  if [ -z "$(missing_packages libboost1.81-dev)" ]; then return 0; fi
-  if [ -n "$(missing_packages libboost1.74-dev)" ]; then install_packages libboost1.81-dev; return 0; fi
-  local deps=$PWD/build/deps
-  if [ ! -f "$deps/usr/include/boost/version.hpp" ]; then
-    say "Boost 1.74 is installed and stays; unpacking the headers of 1.81 into build/deps"
-    mkdir -p "$deps"
-    [ -n "$apt_updated" ] || { as_root apt-get update -qq; apt_updated=1; }
-    (cd "$deps" && apt-get -qq download libboost1.81-dev && dpkg -x libboost1.81-dev_*.deb . && rm -f libboost1.81-dev_*.deb) ||
-      die "Could not download libboost1.81-dev."
+  # Boost 1.81 conflicts with Debian's 1.74.
+  if [ -n "$(missing_packages libboost1.81-dev)" ]; then
+    if [ -n "$(missing_packages libboost1.74-dev)" ]; then install_packages libboost1.81-dev
+    else
+      unpack_beside libboost1.81-dev usr/include/boost/version.hpp
+      STRATA_CMAKE_ARGS+=(-DSTRATA_BOOST_INCLUDE="$PWD/build/deps/usr/include")
+    fi
   fi
-  STRATA_CMAKE_ARGS=(-DSTRATA_BOOST_INCLUDE="$deps/usr/include")
+  # Raptor's headers bring libcurl's, which we use as well, of one flavour, which conflict with those of the others; any will do.
+  if [ -n "$(missing_packages libraptor2-dev)" ]; then
+    if [ -n "$(missing_packages libcurl4-openssl-dev)" ] && [ -n "$(missing_packages libcurl4-nss-dev)" ]; then install_packages libraptor2-dev
+    else
+      install_packages libraptor2-0
+      unpack_beside libraptor2-dev usr/include/raptor2/raptor2.h
+      STRATA_CMAKE_ARGS+=(-DSTRATA_RAPTOR_INCLUDE="$PWD/build/deps/usr/include/raptor2")
+    fi
+  fi
 }
 
 # Any Node from 18 on will do; Debian's is installed only where there is none.
