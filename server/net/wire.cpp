@@ -385,12 +385,12 @@ void append_point(const query::SurfacePoint& point, const std::vector<std::strin
        {point.position.x, point.position.y, point.position.z, double(point.normal.x), double(point.normal.y),
         double(point.normal.z), point.distance, double(point.uv.x), double(point.uv.y)}) {
     text += ',';
-    append_csv_number(text, value, ',');
+    text += number(value);
   }
   for (const auto& layer : layers) {
     text += ',';
     for (const auto& value : point.values)
-      if (value.layer == layer && value.valid) append_csv_number(text, value.value, ',');
+      if (value.layer == layer && value.valid) text += number(value.value);
   }
   text += "\r\n";
 }
