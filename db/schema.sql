@@ -1,7 +1,381 @@
+CREATE SCHEMA analysis;
+
 CREATE SCHEMA records;
 
 CREATE DOMAIN public.slug AS text
 	CONSTRAINT slug_check CHECK (((VALUE ~ '^[a-z0-9-]+$'::text) AND (VALUE !~ '^[0-9]+$'::text)));
+
+CREATE FUNCTION public.analysis_make_way(held regclass) RETURNS void
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  IF pg_has_role(current_user, 'pg_signal_backend', 'USAGE') THEN
+    PERFORM pg_terminate_backend(l.pid) FROM pg_locks l JOIN pg_stat_activity a ON a.pid = l.pid
+      WHERE l.locktype = 'relation' AND l.relation = held AND a.usename = 'strata_reader';
+  END IF;
+END $$;
+
+CREATE FUNCTION public.analysis_name(name text, suffix text) RETURNS text
+    LANGUAGE plpgsql IMMUTABLE
+    AS $$
+DECLARE
+  kept text := left(name, 63);
+BEGIN
+  WHILE octet_length(kept) + octet_length(suffix) > 63 LOOP
+    kept := left(kept, -1);
+  END LOOP;
+  RETURN kept || suffix;
+END $$;
+
+CREATE FUNCTION public.analysis_show_table(shown bigint) RETURNS void
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  rows_table text := 't' || shown;
+  old_name text;
+  new_name text;
+  col record;
+  col_name text;
+  used text[] := ARRAY['key'];
+  list text := 'key';
+BEGIN
+  SELECT t.name INTO new_name FROM record_tables t WHERE t.id = shown;
+  IF new_name IS NULL OR to_regclass('records.' || rows_table) IS NULL THEN
+    RETURN;
+  END IF;
+  PERFORM pg_advisory_xact_lock(hashtext('analysis_show_table'));
+  SELECT v.name INTO old_name FROM record_views v WHERE v.table_id = shown;
+  IF old_name IS NOT NULL AND to_regclass(format('analysis.%I', old_name)) IS NOT NULL THEN
+    PERFORM analysis_make_way(to_regclass(format('analysis.%I', old_name)));
+    EXECUTE format('DROP VIEW analysis.%I', old_name);
+  END IF;
+  new_name := analysis_name(new_name, '');
+  IF to_regclass(format('analysis.%I', new_name)) IS NOT NULL THEN
+    new_name := analysis_name(new_name, ' (' || rows_table || ')');
+  END IF;
+  FOR col IN
+    SELECT c.id, c.kind, c.properties ->> 'name' AS name FROM record_columns c WHERE c.table_id = shown AND NOT c.hidden
+    ORDER BY (c.properties ->> 'order')::integer, c.id
+  LOOP
+    col_name := analysis_name(col.name, '');
+    IF col_name = ANY (used) THEN
+      col_name := analysis_name(col.name, ' (c' || col.id || ')');
+    END IF;
+    used := used || col_name;
+    list := list || format(', %I AS %I', 'c' || col.id, col_name);
+  END LOOP;
+  EXECUTE format('CREATE VIEW analysis.%I WITH (security_barrier) AS SELECT %s FROM records.%I', new_name, list, rows_table);
+  INSERT INTO record_views VALUES (shown, new_name) ON CONFLICT (table_id) DO UPDATE SET name = excluded.name;
+END $$;
+
+CREATE FUNCTION public.analysis_table_changed() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  PERFORM analysis_show_table(CASE TG_TABLE_NAME WHEN 'record_tables' THEN (to_jsonb(NEW) ->> 'id')::bigint ELSE (to_jsonb(NEW) ->> 'table_id')::bigint END);
+  RETURN NULL;
+END $$;
+
+CREATE TABLE public.layers (
+    id bigint NOT NULL,
+    model_id bigint NOT NULL,
+    name text NOT NULL,
+    slug public.slug NOT NULL,
+    kind text NOT NULL,
+    type text NOT NULL,
+    resolution integer NOT NULL,
+    unit text NOT NULL,
+    description text NOT NULL,
+    palette jsonb NOT NULL,
+    opacity double precision NOT NULL,
+    visible boolean NOT NULL,
+    draw_order integer NOT NULL,
+    sequence bigint DEFAULT 0 NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    table_id bigint,
+    expression text,
+    automatic boolean DEFAULT false NOT NULL,
+    computed_sequence bigint DEFAULT 0 NOT NULL,
+    summed boolean DEFAULT true NOT NULL,
+    CONSTRAINT layers_check CHECK (((kind = 'database'::text) = (table_id IS NOT NULL))),
+    CONSTRAINT layers_check1 CHECK (((expression IS NOT NULL) OR (NOT automatic))),
+    CONSTRAINT layers_expression_check CHECK ((expression <> ''::text)),
+    CONSTRAINT layers_kind_check CHECK ((kind = ANY (ARRAY['numeric'::text, 'database'::text]))),
+    CONSTRAINT layers_name_check CHECK ((name <> ''::text)),
+    CONSTRAINT layers_opacity_check CHECK (((opacity >= (0)::double precision) AND (opacity <= (1)::double precision))),
+    CONSTRAINT layers_resolution_check CHECK ((((resolution >= 128) AND (resolution <= 16384)) AND ((resolution & (resolution - 1)) = 0))),
+    CONSTRAINT layers_type_check CHECK ((type = ANY (ARRAY['u8'::text, 'u16'::text, 'u32'::text, 'i8'::text, 'i16'::text, 'i32'::text, 'f16'::text, 'f32'::text])))
+);
+
+CREATE TABLE public.models (
+    id bigint NOT NULL,
+    project_id bigint NOT NULL,
+    name text NOT NULL,
+    slug public.slug NOT NULL,
+    unit text NOT NULL,
+    unit_assumed boolean NOT NULL,
+    scale_verified boolean NOT NULL,
+    up text NOT NULL,
+    north text NOT NULL,
+    crs text NOT NULL,
+    origin double precision[] NOT NULL,
+    bounds_min double precision[] NOT NULL,
+    bounds_max double precision[] NOT NULL,
+    triangles bigint NOT NULL,
+    vertices bigint NOT NULL,
+    area double precision NOT NULL,
+    atlas jsonb NOT NULL,
+    repairs jsonb NOT NULL,
+    default_resolution integer NOT NULL,
+    inventory_number text NOT NULL,
+    owner text NOT NULL,
+    creator text NOT NULL,
+    captured text NOT NULL,
+    method text NOT NULL,
+    accuracy text NOT NULL,
+    processing text NOT NULL,
+    rights_uri text NOT NULL,
+    credit text NOT NULL,
+    geometry bytea NOT NULL,
+    sequence bigint DEFAULT 0 NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT models_bounds_max_check CHECK ((cardinality(bounds_max) = 3)),
+    CONSTRAINT models_bounds_min_check CHECK ((cardinality(bounds_min) = 3)),
+    CONSTRAINT models_name_check CHECK ((name <> ''::text)),
+    CONSTRAINT models_origin_check CHECK ((cardinality(origin) = 3)),
+    CONSTRAINT models_unit_check CHECK ((unit = ANY (ARRAY['mm'::text, 'cm'::text, 'm'::text]))),
+    CONSTRAINT models_up_check CHECK ((up = ANY (ARRAY['x'::text, 'y'::text, 'z'::text])))
+);
+
+CREATE TABLE public.tile_sums (
+    layer_id bigint NOT NULL,
+    tile_y smallint NOT NULL,
+    tile_x smallint NOT NULL,
+    keys bigint[] NOT NULL,
+    texels bigint[] NOT NULL,
+    areas double precision[] NOT NULL,
+    moments_x double precision[] NOT NULL,
+    moments_y double precision[] NOT NULL,
+    moments_z double precision[] NOT NULL,
+    low_x double precision[] NOT NULL,
+    low_y double precision[] NOT NULL,
+    low_z double precision[] NOT NULL,
+    high_x double precision[] NOT NULL,
+    high_y double precision[] NOT NULL,
+    high_z double precision[] NOT NULL
+);
+
+CREATE VIEW analysis.areas WITH (security_barrier='true') AS
+ SELECT s.layer_id,
+    l.model_id,
+    m.name AS model,
+    l.name AS layer,
+    l.table_id,
+    s.key,
+    s.texels,
+    (s.area * pow(u.metres, (2)::double precision)) AS area_m2,
+    ((s.moment_x / NULLIF(s.area, (0)::double precision)) + m.origin[1]) AS centroid_x,
+    ((s.moment_y / NULLIF(s.area, (0)::double precision)) + m.origin[2]) AS centroid_y,
+    ((s.moment_z / NULLIF(s.area, (0)::double precision)) + m.origin[3]) AS centroid_z,
+    (s.low_x + m.origin[1]) AS min_x,
+    (s.low_y + m.origin[2]) AS min_y,
+    (s.low_z + m.origin[3]) AS min_z,
+    (s.high_x + m.origin[1]) AS max_x,
+    (s.high_y + m.origin[2]) AS max_y,
+    (s.high_z + m.origin[3]) AS max_z
+   FROM (((( SELECT t.layer_id,
+            e.key,
+            (sum(e.texels))::bigint AS texels,
+            sum(e.area) AS area,
+            sum(e.moment_x) AS moment_x,
+            sum(e.moment_y) AS moment_y,
+            sum(e.moment_z) AS moment_z,
+            min(e.low_x) AS low_x,
+            min(e.low_y) AS low_y,
+            min(e.low_z) AS low_z,
+            max(e.high_x) AS high_x,
+            max(e.high_y) AS high_y,
+            max(e.high_z) AS high_z
+           FROM public.tile_sums t,
+            LATERAL UNNEST(t.keys, t.texels, t.areas, t.moments_x, t.moments_y, t.moments_z, t.low_x, t.low_y, t.low_z, t.high_x, t.high_y, t.high_z) e(key, texels, area, moment_x, moment_y, moment_z, low_x, low_y, low_z, high_x, high_y, high_z)
+          GROUP BY t.layer_id, e.key) s
+     JOIN public.layers l ON (((l.id = s.layer_id) AND l.summed)))
+     JOIN public.models m ON ((m.id = l.model_id)))
+     CROSS JOIN LATERAL ( SELECT (
+                CASE m.unit
+                    WHEN 'mm'::text THEN 0.001
+                    WHEN 'cm'::text THEN 0.01
+                    ELSE (1)::numeric
+                END)::double precision AS metres) u);
+
+CREATE TABLE public.edits (
+    model_id bigint NOT NULL,
+    sequence bigint NOT NULL,
+    id uuid NOT NULL,
+    layer_id bigint NOT NULL,
+    stroke uuid NOT NULL,
+    user_name text NOT NULL,
+    op text NOT NULL,
+    record jsonb NOT NULL,
+    answer jsonb NOT NULL,
+    "time" timestamp with time zone NOT NULL,
+    in_force boolean DEFAULT true NOT NULL,
+    undone_by bigint,
+    writer boolean GENERATED ALWAYS AS ((op <> ALL (ARRAY['undo'::text, 'redo'::text]))) STORED NOT NULL,
+    CONSTRAINT edits_check CHECK ((in_force = (undone_by IS NULL))),
+    CONSTRAINT edits_sequence_check CHECK ((sequence > 0))
+);
+
+CREATE VIEW analysis.edits WITH (security_barrier='true') AS
+ SELECT e.model_id,
+    m.name AS model,
+    e.layer_id,
+    l.name AS layer,
+    e.sequence,
+    e."time",
+    e.user_name AS "user",
+    e.op,
+    e.in_force,
+    ((e.answer ->> 'texels_changed'::text))::bigint AS texels_changed,
+    ((e.answer ->> 'area_m2'::text))::double precision AS area_m2
+   FROM ((public.edits e
+     JOIN public.models m ON ((m.id = e.model_id)))
+     JOIN public.layers l ON ((l.id = e.layer_id)));
+
+CREATE VIEW analysis.layers WITH (security_barrier='true') AS
+ SELECT l.id AS layer_id,
+    l.model_id,
+    m.name AS model,
+    l.name AS layer,
+    (l.slug)::text AS slug,
+    l.kind,
+    l.type,
+    l.resolution,
+    l.unit,
+    l.description,
+    l.table_id,
+    l.sequence,
+    l.summed AS areas_current
+   FROM (public.layers l
+     JOIN public.models m ON ((m.id = l.model_id)));
+
+CREATE TABLE public.projects (
+    id bigint NOT NULL,
+    name text NOT NULL,
+    slug public.slug NOT NULL,
+    description text NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT projects_name_check CHECK ((name <> ''::text))
+);
+
+CREATE VIEW analysis.models WITH (security_barrier='true') AS
+ SELECT m.id AS model_id,
+    m.project_id,
+    p.name AS project,
+    m.name AS model,
+    (m.slug)::text AS slug,
+    m.unit,
+    m.up,
+    NULLIF(m.crs, ''::text) AS crs,
+    (m.area * (pow(
+        CASE m.unit
+            WHEN 'mm'::text THEN 0.001
+            WHEN 'cm'::text THEN 0.01
+            ELSE (1)::numeric
+        END, (2)::numeric))::double precision) AS area_m2,
+    m.triangles,
+    m.bounds_min[1] AS min_x,
+    m.bounds_min[2] AS min_y,
+    m.bounds_min[3] AS min_z,
+    m.bounds_max[1] AS max_x,
+    m.bounds_max[2] AS max_y,
+    m.bounds_max[3] AS max_z,
+    m.inventory_number,
+    m.owner,
+    m.creator,
+    m.credit,
+    m.sequence
+   FROM (public.models m
+     JOIN public.projects p ON ((p.id = m.project_id)));
+
+CREATE VIEW analysis.projects WITH (security_barrier='true') AS
+ SELECT projects.id AS project_id,
+    projects.name AS project,
+    (projects.slug)::text AS slug,
+    projects.description
+   FROM public.projects;
+
+CREATE TABLE public.record_tables (
+    id bigint NOT NULL,
+    project_id bigint NOT NULL,
+    name text NOT NULL,
+    slug public.slug NOT NULL,
+    labels jsonb DEFAULT '{}'::jsonb NOT NULL,
+    description text DEFAULT ''::text NOT NULL,
+    next_key bigint DEFAULT 1 NOT NULL,
+    records bigint DEFAULT 0 NOT NULL,
+    sequence bigint DEFAULT 0 NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT record_tables_name_check CHECK ((name <> ''::text))
+);
+
+CREATE TABLE public.table_changes (
+    table_id bigint NOT NULL,
+    subject text NOT NULL,
+    subject_id bigint NOT NULL,
+    sequence bigint NOT NULL,
+    before jsonb NOT NULL,
+    after jsonb NOT NULL,
+    CONSTRAINT table_changes_subject_check CHECK ((subject = ANY (ARRAY['record'::text, 'column'::text])))
+);
+
+CREATE TABLE public.table_edits (
+    table_id bigint NOT NULL,
+    sequence bigint NOT NULL,
+    user_name text NOT NULL,
+    op text NOT NULL,
+    record jsonb NOT NULL,
+    "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    in_force boolean DEFAULT true NOT NULL,
+    undone_by bigint,
+    writer boolean GENERATED ALWAYS AS ((op <> ALL (ARRAY['undo'::text, 'redo'::text]))) STORED NOT NULL,
+    CONSTRAINT table_edits_check CHECK ((in_force = (undone_by IS NULL))),
+    CONSTRAINT table_edits_sequence_check CHECK ((sequence > 0))
+);
+
+CREATE VIEW analysis.record_edits WITH (security_barrier='true') AS
+ SELECT e.table_id,
+    t.name AS "table",
+    e.sequence,
+    e."time",
+    e.user_name AS "user",
+    e.op,
+    e.in_force,
+    c.subject,
+    c.subject_id AS key,
+    c.before,
+    c.after
+   FROM ((public.table_edits e
+     JOIN public.record_tables t ON ((t.id = e.table_id)))
+     LEFT JOIN public.table_changes c ON (((c.table_id = e.table_id) AND (c.sequence = e.sequence) AND (c.subject = 'record'::text))));
+
+CREATE TABLE public.record_views (
+    table_id bigint NOT NULL,
+    name text NOT NULL
+);
+
+CREATE VIEW analysis.tables WITH (security_barrier='true') AS
+ SELECT t.id AS table_id,
+    t.project_id,
+    p.name AS project,
+    t.name AS "table",
+    (t.slug)::text AS slug,
+    v.name AS view,
+    t.records,
+    t.sequence
+   FROM ((public.record_tables t
+     JOIN public.projects p ON ((p.id = t.project_id)))
+     LEFT JOIN public.record_views v ON ((v.table_id = t.id)));
 
 CREATE TABLE public.answers (
     key text NOT NULL,
@@ -52,60 +426,12 @@ CREATE TABLE public.detail_levels (
     CONSTRAINT detail_levels_level_check CHECK ((level > 0))
 );
 
-CREATE TABLE public.edits (
-    model_id bigint NOT NULL,
-    sequence bigint NOT NULL,
-    id uuid NOT NULL,
-    layer_id bigint NOT NULL,
-    stroke uuid NOT NULL,
-    user_name text NOT NULL,
-    op text NOT NULL,
-    record jsonb NOT NULL,
-    answer jsonb NOT NULL,
-    "time" timestamp with time zone NOT NULL,
-    in_force boolean DEFAULT true NOT NULL,
-    undone_by bigint,
-    writer boolean GENERATED ALWAYS AS ((op <> ALL (ARRAY['undo'::text, 'redo'::text]))) STORED NOT NULL,
-    CONSTRAINT edits_check CHECK ((in_force = (undone_by IS NULL))),
-    CONSTRAINT edits_sequence_check CHECK ((sequence > 0))
-);
-
 CREATE TABLE public.layer_inputs (
     layer_id bigint NOT NULL,
     slug text NOT NULL,
     input_id bigint,
     table_id bigint,
     table_sequence bigint DEFAULT 0 NOT NULL
-);
-
-CREATE TABLE public.layers (
-    id bigint NOT NULL,
-    model_id bigint NOT NULL,
-    name text NOT NULL,
-    slug public.slug NOT NULL,
-    kind text NOT NULL,
-    type text NOT NULL,
-    resolution integer NOT NULL,
-    unit text NOT NULL,
-    description text NOT NULL,
-    palette jsonb NOT NULL,
-    opacity double precision NOT NULL,
-    visible boolean NOT NULL,
-    draw_order integer NOT NULL,
-    sequence bigint DEFAULT 0 NOT NULL,
-    version bigint DEFAULT 1 NOT NULL,
-    table_id bigint,
-    expression text,
-    automatic boolean DEFAULT false NOT NULL,
-    computed_sequence bigint DEFAULT 0 NOT NULL,
-    CONSTRAINT layers_check CHECK (((kind = 'database'::text) = (table_id IS NOT NULL))),
-    CONSTRAINT layers_check1 CHECK (((expression IS NOT NULL) OR (NOT automatic))),
-    CONSTRAINT layers_expression_check CHECK ((expression <> ''::text)),
-    CONSTRAINT layers_kind_check CHECK ((kind = ANY (ARRAY['numeric'::text, 'database'::text]))),
-    CONSTRAINT layers_name_check CHECK ((name <> ''::text)),
-    CONSTRAINT layers_opacity_check CHECK (((opacity >= (0)::double precision) AND (opacity <= (1)::double precision))),
-    CONSTRAINT layers_resolution_check CHECK ((((resolution >= 128) AND (resolution <= 16384)) AND ((resolution & (resolution - 1)) = 0))),
-    CONSTRAINT layers_type_check CHECK ((type = ANY (ARRAY['u8'::text, 'u16'::text, 'u32'::text, 'i8'::text, 'i16'::text, 'i32'::text, 'f16'::text, 'f32'::text])))
 );
 
 ALTER TABLE public.layers ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
@@ -154,46 +480,6 @@ CREATE TABLE public.model_sources (
     sha256 bytea NOT NULL
 );
 
-CREATE TABLE public.models (
-    id bigint NOT NULL,
-    project_id bigint NOT NULL,
-    name text NOT NULL,
-    slug public.slug NOT NULL,
-    unit text NOT NULL,
-    unit_assumed boolean NOT NULL,
-    scale_verified boolean NOT NULL,
-    up text NOT NULL,
-    north text NOT NULL,
-    crs text NOT NULL,
-    origin double precision[] NOT NULL,
-    bounds_min double precision[] NOT NULL,
-    bounds_max double precision[] NOT NULL,
-    triangles bigint NOT NULL,
-    vertices bigint NOT NULL,
-    area double precision NOT NULL,
-    atlas jsonb NOT NULL,
-    repairs jsonb NOT NULL,
-    default_resolution integer NOT NULL,
-    inventory_number text NOT NULL,
-    owner text NOT NULL,
-    creator text NOT NULL,
-    captured text NOT NULL,
-    method text NOT NULL,
-    accuracy text NOT NULL,
-    processing text NOT NULL,
-    rights_uri text NOT NULL,
-    credit text NOT NULL,
-    geometry bytea NOT NULL,
-    sequence bigint DEFAULT 0 NOT NULL,
-    version bigint DEFAULT 1 NOT NULL,
-    CONSTRAINT models_bounds_max_check CHECK ((cardinality(bounds_max) = 3)),
-    CONSTRAINT models_bounds_min_check CHECK ((cardinality(bounds_min) = 3)),
-    CONSTRAINT models_name_check CHECK ((name <> ''::text)),
-    CONSTRAINT models_origin_check CHECK ((cardinality(origin) = 3)),
-    CONSTRAINT models_unit_check CHECK ((unit = ANY (ARRAY['mm'::text, 'cm'::text, 'm'::text]))),
-    CONSTRAINT models_up_check CHECK ((up = ANY (ARRAY['x'::text, 'y'::text, 'z'::text])))
-);
-
 ALTER TABLE public.models ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     SEQUENCE NAME public.models_id_seq
     START WITH 1
@@ -201,15 +487,6 @@ ALTER TABLE public.models ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     NO MINVALUE
     NO MAXVALUE
     CACHE 1
-);
-
-CREATE TABLE public.projects (
-    id bigint NOT NULL,
-    name text NOT NULL,
-    slug public.slug NOT NULL,
-    description text NOT NULL,
-    version bigint DEFAULT 1 NOT NULL,
-    CONSTRAINT projects_name_check CHECK ((name <> ''::text))
 );
 
 ALTER TABLE public.projects ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
@@ -240,20 +517,6 @@ ALTER TABLE public.record_columns ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTI
     CACHE 1
 );
 
-CREATE TABLE public.record_tables (
-    id bigint NOT NULL,
-    project_id bigint NOT NULL,
-    name text NOT NULL,
-    slug public.slug NOT NULL,
-    labels jsonb DEFAULT '{}'::jsonb NOT NULL,
-    description text DEFAULT ''::text NOT NULL,
-    next_key bigint DEFAULT 1 NOT NULL,
-    records bigint DEFAULT 0 NOT NULL,
-    sequence bigint DEFAULT 0 NOT NULL,
-    version bigint DEFAULT 1 NOT NULL,
-    CONSTRAINT record_tables_name_check CHECK ((name <> ''::text))
-);
-
 ALTER TABLE public.record_tables ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     SEQUENCE NAME public.record_tables_id_seq
     START WITH 1
@@ -270,30 +533,6 @@ CREATE TABLE public.schema_checksums (
 
 CREATE TABLE public.schema_migrations (
     version character varying(128) NOT NULL
-);
-
-CREATE TABLE public.table_changes (
-    table_id bigint NOT NULL,
-    subject text NOT NULL,
-    subject_id bigint NOT NULL,
-    sequence bigint NOT NULL,
-    before jsonb NOT NULL,
-    after jsonb NOT NULL,
-    CONSTRAINT table_changes_subject_check CHECK ((subject = ANY (ARRAY['record'::text, 'column'::text])))
-);
-
-CREATE TABLE public.table_edits (
-    table_id bigint NOT NULL,
-    sequence bigint NOT NULL,
-    user_name text NOT NULL,
-    op text NOT NULL,
-    record jsonb NOT NULL,
-    "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
-    in_force boolean DEFAULT true NOT NULL,
-    undone_by bigint,
-    writer boolean GENERATED ALWAYS AS ((op <> ALL (ARRAY['undo'::text, 'redo'::text]))) STORED NOT NULL,
-    CONSTRAINT table_edits_check CHECK ((in_force = (undone_by IS NULL))),
-    CONSTRAINT table_edits_sequence_check CHECK ((sequence > 0))
 );
 
 CREATE TABLE public.thumbnails (
@@ -425,6 +664,12 @@ ALTER TABLE ONLY public.record_tables
 ALTER TABLE ONLY public.record_tables
     ADD CONSTRAINT record_tables_slug_key UNIQUE (slug);
 
+ALTER TABLE ONLY public.record_views
+    ADD CONSTRAINT record_views_name_key UNIQUE (name);
+
+ALTER TABLE ONLY public.record_views
+    ADD CONSTRAINT record_views_pkey PRIMARY KEY (table_id);
+
 ALTER TABLE ONLY public.schema_checksums
     ADD CONSTRAINT schema_checksums_pkey PRIMARY KEY (version);
 
@@ -442,6 +687,9 @@ ALTER TABLE ONLY public.thumbnails
 
 ALTER TABLE ONLY public.tile_revisions
     ADD CONSTRAINT tile_revisions_pkey PRIMARY KEY (layer_id, tile_y, tile_x, sequence);
+
+ALTER TABLE ONLY public.tile_sums
+    ADD CONSTRAINT tile_sums_pkey PRIMARY KEY (layer_id, tile_y, tile_x);
 
 ALTER TABLE ONLY public.tokens
     ADD CONSTRAINT tokens_pkey PRIMARY KEY (hash);
@@ -477,6 +725,8 @@ CREATE INDEX layers_automatic ON public.layers USING btree (id) WHERE automatic;
 
 CREATE INDEX layers_table ON public.layers USING btree (table_id);
 
+CREATE INDEX layers_unsummed ON public.layers USING btree (id) WHERE (NOT summed);
+
 CREATE INDEX looks_picture ON public.looks USING btree (picture);
 
 CREATE INDEX model_sources_blob ON public.model_sources USING btree (sha256);
@@ -504,6 +754,14 @@ CREATE INDEX tile_revisions_key ON public.tile_revisions USING btree (layer_id, 
 CREATE INDEX tokens_user ON public.tokens USING btree (user_name);
 
 CREATE UNIQUE INDEX tool_shapes_slug ON public.tool_shapes USING btree (slug) WHERE (deleted IS NULL);
+
+CREATE CONSTRAINT TRIGGER column_is_changed AFTER UPDATE ON public.record_columns DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN (((old.hidden <> new.hidden) OR ((old.properties -> 'name'::text) <> (new.properties -> 'name'::text)) OR ((old.properties -> 'order'::text) <> (new.properties -> 'order'::text)))) EXECUTE FUNCTION public.analysis_table_changed();
+
+CREATE CONSTRAINT TRIGGER column_is_shown AFTER INSERT ON public.record_columns DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN ((NOT new.hidden)) EXECUTE FUNCTION public.analysis_table_changed();
+
+CREATE CONSTRAINT TRIGGER table_is_renamed AFTER UPDATE ON public.record_tables DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN ((old.name <> new.name)) EXECUTE FUNCTION public.analysis_table_changed();
+
+CREATE CONSTRAINT TRIGGER table_is_shown AFTER INSERT ON public.record_tables DEFERRABLE INITIALLY DEFERRED FOR EACH ROW EXECUTE FUNCTION public.analysis_table_changed();
 
 ALTER TABLE ONLY public.attachments
     ADD CONSTRAINT attachments_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256);
@@ -568,6 +826,9 @@ ALTER TABLE ONLY public.record_columns
 ALTER TABLE ONLY public.record_tables
     ADD CONSTRAINT record_tables_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id);
 
+ALTER TABLE ONLY public.record_views
+    ADD CONSTRAINT record_views_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;
+
 ALTER TABLE ONLY public.table_changes
     ADD CONSTRAINT table_changes_table_id_sequence_fkey FOREIGN KEY (table_id, sequence) REFERENCES public.table_edits(table_id, sequence) ON DELETE CASCADE;
 
@@ -579,6 +840,9 @@ ALTER TABLE ONLY public.thumbnails
 
 ALTER TABLE ONLY public.tile_revisions
     ADD CONSTRAINT tile_revisions_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.tile_sums
+    ADD CONSTRAINT tile_sums_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.tokens
     ADD CONSTRAINT tokens_user_name_fkey FOREIGN KEY (user_name) REFERENCES public.users(name) ON UPDATE CASCADE ON DELETE CASCADE;

@@ -120,7 +120,7 @@ def columns(reader, view):
 
 
 def check_tables(server, reader):
-    long = "Überlänge " * 20
+    long = "Überlänge " * 15 + "ist möglich"
     server.ok("POST", "/projects/default/tables", {"name": "areas", "slug": "clash", "columns": [{"name": "key"}, {"name": "Key"}, {"name": "Key", "slug": "key-again"}]})
     hostile = 'x"; DROP TABLE public.tokens; --'
     made = server.ok("POST", "/projects/default/tables", {"name": hostile, "slug": "hostile", "columns": [{"name": 'a" b'}, {"name": long}, {"name": long + "!"}, {"name": "Since", "kind": "period"}]}).json()
@@ -163,8 +163,8 @@ def check_rights(reader):
                       "CREATE TABLE public.t (a int)", "CREATE TABLE analysis.t (a int)", "CREATE TEMP TABLE t (a int)", "CREATE SCHEMA s", "SELECT lo_create(0)", "SELECT lo_from_bytea(0, 'x')",
                       "SELECT pg_advisory_lock(1)", "COPY (SELECT 1) TO PROGRAM 'id'", "CREATE ROLE r", "ALTER ROLE strata_reader SUPERUSER"):
         done = reader.run(anyway, statement)
-        assert done.returncode != 0 and ("permission denied" in done.stderr or "must be" in done.stderr or "cannot be executed" in done.stderr), (statement, done.stderr)
-    reader.refused("DELETE FROM edits", why="permission denied")
+        assert done.returncode != 0 and any(reason in done.stderr for reason in ("permission denied", "must be", "cannot")), (statement, done.stderr)
+    reader.refused("SELECT 1 INTO TEMP t", why="cannot execute")
     for secret in ("public.tokens", "public.users", "public.blobs", "public.blob_chunks", "public.answers", "public.tile_revisions", "records.t1", "pg_authid", "public.record_tables"):
         reader.refused(f"SELECT * FROM {secret}", why="permission denied")
     reader.refused("SELECT pg_read_file('/etc/passwd')", why="permission denied")
