@@ -14,7 +14,7 @@ const column = (id: number, slug: string, kind: ColumnKind = "text", more: Parti
   id, name: slug, slug, labels: {}, kind, required: false, unique: false, comment: "", order: id, ...more,
 }); // prettier-ignore
 const table = (...columns: Column[]): Table => ({
-  id: 3, project: 1, name: "Units", slug: "units", labels: {}, description: "", columns, records: 0, sequence: 0,
+  id: 3, project: 1, name: "Units", slug: "units", kind: "records", labels: {}, description: "", columns, records: 0, sequence: 0,
 }); // prettier-ignore
 const record = (key: number, values: Record<string, CellValue> = {}, version = 1): TableRecord => ({ key, version, values });
 const settle = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
