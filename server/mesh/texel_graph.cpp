@@ -59,8 +59,9 @@ class Builder {
     }
   }
 
-  void link_triangle(std::uint32_t triangle, std::vector<TexelGraph::Link>& links) const {
-    for (int k = 0; k < 3; ++k) link_edge(triangle, k, links);
+  void link_triangle(std::uint32_t triangle, std::vector<TexelGraph::Link>& links,
+                     std::vector<std::uint32_t>& at_open_edge) const {
+    for (int k = 0; k < 3; ++k) link_edge(triangle, k, links, at_open_edge);
     // Of a triangle thinner than two texels, a texel may touch no other and none of the edges' samples: also the one of the
     // centroid, which is all that a triangle between the centres has.
     const glm::dvec2 a = uv(triangle, 0), b = uv(triangle, 1), c = uv(triangle, 2);
@@ -104,7 +105,8 @@ class Builder {
   }
 
   // Along an edge, and across it where it is a seam.
-  void link_edge(std::uint32_t triangle, int k, std::vector<TexelGraph::Link>& links) const {
+  void link_edge(std::uint32_t triangle, int k, std::vector<TexelGraph::Link>& links,
+                 std::vector<std::uint32_t>& at_open_edge) const {
     const std::uint32_t other = neighbours_[3 * std::size_t{triangle} + k];
     if (other != kNoTriangle && other < triangle) return;  // that one has done it
     const int next = (k + 1) % 3;
@@ -128,6 +130,7 @@ class Builder {
       const double t = static_cast<double>(i) / steps;
       const auto a = resolve(glm::mix(a0, a1, t), islands_.of_triangle[triangle]);
       extend(last_a, a, links);
+      if (other == kNoTriangle && a != kNoTexel) at_open_edge.push_back(a);
       if (!seam) continue;
       const auto b = resolve(glm::mix(b0, b1, t), islands_.of_triangle[other]);
       extend(last_b, b, links);
@@ -175,7 +178,8 @@ std::span<const TexelGraph::Link> TexelGraph::links_of(std::uint32_t texel) cons
 }
 
 std::size_t TexelGraph::bytes() const {
-  return (to_right.capacity() + to_upper.capacity() + has_links.capacity()) * sizeof(std::uint64_t) +
+  return (to_right.capacity() + to_upper.capacity() + has_links.capacity() + at_open_edge.capacity()) *
+             sizeof(std::uint64_t) +
          links.capacity() * sizeof(Link);
 }
 
@@ -191,6 +195,7 @@ Result<TexelGraph> build_texel_graph(const Geometry& geometry, const SurfaceMap&
   graph.to_right.assign(slots, 0);
   graph.to_upper.assign(slots, 0);
   graph.has_links.assign(slots, 0);
+  graph.at_open_edge.assign(slots, 0);
   constexpr std::size_t kAtOnce = 4096;
   const auto parts_of = [](std::size_t count) { return static_cast<int>((count + kAtOnce - 1) / kAtOnce); };
   parallel_for(threads, parts_of(slots), [&](int part) {
@@ -199,10 +204,11 @@ Result<TexelGraph> build_texel_graph(const Geometry& geometry, const SurfaceMap&
   });
   const std::size_t triangles = geometry.triangle_count();
   std::vector<std::vector<TexelGraph::Link>> links(parts_of(triangles));
+  std::vector<std::vector<std::uint32_t>> at_open_edge(links.size());
   parallel_for(threads, static_cast<int>(links.size()), [&](int part) {
     if (progress.cancelled()) return;
     for (std::size_t t = part * kAtOnce; t < std::min(triangles, (part + 1) * kAtOnce); ++t)
-      builder.link_triangle(static_cast<std::uint32_t>(t), links[part]);
+      builder.link_triangle(static_cast<std::uint32_t>(t), links[part], at_open_edge[part]);
     std::sort(links[part].begin(), links[part].end());
     links[part].erase(std::unique(links[part].begin(), links[part].end()), links[part].end());
   });
@@ -212,6 +218,8 @@ Result<TexelGraph> build_texel_graph(const Geometry& geometry, const SurfaceMap&
   graph.links.erase(std::unique(graph.links.begin(), graph.links.end()), graph.links.end());
   graph.links.shrink_to_fit();
   for (const auto& link : graph.links) graph.has_links[link.first / 64] |= std::uint64_t{1} << (link.first % 64);
+  for (const auto& part : at_open_edge)
+    for (const std::uint32_t texel : part) graph.at_open_edge[texel / 64] |= std::uint64_t{1} << (texel % 64);
   progress.report(1, kJoining);
   return graph;
 }

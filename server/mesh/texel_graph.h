@@ -22,6 +22,7 @@ struct TexelGraph {
   std::vector<std::uint64_t> to_right,
       to_upper;                          // a slot: bits of the texels that are joined to their right, upper neighbour
   std::vector<std::uint64_t> has_links;  // a slot: bits of the texels that begin a link
+  std::vector<std::uint64_t> at_open_edge;  // a slot: bits of the texels where the mesh ends
   using Link = std::pair<std::uint32_t, std::uint32_t>;
   std::vector<Link> links;  // ascending; each stands here in both directions
 

@@ -36,10 +36,13 @@ Result<Response> statistics(const RouteContext& context, const Request& request)
   for (const auto& part : split_list(request.query_or("include", {}))) {
     if (part == "pieces")
       wanted.pieces = true;
+    else if (part == "perimeter")
+      wanted.perimeter = true;
     else if (part == "quantiles")
       wanted.quantiles = true;
     else
-      return fail(422, "Unknown part", "`include` takes pieces and quantiles, with a comma between.", "include");
+      return fail(422, "Unknown part", "`include` takes pieces, perimeter and quantiles, with commas between.",
+                  "include");
   }
   auto room = context.rooms.open(request.param("model"));
   if (!room) return tl::unexpected(room.error());
@@ -93,8 +96,11 @@ void select(const RouteContext& context, const Request& request, const Respond& 
   const auto selection = selection_of(context, **room, asked->where, asked->within, asked->at);
   if (!selection) return respond(selection.error());
   room::StatisticsWanted wanted;
-  for (const auto part : asked->include.value_or(std::vector<protocol::StatisticsPart>{}))
-    (part == protocol::StatisticsPart::pieces ? wanted.pieces : wanted.quantiles) = true;
+  for (const auto part : asked->include.value_or(std::vector<protocol::StatisticsPart>{})) switch (part) {
+      case protocol::StatisticsPart::pieces: wanted.pieces = true; break;
+      case protocol::StatisticsPart::perimeter: wanted.perimeter = true; break;
+      case protocol::StatisticsPart::quantiles: wanted.quantiles = true; break;
+    }
   std::optional<room::EditRequest> edit;
   if (asked->into) {
     auto made = painting(request, *asked, **room);

@@ -274,10 +274,12 @@ nlohmann::json to_json(const query::Statistics& statistics) {
                           {"centroid", vec3(entry.centroid)},
                           {"bounds", bounds_json(entry.bounds_min, entry.bounds_max)}};
     if (entry.pieces) of_key["pieces"] = *entry.pieces;
+    if (entry.perimeter_m) of_key["perimeter_m"] = *entry.perimeter_m;
     keys.push_back(std::move(of_key));
   }
   json["keys"] = std::move(keys);
   if (statistics.pieces) json["pieces"] = *statistics.pieces;
+  if (statistics.perimeter_m) json["perimeter_m"] = *statistics.perimeter_m;
   if (statistics.quantiles) {
     static constexpr std::array kNames = {"p5", "p25", "p50", "p75", "p95"};
     static_assert(kNames.size() == query::kQuantiles.size());

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "mesh/parallel.h"
+#include "query/perimeter.h"
 #include "query/pieces.h"
 
 namespace strata::query {
@@ -111,6 +112,7 @@ Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const 
   const TileSums sums = join(counting.sums());
   Statistics out;
   if (request.pieces) out.pieces = 0;
+  if (request.perimeter) out.perimeter_m = 0;
   if (sums.texels == 0) return out;
   out.texels = sums.texels;
   out.area_m2 = sums.area * m2_per_unit2;
@@ -143,11 +145,21 @@ Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const 
                              histogram.area[static_cast<std::size_t>(i)] * m2_per_unit2});
 
   if (request.quantiles) out.quantiles = quantiles(view, map, request.within, sums);
+  const ValueClasses value_classes{.each = !is_float(type)};
   if (request.pieces) {
-    const PieceCounts counts = count_pieces(view, map, *request.pieces, request.within, {.each = !is_float(type)});
+    const PieceCounts counts = count_pieces(view, map, *request.graph, request.within, value_classes);
     out.pieces = counts.all;
     for (const auto& [bits, pieces] : counts.of_class)
       if (const auto key = out.keys.find(decode_value(type, bits)); key != out.keys.end()) key->second.pieces = pieces;
+  }
+  if (request.perimeter) {
+    const Perimeters perimeters =
+        measure_perimeters(view, map, *request.graph, request.within, value_classes, request.threads);
+    out.perimeter_m = perimeters.all * metres_per_unit;
+    for (auto& [key, of_key] : out.keys) of_key.perimeter_m = 0;
+    for (const auto& [bits, length] : perimeters.of_class)
+      if (const auto key = out.keys.find(decode_value(type, bits)); key != out.keys.end())
+        key->second.perimeter_m = length * metres_per_unit;
   }
   return out;
 }

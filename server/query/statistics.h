@@ -18,6 +18,7 @@ struct KeyStatistics {
   glm::dvec3 centroid{0};                   // world, weighted by area
   glm::dvec3 bounds_min{0}, bounds_max{0};  // world
   std::optional<std::uint64_t> pieces{};    // where asked for: connected areas of this key
+  std::optional<double> perimeter_m{};      // where asked for: around these areas, along the surface
 };
 
 // Over valid surface texels (gutter excluded), weighted by true surface area.
@@ -35,13 +36,15 @@ struct Statistics {
   std::map<double, KeyStatistics> keys;  // integer layers with ≤ 4096 distinct values; otherwise empty
   std::optional<Quantiles> quantiles;    // where asked for and something has an area
   std::optional<std::uint64_t> pieces;   // where asked for: connected areas, of one value each in integer layers
+  std::optional<double> perimeter_m;     // where asked for: around what is valid, along the surface
 };
 
 struct StatisticsRequest {
   const TexelSelection* within = nullptr;  // null: the whole surface
   bool quantiles = false;
-  const mesh::TexelGraph* pieces = nullptr;  // null: not counted
-  TileSumsCache* cache = nullptr;            // of this layer; not used with `within`
+  bool pieces = false, perimeter = false;   // which need `graph`
+  const mesh::TexelGraph* graph = nullptr;  // of the map
+  TileSumsCache* cache = nullptr;           // of this layer; not used with `within`
   int threads = 1;
 };
 

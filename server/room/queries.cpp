@@ -132,13 +132,15 @@ Result<query::Statistics> OpenRoom::count(const query::LayerView& view, const me
   query::StatisticsRequest request;
   request.within = within;
   request.quantiles = wanted.quantiles;
+  request.pieces = wanted.pieces;
+  request.perimeter = wanted.perimeter;
   request.threads = mesh::background_threads();
   std::shared_ptr<const mesh::TexelGraph> graph;
-  if (wanted.pieces) {
+  if (wanted.pieces || wanted.perimeter) {
     auto found = surface_->graph(map);
     if (!found) return tl::unexpected(found.error());
     graph = std::move(*found);
-    request.pieces = graph.get();
+    request.graph = graph.get();
   }
   const auto found = state(view.layer.slug);
   if (found && is_now) request.cache = found->sums.get();

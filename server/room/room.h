@@ -107,7 +107,7 @@ struct Selection {
   std::optional<std::int64_t> at{};  // layers as they were after that sequence; absent: as they are
 };
 struct StatisticsWanted {  // that takes longer
-  bool quantiles = false, pieces = false;
+  bool quantiles = false, pieces = false, perimeter = false;
 };
 struct SelectedArea {
   int resolution = 0;  // of the texels that are counted

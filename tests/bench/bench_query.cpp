@@ -125,6 +125,7 @@ class Queries {
       add("the same with quantiles", 2000, repeated(3, [&] { return client_->get(path + "?include=quantiles"); }));
       add("first with pieces, with the texels' graph", 0, {client_->get(path + "?include=pieces")});
       add("with pieces", 2000, repeated(3, [&] { return client_->get(path + "?include=pieces"); }));
+      add("with perimeter", 2000, repeated(3, [&] { return client_->get(path + "?include=perimeter"); }));
     }
     add("an expression over three layers", 100, repeated(5, [&] {
           return client_->post(model + "/select", R"({"where": "moisture * 2 + salt > 0.5 and units <> 3"})");

@@ -32,9 +32,12 @@ def check_statistics(server, marks):
     told = server.get(marks + "/edits").json()["edits"][0]["time"]
     dab(server, marks, 5, 70, 30, 5)
     dab(server, marks, 5, 70, 70, 5)
-    now = server.get(marks + "/statistics?include=pieces,quantiles").json()
+    now = server.get(marks + "/statistics?include=pieces,perimeter,quantiles").json()
     near(now["area_m2"], 150 * math.pi * 1e-6, 0.02)
     assert now["pieces"] == 3 and {k["key"]: k["pieces"] for k in now["keys"]} == {3: 1, 5: 2}, now
+    near(now["perimeter_m"], (20 + 10 + 10) * math.pi * 1e-3, 0.02)
+    for key, around in {3: 20 * math.pi * 1e-3, 5: 20 * math.pi * 1e-3}.items():
+        near({k["key"]: k["perimeter_m"] for k in now["keys"]}[key], around, 0.02)
     assert (now["quantiles"]["p5"], now["quantiles"]["p50"], now["quantiles"]["p95"]) == (3, 3, 5), now["quantiles"]
     assert "pieces" not in server.get(marks + "/statistics").json()
 
@@ -58,11 +61,12 @@ def check_statistics(server, marks):
 
 
 def check_selections(server, marks, risk):
-    body = {"where": "marks = 5", "layers": ["marks"], "include": ["pieces"]}
+    body = {"where": "marks = 5", "layers": ["marks"], "include": ["pieces", "perimeter"]}
     selected = server.ok("POST", M + "/select", body).json()
     near(selected["area_m2"], 50 * math.pi * 1e-6, 0.03)
     near(selected["share"], selected["area_m2"] / server.get(M).json()["area_m2"], 1e-3)
     assert selected["layers"]["marks"]["pieces"] == 2, selected
+    near(selected["layers"]["marks"]["perimeter_m"], 20 * math.pi * 1e-3, 0.02)
     assert selected["bounds"]["min"][0] > 60 and selected["bounds"]["max"][1] < 80, selected["bounds"]
 
     disc = server.ok("POST", M + "/select", {"within": {"at": {"point": [50, 50, 0]}, "radius_mm": 12}}).json()

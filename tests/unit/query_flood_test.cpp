@@ -21,40 +21,22 @@
 #include "query/statistics.h"
 #include "query/tile_table.h"
 #include "support/meshes.h"
+#include "support/surfaces.h"
 
 namespace strata::query {
 namespace {
 
+using test::for_each_surface_texel;
+using test::layer_of;
+using test::Surface;
+using test::surface_of;
+
 constexpr int kResolution = 512;
-
-struct Surface {
-  std::string name;
-  mesh::Geometry geometry;
-  mesh::SurfaceMap map;
-  mesh::TexelGraph graph;
-};
-
-Surface surface_of(std::string name, const mesh::TriangleMesh& mesh, int resolution) {
-  Progress progress;
-  Surface surface;
-  surface.name = std::move(name);
-  surface.geometry = mesh::build_geometry(mesh, *mesh::make_atlas(mesh, resolution, progress));
-  surface.map = *mesh::bake_surface_map(surface.geometry, resolution, progress);
-  surface.graph = *mesh::build_texel_graph(surface.geometry, surface.map, progress);
-  return surface;
-}
 
 std::uint64_t count(const TexelSelection& selection) {
   std::uint64_t texels = 0;
   for (const std::uint64_t word : selection) texels += std::popcount(word);
   return texels;
-}
-
-template <class Visit>
-void for_each_surface_texel(const mesh::SurfaceMap& map, Visit visit) {
-  for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot)
-    for (std::uint64_t left = map.surface_mask[slot]; left != 0; left &= left - 1)
-      visit(slot * 64 + static_cast<std::uint32_t>(std::countr_zero(left)));
 }
 
 bool is_in(const TexelSelection& selection, std::uint32_t texel) {
@@ -140,24 +122,6 @@ TEST(Flood, neighbours_are_near_each_other_on_the_surface) {
   EXPECT_LT(farthest, 5 * texel_size);
 }
 
-// A layer that holds what `value_at` gives for each texel's position; gutter follows.
-TileMap layer_of(const mesh::SurfaceMap& map, const std::function<int(glm::vec3)>& value_at) {
-  TileMap tiles;
-  for (int y = 0; y < map.resolution / kTileSize; ++y)
-    for (int x = 0; x < map.resolution / kTileSize; ++x) {
-      auto tile = std::make_shared<TileData>(ValueType::u8);
-      for (int i = 0; i < kTexelsPerTile; ++i) {
-        const int tx = x * kTileSize + i % kTileSize, ty = y * kTileSize + i / kTileSize;
-        const auto slot = map.slot_of_block[std::size_t(ty / 8) * map.blocks_per_side + tx / 8];
-        const int texel = ty % 8 * 8 + tx % 8;
-        if (slot == mesh::kNoSlot || map.packed_position[std::size_t{slot} * 64 + texel] == mesh::kNoPosition) continue;
-        if (const int value = value_at(map.position(slot, texel))) tile->write(i, static_cast<std::uint32_t>(value));
-      }
-      if (tile->valid.any()) tiles[{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}] = tile;
-    }
-  return tiles;
-}
-
 void expect_connected(const Surface& surface, const std::function<int(glm::vec3)>& value_at,
                       const std::function<bool(glm::vec3)>& expected) {
   SCOPED_TRACE(surface.name);
@@ -236,7 +200,7 @@ TEST(Flood, the_pieces_that_are_counted_are_those_that_a_flood_finds) {
     const PieceCounts counts = count_pieces(view, map, surface.graph, nullptr, {.each = true});
     EXPECT_EQ(counts.of_class, expected);
     EXPECT_EQ(counts.all, floods);
-    const auto statistics = query::statistics(view, map, glm::dvec3(0), 1, {.pieces = &surface.graph});
+    const auto statistics = query::statistics(view, map, glm::dvec3(0), 1, {.pieces = true, .graph = &surface.graph});
     EXPECT_EQ(statistics.pieces, floods);
     for (const auto& [bits, pieces] : expected) EXPECT_EQ(statistics.keys.at(bits).pieces, pieces);
   }

@@ -1555,7 +1555,7 @@ export interface Within {
 }
 
 /** What takes longer. */
-export type StatisticsPart = "pieces" | "quantiles";
+export type StatisticsPart = "pieces" | "perimeter" | "quantiles";
 
 /** Paints what is selected. */
 export interface SelectInto {
@@ -1595,6 +1595,8 @@ export interface KeyStatistics {
   bounds: Bounds;
   /** Where asked for: connected areas of this key. */
   pieces?: number;
+  /** Where asked for: around these areas, along the surface. */
+  perimeter_m?: number;
 }
 
 /** The smallest values that the lower 5, 25, 50, 75 and 95 % of the area do not exceed. Where asked for and something has an area. */
@@ -1616,6 +1618,8 @@ export interface Statistics {
   std?: number;
   /** Where asked for: connected areas, of one value each in layers of whole numbers. */
   pieces?: number;
+  /** Where asked for: around what is valid, along the surface; an open edge of the mesh counts, a seam of the atlas does not. */
+  perimeter_m?: number;
   quantiles?: Quantiles;
   histogram: HistogramBin[];
   keys: KeyStatistics[];

@@ -388,6 +388,7 @@ nlohmann::json to_json(const HistoryEntryOp& value) { return name(value); }
 std::string_view name(StatisticsPart value) {
   switch (value) {
     case StatisticsPart::pieces: return "pieces";
+    case StatisticsPart::perimeter: return "perimeter";
     case StatisticsPart::quantiles: return "quantiles";
   }
   return {};
@@ -396,6 +397,7 @@ std::string_view name(StatisticsPart value) {
 void read(const nlohmann::json& json, StatisticsPart& value) {
   const auto& text = json.get_ref<const std::string&>();
   if (text == "pieces") value = StatisticsPart::pieces;
+  if (text == "perimeter") value = StatisticsPart::perimeter;
   if (text == "quantiles") value = StatisticsPart::quantiles;
 }
 
@@ -2023,6 +2025,7 @@ void read(const nlohmann::json& json, KeyStatistics& value) {
   read_member(json, "centroid", value.centroid);
   read_member(json, "bounds", value.bounds);
   read_optional_member(json, "pieces", value.pieces);
+  read_optional_member(json, "perimeter_m", value.perimeter_m);
 }
 
 nlohmann::json to_json(const KeyStatistics& value) {
@@ -2033,6 +2036,7 @@ nlohmann::json to_json(const KeyStatistics& value) {
   write_member(json, "centroid", value.centroid);
   write_member(json, "bounds", value.bounds);
   write_optional_member(json, "pieces", value.pieces);
+  write_optional_member(json, "perimeter_m", value.perimeter_m);
   return json;
 }
 
@@ -2062,6 +2066,7 @@ void read(const nlohmann::json& json, Statistics& value) {
   read_optional_member(json, "mean", value.mean);
   read_optional_member(json, "std", value.std);
   read_optional_member(json, "pieces", value.pieces);
+  read_optional_member(json, "perimeter_m", value.perimeter_m);
   read_optional_member(json, "quantiles", value.quantiles);
   read_member(json, "histogram", value.histogram);
   read_member(json, "keys", value.keys);
@@ -2076,6 +2081,7 @@ nlohmann::json to_json(const Statistics& value) {
   write_optional_member(json, "mean", value.mean);
   write_optional_member(json, "std", value.std);
   write_optional_member(json, "pieces", value.pieces);
+  write_optional_member(json, "perimeter_m", value.perimeter_m);
   write_optional_member(json, "quantiles", value.quantiles);
   write_member(json, "histogram", value.histogram);
   write_member(json, "keys", value.keys);

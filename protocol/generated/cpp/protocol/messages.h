@@ -1528,7 +1528,7 @@ template <>
 inline constexpr Schema kSchemaOf<Within> = Schema::Within;
 
 // What takes longer.
-enum class StatisticsPart { pieces, quantiles };
+enum class StatisticsPart { pieces, perimeter, quantiles };
 std::string_view name(StatisticsPart value);
 void read(const nlohmann::json& json, StatisticsPart& value);
 nlohmann::json to_json(const StatisticsPart& value);
@@ -1582,6 +1582,7 @@ struct KeyStatistics {
   glm::dvec3 centroid{0};
   Bounds bounds;
   std::optional<std::int64_t> pieces;  // Where asked for: connected areas of this key.
+  std::optional<double> perimeter_m;  // Where asked for: around these areas, along the surface.
   bool operator==(const KeyStatistics&) const = default;
 };
 void read(const nlohmann::json& json, KeyStatistics& value);
@@ -1612,6 +1613,7 @@ struct Statistics {
   std::optional<double> mean;
   std::optional<double> std;
   std::optional<std::int64_t> pieces;  // Where asked for: connected areas, of one value each in layers of whole numbers.
+  std::optional<double> perimeter_m;  // Where asked for: around what is valid, along the surface; an open edge of the mesh counts, a seam of the atlas does not.
   std::optional<Quantiles> quantiles;
   std::vector<HistogramBin> histogram;
   std::vector<KeyStatistics> keys;
