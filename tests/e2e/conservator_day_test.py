@@ -1,31 +1,37 @@
 #!/usr/bin/env python3
-"""A conservator's day over HTTP, with nothing but Python's own library: two walls of a chapel, a list of terms, places with photos across both, strokes,
-questions, a risk that is computed, and quantities for the report. Every figure is checked against what was painted."""
+"""A conservator's day over HTTP, with nothing but Python's own library, to be read as an example: two walls of a chapel, a list of terms, places with photos
+across both, strokes, questions, a risk that is computed, and quantities for the report. Every figure is checked against what was painted.
+
+`server.ok(method, path, body)` sends a request to /api/v1 with the token; a dict goes as JSON."""
 import csv
 import io
 import math
 import os
 import sys
 import urllib.parse
-import zipfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.pictures import png
 from support.strata_server import StrataServer
+from support.workbook import Workbook
 
 NORTH, SOUTH = "/models/north-wall", "/models/south-wall"  # nearly flat, x and y from 0 to 100 mm
 TERMS = """@prefix skos: <http://www.w3.org/2004/02/skos/core#> .
 <urn:damage:loss> a skos:Concept ; skos:notation "loss" ; skos:prefLabel "Loss"@en, "Pérdida"@es .
 <urn:damage:flaking> a skos:Concept ; skos:notation "flaking" ; skos:prefLabel "Flaking"@en ; skos:broader <urn:damage:loss> .
 <urn:damage:salts> a skos:Concept ; skos:notation "salts" ; skos:prefLabel "Salts"@en ; skos:definition "White, loose or crusty."@en .
-"""
-MORE_TERMS = "code,label-es\nflaking,Descamación\nsalts,Sales\n"
+""".encode()
+MORE_TERMS = "code,label-es\nflaking,Descamación\nsalts,Sales\n".encode()
 
 
 def disc(radius_mm):
     return math.pi * radius_mm**2 * 1e-6
+
+
+def swept(radius_mm, length_mm):
+    return disc(radius_mm) + 2 * radius_mm * length_mm * 1e-6
 
 
 def near(value, expected, share=0.02):
@@ -33,7 +39,7 @@ def near(value, expected, share=0.02):
 
 
 def paint(server, model, layer, value, x, y, radius):
-    """A disc of a measured radius, as it is tapped with the brush: seen straight on, so that it is a disc on the wall, too."""
+    """A disc around a place of the wall."""
     path = f"{model}/layers/{layer}/readings?" + urllib.parse.urlencode({"radius_mm": radius})
     return server.ok("POST", path, f"x,y,z,value\n{x},{y},0,{value}\n", headers={"Content-Type": "text/csv"}).json()
 
@@ -72,13 +78,19 @@ def look_and_paint(server, keys):
     paint(server, NORTH, "damage", keys["flaking"], 30, 30, 12)
     paint(server, NORTH, "damage", keys["salts"], 70, 70, 10)
     paint(server, SOUTH, "damage", keys["flaking"], 50, 50, 20)
-    # A stroke too much, taken back.
-    camera = camera_from(server.get(NORTH).json(), (0, 0, 1), up=(0, 1, 0))
-    before = server.get(NORTH + "/layers/damage/statistics").json()
-    stroke = {"op": "stroke", "value": keys["loss"], "camera": camera, "radius_px": 20, "path": [[200, 200], [400, 260]]}
-    assert server.ok("POST", NORTH + "/layers/damage/edits", stroke).json()["area_m2"] > 0
-    server.ok("POST", NORTH + "/layers/damage/undo")
-    assert server.get(NORTH + "/layers/damage/statistics").json()["keys"] == before["keys"]
+    # A crack along the foot of the wall, with the brush: pixels of a camera that looks straight at it.
+    camera = camera_from(server.get(SOUTH).json(), (0, 0, 1), up=(0, 1, 0))
+    distance = -camera["view"][14]
+    mm_of_pixel = 2 * distance / camera["projection"][5] / camera["height"]
+    y = camera["height"] / 2 + 40 / mm_of_pixel  # 40 mm below the middle
+    crack = {"op": "stroke", "value": keys["loss"], "camera": camera, "radius_mm": 2, "path": [[320 - 30 / mm_of_pixel, y], [320 + 30 / mm_of_pixel, y]]}
+    near(server.ok("POST", SOUTH + "/layers/damage/edits", crack).json()["area_m2"], swept(2, 60))
+    # And one stroke too many, which is taken back.
+    before = server.get(SOUTH + "/layers/damage/statistics").json()
+    server.ok("POST", SOUTH + "/layers/damage/edits", {**crack, "radius_mm": 9})
+    assert server.get(SOUTH + "/layers/damage/statistics").json()["keys"] != before["keys"]
+    server.ok("POST", SOUTH + "/layers/damage/undo")
+    assert server.get(SOUTH + "/layers/damage/statistics").json()["keys"] == before["keys"]
     places = [("Apse", "flaking", 3, "now"), ("Door", "salts", 1, "watch"), ("Window", "flaking", 5, "watch")]
     for name, damage, depth, urgency in places:
         server.ok("POST", "/tables/places/records",
@@ -135,7 +147,7 @@ def weigh(server, keys):
     """A risk is computed, and follows what is seen."""
     expression = "if(places.urgency = 'now', 2, 1) * reclass(moisture, 0, 30, 1, 60, 2)"
     risk = server.ok("POST", NORTH + "/layers", {"name": "Risk", "expression": expression, "type": "u8", "resolution": 2048}, expect=(201,)).json()
-    assert risk["inputs"] == ["places", "moisture"] and not risk["stale"], risk
+    assert risk["inputs"] == ["moisture", "places"] and not risk["stale"], risk
     near(server.ok("POST", NORTH + "/select", {"where": "risk = 4"}).json()["area_m2"], disc(6), 0.03)
     near(server.ok("POST", NORTH + "/select", {"where": "risk = 2"}).json()["area_m2"], disc(15) - disc(6), 0.03)
     then = server.get(NORTH + "/layers/risk").json()["sequence"]
@@ -157,16 +169,19 @@ def weigh(server, keys):
 def report(server, keys):
     """Before six: the figures, as they go into the report."""
     answer = server.ok("GET", NORTH + "/layers/damage/quantities").json()
-    by_class = {each["value"]: each for each in answer["quantities"]}
+    by_class = {each["key"]: each for each in answer["quantities"]}
     near(by_class[keys["flaking"]]["area_m2"], disc(12))
     near(by_class[keys["salts"]]["area_m2"], disc(10))
-    assert by_class[keys["flaking"]]["pieces"] == 1 and by_class[keys["flaking"]]["class"] == "Flaking", by_class
+    assert by_class[keys["flaking"]]["pieces"] == 1 and by_class[keys["flaking"]]["class"] == "flaking", by_class
     near(answer["sum"]["area_m2"], disc(12) + disc(10))
     near(answer["sum"]["share"], (disc(12) + disc(10)) / 0.01)
     lines = rows_of(server.ok("GET", NORTH + "/layers/damage/quantities?f=csv").body)
     assert lines[-1]["class"] == "total" and abs(float(lines[-1]["area_m2"]) - answer["sum"]["area_m2"]) < 1e-12, lines
-    book = zipfile.ZipFile(io.BytesIO(server.ok("GET", NORTH + "/layers/damage/quantities?f=xlsx").body))
-    assert b"Flaking" in b"".join(book.read(name) for name in book.namelist())
+    book = Workbook(server.ok("GET", NORTH + "/layers/damage/quantities?f=xlsx").body)
+    assert [each["class"] for each in book.records] == ["flaking", "salts", "total"] and book.records[0]["pieces"] == 1, book.records
+    near(book.records[2]["area_m2"], answer["sum"]["area_m2"], 1e-12)
+    [crack] = [each for each in server.ok("GET", SOUTH + "/layers/damage/quantities").json()["quantities"] if each["key"] == keys["loss"]]
+    near(crack["area_m2"], swept(2, 60))
     places = rows_of(server.ok("GET", "/tables/places/records?f=csv").body)
     assert [each["name"] for each in places] == ["Apse", "Door", "Window"] and places[2]["depth"] == "5", places
     texels = rows_of(server.ok("GET", NORTH + "/layers/moisture/texels.csv?" + urllib.parse.urlencode({"where": "moisture > 50", "cell": "5mm"})).body)
