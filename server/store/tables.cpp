@@ -96,6 +96,8 @@ Result<Table> Store::update_table(const Table& table, const FirstAnswer<Table>& 
   if (auto good = check_text(table.description, "description"); !good) return tl::unexpected(good.error());
   if (auto good = check_labels(table.labels); !good) return tl::unexpected(good.error());
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Table> {
+    // As for every other change: the analysts' view of the new name is made while nobody alters the rows that it reads.
+    if (auto open = lock_table(connection, table.id); !open) return tl::unexpected(open.error());
     auto row = connection.query(
         "UPDATE record_tables SET name = $3, labels = $4, description = $5, version = version + 1 "
         "WHERE id = $1 AND version = $2 RETURNING id",
