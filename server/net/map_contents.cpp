@@ -60,10 +60,8 @@ void add_world(nlohmann::json& json, const query::WorldFile& world, int width, i
   json["bounds"] = {low.x, low.y, high.x, high.y};
 }
 
-Result<Response> picture_contents(const Request& request, const MapFiles& files, const Model& model,
+Result<Response> picture_contents(const Request& request, const MapFiles& files, const Model& model, double tolerance,
                                   ByteBudget& budget) {
-  const auto tolerance = number_of(request, "tolerance", kLeastTolerance, kMostTolerance, query::kUsualTolerance);
-  if (!tolerance) return tl::unexpected(tolerance.error());
   const auto tiff = tiff_of(files, model);
   if (!tiff) return tl::unexpected(tiff.error());
   const auto held = budget_of(files, *tiff, budget);
@@ -75,7 +73,7 @@ Result<Response> picture_contents(const Request& request, const MapFiles& files,
     if (!picture) return tl::unexpected(picture.error());
     width = picture->width;
     height = picture->height;
-    for (const query::FoundColor& found : query::find_colors(*picture, *tolerance))
+    for (const query::FoundColor& found : query::find_colors(*picture, tolerance))
       json["colors"].push_back(
           {{"color", hex(found.color)}, {"share", found.share}, {"background", found.is_background}});
   }
@@ -100,10 +98,12 @@ Result<Response> picture_contents(const Request& request, const MapFiles& files,
 Result<Response> map_contents(const RouteContext& context, ByteBudget& budget, const Request& request) {
   const auto model = context.store.model(request.param("model"));
   if (!model) return tl::unexpected(model.error());
+  const auto tolerance = number_of(request, "tolerance", kLeastTolerance, kMostTolerance, query::kUsualTolerance);
+  if (!tolerance) return tl::unexpected(tolerance.error());
   const auto files = MapFiles::take(request, context.options.upload_dir);
   if (!files) return tl::unexpected(files.error());
   const bool is_picture = files->kind() == MapKind::picture || files->kind() == MapKind::tiff;
-  return is_picture ? picture_contents(request, *files, *model, budget) : polygon_contents(*files, *model);
+  return is_picture ? picture_contents(request, *files, *model, *tolerance, budget) : polygon_contents(*files, *model);
 }
 
 }  // namespace strata::net

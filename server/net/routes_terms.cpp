@@ -151,9 +151,7 @@ std::vector<bool> with_those_above(const std::vector<ListedTerm>& terms, const s
   return told;
 }
 
-Result<Response> tree_response(const Request& request, const std::vector<ListedTerm>& terms) {
-  auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
+Response tree_response(const Request& request, const std::vector<ListedTerm>& terms, const Page& page) {
   const std::string language = to_lower(request.query_or("lang", {}));
   const Palette palette = terms_palette(terms);
   std::map<std::int64_t, int> below;
@@ -166,7 +164,7 @@ Result<Response> tree_response(const Request& request, const std::vector<ListedT
   for (std::size_t i = 0; i < terms.size(); ++i) {
     if (!told[i]) continue;
     const int place = total++;
-    if (place < page->offset || place >= page->offset + page->limit) continue;
+    if (place < page.offset || place >= page.offset + page.limit) continue;
     const ListedTerm& listed = terms[i];
     const Term& term = listed.term;
     list.push_back({{"key", listed.key},
@@ -184,7 +182,7 @@ Result<Response> tree_response(const Request& request, const std::vector<ListedT
     if (listed.depth > 0) list.back()["parent"] = *listed.parent;
   }
   Response response = json_response({{"terms", std::move(list)}, {"total", total}});
-  add_page_links(response, request, *page, total);
+  add_page_links(response, request, page, total);
   return response;
 }
 
@@ -194,6 +192,8 @@ Result<Response> list_terms_of(const RouteContext& context, const Request& reque
     return fail(406, "Unknown format", "`f` is json, csv or turtle.", "f");
   auto separator = csv_separator(request);
   if (!separator) return tl::unexpected(separator.error());
+  auto shown = page_of(request);
+  if (!shown) return tl::unexpected(shown.error());
   auto table = context.store.table(request.param("table"));
   if (!table) return tl::unexpected(table.error());
   if (!term_columns(*table))
@@ -205,9 +205,9 @@ Result<Response> list_terms_of(const RouteContext& context, const Request& reque
   const auto columns = term_columns(page->table);
   if (!columns) return fail(409, "No list of terms", table->name + " was changed meanwhile.");
   const auto listed = list_terms(*columns, page->records);
-  Result<Response> response;
+  Response response;
   if (format == "json") {
-    response = tree_response(request, listed);
+    response = tree_response(request, listed, *shown);
   } else {
     std::vector<Term> terms;
     for (const ListedTerm& each : listed) terms.push_back(each.term);
@@ -218,9 +218,9 @@ Result<Response> list_terms_of(const RouteContext& context, const Request& reque
       if (!text) return tl::unexpected(text.error());
       response = text_response(std::move(*text), "text/turtle; charset=utf-8");
     }
-    name_download(*response, page->table.slug + (format == "csv" ? ".csv" : ".ttl"));
+    name_download(response, page->table.slug + (format == "csv" ? ".csv" : ".ttl"));
   }
-  if (response) response->with("Strata-Sequence", std::to_string(page->table.sequence));
+  response.with("Strata-Sequence", std::to_string(page->table.sequence));
   return response;
 }
 
