@@ -1228,7 +1228,7 @@ export interface TableEdit {
   user: string;
   /** UTC, RFC 3339. */
   time: string;
-  op: "records" | "delete" | "import" | "create-column" | "change-column" | "retype-column" | "drop-column" | "undo" | "redo";
+  op: "records" | "delete" | "import" | "create-column" | "change-column" | "retype-column" | "drop-column" | "attach" | "detach" | "undo" | "redo";
   /** False while it is taken back. */
   in_force: boolean;
   changes: TableCellChange[];
