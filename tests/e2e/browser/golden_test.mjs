@@ -4,7 +4,8 @@
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { Browser, has_hue, kRoot, require_browser } from "../support/browser.mjs";
+import { Browser, has_hue, require_browser } from "../support/browser.mjs";
+import { kRoot } from "../support/modules.mjs";
 import { decode_png, encode_png } from "../support/png.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 

@@ -1,30 +1,19 @@
 // Real Chromium on the real page. Without Chromium or playwright-core the tests are skipped loudly by hand and fail in CI.
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
-import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
-import { dirname, join } from "node:path";
-import { fileURLToPath } from "node:url";
+import { join } from "node:path";
+import { kRoot, load_module, missing } from "./modules.mjs";
 import { decode_png } from "./png.mjs";
 import { kLong_ms, wait_for } from "./strata-server.mjs";
 
-export const kRoot = dirname(dirname(dirname(dirname(fileURLToPath(import.meta.url)))));
 const kChromium = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const kFlags = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync", "--force-color-profile=srgb", "--font-render-hinting=none", "--disable-lcd-text"];
 
-function missing(what) {
-  console.log(`${process.env.CI === "true" ? "FAILED" : "SKIPPED"}: ${what}`);
-  process.exit(process.env.CI === "true" ? 1 : 77);
-}
-
 function load_playwright() {
   if (!existsSync(kChromium)) missing(`there is no ${kChromium} (Debian's package chromium)`);
   if (!existsSync(join(kRoot, "web-client", "dist", "index.html"))) missing("the page is not built: npm run build in web-client");
-  try {
-    return createRequire(join(kRoot, "web-client", "package.json"))("playwright-core");
-  } catch {
-    return missing("playwright-core is not installed: npm ci in web-client");
-  }
+  return load_module("playwright-core");
 }
 
 /** Call it first: nothing is left behind then when something is missing. */

@@ -1,0 +1,299 @@
+// What the contract's schemas cannot say to those who make calls of them: which things the site has, what conditions and cells look like, and
+// what an operation wants besides.
+import { fc, strange_text } from "./arbitraries.mjs";
+import { kColumnSlugs, kLayers } from "./site.mjs";
+
+/** Stands in a path for something that is made for this call alone. */
+export const kSpare = "(a spare one)";
+
+export const one = (...values) => fc.constantFrom(...values);
+export const mostly = (...values) =>
+  fc.oneof({ weight: 12, arbitrary: one(...values) }, { weight: 1, arbitrary: one("nothing", "999999", "0") });
+
+const point = fc.tuple(fc.integer({ min: 0, max: 100 }), fc.integer({ min: 0, max: 100 }), one(0, 0.5, 20));
+const pixel = fc.tuple(fc.integer({ min: 0, max: 160 }), fc.integer({ min: 0, max: 120 }));
+/** Straight at the wall, orthographic, 160 × 120 mm. */
+const camera = fc
+  .record({ x: fc.integer({ min: 30, max: 70 }), width: one(160, 320), section: fc.boolean() })
+  .map(({ x, width, section }) => ({
+    view: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -x, -50, -200, 1],
+    projection: [1 / 80, 0, 0, 0, 0, 1 / 60, 0, 0, 0, 0, -0.01, 0, 0, 0, -2, 1],
+    width,
+    height: (width * 3) / 4,
+    ...(section ? { section: [[1, 0, 0, -x / 2]] } : {}),
+  }));
+const layer = fc.oneof(mostly(...kLayers), one(1, 2));
+const condition = one(
+  "cracks > 1",
+  "x < 12 and y < 12",
+  "moisture > 0.3 and not valid(cracks)",
+  "units.depth > 0.5",
+  "units.state = 'loose'",
+  "units in (1, 2)",
+  "true",
+  "false",
+);
+const filter = one(
+  "depth > 0.5",
+  "state = 'loose' and depth between 0 and 9",
+  "code like 'SU%'",
+  "period < '1600'",
+  "damage.code = 'loss'",
+  "a_contains(above, (1))",
+  "found is null",
+  "key > 1",
+);
+const at = one(1, 2, 3, "2030-01-01T00:00:00Z", "2001-05-04T12:00:00Z", 999999);
+const cells = fc.record(
+  {
+    code: fc.uuid(),
+    depth: one(0.5, 3, null),
+    layers: one(1, 2),
+    period: one("156X", "-0043/0100"),
+    state: one("loose", "firm"),
+    found: one("2024-02-29", null),
+    damage: one(1, 2),
+    above: one([], [1], [1, 2]),
+    wet: fc.boolean(),
+  },
+  { requiredKeys: ["code"] },
+);
+const palette = one(
+  {
+    mode: "linear",
+    min: 0,
+    max: 1,
+    points: [
+      { at: 0, color: "#440154" },
+      { at: 1, color: "#fde725ff" },
+    ],
+  },
+  { mode: "categorical", points: [{ at: 3, color: "#d55e00", label: "Crack", pattern: "hatch", angle: 30 }] },
+  {
+    mode: "step",
+    points: [
+      { at: 0, color: "#fff5f0" },
+      { at: 2, color: "#de2c26" },
+    ],
+  },
+  { mode: "categorical", column: "state", points: [{ at: 0, value: "loose", color: "#d55e00" }] },
+);
+
+const by_schema = {
+  Camera: camera,
+  Point3: point,
+  Point2: pixel,
+  LayerRef: layer,
+  TableRef: mostly("units", "damage", "scratch"),
+  ToolShape: mostly("disc", "square", "leaf"),
+  Palette: palette,
+  At: at,
+  CellValues: cells,
+  Resolution: one(2048), // the smallest: larger ones are the same code and take long to paint
+};
+export const words = {
+  by_schema,
+  by_name: {
+    where: condition,
+    filter,
+    expression: one("moisture * 2", "if(units.state = 'loose', 1, 0)", "z + cracks", "cracks >"),
+    value: one(0, 1, 2, 3, 0.5),
+    model: mostly("wall", "wall-2"),
+    from: mostly("wall", "wall-2"),
+    radius_mm: one(2, 8),
+    radius_px: one(3, 12.5),
+    step_mm: one(1, 10),
+    tolerance_mm: one(1),
+    distance_mm: one(50),
+    look: mostly("infrared"),
+    property: mostly("quality"),
+    rays: one(16),
+    order: one(-1, 0, 7),
+    language: mostly("es", "en"),
+  },
+};
+
+export const path_words = {
+  project: mostly("site", "default"),
+  model: mostly("wall", "wall", "wall-2"),
+  layer: mostly(...kLayers),
+  look: mostly("infrared", "1"),
+  tool: mostly("leaf", "1"),
+  table: mostly("units", "damage", "scratch"),
+  column: mostly(...kColumnSlugs),
+  key: mostly("1", "2", "3"),
+  attachment: mostly("1", "2"),
+  job: mostly("(a job)"),
+  name: mostly("wall.ply"),
+  format: one("png", "npy", "tif"),
+  template: mostly("stone-condition", "excavation-units"),
+};
+export const query_words = {
+  at: at.map(String),
+  filter,
+  where: condition,
+  sortby: one("depth", "-code", "key", "area_m2", "depth,-code", "nothing"),
+  project: mostly("site"),
+  coords: one("POINT Z(50 50 1)", "POINT(10 10 0)", "POINT Z(1 2"),
+  columns: one("code", "code,depth"),
+  "parameter-name": one("cracks", "cracks,units", "nothing"),
+  layers: one("cracks", "moisture,units", "nothing"),
+  include: one("pieces", "quantiles", "pieces,quantiles", "all"),
+  cell: one("5mm", "2cm", "5"),
+  world: one("4,0,0,-4,2,90", "1,0,0,0,0"),
+  column: mostly("photos", "papers", "code"),
+  q: one("loss", "perd", ""),
+  radius_mm: one("4"),
+  tolerance_mm: one("3"),
+  crs: one("EPSG:25830"),
+  filename: one("wall.ply", "scan.obj"),
+  weld: one("0", "0.001"),
+  along: one("-z", "+z", "+x"),
+  colors: one('{"#c81e1e": 1}', "auto", "red"),
+  band: one("1"),
+  source: one("wall.ply"),
+  attribute: one("zone", "nothing"),
+  names: one("zone"),
+  link: one("(the owner's link)", "3q2-7wAAqrs"),
+  to: one("2", "3"),
+};
+
+const file = (...names) => one(...names.map((name) => ({ file: name })));
+export const content_of = {
+  "application/octet-stream": file("letter.txt", "picture.png", "wall.ply", "noise.bin"),
+  "application/zip": file("empty.zip", "noise.bin"),
+  "image/png": file("picture.png"),
+  "image/jpeg": file("noise.bin", "picture.png"),
+  "image/tiff": file("noise.bin"),
+  "application/x-npy": file("noise.bin"),
+  "text/csv": file("terms.csv"),
+  "text/turtle": file("terms.ttl"),
+  "application/rdf+xml": file("terms.rdf"),
+  "application/geo+json": file("map.geojson"),
+  "multipart/form-data": file("map.geojson", "picture.png", "letter.txt", "wall.ply"),
+};
+
+const spare = (name, ...others) => ({ [name]: one(kSpare, kSpare, kSpare, ...others, "nothing") });
+const json = (schema_words) => ({
+  words: { by_schema: { ...by_schema, ...schema_words.by_schema }, by_name: { ...words.by_name, ...schema_words.by_name } },
+});
+const world = "4,0,0,-4,2,90"; // of the picture of 24 × 16 pixels
+const scratch = { path: { table: one("scratch") } };
+const units_layer = { path: { model: one("wall"), layer: one("units", "units", "units", "cracks") } };
+const new_record = fc.record({ values: cells });
+const new_records = {
+  ...json({
+    by_schema: {
+      RecordsCreate: fc.oneof(
+        new_record,
+        fc.record({ records: fc.array(new_record, { minLength: 1, maxLength: 3 }) }),
+        fc.record({ key: fc.integer({ min: 1, max: 2 ** 31 }), values: cells }),
+      ),
+    },
+  }),
+  content: { "text/csv": file("records.csv", "records.csv", "terms.csv") },
+};
+const form_of = (...names) => ({ "multipart/form-data": file(...names) });
+const attach = { content: { "application/octet-stream": file("letter.txt", "picture.png") } };
+
+/** What an operation wants that its schema and the words above do not say. What takes something away takes a spare one; what changes how things are called or kept is done to what others do not need. */
+export const particulars = {
+  login: json({ by_name: { token: fc.oneof(one("(the owner's token)"), strange_text) } }),
+  delete_project: { path: spare("project", "site") },
+  delete_model: { path: spare("model") },
+  delete_layer: { path: { model: one("wall"), ...spare("layer") } },
+  delete_look: { path: { model: one("wall-2"), ...spare("look") } },
+  create_look: { path: { model: one("wall") } },
+  delete_tool: { path: spare("tool") },
+  delete_table: { path: spare("table", "units") },
+  delete_record: { path: { table: one("units"), ...spare("key", "1") }, query: { texels: one("refuse", "clear", "reassign") } },
+  delete_layer_record: { path: { ...units_layer.path, ...spare("key", "1") } },
+  delete_attachment: { path: spare("attachment") },
+  drop_column: { path: { table: one("scratch"), ...spare("column") } },
+  change_column: { path: { table: one("scratch"), ...spare("column", "note") }, ...json({ by_name: { target: one("units", "scratch") } }) },
+  cancel_job: { path: spare("job", "(a job)") },
+  change_model: { path: { model: one("wall-2") } },
+  change_project: { path: { project: one("site", "default") } },
+  change_layer: { path: { model: one("wall"), ...spare("layer") } },
+  add_orthophoto: {
+    queries: one({ name: "Orthophoto", world }),
+    content: { "image/jpeg": file("picture.png"), ...form_of("picture.png") },
+  },
+  import_model: { content: { "application/octet-stream": file("wall.ply", "wall.ply", "noise.bin") } },
+  create_table: json({ by_schema: { TableRef: one("damage") } }),
+  change_table: scratch,
+  undo_table: scratch,
+  redo: { path: { model: one("wall", "wall-2"), layer: one("undone", "cracks") } },
+  redo_table: { path: { table: one("undone", "scratch") } },
+  compute_layer: { path: { model: one("wall"), layer: one("risk", "risk", "cracks") } },
+  transfer_layers: { path: { model: one("wall-2") }, ...json({ by_name: { layers: one(["cracks"], ["moisture"], ["cracks", "units"]) } }) },
+  import_vertex_values: {
+    path: { model: one("wall"), layer: one("cracks", "cracks", "moisture", "moisture", "risk") },
+    content: { "text/csv": file("vertices.csv", "vertices.csv", "readings.csv") },
+  },
+  paint_readings: {
+    path: { model: one("wall"), layer: one("cracks", "cracks", "moisture", "moisture", "risk") },
+    content: { "text/csv": file("readings.csv") },
+  },
+  paint_polygons: {
+    path: { model: one("wall"), layer: one("cracks", "cracks", "moisture", "moisture", "risk") },
+    queries: one({ value: "1" }, { attribute: "zone" }, { attribute: "zone", names: "zone", along: "+z" }),
+    content: form_of("map.geojson"),
+  },
+  paint_picture: {
+    path: { model: one("wall"), layer: one("cracks", "cracks", "moisture", "moisture", "risk") },
+    content: { "image/jpeg": file("picture.png"), ...form_of("picture.png") },
+    queries: one({ world }, { world, colors: "auto" }, { world, along: "+z", tolerance: "20", colors: '{"#c81e1e": 1}' }),
+  },
+  put_texels: {
+    path: { model: one("wall"), layer: one("cracks"), format: one("png", "png", "npy") },
+    content: { "image/png": file("cracks.png"), "application/x-npy": file("cracks.npy"), "image/tiff": file("cracks.png") },
+  },
+  get_texel_lines: { path: units_layer.path },
+  use_template: {
+    path: { project: one(kSpare, kSpare, "site", "nothing") },
+    ...json({ by_schema: { TemplateUse: one({}, { language: "es" }, { language: "pt-BR" }, { model: "wall" }) } }),
+  },
+  create_records: { path: { table: mostly("units") }, ...new_records },
+  import_terms: { path: { table: one("damage", "damage", "damage", "units") } },
+  list_terms: { path: { table: one("damage", "damage", "damage", "units") } },
+  list_cycles: { path: { table: one("units"), column: one("above", "above", "code") } },
+  list_classes: { path: { table: one("units") } },
+  match_attachments: {
+    path: { table: one("units") },
+    ...json({
+      by_name: {
+        pattern: one("{code}_{view}_{n}.jpg", "{code}.png", "{key}-{n}.png", "plain"),
+        column: one("code", "key"),
+        names: one(["SU 1_north_1.jpg", "SU 9_x_2.jpg"], ["2-1.png"]),
+      },
+    }),
+  },
+  record_extent: units_layer,
+  list_layer_records: units_layer,
+  create_layer_records: { ...units_layer, ...new_records },
+  cross_table: json({ by_name: { rows: mostly("cracks", "units"), columns: mostly("units", "cracks", "risk") } }),
+  get_layer_record: units_layer,
+  change_layer_record: units_layer,
+  list_layer_attachments: units_layer,
+  create_attachments: { path: { table: one("units") }, ...attach },
+  create_layer_attachments: { ...units_layer, ...attach },
+  create_column: { path: { table: one("scratch") } },
+  change_record: { path: { table: mostly("units") } },
+  create_layer: json({
+    by_name: {
+      columns: fc.array(fc.record({ name: one("Name", "Depth") }), { maxLength: 2 }),
+      table: one("units", "damage"),
+      expression: one("moisture * 2", "cracks + 1", "nothing + 1"),
+    },
+  }),
+};
+
+// Folder names, tokens, tags: what a proxy or a script may send along.
+export const header_words = {
+  "If-Match": one('"v1"', "*", '"v999"', "v1", '""'),
+  "Idempotency-Key": fc.oneof(fc.uuid(), one("the same", "k".repeat(255))),
+  "If-None-Match": one('"v1"', '"v2"', "*"),
+  "If-Range": one('"v1"'),
+  Range: one("bytes=0-9", "bytes=5-", "bytes=-4", "bytes=999999-", "bytes=9-2", "lines=1"),
+};
