@@ -68,7 +68,7 @@ describe("records", () => {
     const finds: Layer = { ...layer("u32", record_palette()), kind: "database" };
     expect(new BrushSettings().value_of(finds)).toBe(1);
     expect(describe_value(finds, 4711)).toBe("Record 4711");
-    const names = { label: (table: number, key: number) => (table === 3 && key === 4711 ? "Fibula" : null) };
+    const names = { label: (table: number, key: number) => (table === 3 && key === 4711 ? "Fibula" : null), term: () => null };
     expect(describe_value({ ...finds, table: 3 }, 4711, names)).toBe("Fibula");
     expect(describe_value({ ...finds, table: 3 }, 4712, names)).toBe("Record 4712");
     expect(value_problem(finds, 4_294_967_296)).not.toBeNull();

@@ -71,10 +71,14 @@ export function value_problem(layer: Layer, value: number): string | null {
 /** What records are called; null where that is not known. */
 export interface RecordLabels {
   label(table: number, key: number): string | null;
+  /** Of a list of terms, in the person's language; null for other tables. */
+  term(table: number, key: number): string | null;
 }
 
-/** A value as people read it: the label of its class, the name of its record, or the number with its unit. */
+/** A value as people read it: its term, the label of its class, the name of its record, or the number with its unit. */
 export function describe_value(layer: Layer, value: number, records: RecordLabels | null = null): string {
+  const term = layer.table === undefined ? null : (records?.term(layer.table, value) ?? null);
+  if (term !== null) return term;
   const by_value = layer.palette.mode === "categorical" && !layer.palette.column;
   const label = by_value ? layer.palette.points.find((p) => p.at === value)?.label : "";
   if (label) return label;

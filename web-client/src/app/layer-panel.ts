@@ -18,7 +18,7 @@ import { choose_raster, formats_of, save_raster } from "./raster-files";
 import { texts } from "./texts";
 
 export type LayerPanelRequest =
-  | { dialog: "create" | "transfer" }
+  | { dialog: "create" | "template" | "transfer" }
   | { dialog: "edit" | "colors" | "statistics" | "map"; layer: Layer };
 
 @customElement("strata-layer-panel")
@@ -187,6 +187,9 @@ export class StrataLayerPanel extends LitElement {
         ${session.can_curate
           ? html`<button @click=${() => this.request({ dialog: "create" })}>${icon("plus")}${words.new}</button>
               <strata-menu label=${words.more}>
+                <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "template" })}>
+                  ${icon("layers")}${texts.templates.open}
+                </button>
                 <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "transfer" })}>
                   ${icon("import")}${texts.transfer.open}
                 </button>
@@ -198,6 +201,9 @@ export class StrataLayerPanel extends LitElement {
         ? html`<div class="empty">
             <b>${words.empty_title}</b>
             <p>${words.empty_lead}</p>
+            ${session.can_curate
+              ? html`<button @click=${() => this.request({ dialog: "template" })}>${icon("layers")}${texts.templates.open}</button>`
+              : nothing}
           </div>`
         : html`<ul class="list" @dragover=${this.on_list_over} @drop=${this.on_drop}>
             ${repeat(

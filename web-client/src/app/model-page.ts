@@ -40,6 +40,7 @@ import { shared_styles } from "./styles";
 import type { TablePanelRequest } from "./table-panel";
 import "./table-panel";
 import type { TableView } from "./table-view";
+import "./template-dialog";
 import { texts } from "./texts";
 import "./tool-rail";
 import "./transfer-dialog";
@@ -316,6 +317,8 @@ export class StrataModelPage extends LitElement {
         return html``;
       case "create":
         return html`<strata-layer-dialog .session=${session} @closed=${closed}></strata-layer-dialog>`;
+      case "template":
+        return html`<strata-template-dialog .session=${session} @closed=${closed}></strata-template-dialog>`;
       case "transfer":
         return html`<strata-transfer-dialog .session=${session} @closed=${closed}></strata-transfer-dialog>`;
       case "edit":

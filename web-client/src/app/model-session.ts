@@ -100,7 +100,7 @@ export class ModelSession {
       layers: this.layers,
       pointer: this.pointer,
       model: () => this.model,
-      records: { label: (table, key) => this.tables.label(table, key) },
+      records: { label: (table, key) => this.tables.label(table, key), term: (table, key) => this.tables.term(table, key) },
       may_paint: () => this.can_paint,
       changed,
     });

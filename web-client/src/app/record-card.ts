@@ -2,7 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { label_column, label_of, named_keys } from "../core/cells";
+import { label_of, named_keys, naming_columns } from "../core/cells";
 import { format_area } from "../core/measure";
 import { css_color, record_color } from "../core/palette";
 import type { Table, TableRecord } from "../core/protocol.gen";
@@ -117,7 +117,7 @@ export class StrataRecordCard extends LitElement {
   /** The first columns that say something; the one that names the record is its heading. */
   private lines(table: Table, record: TableRecord): TemplateResult {
     const words = texts.tables;
-    const name = label_column(table);
+    const [name] = naming_columns(table);
     const told = table.columns.filter((column) => column !== name && column.kind !== "picture" && (record.values[column.slug] ?? null) !== null);
     return html`<dl>
       <dt>${words.key}</dt>

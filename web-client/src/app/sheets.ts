@@ -51,7 +51,7 @@ export class StrataHelpSheet extends LitElement {
         <dl class="keys">${rows.map(([keys, does]) => html`<dt>${keys}</dt><dd>${does}</dd>`)}</dl>`;
     return html`<strata-dialog wide heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       ${part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
-      ${part(words.brush, words.brush_rows)} ${part(words.table, words.table_rows)} ${part(words.layers, words.layer_rows)}
+      ${part(words.brush, words.brush_rows)} ${part(words.terms, words.terms_rows)} ${part(words.table, words.table_rows)} ${part(words.layers, words.layer_rows)}
     </strata-dialog>`;
   }
 }

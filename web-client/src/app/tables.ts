@@ -6,6 +6,7 @@ import type { Layer } from "../core/types";
 import { notices } from "./notices";
 import { RecordNames } from "./record-names";
 import { TableView } from "./table-view";
+import { TermTree } from "./term-tree";
 
 export interface TablesHost {
   model_id: string;
@@ -24,6 +25,7 @@ export class Tables {
 
   private readonly tables_ = new Map<number, Table | "asked">();
   private readonly names_ = new Map<number, RecordNames>();
+  private readonly terms_ = new Map<number, TermTree>();
 
   constructor(
     private readonly api_: Api,
@@ -52,6 +54,22 @@ export class Tables {
   /** What a record of the table is called; null where it has no name, or none that is known yet. */
   label(id: number, key: number): string | null {
     return this.names(id)?.label(key) ?? null;
+  }
+
+  /** What a term is called; null where the table is no list of terms, or its name is not known. */
+  term(id: number, key: number): string | null {
+    return this.find(id)?.kind === "terms" ? this.label(id, key) : null;
+  }
+
+  /** Null: the table is no list of terms, as far as is known. */
+  terms(id: number): TermTree | null {
+    if (this.find(id)?.kind !== "terms") return null;
+    let terms = this.terms_.get(id);
+    if (!terms) {
+      terms = new TermTree(this.api_, id, this.host_.changed);
+      this.terms_.set(id, terms);
+    }
+    return terms;
   }
 
   /** All of the project, for a choice among them. */
@@ -112,7 +130,7 @@ export class Tables {
   /** The connection was away: what happened meanwhile was not told. */
   refresh(): void {
     for (const id of this.tables_.keys()) void this.load(id);
-    for (const names of this.names_.values()) names.refresh();
+    for (const kept of [...this.names_.values(), ...this.terms_.values()]) kept.refresh();
     this.view?.rows.refresh();
   }
 
@@ -120,6 +138,7 @@ export class Tables {
     const names = this.names_.get(event.table);
     if (event.event === "deleted") names?.remove(event.key);
     else if (event.record) names?.put(event.record);
+    this.terms_.get(event.table)?.refresh();
     if (this.view?.table_id === event.table) this.view.on_record(event);
     if (this.card?.layer.table !== event.table || this.card.key !== event.key) return;
     if (event.event === "deleted") this.close_card();
@@ -130,9 +149,11 @@ export class Tables {
     if (event.event === "deleted") {
       this.tables_.delete(event.table_id);
       this.names_.delete(event.table_id);
+      this.terms_.delete(event.table_id);
     } else if (event.table && this.tables_.has(event.table_id)) {
       this.tables_.set(event.table_id, event.table);
       this.names_.get(event.table_id)?.refresh();
+      this.terms_.get(event.table_id)?.refresh();
     }
     if (this.view?.table_id === event.table_id) this.view.refresh_soon();
     this.host_.changed();
@@ -151,6 +172,7 @@ export class Tables {
   async reload(id: number): Promise<void> {
     await this.load(id);
     this.names_.get(id)?.refresh();
+    this.terms_.get(id)?.refresh();
     if (this.view?.table_id === id) this.view.rows.refresh();
   }
 

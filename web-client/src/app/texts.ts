@@ -196,6 +196,31 @@ export const texts = {
     viewer_only: "You may look at this model but not change it.",
   },
 
+  terms: {
+    choose: "Term to paint: type to search, arrow keys to go through the list, Enter to choose",
+    search: "Search terms",
+    show_all: "Show all terms",
+    tree: "Terms",
+    none_found: "No term is called that.",
+    more_found: (n: number) => `and ${n.toLocaleString("en-GB")} more: write more of the word`,
+    empty: "The list has no terms yet.",
+    more: (n: number, all: number) => `The first ${n.toLocaleString("en-GB")} of ${all.toLocaleString("en-GB")} terms. Search for the others.`,
+  },
+
+  templates: {
+    open: "From a template…",
+    title: "Layers from a template",
+    lead: "A template makes lists of terms, tables and their layers on this model. All of it can be changed afterwards.",
+    none: "This server has no templates.",
+    make: "Make",
+    make_of: (name: string) => `Make ${name}`,
+    making: "Making…",
+    layer: "layer to paint on",
+    terms: (n: number) => `list of ${count(n, "term", "terms")}`,
+    columns: (n: number) => `table of ${count(n, "column", "columns")}`,
+    made: (tables: number, layers: number) => `${count(tables, "table", "tables")} and ${count(layers, "layer", "layers")} were made.`,
+  },
+
   shapes: {
     new_shape: "New shape from a picture",
     new_hint: "New shape from a picture: choose a file, or drop one here",
@@ -852,8 +877,17 @@ export const texts = {
       ["Skip surfaces seen at a slant", "leaves out what you look at too flatly to see well; zoom in or turn, and paint it then"],
       ["Also what is hidden behind", "paints through the object"],
     ],
+    terms: "In a list of terms",
+    terms_rows: [
+      ["Type", "finds terms by words of their names, in all languages"],
+      ["Up · Down · Page", "from term to term"],
+      ["Right · Left", "unfold, go in · fold, go out"],
+      ["Enter", "paint with the term"],
+      ["Escape", "the whole list again; once more: back to the model"],
+    ],
     layers: "Layers without a brush",
     layer_rows: [
+      ["Layers ⋯ → From a template", "lists of terms, tables and layers for stone, wall painting, excavation and treatment"],
       ["A layer's ⋯ → Paint from a file", "readings, maps, shapefiles, GeoTIFF and scanned maps; numbers for the vertices of the scan"],
       ["View → Looks → Add an orthophoto", "a picture laid onto the surface along an axis"],
       ["A layer's ⋯ → Areas", "of measurements a histogram, with handles (or arrow keys) for the range of the colours"],

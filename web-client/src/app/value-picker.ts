@@ -1,4 +1,4 @@
-// <strata-value-picker>: which value is painted in the selected layer: a class, a number, or the only one there is.
+// <strata-value-picker>: which value is painted in the selected layer: a class, a term, a number, or the only one there is.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -6,11 +6,13 @@ import { ApiError } from "../core/api";
 import { css_color, purpose_of } from "../core/palette";
 import type { Layer } from "../core/types";
 import { describe_value, value_problem } from "./brush-settings";
+import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
 import { radio_group } from "./radio-group";
 import "./record-chooser";
 import { styled } from "./styled";
 import { number_field_styles, shared_styles } from "./styles";
+import "./term-chooser";
 import { texts } from "./texts";
 
 @customElement("strata-value-picker")
@@ -21,6 +23,11 @@ export class StrataValuePicker extends LitElement {
   @state() private wrong_value_ = "";
   @state() private asking_ = false;
   @state() private missing_: number | null = null; // a number that was typed and has no record
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
 
   static override styles = [
     shared_styles,
@@ -91,6 +98,14 @@ export class StrataValuePicker extends LitElement {
         chosen: value,
         choose: (at) => this.set_value(layer, at),
       });
+    }
+    if (layer.table !== undefined && this.session.tables.terms(layer.table)) {
+      return html`<strata-term-chooser
+        .session=${this.session}
+        .layer=${layer}
+        .chosen=${value}
+        @chosen=${(event: CustomEvent<number>) => this.set_record(layer, event.detail)}
+      ></strata-term-chooser>`;
     }
     const steps = layer.type.startsWith("f") ? "any" : "1";
     return html`<div class="value">

@@ -61,6 +61,21 @@ export interface RecordQuery {
   offset: number;
 }
 
+export interface TermQuery {
+  q?: string;
+  lang: string;
+  limit: number;
+  offset: number;
+}
+
+/** What files of terms are sent as. */
+export type TermsType = "text/csv" | "text/turtle" | "application/rdf+xml";
+
+export interface TemplateMade {
+  tables: wire.Table[];
+  layers: Layer[];
+}
+
 export type TexelsOfDeleted = { what: "refuse" | "clear" } | { what: "reassign"; to: number };
 
 const kBase = "/api/v1";
@@ -174,7 +189,7 @@ export class Api {
     await this.request("DELETE", look_path(model, look));
   }
   async tables(project: Id): Promise<wire.Table[]> {
-    return (await this.json<wire.TableList>("GET", `/projects/${encodeURIComponent(project)}/tables?limit=1000`)).tables;
+    return (await this.json<wire.TableList>("GET", `${project_path(project)}/tables?limit=1000`)).tables;
   }
   async table(table: Id): Promise<wire.Table> {
     return this.json("GET", table_path(table));
@@ -246,6 +261,29 @@ export class Api {
   async import_records(table: Id, csv: Blob, dry_run: boolean): Promise<wire.RecordsReport> {
     const path = `${records_path({ table })}${dry_run ? "?dry_run=true" : ""}`;
     return this.parsed(await this.request_raw("POST", path, csv, { "Content-Type": "text/csv" }));
+  }
+  /** Terms of a list as a tree that is written down; with `q` those that have its words, and those above them. */
+  async terms(table: Id, { q = "", lang, limit, offset }: TermQuery): Promise<wire.TermTree> {
+    const query = new URLSearchParams({ lang, limit: `${limit}`, offset: `${offset}`, ...(q === "" ? {} : { q }) });
+    return this.json("GET", `${table_path(table)}/terms?${query}`);
+  }
+  /** Where a list of terms is had as a file that may be imported elsewhere. */
+  terms_url(table: Id, format: "csv" | "turtle"): string {
+    return `${kBase}${table_path(table)}/terms?f=${format}`;
+  }
+  /** A new list of the project, or more terms for one. `dry_run` only reports. Where terms are wrong nothing is written. */
+  async import_terms(into: { project: Id; name: string } | { table: Id }, file: Blob, type: TermsType, dry_run: boolean): Promise<wire.RecordsReport> {
+    const query = new URLSearchParams({ ...("name" in into ? { name: into.name } : {}), ...(dry_run ? { dry_run: "true" } : {}) });
+    const place = "table" in into ? table_path(into.table) : project_path(into.project);
+    return this.parsed(await this.request_raw("POST", `${place}/terms?${query}`, file, { "Content-Type": type }));
+  }
+  async templates(): Promise<wire.Template[]> {
+    return (await this.json<wire.TemplateList>("GET", "/templates?limit=1000")).templates;
+  }
+  /** Makes its tables, and its layers on the model. */
+  async use_template(project: Id, template: Id, use: wire.TemplateUse): Promise<TemplateMade> {
+    const made = await this.json<wire.TemplateMade>("POST", `${project_path(project)}/templates/${encodeURIComponent(template)}`, use);
+    return { tables: made.tables, layers: made.layers.map(complete_layer) };
   }
   async has_record(table: Id, key: number): Promise<boolean> {
     try {
@@ -417,6 +455,8 @@ const kFile = { "Content-Type": "application/octet-stream" };
 
 const layer_path = (model: Id, layer: Id): string =>
   `/models/${encodeURIComponent(model)}/layers/${encodeURIComponent(layer)}`;
+
+const project_path = (project: Id): string => `/projects/${encodeURIComponent(project)}`;
 
 const table_path = (table: Id): string => `/tables/${encodeURIComponent(table)}`;
 

@@ -2,13 +2,18 @@
 
 import type { CellValue, Column, Labels, Table, TableRecord } from "./protocol.gen";
 
+/** The language and those that it is a kind of: "es-MX", "es". */
+function kinds_of_language(language: string): string[] {
+  const tags: string[] = [];
+  for (let tag = language; tag !== ""; tag = tag.slice(0, Math.max(0, tag.lastIndexOf("-")))) tags.push(tag);
+  return tags;
+}
+
 /** What it is called in the first of the person's languages that it has a name in: of "es-MX" also the name in "es". */
 export function label_of(thing: { name: string; labels: Labels }, languages: readonly string[] = navigator.languages): string {
-  for (const language of languages) {
-    for (let tag = language; tag !== ""; tag = tag.slice(0, Math.max(0, tag.lastIndexOf("-")))) {
-      const label = thing.labels[tag];
-      if (label) return label;
-    }
+  for (const tag of languages.flatMap(kinds_of_language)) {
+    const label = thing.labels[tag];
+    if (label) return label;
   }
   return thing.name;
 }
@@ -71,8 +76,22 @@ export function label_column(table: Pick<Table, "columns">): Column | null {
   );
 }
 
+type Naming = Pick<Table, "columns" | "kind">;
+
+/** The columns that may name a record, the best first: of terms their labels in the person's languages, the label of none, and the code. */
+export function naming_columns(table: Naming, languages?: readonly string[]): Column[] {
+  const last = label_column(table) ?? [];
+  if (table.kind !== "terms") return [last].flat();
+  const slugs = (languages ?? navigator.languages).flatMap(kinds_of_language).map((tag) => `label-${tag.toLowerCase()}`);
+  const labels = [...slugs, "label"].map((slug) => table.columns.find((column) => column.kind === "text" && column.slug === slug) ?? []);
+  return [...new Set([...labels, last].flat())];
+}
+
 /** What the record is called; empty where it has no name. */
-export function label_of_record(table: Pick<Table, "columns">, record: Pick<TableRecord, "values">): string {
-  const column = label_column(table);
-  return column ? cell_text(record.values[column.slug]) : "";
+export function label_of_record(table: Naming, record: Pick<TableRecord, "values">, languages?: readonly string[]): string {
+  for (const column of naming_columns(table, languages)) {
+    const name = cell_text(record.values[column.slug]);
+    if (name !== "") return name;
+  }
+  return "";
 }
