@@ -29,6 +29,7 @@ inline constexpr std::size_t kMostTerms = 100'000;
 inline constexpr std::size_t kLongestCode = 200;       // bytes
 inline constexpr std::size_t kMostTermLanguages = 50;  // of a list
 inline constexpr std::size_t kMostTermMistakes = 100;  // that are told
+// In the order of Pattern.
 inline constexpr const char* kTermPatterns[] = {"solid", "hatch", "dots", "outline"};
 
 // What is wrong with one term of a text.

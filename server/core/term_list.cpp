@@ -31,6 +31,11 @@ Rgba shade(const Rgba& color, int nth) {
   return out;
 }
 
+Pattern pattern_of(const Term& term) {
+  const auto known = std::find(std::begin(kTermPatterns), std::end(kTermPatterns), term.pattern);
+  return known == std::end(kTermPatterns) ? Pattern::solid : static_cast<Pattern>(known - std::begin(kTermPatterns));
+}
+
 std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -194,7 +199,9 @@ Palette terms_palette(std::span<const ListedTerm> terms) {
     else
       color = generated_color(static_cast<std::uint32_t>(listed.key));
     colors[listed.key] = color;
-    points[listed.key] = {static_cast<double>(listed.key), color, label_in(listed.term, {})};
+    Palette::Point& point = points[listed.key];
+    point = {static_cast<double>(listed.key), color, label_in(listed.term, {})};
+    point.pattern = pattern_of(listed.term);
   }
   Palette palette;
   palette.mode = PaletteMode::categorical;

@@ -50,8 +50,8 @@ std::string label_in(const Term& term, const std::string& language);
 // Which terms have all words of `text` in their code and their labels, whatever the language, the case and the accents.
 std::vector<bool> terms_with(std::span<const ListedTerm> terms, std::string_view text);
 
-// The colours of the terms by their keys, with their labels. A term without a colour takes the one above it, in a shade of its own; at the top it
-// is generated. The first kMostTermColors by key.
+// The colours and patterns of the terms by their keys, with their labels. A term without a colour takes the one above it, in a shade of its own; at
+// the top it is generated. The first kMostTermColors by key.
 inline constexpr std::size_t kMostTermColors = 4096;
 Palette terms_palette(std::span<const ListedTerm> terms);
 // Whether a layer of a list of terms takes its colours from them: it has no points of its own, and no column that colours.

@@ -329,12 +329,13 @@ TEST_F(List, all_words_are_looked_for_in_all_languages) {
   EXPECT_EQ(terms_with(terms, " "), (std::vector<bool>{true, true}));
 }
 
-TEST_F(List, colours_come_from_the_terms_and_go_down_in_shades) {
+TEST_F(List, colours_and_patterns_come_from_the_terms_and_colours_go_down_in_shades) {
   add(1, "loss", {}, {}, "#804020");
   add(5, "worn", 1);
   add(6, "broken", 1);
   add(7, "pitted", 1, {}, "#ff0000");
   add(9, "other", {}, {}, "no colour");
+  records[1].values[term_columns(table)->pattern->id] = "hatch";
   const Palette palette = terms_palette(listed());
   ASSERT_EQ(palette.points.size(), 5u);
   EXPECT_EQ(palette.mode, PaletteMode::categorical);
@@ -344,6 +345,8 @@ TEST_F(List, colours_come_from_the_terms_and_go_down_in_shades) {
   EXPECT_NE(palette.points[1].color, palette.points[2].color);
   EXPECT_EQ(palette.points[3].color, (Rgba{255, 0, 0, 255}));
   EXPECT_EQ(palette.points[4].color, generated_color(9));
+  EXPECT_EQ(palette.points[0].pattern, Pattern::solid);
+  EXPECT_EQ(palette.points[1].pattern, Pattern::hatch);
   EXPECT_FALSE(takes_term_colors(palette));
   EXPECT_TRUE(takes_term_colors(terms_palette({})));
 }
