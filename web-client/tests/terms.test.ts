@@ -2,6 +2,7 @@ import { beforeEach, describe, expect, it } from "vitest";
 
 import { describe_value } from "../src/app/brush-settings";
 import { folded_at_first, path_to, rows_of, tree_step, type TermRow } from "../src/app/term-rows";
+import { kTermsEndings, terms_type } from "../src/app/terms-files";
 import { kMostTerms, TermTree } from "../src/app/term-tree";
 import { Api } from "../src/core/api";
 import { label_of_record } from "../src/core/cells";
@@ -189,5 +190,15 @@ describe("terms", () => {
     const layer = { id: 7, kind: "database", type: "u16", unit: "", palette, table: 3 } as unknown as Layer;
     expect(describe_value(layer, 1, { label: () => "Sales", term: () => "Sales" })).toBe("Sales");
     expect(describe_value(layer, 1, { label: () => "salt", term: () => null })).toBe("Salts");
+  });
+});
+
+describe("files of terms", () => {
+  it("are known by their names", () => {
+    for (const name of ["stone.csv", "Stone.TSV", "a.b.txt"]) expect(terms_type(name)).toBe("text/csv");
+    for (const name of ["aat.ttl", "aat.nt"]) expect(terms_type(name)).toBe("text/turtle");
+    for (const name of ["aat.rdf", "aat.xml"]) expect(terms_type(name)).toBe("application/rdf+xml");
+    for (const name of ["aat.json", "csv", "terms.pdf", ""]) expect(terms_type(name)).toBeNull();
+    for (const ending of kTermsEndings.split(",")) expect(terms_type(`x${ending}`)).not.toBeNull();
   });
 });

@@ -266,7 +266,7 @@ try {
   await button("Cancel").click();
   await dialog.getByText('"Depth" holds finite numbers.').waitFor({ state: "hidden" });
   await drop_csv("finds.csv", "key,code,depth,note\n1,SU 1,9,changed\n,New 1,2,\n");
-  await dialog.getByText("All rows fit. Nothing has been written yet.").waitFor();
+  await dialog.getByText("All of it fits. Nothing has been written yet.").waitFor();
   assert.equal((await record(1)).note, "Charcoal");
   await button("Import").click();
   await panel.getByText("10,001 records").waitFor();

@@ -19,10 +19,26 @@ const button = (name) => page.getByRole("button", { name, exact: true });
 const brush = page.locator("strata-brush-panel");
 const layers = page.locator("strata-layer-panel");
 const templates = page.locator("strata-template-dialog");
+const importer = page.locator("strata-terms-dialog");
+const maker = page.locator("strata-layer-dialog");
+const table = page.locator("strata-table-panel");
 const search = brush.getByRole("combobox");
 const term = (name) => brush.getByRole("treeitem", { name, exact: true });
 const shot = async (name) => {
   if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+};
+const menu = async (name, item) => {
+  await button(name).click();
+  await page.getByRole("menuitem", { name: item, exact: true }).click();
+};
+const choose_file = async (name, text) => {
+  const path = join(folder, name);
+  writeFileSync(path, text);
+  await importer.locator("input[type=file]").setInputFiles(path);
+};
+const pixels = async (color) => {
+  await page.mouse.move(5, 5); // the brush's circle is no paint
+  return browser.count(rgb(color));
 };
 const statistics = (layer) => server.json("GET", `${base}/layers/${layer}/statistics`);
 
@@ -35,8 +51,7 @@ try {
   if (await later.isVisible()) await later.click();
 
   say("a template makes its tables and layers, and the first layer is painted on next");
-  await button("More about layers").click();
-  await page.getByRole("menuitem", { name: "From a template…" }).click();
+  await menu("More about layers", "From a template…");
   await templates.getByRole("listitem", { name: "Stone condition" }).waitFor();
   assert.equal(await templates.getByRole("button", { name: /^Make / }).count(), 4);
   await shot("templates");
@@ -63,12 +78,13 @@ try {
   await shot("term-found");
 
   say("what is painted has the term's key and its colour, and the legend names it");
+  const before = await pixels(by_code("flaking").color);
   await browser.drag([[0.45, 0.5], [0.6, 0.5]]);
   await browser.saved();
   await wait_for(async () => (await statistics("stone-condition")).keys?.some(({ key }) => key === by_code("flaking").key), "the stroke to be kept");
   const line = layers.locator(".legend-classes li", { hasText: "Flaking" });
   await line.scrollIntoViewIfNeeded();
-  await wait_for(async () => (await browser.count(rgb(by_code("flaking").color))) > 200, "the term's colour on the pot");
+  await wait_for(async () => (await pixels(by_code("flaking").color)) > before + 500, "the term's colour on the pot");
   await shot("term-painted");
 
   say("the arrow keys go through the tree, fold and unfold it");
@@ -98,13 +114,63 @@ try {
   await wait_for(async () => (await term("Hairline crack").count()) === 0, "the cracks to be folded");
 
   say("the same template again is refused in plain words, and nothing is made");
-  await button("More about layers").click();
-  await page.getByRole("menuitem", { name: "From a template…" }).click();
+  await menu("More about layers", "From a template…");
   await button("Make Stone condition").click();
   await templates.getByRole("alert").getByText(/already/).waitFor();
   await shot("template-refused");
   await templates.getByRole("button", { name: "Close" }).click();
   assert.equal((await server.json("GET", `${base}/layers`)).layers.filter(({ name }) => name.startsWith("Stone")).length, 2);
+
+  say("a SKOS file is looked at first, and is not written while one of its terms is wrong");
+  await menu("More about layers", "A list of terms from a file…");
+  await choose_file("glaze.pdf", "no terms");
+  await importer.getByRole("alert").getByText(/no list of terms/).waitFor();
+  const prefixes = "@prefix skos: <http://www.w3.org/2004/02/skos/core#> .\n@prefix g: <https://glaze.example/> .\n";
+  await choose_file("glaze_terms.ttl", `${prefixes}g:a a skos:Concept ; skos:broader g:b .\ng:b a skos:Concept ; skos:broader g:a .\n`);
+  await importer.getByRole("columnheader", { name: "What is wrong" }).waitFor();
+  assert.ok(await button("Import").isDisabled());
+  await shot("terms-wrong");
+  await choose_file("glaze_terms.ttl", `${prefixes}
+    g:glaze a skos:Concept ; skos:notation "glaze" ; skos:prefLabel "Glaze"@en, "Vidriado"@es ; skos:definition "Glass that was melted onto the clay."@en .
+    g:crazing a skos:Concept ; skos:notation "crazing" ; skos:broader g:glaze ; skos:prefLabel "Crazing"@en, "Craquelado"@es .
+    g:pinhole a skos:Concept ; skos:notation "pinhole" ; skos:broader g:glaze ; skos:prefLabel "Pinhole"@en .\n`);
+  await importer.getByText("All of it fits. Nothing has been written yet.").waitFor();
+  assert.equal(await importer.getByLabel("Name of the list").inputValue(), "glaze terms");
+  await shot("terms-report");
+  assert.ok(!(await server.json("GET", "/projects/default/tables")).tables.some(({ slug }) => slug === "glaze-terms"));
+  await button("Import").click();
+  await wait_for(async () => (await importer.count()) === 0, "the list to be made");
+  await layers.locator("li.selected").getByText("glaze terms").first().waitFor();
+  await term("Crazing").waitFor();
+  assert.equal(await term("Crazing").getAttribute("aria-level"), "2");
+
+  say("more terms go into the list from its table, and the tree follows");
+  await page.getByRole("button", { name: "Table of records" }).click();
+  await table.getByText("3 records").waitFor();
+  await menu("More about the table", "Import terms…");
+  await choose_file("more.csv", "code,label-en,parent,color\ncrazing,Net of cracks,glaze,#aa3377\nrunning,Running,glaze,#4477aa\n");
+  await importer.getByText("All of it fits. Nothing has been written yet.").waitFor();
+  await shot("terms-more");
+  await button("Import").click();
+  await term("Net of cracks").waitFor();
+  await term("Running").waitFor();
+  await shot("terms-imported");
+
+  say("the list is saved as SKOS, as it may be imported elsewhere");
+  const [download] = await Promise.all([page.waitForEvent("download"), menu("More about the table", "Save the terms as SKOS (Turtle)")]);
+  assert.equal(download.suggestedFilename(), "glaze-terms.ttl");
+  await download.saveAs(join(folder, "saved.ttl"));
+  assert.match(readFileSync(join(folder, "saved.ttl"), "utf8"), /Net of cracks/);
+
+  say("a new layer may hold the terms of a list that is there");
+  await button("New layer").click();
+  await page.getByRole("radio", { name: /Things with records/ }).click();
+  await maker.getByLabel("Records of").selectOption({ label: "glaze terms (4 terms)" });
+  await maker.getByLabel("Name", { exact: true }).fill("Glaze, second look");
+  await shot("layer-of-terms");
+  await button("Create layer").click();
+  await layers.locator("li.selected").getByText("Glaze, second look").waitFor();
+  await term("Running").waitFor();
 
   say("the end");
   browser.assert_no_complaints(["409", "422"]);

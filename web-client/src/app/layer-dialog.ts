@@ -17,6 +17,8 @@ import {
 } from "../core/palette";
 import type { Layer, LayerCreate, Palette, Resolution, ValueType } from "../core/types";
 import { ApiError } from "../core/api";
+import { label_of } from "../core/cells";
+import type { Table } from "../core/protocol.gen";
 import "./dialog";
 import "./expression-field";
 import type { StrataExpressionField } from "./expression-field";
@@ -56,6 +58,8 @@ export class StrataLayerDialog extends LitElement {
   @state() private color_ = "#d55e00ff";
   @state() private classes_: ClassRow[] = [];
   @state() private stepped_ = false;
+  @state() private tables_: Table[] = []; // whose records a layer may show
+  @state() private table_: Table | null = null; // null: one of the layer's own
   @state() private problem_ = "";
   @state() private problem_field_ = "";
   @state() private busy_ = false;
@@ -159,7 +163,19 @@ export class StrataLayerDialog extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     if (this.layer) void this.read(this.layer);
-    else this.classes_ = [1, 2, 3].map((at) => new_class(at));
+    else {
+      this.classes_ = [1, 2, 3].map((at) => new_class(at));
+      void this.find_tables();
+    }
+  }
+
+  private async find_tables(): Promise<void> {
+    try {
+      this.tables_ = await this.session.tables.all();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.refuse("", error.message);
+    }
   }
 
   private async read(layer: Layer): Promise<void> {
@@ -212,6 +228,7 @@ export class StrataLayerDialog extends LitElement {
               @kind-changed=${() => this.requestUpdate()}
             ></strata-shape-fields>`
           : nothing}
+        ${this.purpose_ === "records" && !layer && this.tables_.length > 0 ? this.tables() : nothing}
         ${this.purpose_ === "formula" || layer?.expression !== undefined ? this.formula(layer) : nothing}
         <div class="two">
           <label class="field">
@@ -222,7 +239,7 @@ export class StrataLayerDialog extends LitElement {
               maxlength="200"
               autocomplete="off"
               .value=${layer?.name ?? ""}
-              placeholder=${this.purpose_ === "shape" ? (this.shape_?.kind_title ?? "") : this.purpose_ === "formula" ? words.formula_hint : words.name_hint[this.purpose_]}
+              placeholder=${this.purpose_ === "shape" ? (this.shape_?.kind_title ?? "") : this.purpose_ === "formula" ? words.formula_hint : this.named_by_table ? label_of(this.table_!) : words.name_hint[this.purpose_]}
               aria-invalid=${this.problem_field_ === "name" ? "true" : "false"}
             />
           </label>
@@ -266,6 +283,30 @@ export class StrataLayerDialog extends LitElement {
         choose: (purpose) => (this.purpose_ = purpose),
       })}
     </div>`;
+  }
+
+  private tables(): TemplateResult {
+    return html`<label class="field">
+      <span>${words.table}</span>
+      <select name="table" @change=${(event: Event) => this.choose_table(Number((event.target as HTMLSelectElement).value))}>
+        <option value="0" ?selected=${this.table_ === null}>${words.own_table}</option>
+        ${this.tables_.map(
+          (table) =>
+            html`<option value=${table.id} ?selected=${table.id === this.table_?.id}>
+              ${table.kind === "terms" ? words.table_of_terms(label_of(table), table.records) : words.table_of_records(label_of(table), table.records)}
+            </option>`,
+        )}
+      </select>
+    </label>`;
+  }
+
+  private choose_table(id: number): void {
+    this.table_ = this.tables_.find((table) => table.id === id) ?? null;
+  }
+
+  /** A layer that shows a table need not have another name. */
+  private get named_by_table(): boolean {
+    return this.purpose_ === "records" && this.table_ !== null;
   }
 
   private formula(layer: Layer | undefined): TemplateResult {
@@ -396,7 +437,7 @@ export class StrataLayerDialog extends LitElement {
     const text = (name: string): string => String(form.get(name) ?? "").trim();
     this.problem_ = this.problem_field_ = "";
     if (this.purpose_ === "shape") return this.compute(text("name") || this.shape_.kind_title, text("description"));
-    const name = text("name");
+    const name = text("name") || (this.named_by_table ? label_of(this.table_!) : "");
     if (!name) return this.refuse("name", words.name_missing);
     const formula = this.expression_ ? this.wanted_formula(form) : {};
     if (!formula) return this.refuse("expression", words.expression_missing);
@@ -508,11 +549,12 @@ export class StrataLayerDialog extends LitElement {
       ...wanted,
       kind: purpose === "records" ? "database" : "numeric",
       type: kTypes[purpose],
+      ...(this.named_by_table ? { table: this.table_!.id } : {}),
       ...this.resolution(),
     };
     const layer = await session.api.create_layer(session.model_id, created);
     // So that painting can begin at once: a number without a record is not painted.
-    if (layer.table !== undefined) await session.api.create_record(layer.table);
+    if (layer.table !== undefined && !this.named_by_table) await session.api.create_record(layer.table);
     session.add_created(layer);
     notices.show("success", texts.layers.created(wanted.name));
   }

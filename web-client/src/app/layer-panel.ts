@@ -15,9 +15,11 @@ import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { shared_styles } from "./styles";
 import { choose_raster, formats_of, save_raster } from "./raster-files";
+import type { TermsRequest } from "./terms-dialog";
 import { texts } from "./texts";
 
 export type LayerPanelRequest =
+  | TermsRequest
   | { dialog: "create" | "template" | "transfer" }
   | { dialog: "edit" | "colors" | "statistics" | "map"; layer: Layer };
 
@@ -189,6 +191,9 @@ export class StrataLayerPanel extends LitElement {
               <strata-menu label=${words.more}>
                 <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "template" })}>
                   ${icon("layers")}${texts.templates.open}
+                </button>
+                <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "terms", table: null, file: null })}>
+                  ${icon("upload")}${texts.terms_dialog.open}
                 </button>
                 <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "transfer" })}>
                   ${icon("import")}${texts.transfer.open}

@@ -8,6 +8,7 @@ import type { Layer, Palette, PalettePoint } from "../core/types";
 import type { Column, Table } from "../core/protocol.gen";
 import { describe_value, type RecordLabels } from "./brush-settings";
 import { styled } from "./styled";
+import type { TermTree } from "./term-tree";
 import { texts } from "./texts";
 
 export const legend_styles = css`
@@ -74,6 +75,7 @@ export const legend_styles = css`
 /** What the legend needs to know of records. */
 export interface LegendNames extends RecordLabels {
   find(table: number): Table | null;
+  terms(table: number): TermTree | null;
 }
 
 /** `palette`: what the layer is drawn with for this person. */
@@ -84,15 +86,29 @@ export function legend(layer: Layer, palette: Palette, records: LegendNames): Te
     if (palette.points.length === 0) {
       return html`<p class="hint">${layer.kind === "database" ? texts.layers.no_records : texts.layers.no_labels}</p>`;
     }
+    const terms = layer.table === undefined ? null : records.terms(layer.table);
     return html`<ul class="legend-classes">
-      ${palette.points.map((point) => line(point, describe_value(layer, point.at, records)))}
+      ${in_tree(palette.points, terms).map(({ point, depth }) => line(point, describe_value(layer, point.at, records), depth))}
     </ul>`;
   }
   return gradient(palette, unit);
 }
 
-const line = (point: Pick<PalettePoint, "color" | "pattern" | "angle">, text: string): TemplateResult =>
-  html`<li>
+/** Points of terms stand as in their list, each below the one above it. */
+function in_tree(points: readonly PalettePoint[], terms: TermTree | null): { point: PalettePoint; depth: number }[] {
+  terms?.want();
+  if (!terms?.loaded) return points.map((point) => ({ point, depth: 0 }));
+  const places = new Map(terms.terms.map(({ key, depth }, place) => [key, { place, depth }]));
+  const last = { place: Infinity, depth: 0 }; // of points that are no terms
+  return points
+    .map((point) => ({ point, ...(places.get(point.at) ?? last) }))
+    .sort((a, b) => (a.place === b.place ? 0 : a.place - b.place));
+}
+
+const kIndent_px = 14;
+
+const line = (point: Pick<PalettePoint, "color" | "pattern" | "angle">, text: string, depth = 0): TemplateResult =>
+  html`<li ${styled({ "padding-left": depth > 0 ? `${depth * kIndent_px}px` : null })}>
     <span class="swatch" ${styled(swatch_style(point))}></span>
     <span class="ellipsis">${text}</span>
   </li>`;

@@ -41,6 +41,7 @@ import type { TablePanelRequest } from "./table-panel";
 import "./table-panel";
 import type { TableView } from "./table-view";
 import "./template-dialog";
+import "./terms-dialog";
 import { texts } from "./texts";
 import "./tool-rail";
 import "./transfer-dialog";
@@ -319,6 +320,8 @@ export class StrataModelPage extends LitElement {
         return html`<strata-layer-dialog .session=${session} @closed=${closed}></strata-layer-dialog>`;
       case "template":
         return html`<strata-template-dialog .session=${session} @closed=${closed}></strata-template-dialog>`;
+      case "terms":
+        return html`<strata-terms-dialog .session=${session} .table=${dialog.table} .file=${dialog.file} @closed=${closed}></strata-terms-dialog>`;
       case "transfer":
         return html`<strata-transfer-dialog .session=${session} @closed=${closed}></strata-transfer-dialog>`;
       case "edit":

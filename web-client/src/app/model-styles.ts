@@ -176,6 +176,7 @@ export const model_styles = css`
     background: var(--surface);
   }
   .scroll {
+    position: relative; /* what is hidden for eyes in it would lengthen the page otherwise */
     height: 100%;
     overflow: hidden auto;
     padding: 0 14px 24px;

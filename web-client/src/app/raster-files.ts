@@ -5,6 +5,7 @@ import { format_area } from "../core/measure";
 import { ask } from "./dialog";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { save_from } from "./save-from";
 import { texts } from "./texts";
 
 export const kRasterFormats = ["tif", "png", "npy"] as const;
@@ -22,10 +23,7 @@ export const formats_of = (layer: Layer): RasterFormat[] =>
   kRasterFormats.filter((format) => format !== "png" || layer.type === "u8" || layer.type === "u16");
 
 export function save_raster(session: ModelSession, layer: Layer, format: RasterFormat): void {
-  const link = document.createElement("a");
-  link.href = session.api.texels_url(session.model_id, layer.id, format);
-  link.download = `${layer.slug}.${format}`;
-  link.click();
+  save_from(session.api.texels_url(session.model_id, layer.id, format), `${layer.slug}.${format}`);
 }
 
 /** Asks for a file and makes the layer hold what is in it. */

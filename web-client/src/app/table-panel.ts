@@ -17,14 +17,18 @@ import { icon } from "./icons";
 import "./menu";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { save_from } from "./save-from";
 import { shown_value } from "./shown-value";
 import { shared_styles } from "./styles";
 import { styled } from "./styled";
 import { table_styles } from "./table-styles";
 import type { TableView } from "./table-view";
+import type { TermsRequest } from "./terms-dialog";
+import { terms_type } from "./terms-files";
 import { texts } from "./texts";
 
 export type TablePanelRequest =
+  | TermsRequest
   | { dialog: "record"; layer: Layer; key: number | null }
   | { dialog: "delete-record"; layer: Layer; key: number }
   | { dialog: "column"; table: number; column: Column | null }
@@ -174,6 +178,7 @@ export class StrataTablePanel extends LitElement {
           : nothing}
         <button class="quiet" role="menuitem" @click=${() => this.save_csv(table, "comma")}>${icon("import")}${words.save_csv}</button>
         <button class="quiet" role="menuitem" @click=${() => this.save_csv(table, "semicolon")}>${icon("import")}${words.save_csv_semicolon}</button>
+        ${table.kind === "terms" ? this.terms_menu(table) : nothing}
         ${this.can_write
           ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_csv(table)}>${icon("upload")}${words.import_csv}</button>
               ${table.columns.some(holds_files)
@@ -183,6 +188,21 @@ export class StrataTablePanel extends LitElement {
       </strata-menu>
       <button class="icon quiet" aria-label=${words.close} title="${words.close} (T)" @click=${() => session.tables.close()}>${icon("close")}</button>
     </div>`;
+  }
+
+  private terms_menu(table: Table): TemplateResult {
+    const words = texts.terms_dialog;
+    const { api, can_curate } = this.session;
+    const save = (format: "csv" | "turtle", ending: string) => () => save_from(api.terms_url(table.id, format), `${table.slug}.${ending}`);
+    return html`<hr />
+      <button class="quiet" role="menuitem" @click=${save("csv", "csv")}>${icon("import")}${words.save_csv}</button>
+      <button class="quiet" role="menuitem" @click=${save("turtle", "ttl")}>${icon("import")}${words.save_turtle}</button>
+      ${can_curate
+        ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "terms", table: table.id, file: null })}>
+            ${icon("upload")}${words.open_more}
+          </button>`
+        : nothing}
+      <hr />`;
   }
 
   private chosen(layer: Layer): TemplateResult | typeof nothing {
@@ -700,10 +720,7 @@ export class StrataTablePanel extends LitElement {
   private save_csv(table: Table, separator: string): void {
     const { sortby, filter } = this.view.rows;
     const query = { separator, ...(sortby ? { sortby } : {}), ...(filter ? { filter } : {}) };
-    const link = document.createElement("a");
-    link.href = this.session.api.records_url({ model: this.session.model_id, layer: this.view.layer_id }, query);
-    link.download = `${table.slug}.csv`;
-    link.click();
+    save_from(this.session.api.records_url({ model: this.session.model_id, layer: this.view.layer_id }, query), `${table.slug}.csv`);
   }
 
   private choose_photos(table: Table): void {
@@ -739,11 +756,13 @@ export class StrataTablePanel extends LitElement {
     event.preventDefault();
     void dropped_files(event.dataTransfer).then((dropped) => this.take_files(dropped.map(({ file }) => file)));
   }
-  /** One text is records; everything else is files of records. */
+  /** One text is records, or terms where the table is a list of them; everything else is files of records. */
   private take_files(files: File[]): void {
     const table = this.view.table_id;
     const [file] = files;
-    if (files.length === 1 && file && /\.(csv|tsv|txt)$/i.test(file.name)) this.request({ dialog: "csv", table, file });
+    const takes_terms = this.view.table?.kind === "terms" && this.session.can_curate;
+    if (files.length === 1 && file && takes_terms && terms_type(file.name)) this.request({ dialog: "terms", table, file });
+    else if (files.length === 1 && file && /\.(csv|tsv|txt)$/i.test(file.name)) this.request({ dialog: "csv", table, file });
     else if (files.length > 0) this.request({ dialog: "photos", table, files });
   }
 

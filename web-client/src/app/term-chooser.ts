@@ -40,6 +40,7 @@ export class StrataTermChooser extends LitElement {
   @query("input") private input_!: HTMLInputElement;
   @query(".tree") private tree_!: HTMLElement | null;
   private rows_: TermRow[] = [];
+  private whole_px_ = 0; // height of the tree without a search: what lies below does not jump while one types
   private walks_ = false; // the arrow keys go through the tree, and not through the text
   private generation_ = 0; // of the terms that were folded
   private searching_: Promise<void> | null = null;
@@ -136,6 +137,11 @@ export class StrataTermChooser extends LitElement {
       .term[aria-expanded="true"] .fold svg.glyph {
         transform: rotate(90deg);
       }
+      @media (max-width: 820px) {
+        .tree {
+          max-height: 220px;
+        }
+      }
       .term > svg.glyph {
         width: 15px;
         height: 15px;
@@ -160,6 +166,7 @@ export class StrataTermChooser extends LitElement {
     }
     if (terms && terms.generation !== this.generation_) this.take(terms);
     if (changed.has("chosen") || other_list) this.reveal();
+    if (!this.found_) this.whole_px_ = Math.min(kTree_px, this.tree_?.offsetHeight ?? 0);
     this.rows_ = this.found_ ? rows_of(this.found_.terms, this.found_folded_) : rows_of(terms?.terms ?? [], this.folded_);
   }
 
@@ -207,7 +214,7 @@ export class StrataTermChooser extends LitElement {
           : html`<button class="icon quiet" aria-label=${words.show_all} title=${words.show_all} @click=${this.clear}>${icon("close")}</button>`}
       </div>
       ${problem ? html`<p class="error" role="alert">${problem}</p>` : nothing}
-      <div class="tree" id="tree" role="tree" tabindex="-1" aria-label=${words.tree} @scroll=${() => this.requestUpdate()} @pointerdown=${this.keep_focus}>
+      <div class="tree" id="tree" role="tree" tabindex="-1" aria-label=${words.tree} ${styled({ "min-height": found ? `${this.whole_px_}px` : null })} @scroll=${() => this.requestUpdate()} @pointerdown=${this.keep_focus}>
         <div class="rows" role="none" ${styled({ height: `${this.rows_.length * kRow_px}px` })}>
           ${repeat(
             this.in_sight(),
