@@ -36,6 +36,15 @@ const choose_file = async (name, text) => {
   writeFileSync(path, text);
   await importer.locator("input[type=file]").setInputFiles(path);
 };
+const drop = (on, name, text) =>
+  on.evaluate(
+    (element, [file, body]) => {
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File([body], file));
+      element.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, composed: true, cancelable: true }));
+    },
+    [name, text],
+  );
 const pixels = async (color) => {
   await page.mouse.move(5, 5); // the brush's circle is no paint
   return browser.count(rgb(color));
@@ -137,12 +146,15 @@ try {
   await importer.getByText("All of it fits. Nothing has been written yet.").waitFor();
   assert.equal(await importer.getByLabel("Name of the list").inputValue(), "glaze terms");
   await shot("terms-report");
-  assert.ok(!(await server.json("GET", "/projects/default/tables")).tables.some(({ slug }) => slug === "glaze-terms"));
+  const { project } = await server.json("GET", base);
+  const lists = async () => (await server.json("GET", `/projects/${project}/tables`)).tables.filter(({ kind }) => kind === "terms").map(({ name }) => name);
+  assert.deepEqual(await lists(), ["Stone condition terms"]);
   await button("Import").click();
   await wait_for(async () => (await importer.count()) === 0, "the list to be made");
   await layers.locator("li.selected").getByText("glaze terms").first().waitFor();
   await term("Crazing").waitFor();
   assert.equal(await term("Crazing").getAttribute("aria-level"), "2");
+  assert.deepEqual((await lists()).sort(), ["Stone condition terms", "glaze terms"]);
 
   say("more terms go into the list from its table, and the tree follows");
   await page.getByRole("button", { name: "Table of records" }).click();
@@ -155,6 +167,15 @@ try {
   await term("Net of cracks").waitFor();
   await term("Running").waitFor();
   await shot("terms-imported");
+
+  say("a file that is dropped on the list's table is terms for it, and one in the dialog takes its place; one that says nothing new is not imported");
+  await drop(table, "none.csv", "code,parent\nlone,nowhere\n");
+  await importer.getByText("nowhere").waitFor();
+  await drop(importer.locator(".file"), "same.ttl", `${prefixes}g:pinhole a skos:Concept ; skos:notation "pinhole" ; skos:broader g:glaze ; skos:prefLabel "Pinhole"@en .\n`);
+  await importer.getByText("same.ttl").waitFor();
+  await importer.getByText("The table holds all of that already.").waitFor();
+  assert.ok(await button("Import").isDisabled());
+  await button("Cancel").click();
 
   say("the list is saved as SKOS, as it may be imported elsewhere");
   const [download] = await Promise.all([page.waitForEvent("download"), menu("More about the table", "Save the terms as SKOS (Turtle)")]);

@@ -87,8 +87,10 @@ export function legend(layer: Layer, palette: Palette, records: LegendNames): Te
       return html`<p class="hint">${layer.kind === "database" ? texts.layers.no_records : texts.layers.no_labels}</p>`;
     }
     const terms = layer.table === undefined ? null : records.terms(layer.table);
+    const points = in_tree(palette.points, terms);
     return html`<ul class="legend-classes">
-      ${in_tree(palette.points, terms).map(({ point, depth }) => line(point, describe_value(layer, point.at, records), depth))}
+      ${points.slice(0, kMostLines).map(({ point, depth }) => line(point, describe_value(layer, point.at, records), depth))}
+      ${points.length > kMostLines ? html`<li class="hint">${texts.layers.more_classes(points.length - kMostLines)}</li>` : nothing}
     </ul>`;
   }
   return gradient(palette, unit);
@@ -105,6 +107,7 @@ function in_tree(points: readonly PalettePoint[], terms: TermTree | null): { poi
     .sort((a, b) => (a.place === b.place ? 0 : a.place - b.place));
 }
 
+const kMostLines = 300; // a list of terms may have thousands
 const kIndent_px = 14;
 
 const line = (point: Pick<PalettePoint, "color" | "pattern" | "angle">, text: string, depth = 0): TemplateResult =>

@@ -227,14 +227,16 @@ export class StrataTermChooser extends LitElement {
   }
 
   /** What the brush has now, in words also for those who do not see the tree, and cannot point at a term to read about it. */
-  private now(terms: TermTree): TemplateResult | typeof nothing {
-    const term = terms.terms.find(({ key }) => key === this.chosen);
-    if (!term) return nothing;
-    const above = path_to(terms.terms, this.chosen);
+  private now({ terms }: TermTree): TemplateResult {
+    const { chosen, found_: found } = this;
+    const known = [terms, found?.terms ?? []].find((some) => some.some(({ key }) => key === chosen)) ?? [];
+    const term = known.find(({ key }) => key === chosen);
+    const above = path_to(known, chosen);
+    const name = term?.name ?? this.session.tables.label(this.layer.table ?? 0, chosen) ?? texts.tables.record(chosen); // of a very large list
     return html`<div class="now">
-      ${this.swatch(term)}
-      <span>${above.length === 0 ? nothing : html`<span class="above">${above.map(({ name }) => `${name} › `)}</span>`}<b>${term.name}</b></span>
-      ${term.definition ? html`<span class="hint">${term.definition}</span>` : nothing}
+      ${this.swatch(chosen)}
+      <span>${above.length === 0 ? nothing : html`<span class="above">${above.map((each) => `${each.name} › `)}</span>`}<b>${name}</b></span>
+      ${term?.definition ? html`<span class="hint">${term.definition}</span>` : nothing}
     </div>`;
   }
 
@@ -254,12 +256,12 @@ export class StrataTermChooser extends LitElement {
       @click=${() => this.choose(term.key)}
     >
       <span class="fold" @click=${(event: Event) => this.on_fold(event, term, parent, folded)}>${parent ? icon("chevron") : nothing}</span>
-      ${this.swatch(term)}<span class="ellipsis">${term.name}</span>${chosen ? icon("check") : nothing}
+      ${this.swatch(term.key)}<span class="ellipsis">${term.name}</span>${chosen ? icon("check") : nothing}
     </div>`;
   }
 
   /** As the layer draws it for this person; nothing where something else than the term says its colour. */
-  private swatch({ key }: ListedTerm): TemplateResult {
+  private swatch(key: number): TemplateResult {
     const palette = this.session.layers.palette(this.layer);
     const color = color_of(palette, key);
     const point = point_of(palette, key) ?? (color === null ? null : { color });

@@ -5,7 +5,7 @@ import { ApiError, type Api } from "../core/api";
 import type { ListedTerm, TermTree as FoundTerms } from "../core/protocol.gen";
 
 const kAtOnce = 1000;
-export const kMostTerms = 10_000;
+export const kMostTerms = 2000;
 const kMostFound = 300;
 
 export class TermTree {

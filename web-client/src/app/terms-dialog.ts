@@ -28,7 +28,9 @@ export class StrataTermsDialog extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   /** Id; null: a new list is made. */
   @property({ attribute: false }) table: number | null = null;
+  /** The one that is looked at first, where there is one. */
   @property({ attribute: false }) file: File | null = null;
+  @state() private file_: File | null = null;
   @state() private name_ = "";
   @state() private with_layer_ = true;
   @state() private report_: RecordsReport | null = null;
@@ -71,7 +73,7 @@ export class StrataTermsDialog extends LitElement {
   }
 
   override render(): TemplateResult {
-    const { report_: report, file } = this;
+    const { report_: report, file_: file } = this;
     const list = this.table === null ? null : this.session.tables.find(this.table);
     const ready = report !== null && is_useful(report) && !this.busy_;
     return html`<strata-dialog wide heading=${list ? words.more_title(label_of(list)) : words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
@@ -126,11 +128,11 @@ export class StrataTermsDialog extends LitElement {
   private on_name(event: Event): void {
     this.name_ = (event.target as HTMLInputElement).value.trim();
     this.named_ = this.name_ !== "";
-    if (this.file) void this.look(this.file);
+    if (this.file_) void this.look(this.file_);
   }
 
   private take(file: File): void {
-    this.file = file;
+    this.file_ = file;
     if (!this.named_) this.name_ = name_of_file(file.name);
     void this.look(file);
   }
@@ -156,7 +158,7 @@ export class StrataTermsDialog extends LitElement {
   }
 
   private async send(): Promise<void> {
-    const { file, session } = this;
+    const { file_: file, session } = this;
     const type = terms_type(file?.name ?? "");
     if (!file || type === null) return;
     this.busy_ = true;

@@ -434,6 +434,7 @@ export const texts = {
     deleted_by_other: (name: string) => `The layer “${name}” was deleted.`,
     created: (name: string) => `Layer “${name}” is ready to paint.`,
     no_labels: "Numbered classes",
+    more_classes: (n: number) => `and ${n.toLocaleString("en-GB")} more`,
     class_number: (n: number) => `Class ${n}`,
     record_number: (n: number) => `Record ${n}`,
     no_records: "Each number has a colour of its own.",
