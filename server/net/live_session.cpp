@@ -203,7 +203,7 @@ void LiveSession::edit(const protocol::EditRequest& message) {
   auto request = edit_request(message.edit, *layer, room_->model(), message.id, principal_.user, shared_->find_tool);
   if (!request) return refuse(request.error(), message.id);
   if (layer->table)
-    if (auto known = check_keys(*shared_->store, *layer, painted_by(*layer, *request)); !known)
+    if (auto known = check_keys(*shared_->store, *layer, room::painted_by(*layer, *request)); !known)
       return refuse(known.error(), message.id);
   submit(std::move(*request), std::nullopt);
 }

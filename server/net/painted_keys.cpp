@@ -1,9 +1,7 @@
 #include "net/painted_keys.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstdio>
-#include <set>
 
 #include "net/table_events.h"
 #include "room/await.h"
@@ -20,21 +18,6 @@ std::string area_text(double area_m2) {
   else
     std::snprintf(text, sizeof text, "%.2f cm²", area_m2 * 1e4);
   return text;
-}
-
-// Distinct values of a raster's valid texels.
-std::set<std::int64_t> keys_in(const TileMap& tiles) {
-  std::set<std::int64_t> keys;
-  for (const auto& [address, tile] : tiles) {
-    std::optional<std::uint32_t> last;  // neighbours mostly share a key
-    for (std::size_t word = 0; word < tile->valid.words.size(); ++word)
-      for (auto rest = tile->valid.words[word]; rest != 0; rest &= rest - 1) {
-        const std::uint32_t bits = tile->bits(static_cast<int>(word * 64) + std::countr_zero(rest));
-        if (last != bits) keys.insert(bits);
-        last = bits;
-      }
-  }
-  return keys;
 }
 
 }  // namespace
@@ -116,22 +99,6 @@ Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedL
       return tl::unexpected(done.error());
     }
     ++context.metrics.edits_saved;
-  }
-  return {};
-}
-
-std::vector<std::int64_t> painted_by(const Layer& layer, const room::EditRequest& edit) {
-  if (layer.kind != LayerKind::database) return {};
-  const auto one = [](bool erase, std::uint32_t bits) {
-    return erase ? std::vector<std::int64_t>{} : std::vector<std::int64_t>{bits};
-  };
-  if (const auto* stroke = std::get_if<room::StrokeEdit>(&edit.edit))
-    return one(stroke->batch.erase, stroke->batch.value_bits);
-  if (const auto* fill = std::get_if<room::FillEdit>(&edit.edit)) return one(fill->erase, fill->value_bits);
-  if (const auto* polygon = std::get_if<room::PolygonEdit>(&edit.edit)) return one(polygon->erase, polygon->value_bits);
-  if (const auto* import = std::get_if<room::ImportEdit>(&edit.edit)) {
-    const auto keys = keys_in(import->tiles);
-    return {keys.begin(), keys.end()};
   }
   return {};
 }

@@ -25,8 +25,6 @@ std::string where_painted(const std::vector<PaintedLayer>& layers, const std::ve
 Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedLayer>& layers, std::int64_t key,
                          std::optional<std::int64_t> to, const std::string& user);
 
-// The keys that an edit paints: none where it erases, undoes or brings back what was.
-std::vector<std::int64_t> painted_by(const Layer& layer, const room::EditRequest& edit);
 // Makes records of those keys of a database layer that have none but are named in its legend, which a map may just have brought: the
 // name goes into the table's first text column. As the user's entry in the table's journal, told to who looks.
 Result<void> records_from_legend(const RouteContext& context, const Layer& layer, const std::vector<std::int64_t>& keys,

@@ -49,7 +49,8 @@ void apply_edit(const RouteContext& context, const Request& request, const std::
                 room::EditRequest edit, const Respond& respond, std::function<nlohmann::json(nlohmann::json)> body_of) {
   const auto layer = room->layer(std::to_string(edit.layer_id));
   if (!layer) return respond(layer.error());
-  if (auto known = check_keys(context.store, *layer, painted_by(*layer, edit)); !known) return respond(known.error());
+  if (auto known = check_keys(context.store, *layer, room::painted_by(*layer, edit)); !known)
+    return respond(known.error());
   const bool keyed = !request.header("idempotency-key").empty();
   if (keyed)
     if (auto same = context.edit_book.begin(room->model().id, edit); !same) return respond(same.error());

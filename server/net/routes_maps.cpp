@@ -48,7 +48,7 @@ Handler painting(const RouteContext& context, std::string op, Paint paint) {
     // With the names that the map brought.
     const auto named = (*room)->layer(std::to_string(layer->id));
     if (!named) return respond(named.error());
-    if (auto made = records_from_legend(context, *named, painted_by(*named, edit), request.user()); !made)
+    if (auto made = records_from_legend(context, *named, room::painted_by(*named, edit), request.user()); !made)
       return respond(made.error());
     apply_edit(context, request, *room, std::move(edit), respond);
   };

@@ -316,6 +316,27 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
   return keep(*change);
 }
 
+// Nothing paints the key any more.
+Result<Response> delete_retired(const RouteContext& context, const Request& request, const Table& table,
+                                std::int64_t key, std::optional<std::int64_t> version, const std::string& texels,
+                                std::optional<std::int64_t> to) {
+  auto painted = painted_layers(context, table.id);
+  if (!painted) return tl::unexpected(painted.error());
+  const std::string where = where_painted(*painted, {key});
+  if (!where.empty() && texels == "refuse")
+    return fail(409, "Record is painted",
+                "Record " + std::to_string(key) + " covers " + where +
+                    ". Say what becomes of it: texels=clear, or texels=reassign&to=KEY.",
+                "texels");
+  if (auto done = repaint_key(context, *painted, key, to, request.user()); !done) return tl::unexpected(done.error());
+  const auto answer = [](const TableChange&) { return empty_response(204); };
+  auto change = context.store.delete_record(table.id, key, version, request.user(), false,
+                                            first_answer<TableChange>(request, answer));
+  if (!change) return tl::unexpected(change.error());
+  tell_change(context, *change, request.user());
+  return answer(*change);
+}
+
 Result<Response> delete_record(const RouteContext& context, const Request& request) {
   auto key = record_key(request);
   if (!key) return tl::unexpected(key.error());
@@ -342,21 +363,14 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
   // Before any texel is touched: may it go?
   auto may = context.store.delete_record(table.id, *key, *version, request.user(), true);
   if (!may) return tl::unexpected(may.error());
-  auto painted = painted_layers(context, table.id);
-  if (!painted) return tl::unexpected(painted.error());
-  const std::string where = where_painted(*painted, {*key});
-  if (!where.empty() && texels == "refuse")
-    return fail(409, "Record is painted",
-                "Record " + std::to_string(*key) + " covers " + where +
-                    ". Say what becomes of it: texels=clear, or texels=reassign&to=KEY.",
-                "texels");
-  if (auto done = repaint_key(context, *painted, *key, to, request.user()); !done) return tl::unexpected(done.error());
-  const auto answer = [](const TableChange&) { return empty_response(204); };
-  auto change = context.store.delete_record(table.id, *key, *version, request.user(), false,
-                                            first_answer<TableChange>(request, answer));
-  if (!change) return tl::unexpected(change.error());
-  tell_change(context, *change, request.user());
-  return answer(*change);
+  // A stroke that began while there was a record must not paint it again.
+  const auto retired = context.rooms.retire_key(table.id, *key);
+  auto deleted = retired ? delete_retired(context, request, table, *key, *version, texels, to)
+                         : Result<Response>(tl::unexpected(retired.error()));
+  if (!deleted)
+    if (const auto missing = context.store.missing_records(table.id, std::vector{*key}); missing && missing->empty())
+      context.rooms.admit_keys(table.id, std::vector{*key});
+  return deleted;
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ void tell_table(const RouteContext& context, protocol::TableEventEvent event, co
 
 void tell_change(const RouteContext& context, const store::TableChange& change, const std::string& user) {
   if (change.sequence == 0) return;
+  context.rooms.admit_keys(change.table.id, change.created);
   context.rooms.records_changed(change.table.id);
   if (change.columns_changed || change.records.size() + change.deleted.size() > kMostTold)
     return tell_table(context, protocol::TableEventEvent::changed, change.table, user);

@@ -1,6 +1,43 @@
 #include "room/edit.h"
 
+#include <bit>
+#include <set>
+
 namespace strata::room {
+namespace {
+
+// Distinct values of a raster's valid texels.
+std::set<std::int64_t> keys_in(const TileMap& tiles) {
+  std::set<std::int64_t> keys;
+  for (const auto& [address, tile] : tiles) {
+    std::optional<std::uint32_t> last;  // neighbours mostly share a key
+    for (std::size_t word = 0; word < tile->valid.words.size(); ++word)
+      for (auto rest = tile->valid.words[word]; rest != 0; rest &= rest - 1) {
+        const std::uint32_t bits = tile->bits(static_cast<int>(word * 64) + std::countr_zero(rest));
+        if (last != bits) keys.insert(bits);
+        last = bits;
+      }
+  }
+  return keys;
+}
+
+}  // namespace
+
+std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit) {
+  if (layer.kind != LayerKind::database) return {};
+  const auto one = [](bool erase, std::uint32_t bits) {
+    return erase ? std::vector<std::int64_t>{} : std::vector<std::int64_t>{bits};
+  };
+  if (const auto* stroke = std::get_if<StrokeEdit>(&edit.edit))
+    return one(stroke->batch.erase, stroke->batch.value_bits);
+  if (const auto* fill = std::get_if<FillEdit>(&edit.edit)) return one(fill->erase, fill->value_bits);
+  if (const auto* polygon = std::get_if<PolygonEdit>(&edit.edit)) return one(polygon->erase, polygon->value_bits);
+  if (const auto* import = std::get_if<ImportEdit>(&edit.edit)) {
+    const auto keys = keys_in(import->tiles);
+    return {keys.begin(), keys.end()};
+  }
+  return {};
+}
 
 nlohmann::json to_json(const EditAnswer& answer) {
   return {{"sequence", answer.sequence}, {"texels_changed", answer.texels_changed}, {"area_m2", answer.area_m2}};

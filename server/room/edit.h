@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "core/expression.h"
+#include "core/layer.h"
 #include "core/stroke.h"
 #include "core/tile_mirror.h"
 #include "core/uuid.h"
@@ -71,6 +73,9 @@ struct EditRequest {
   std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit, RestoreEdit> edit;
   nlohmann::json record;  // the edit as asked, for the journal
 };
+
+// The keys that an edit of the layer paints: none where it erases, undoes or brings back what was.
+std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit);
 
 struct EditAnswer {
   std::int64_t sequence = 0;

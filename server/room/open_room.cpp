@@ -409,6 +409,10 @@ void OpenRoom::edit(EditRequest request, Applied applied, Saved saved) {
   }
   boost::asio::post(strand_, [self = shared_from_this(), request = std::move(request), applied = std::move(applied),
                               saved = std::move(saved)]() mutable {
+    if (auto free = self->check_not_retired(request); !free) {
+      --self->unanswered_;
+      return saved(tl::unexpected(free.error()));
+    }
     // The answer keeps the room alive until it is given.
     self->pipeline_->edit(std::move(request), std::move(applied),
                           [self, saved = std::move(saved)](Result<EditAnswer> answer) {
@@ -416,6 +420,20 @@ void OpenRoom::edit(EditRequest request, Applied applied, Saved saved) {
                             saved(std::move(answer));
                           });
   });
+}
+
+Result<void> OpenRoom::settle() {
+  return exclusively<void>([]() -> Result<void> { return {}; });
+}
+
+// Here, in the order of edits: what a deletion does to the texels comes after every edit that was let in.
+Result<void> OpenRoom::check_not_retired(const EditRequest& request) {
+  const LayerState* state = find_layer(request.layer_id);
+  if (!state || !state->layer.table || !parts_.retired_keys.has_any_of(*state->layer.table)) return {};
+  for (const auto key : painted_by(state->layer, request))
+    if (parts_.retired_keys.holds(*state->layer.table, key))
+      return fail(409, "Record was deleted", "Record " + std::to_string(key) + " was deleted meanwhile.", "value");
+  return {};
 }
 
 LayerState* OpenRoom::find_layer(std::int64_t id) {

@@ -11,6 +11,7 @@
 #include "room/look_shelf.h"
 #include "room/member.h"
 #include "room/record_colors.h"
+#include "room/retired_keys.h"
 #include "room/room.h"
 
 namespace strata::room {
@@ -25,6 +26,7 @@ struct RoomParts {
   boost::asio::thread_pool& workers;  // bakes, history, loading: long work
   MemoryLedger& memory;               // of what rooms hold, but for the GPU's
   boost::asio::thread_pool& readers;  // questions to the journal before each edit: they wait for the database only
+  const RetiredKeys& retired_keys;
   RoomOptions options;
 };
 
@@ -73,6 +75,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   Result<TileMap> project(const Layer& layer, const glm::dvec3& direction, const ValueAt& value_at) override;
   Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer) override;
   Result<void> sum_layer(std::int64_t layer_id) override;
+  Result<void> settle();  // returns when every edit before is durable; blocks
   Result<TileMirror::Snapshot> tiles(const std::string& layer, std::optional<std::int64_t> at) override;
   std::shared_ptr<const mesh::Geometry> geometry() const override { return geometry_; }
   std::shared_ptr<const mesh::SearchTree> search_tree() override { return surface_->tree(); }
@@ -133,6 +136,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void on_gpu_filled(int losses_before, const Result<GpuContents>& contents);
   void on_journal_read(Result<JournalContents> contents);
   void retry_recovery(const Problem& why);
+  Result<void> check_not_retired(const EditRequest& request);
   void sort_layers_changed();
   // On the strand: computed layers that `reads` tells become stale, and people are told.
   void outdate(const std::function<bool(const LayerFormula&)>& reads);

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -251,7 +252,11 @@ class Rooms {
   // closed for it.
   Result<std::shared_ptr<Room>> open(const std::string& model_ref);
   void records_changed(std::int64_t table_id);  // in the models that are open (Room::records_changed)
-  void forget(std::int64_t model_id);           // the model was deleted: members are told, the room closes
+  // From now on edits that would paint the key of the table are refused (409). Those that were let in are durable when it returns; of a
+  // Problem this is not known, and the key is retired all the same. Blocks.
+  Result<void> retire_key(std::int64_t table_id, std::int64_t key);
+  void admit_keys(std::int64_t table_id, std::span<const std::int64_t> keys);  // they have records again
+  void forget(std::int64_t model_id);  // the model was deleted: members are told, the room closes
   std::size_t open_rooms() const;
   std::uint64_t memory_bytes_used() const;
   // Refuses new edits, and returns when every other is durable or refused, after `drain_for` at the latest: then what still waits

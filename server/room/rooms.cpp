@@ -42,7 +42,7 @@ struct Rooms::Impl {
         workers(kWorkerThreads),
         readers(kReaderThreads),
         memory("main memory", "--memory", options.memory_bytes > 0 ? options.memory_bytes : default_budget()),
-        parts{store, writer, renderer, stream, strands, workers, memory, readers, options} {
+        parts{store, writer, renderer, stream, strands, workers, memory, readers, retired_keys, options} {
     memory.set_evictor([this] { return drop_a_map(); });
     renderer.on_context_lost([this] {
       std::lock_guard lock(mutex);
@@ -130,10 +130,18 @@ struct Rooms::Impl {
     return !leaving.empty();
   }
 
+  std::vector<std::shared_ptr<OpenRoom>> open_ones() {
+    std::lock_guard lock(mutex);
+    std::vector<std::shared_ptr<OpenRoom>> open;
+    for (const auto& [id, room] : rooms) open.push_back(room);
+    return open;
+  }
+
   render::Renderer& renderer;
   store::JournalWriter writer;
   boost::asio::thread_pool strands, workers, readers;
   MemoryLedger memory;
+  RetiredKeys retired_keys;
   const RoomParts parts;
   std::mutex mutex;
   std::condition_variable changed;
@@ -188,12 +196,20 @@ Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref) {
 }
 
 void Rooms::records_changed(std::int64_t table_id) {
-  std::vector<std::shared_ptr<OpenRoom>> open;
-  {
-    std::lock_guard lock(impl_->mutex);
-    for (const auto& [id, room] : impl_->rooms) open.push_back(room);
+  for (const auto& room : impl_->open_ones()) room->records_changed(table_id);
+}
+
+Result<void> Rooms::retire_key(std::int64_t table_id, std::int64_t key) {
+  impl_->retired_keys.retire(table_id, key);
+  for (const auto& room : impl_->open_ones()) {
+    const auto layers = room->layers();
+    if (std::ranges::none_of(layers, [&](const Layer& layer) { return layer.table == table_id; })) continue;
+    if (auto settled = room->settle(); !settled) return settled;
   }
-  for (const auto& room : open) room->records_changed(table_id);
+  return {};
+}
+void Rooms::admit_keys(std::int64_t table_id, std::span<const std::int64_t> keys) {
+  impl_->retired_keys.admit(table_id, keys);
 }
 
 void Rooms::forget(std::int64_t model_id) {

@@ -116,6 +116,29 @@ def paint_live(server, camera):
         assert saved["op"] == "saved", saved
 
 
+def delete_under_a_stroke(server, camera):
+    """Who began to paint while there was a record does not paint it again when it is gone, and goes on where it comes back."""
+    server.ok("POST", T + "/records", {"key": 500, "values": {"code": "SU 500"}})
+    with LiveClient(server, "north") as live:
+        live.send({"op": "hello", "client": "test", "dpr": 1, "accept": ["jpeg"]})
+        live.receive_until("welcome")
+        ids = [f"00000000-0000-4000-8000-00000000005{n}" for n in range(6)]
+        live.send({"op": "stroke.begin", "layer": "units", "camera": camera, "radius_px": 8, "id": ids[0], "stroke": ids[1], "value": 500})
+
+        def extend(number, place):
+            live.send({"op": "stroke.extend", "id": ids[2 + number], "stroke": ids[1], "n": number, "path": [place]})
+            return live.receive_until("saved", "problem")
+
+        assert extend(0, [320, 200])["op"] == "saved"
+        server.ok("DELETE", T + "/records/500?texels=clear")
+        refused = extend(1, [330, 210])
+        assert (refused["op"], refused.get("status"), refused.get("field")) == ("problem", 409, "value"), refused
+        assert 500 not in [each["key"] for each in server.get(NORTH + "/statistics").json()["keys"]]
+        assert server.ok("POST", T + "/undo").json()["created"] == [500]
+        assert extend(2, [340, 220])["op"] == "saved"
+    server.ok("DELETE", T + "/records/500?texels=clear")
+
+
 def delete_painted(server):
     refused = server.request("DELETE", T + "/records/2")
     assert refused.status == 409 and "cm² on Units of North" in refused.json()["detail"], refused
@@ -356,6 +379,7 @@ def main():
         paint(server, cameras)
         paint_live(server, cameras["north"])
         delete_painted(server)
+        delete_under_a_stroke(server, cameras["north"])
         past_and_history(server)
         bulk(server)
         map_brings_records(server)
