@@ -277,9 +277,11 @@ describe("the names of records", () => {
     names.put(record(1, { code: "late" }));
     expect(offsets).toEqual([]);
     expect(names.label(1)).toBeNull();
+    expect(names.lacks(7)).toBe(false); // not known yet
     await settle();
     expect(names.label(1)).toBe("SU 1");
     expect(names.label(2)).toBeNull();
+    expect([names.lacks(2), names.lacks(7)]).toEqual([false, true]);
     names.put(record(2, { code: "Pit" }));
     expect(names.label(2)).toBe("Pit");
     names.remove(2);

@@ -94,6 +94,9 @@ try {
   await button("Take back my last change of the table").click();
   await wait_for(async () => (await files(1)).length === 3, "the file to be back");
 
+  say("the legend has the records that there are");
+  assert.deepEqual(await page.locator("strata-layer-panel .legend-classes").first().locator("li").allInnerTexts(), ["SU 1", "SU 2", "SU 3"]);
+
   say("a click on the surface, while turning, shows the record with its picture");
   const box = await browser.stage_box();
   await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);

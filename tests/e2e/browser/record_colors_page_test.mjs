@@ -136,6 +136,9 @@ try {
   await server.json("PATCH", "/tables/sherds/records/2", { values: { state: "loose" } });
   await wait_for(async () => (await panel.locator(".on-model .hint").textContent()) !== told, "the area with two more");
   await shot("filter-lit");
+  await button("Find again").click();
+  await panel.getByText("6 of 14 records").waitFor();
+  await wait_for(async () => !(await button("Find again").isVisible()), "the rows to be those that stand out");
   await button("Show the chosen records on the model").click();
   await shows(kFirm, kEnough, "the filter to stay in the table");
   await button("Show the chosen records on the model").click();

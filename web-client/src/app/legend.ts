@@ -76,6 +76,7 @@ export const legend_styles = css`
 export interface LegendNames extends RecordLabels {
   find(table: number): Table | null;
   terms(table: number): TermTree | null;
+  lacks(table: number, key: number): boolean;
 }
 
 /** `palette`: what the layer is drawn with for this person. */
@@ -83,11 +84,12 @@ export function legend(layer: Layer, palette: Palette, records: LegendNames): Te
   if (palette.column) return column_legend(layer, palette, records);
   const { unit } = layer;
   if (palette.mode === "categorical") {
-    if (palette.points.length === 0) {
-      return html`<p class="hint">${layer.kind === "database" ? texts.layers.no_records : texts.layers.no_labels}</p>`;
-    }
-    const terms = layer.table === undefined ? null : records.terms(layer.table);
-    const points = in_tree(palette.points, terms);
+    const { table } = layer;
+    const terms = table === undefined ? null : records.terms(table);
+    // A palette has colours for records that may come.
+    const there = table === undefined ? palette.points : palette.points.filter(({ at }) => !records.lacks(table, at));
+    if (there.length === 0) return html`<p class="hint">${layer.kind === "database" ? texts.layers.no_records : texts.layers.no_labels}</p>`;
+    const points = in_tree(there, terms);
     return html`<ul class="legend-classes">
       ${points.slice(0, kMostLines).map(({ point, depth }) => line(point, describe_value(layer, point.at, records), depth))}
       ${points.length > kMostLines ? html`<li class="hint">${texts.layers.more_classes(points.length - kMostLines)}</li>` : nothing}

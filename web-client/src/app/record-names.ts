@@ -18,6 +18,7 @@ export class RecordNames {
   private names_ = new Map<number, string>();
   private state_: "unasked" | "loading" | "loaded" = "unasked";
   private again_ = false;
+  private complete_ = false; // every record is in names_
 
   constructor(
     private readonly api_: Api,
@@ -29,6 +30,12 @@ export class RecordNames {
   label(key: number): string | null {
     this.want();
     return this.names_.get(key) || null;
+  }
+
+  /** Whether it is known that there is no such record. */
+  lacks(key: number): boolean {
+    this.want();
+    return this.complete_ && !this.names_.has(key);
   }
 
   /** Where names begin with the text first, then where they hold it; by key, too. */
@@ -75,13 +82,16 @@ export class RecordNames {
         this.again_ = false;
         const table = this.table_();
         const names = new Map<number, string>();
+        let complete = false;
         for (let offset = 0; offset < kMostNames; offset += kAtOnce) {
           const sortby = label_column(table)?.slug ?? "key";
           const { records, total } = await this.api_.records({ table: table.id }, { sortby, limit: kAtOnce, offset });
           for (const record of records) names.set(record.key, label_of_record(table, record));
-          if (offset + kAtOnce >= total) break;
+          complete = offset + kAtOnce >= total;
+          if (complete) break;
         }
         this.names_ = names;
+        this.complete_ = complete;
       } while (this.again_);
       this.state_ = "loaded";
     } catch (error) {

@@ -141,6 +141,7 @@ export class StrataTablePanel extends LitElement {
     return html`<div class="bar">
       <h2 class="ellipsis" title=${table.description}>${label_of(table)}</h2>
       <span class="hint numeric count" role="status">${view.told || (rows.loaded ? shown : "")}</span>
+      ${view.outdated ? html`<button class="link" title=${words.outdated_hint} @click=${() => rows.refresh()}>${words.outdated}</button>` : nothing}
       <div class="filter">
         <input
           type="text"

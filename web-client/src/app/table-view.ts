@@ -136,6 +136,12 @@ export class TableView {
     void this.find_extent();
   }
 
+  /** What others wrote brought records into the filter, or took some out of it, that the rows do not follow by themselves. */
+  get outdated(): boolean {
+    const { extent, rows } = this;
+    return extent !== null && rows.loaded && this.selected.size === 0 && rows.filter !== "" && extent.records !== rows.total;
+  }
+
   private light_up(): void {
     const { highlight } = this;
     const text = JSON.stringify(highlight);

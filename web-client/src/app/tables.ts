@@ -56,6 +56,11 @@ export class Tables {
     return this.names(id)?.label(key) ?? null;
   }
 
+  /** Whether it is known that the table has no such record. */
+  lacks(id: number, key: number): boolean {
+    return this.names(id)?.lacks(key) ?? false;
+  }
+
   /** What a term is called; null where the table is no list of terms, or its name is not known. */
   term(id: number, key: number): string | null {
     return this.find(id)?.kind === "terms" ? this.label(id, key) : null;

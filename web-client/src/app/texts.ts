@@ -437,7 +437,7 @@ export const texts = {
     more_classes: (n: number) => `and ${n.toLocaleString("en-GB")} more`,
     class_number: (n: number) => `Class ${n}`,
     record_number: (n: number) => `Record ${n}`,
-    no_records: "Each number has a colour of its own.",
+    no_records: "Each record has a colour of its own.",
   },
 
   layer_dialog: {
@@ -631,6 +631,8 @@ export const texts = {
     filter: "Filter",
     filter_example: "depth > 1.5 and soil = 'clay'",
     filter_clear: "Show all records",
+    outdated: "Find again",
+    outdated_hint: "Records have changed since: the filter finds others now.",
     chosen: (n: number) => count(n, "record", "records"),
     choose_none: "Choose none",
     paint_with: "Paint with it",
