@@ -44,7 +44,7 @@ build_packages="g++ cmake ninja-build pkg-config ccache mold git python3 python3
   libturbojpeg0-dev libjpeg62-turbo-dev libsodium-dev libssl-dev libspdlog-dev libcli11-dev libzstd-dev libpng-dev libtiff-dev
   libembree-dev libmeshoptimizer-dev libdraco-dev libzip-dev libshp-dev libxlsxwriter-dev libutf8proc-dev libexpected-dev libgtest-dev libgmock-dev"
 run_packages="libegl1 libegl-mesa0 libgl1-mesa-dri postgresql-15 curl"
-test_packages="chromium fonts-dejavu-core clang-format-14 xz-utils"
+test_packages="chromium fonts-dejavu-core clang-format-14 xz-utils python3-pandas python3-openpyxl"
 fuzz_packages="clang-14 libclang-rt-14-dev llvm-14"
 
 # A package that cannot be installed beside one of the user's: its files are unpacked into build/deps instead.
