@@ -167,6 +167,7 @@ def check_raster(server):
     body, headers = form(a_tif=two, a_tfw=b"1 2 3")
     assert server.post(grey + "/picture", body, headers=headers).status == 422
     assert server.post(M + "/map-contents", body, headers=headers).status == 422
+    assert server.post(M + "/map-contents?tolerance=0", b"{}", headers={"Content-Type": "application/geo+json"}).json()["field"] == "tolerance"
     assert server.get(grey + "/edits").json()["total"] == 0
     print("rasters: ok", flush=True)
 

@@ -11,7 +11,7 @@ import { kSpare } from "./support/vocabulary.mjs";
 
 const kRounds = 5; // each operation is called early and late, and beside different ones; many more fill what has a limit (looks of a model)
 const kCallsInRound = 10; // of each operation
-const kAtOnce = 6;
+const kAtOnce = 4; // as many as may download: a fifth would be put off (503)
 const kSmallBody = 60_000; // what the server reads of a call that it refuses; larger ones ask first, since it may end the connection
 const kFewest = 2000;
 

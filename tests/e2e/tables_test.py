@@ -5,6 +5,7 @@ import csv
 import io
 import os
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.cameras import camera_from
@@ -258,6 +259,26 @@ def change_columns(server):
     assert server.request("DELETE", T).status == 409
 
 
+def change_at_once(server):
+    """Names, columns and records of one table, by three people."""
+    server.ok("POST", "/projects/default/tables", {"name": "Busy"})
+
+    def rename(n):
+        answer = server.request("PATCH", "/tables/busy", {"name": f"Busy {n}"})
+        while answer.status == 412:  # a column came between
+            answer = server.request("PATCH", "/tables/busy", {"name": f"Busy {n}"})
+        assert answer.status == 200, answer
+
+    work = [rename,
+            lambda n: server.ok("POST", "/tables/busy/columns", {"name": f"Column {n}"}),
+            lambda n: server.ok("POST", "/tables/busy/records", {"values": {}})]
+    with ThreadPoolExecutor(len(work)) as people:
+        for done in [people.submit(lambda change=change: [change(n) for n in range(60)]) for change in work]:
+            done.result()
+    table = server.get("/tables/busy").json()
+    assert (table["name"], len(table["columns"]), table["records"]) == ("Busy 59", 60, 60), table
+
+
 def circles(server):
     path = T + "/columns/above/cycles"
     assert server.ok("GET", path).json() == {"cycles": [], "total": 0}
@@ -384,6 +405,7 @@ def main():
         bulk(server)
         map_brings_records(server)
         change_columns(server)
+        change_at_once(server)
         circles(server)
         wide, painted = widen(server, cameras["north"])
         refusals(server)

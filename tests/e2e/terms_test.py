@@ -80,6 +80,7 @@ def skos(server):
     turtle = server.ok("GET", LIST + "/terms?f=turtle")
     assert turtle.headers["Content-Type"].startswith("text/turtle") and b"skos:broader" in turtle.body, turtle
     text = server.ok("GET", LIST + "/terms?f=csv&separator=semicolon").body
+    assert server.get(LIST + "/terms?f=csv&limit=0").json()["field"] == "limit"
     assert text.startswith(b"\xef\xbb\xbfcode;parent;label;label-de;label-es;"), text
     for name, body, headers in (("By SKOS", turtle.body, TURTLE), ("By CSV", text, CSV)):
         made = server.ok("POST", PROJECT + "/terms?name=" + name.replace(" ", "%20"), body, headers=headers).json()

@@ -196,6 +196,8 @@ const new_records = {
 const form_of = (...names) => ({ "multipart/form-data": file(...names) });
 const attach = { content: { "application/octet-stream": file("letter.txt", "picture.png") } };
 
+const what_of_texels = one({}, { texels: "clear" }, { texels: "reassign", to: "2" });
+
 /** What an operation wants that its schema and the words above do not say. What takes something away takes a spare one; what changes how things are called or kept is done to what others do not need. */
 export const particulars = {
   login: json({ by_name: { token: fc.oneof(one("(the owner's token)"), strange_text) } }),
@@ -206,8 +208,8 @@ export const particulars = {
   create_look: { path: { model: one("wall") } },
   delete_tool: { path: spare("tool") },
   delete_table: { path: spare("table", "units") },
-  delete_record: { path: { table: one("units"), ...spare("key", "1") }, query: { texels: one("refuse", "clear", "reassign") } },
-  delete_layer_record: { path: { ...units_layer.path, ...spare("key", "1") } },
+  delete_record: { path: { table: one("units"), ...spare("key", "1") }, queries: what_of_texels },
+  delete_layer_record: { path: { model: one("wall"), layer: one("units"), ...spare("key", "1") }, queries: what_of_texels },
   delete_attachment: { path: spare("attachment") },
   drop_column: { path: { table: one("scratch"), ...spare("column") } },
   change_column: { path: { table: one("scratch"), ...spare("column", "note") }, ...json({ by_name: { target: one("units", "scratch") } }) },
@@ -223,7 +225,7 @@ export const particulars = {
   create_table: json({ by_schema: { TableRef: one("damage") } }),
   change_table: scratch,
   undo_table: scratch,
-  redo: { path: { model: one("wall", "wall-2"), layer: one("undone", "cracks") } },
+  redo: { path: { model: one("wall-2"), layer: one("undone", "cracks") } },
   redo_table: { path: { table: one("undone", "scratch") } },
   compute_layer: { path: { model: one("wall"), layer: one("risk", "risk", "cracks") } },
   transfer_layers: { path: { model: one("wall-2") }, ...json({ by_name: { layers: one(["cracks"], ["moisture"], ["cracks", "units"]) } }) },
