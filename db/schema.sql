@@ -505,7 +505,7 @@ CREATE TABLE public.record_columns (
     target bigint,
     properties jsonb NOT NULL,
     hidden boolean DEFAULT false NOT NULL,
-    CONSTRAINT record_columns_kind_check CHECK ((kind = ANY (ARRAY['text'::text, 'integer'::text, 'numeric'::text, 'boolean'::text, 'date'::text, 'timestamp'::text, 'period'::text, 'enumeration'::text, 'url'::text, 'term'::text, 'relation'::text, 'picture'::text, 'document'::text])))
+    CONSTRAINT record_columns_kind_check CHECK ((kind = ANY (ARRAY['text'::text, 'integer'::text, 'numeric'::text, 'boolean'::text, 'date'::text, 'timestamp'::text, 'period'::text, 'enumeration'::text, 'url'::text, 'term'::text, 'relation'::text, 'picture'::text, 'document'::text, 'line'::text, 'point'::text])))
 );
 
 ALTER TABLE public.record_columns ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (

@@ -7,6 +7,7 @@
 
 #include "core/csv.h"
 #include "core/edtf.h"
+#include "core/mark.h"
 #include "core/timestamp.h"
 #include "core/utf8.h"
 
@@ -112,6 +113,19 @@ Result<json> check_attached(const Column& column, const json& value, const std::
   return ids;
 }
 
+Result<json> check_marks(const Column& column, const json& value, const std::string& field) {
+  const bool lines = column.kind == ColumnKind::line;
+  const auto marks = read_marks(value, lines);
+  if (!marks)
+    return refuse(column,
+                  std::string(lines ? R"(a list of lines, {"model": 3, "coordinates": [[x, y, z], [x, y, z], …]} each)"
+                                    : R"(a list of points, {"model": 3, "coordinates": [[x, y, z]]} each)") +
+                      ", " + std::to_string(kMostMarks) + " and " + std::to_string(kMostMarkPlaces) + " places at most",
+                  field);
+  if (marks->empty()) return json();
+  return to_json(*marks);
+}
+
 Result<json> check_present(const Column& column, const json& value, const std::string& field) {
   switch (column.kind) {
     case ColumnKind::integer: return check_integer(column, value, field);
@@ -124,6 +138,8 @@ Result<json> check_present(const Column& column, const json& value, const std::s
     case ColumnKind::relation: return check_relation(column, value, field);
     case ColumnKind::picture:
     case ColumnKind::document: return check_attached(column, value, field);
+    case ColumnKind::line:
+    case ColumnKind::point: return check_marks(column, value, field);
     default: break;
   }
   auto text = check_text(column, value, "text", field);
@@ -231,12 +247,29 @@ Result<json> parse_value(const Column& column, std::string_view text, bool decim
       }
       return check_value(column, keys, field);
     }
+    case ColumnKind::line:
+    case ColumnKind::point: {
+      const bool lines = column.kind == ColumnKind::line;
+      const auto marks = parse_marks(bare, lines);
+      if (!marks)
+        return refuse(column,
+                      lines
+                          ? "lines as `3 LINESTRING Z (0 0 1, 2.5 0 1)`, the model's id first, with semicolons between"
+                          : "points as `3 POINT Z (0 0 1)`, the model's id first, with semicolons between",
+                      field);
+      return check_value(column, to_json(*marks), field);
+    }
     default: break;
   }
   return check_value(column, is_free_text(column.kind) ? unguard_formula(std::string(text)) : std::string(bare), field);
 }
 
 std::string print_value(const Column& column, const json& value) {
+  if (holds_marks(column.kind)) {
+    const bool lines = column.kind == ColumnKind::line;
+    const auto marks = read_marks(value, lines);
+    return marks ? print_marks(*marks, lines) : std::string();
+  }
   return is_free_text(column.kind) ? guard_formula(plain_text(value)) : plain_text(value);
 }
 
@@ -250,7 +283,9 @@ Result<json> convert_value(const Column& from, const Column& to, const json& val
     return refuse(to, "keys of another table than \"" + from.name + "\"", field);
   if (holds_attachments(to.kind))
     return holds_attachments(from.kind) ? check_value(to, value, field) : refuse(to, "files", field);
-  const std::string text = plain_text(value);
+  if (holds_marks(to.kind) && !holds_marks(from.kind) && !is_free_text(from.kind))
+    return refuse(to, "lines or points", field);
+  const std::string text = holds_marks(from.kind) ? print_value(from, value) : plain_text(value);
   if (is_free_text(to.kind)) return check_value(to, text, field);
   return parse_value(to, text, false, field);
 }

@@ -12,9 +12,9 @@
 namespace strata {
 namespace {
 
-constexpr std::array<std::string_view, 13> kKindNames = {"text",      "integer", "numeric",     "boolean", "date",
+constexpr std::array<std::string_view, 15> kKindNames = {"text",      "integer", "numeric",     "boolean", "date",
                                                          "timestamp", "period",  "enumeration", "url",     "term",
-                                                         "relation",  "picture", "document"};
+                                                         "relation",  "picture", "document",    "line",    "point"};
 
 bool is_number(ColumnKind kind) { return kind == ColumnKind::integer || kind == ColumnKind::numeric; }
 bool names_records(ColumnKind kind) { return kind == ColumnKind::term || kind == ColumnKind::relation; }
@@ -69,10 +69,12 @@ Result<void> check_kind(const Column& column) {
                       "target")
                : fail(422, "Target without relation", "Only columns of kind `term` or `relation` have a target.",
                       "target");
-  if (holds_attachments(column.kind) && !column.default_value.is_null())
-    return fail(422, "Default of attachments", "Files are attached to single records.", "default");
-  if (column.unique &&
-      (column.kind == ColumnKind::relation || column.kind == ColumnKind::boolean || holds_attachments(column.kind)))
+  if ((holds_attachments(column.kind) || holds_marks(column.kind)) && !column.default_value.is_null())
+    return fail(422, "No default",
+                holds_marks(column.kind) ? "Lines and points are drawn for single records."
+                                         : "Files are attached to single records.",
+                "default");
+  if (column.unique && (column.kind == ColumnKind::boolean || holds_lists(column.kind)))
     return fail(422, "Cannot be unique",
                 "Columns of kind `" + std::string(name(column.kind)) + "` hold the same value in many records.",
                 "unique");

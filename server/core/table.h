@@ -28,10 +28,17 @@ enum class ColumnKind {
   relation,  // keys of records of `target`: "above", "cuts", "same as"
   picture,   // ids of attachments of the table, in the order in which they are shown: pictures made of pixels
   document,  // the same, of any files
+  line,      // what the record has on models besides texels (core/mark): "cracks"
+  point,     // "samples"
 };
 std::string_view name(ColumnKind kind);
 std::optional<ColumnKind> parse_column_kind(std::string_view name);
 inline bool holds_attachments(ColumnKind kind) { return kind == ColumnKind::picture || kind == ColumnKind::document; }
+inline bool holds_marks(ColumnKind kind) { return kind == ColumnKind::line || kind == ColumnKind::point; }
+// Several values in one cell.
+inline bool holds_lists(ColumnKind kind) {
+  return kind == ColumnKind::relation || holds_attachments(kind) || holds_marks(kind);
+}
 
 // A column of a project's table. Its id is given once and never again.
 struct Column {

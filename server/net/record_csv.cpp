@@ -1,6 +1,7 @@
 #include "net/record_csv.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "core/column_value.h"
@@ -12,12 +13,14 @@ namespace {
 
 constexpr const char* kKey = "key";
 constexpr const char* kVersion = "version";
-constexpr const char* kArea = "area_m2";
+constexpr std::array<std::string_view, 3> kMeasures = {"area_m2", "length_m", "point_count"};  // RecordMeasures
 
 std::string with_comma(std::string number) {
   std::replace(number.begin(), number.end(), '.', ',');
   return number;
 }
+
+bool is_measure(const std::string& head) { return std::ranges::find(kMeasures, head) != kMeasures.end(); }
 
 bool is_called(const Column& column, const std::string& head) {
   if (column.slug == head || column.name == head) return true;
@@ -42,7 +45,7 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, const Table& table) {
   std::set<std::string> met;
   for (const std::string& cell : row.cells) {
     Head head{std::string(trimmed(cell)), nullptr};
-    const bool is_word = head.text == kKey || head.text == kVersion || head.text == kArea;
+    const bool is_word = head.text == kKey || head.text == kVersion || is_measure(head.text);
     if (!is_word)
       for (const Column& column : table.columns)
         if (is_called(column, head.text)) {
@@ -71,16 +74,17 @@ std::string record_cell(const Record& record, const Column& column, char separat
 }
 
 std::string records_csv(const std::vector<Record>& records, const std::vector<Column>& columns,
-                        const std::vector<double>& areas_m2, char separator) {
+                        const MeasuredRecords& measured, char separator) {
   std::string text(kUtf8Mark);
   std::vector<std::string> cells{kKey};
   for (const Column& column : columns) cells.push_back(column.slug);
-  if (!areas_m2.empty()) cells.emplace_back(kArea);
+  cells.insert(cells.end(), measured.names.begin(), measured.names.end());
   text += csv_line(cells, separator);
   for (std::size_t i = 0; i < records.size(); ++i) {
     cells = {std::to_string(records[i].key)};
     for (const Column& column : columns) cells.push_back(record_cell(records[i], column, separator));
-    if (!areas_m2.empty()) cells.push_back(csv_number(areas_m2[i], separator));
+    if (!measured.names.empty())
+      for (const double value : measured.values[i]) cells.push_back(csv_number(value, separator));
     text += csv_line(cells, separator);
   }
   return text;
@@ -118,7 +122,7 @@ Result<RecordRows> read_records_csv(std::string_view text, const Table& table) {
           mistakes.push_back({row.line, head.text, value.error()});
         else
           record.values[head.column->id] = std::move(*value);
-      } else if (head.text != kArea && !trimmed(cell).empty()) {
+      } else if (!is_measure(head.text) && !trimmed(cell).empty()) {
         const bool is_key = head.text == kKey;
         auto number = parse_integer(trimmed(cell), 0, is_key ? kHighestKey : INT64_MAX, head.text);
         if (!number)

@@ -14,10 +14,15 @@ namespace strata::net {
 // A record's cell of CSV; empty where the column has no value.
 std::string record_cell(const Record& record, const Column& column, char separator);
 
-// With a semicolon between the cells numbers have a decimal comma, as in the countries whose Excel writes semicolons. `areas_m2`:
-// empty, or one for each record, told as `area_m2`. Begins with a byte order mark.
+// What records have beside their columns: a value for each of the names, record by record.
+struct MeasuredRecords {
+  std::vector<std::string> names{};
+  std::vector<std::vector<double>> values{};
+};
+// With a semicolon between the cells numbers have a decimal comma, as in the countries whose Excel writes semicolons. Begins with a byte
+// order mark.
 std::string records_csv(const std::vector<Record>& records, const std::vector<Column>& columns,
-                        const std::vector<double>& areas_m2, char separator);
+                        const MeasuredRecords& measured, char separator);
 
 struct RowMistake {
   int line = 0;
@@ -33,7 +38,8 @@ struct RecordRows {
   std::size_t rows = 0;
 };
 
-// A head is `key`, `version` (of the record as it was read), `area_m2` (passed over), or a column's slug, name or label in any
+// A head is `key`, `version` (of the record as it was read), `area_m2`, `length_m` and
+// `point_count` (passed over), or a column's slug, name or label in any
 // language. Rows without a key are new records. A Problem where the text is no CSV or its first row cannot be understood.
 Result<RecordRows> read_records_csv(std::string_view text, const Table& table);
 

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <set>
 
 #include "core/csv.h"
 #include "net/as_of.h"
 #include "net/painted_keys.h"
+#include "net/record_measures.h"
 #include "net/routes.h"
 #include "net/sheet.h"
 
@@ -21,6 +23,52 @@ Result<Names> record_names(const RouteContext& context, std::int64_t table_id, s
   Names names;
   for (const Record& record : page->records) names[record.key] = record_name(record, page->table.columns);
   return names;
+}
+
+// What records have besides texels: lines and points, of those that have some. Names as in RecordMeasures.
+struct OfMarks {
+  std::vector<std::string> names;
+  std::map<std::int64_t, std::vector<double>> of_key;
+
+  std::vector<double> sum() const {
+    std::vector<double> all(names.size(), 0.0);
+    for (const auto& [key, values] : of_key)
+      for (std::size_t i = 0; i < values.size(); ++i) all[i] += values[i];
+    return all;
+  }
+  std::vector<double> of(std::int64_t key) const {
+    const auto found = of_key.find(key);
+    return found == of_key.end() ? std::vector<double>(names.size(), 0.0) : found->second;
+  }
+  void add_to(nlohmann::json& json, const std::vector<double>& values) const {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i] == "point_count")
+        json[names[i]] = static_cast<std::int64_t>(values[i]);
+      else
+        json[names[i]] = values[i];
+    }
+  }
+};
+
+// `model`: only those on it.
+Result<OfMarks> marks_of(const RouteContext& context, const Table& table, const std::optional<Model>& model,
+                         std::optional<std::int64_t> at) {
+  store::Store::RecordQuery query;
+  query.limit = store::kMostRecords;
+  query.at = at;
+  if (std::ranges::none_of(table.columns, [](const Column& column) { return holds_marks(column.kind); }))
+    return OfMarks{};
+  const auto page = context.store.records(table.id, query);
+  if (!page) return tl::unexpected(page.error());
+  const auto measures = RecordMeasures::of_place(context, {page->table, model, {}}, page->table.columns);
+  if (!measures) return tl::unexpected(measures.error());
+  OfMarks marks{measures->names(), {}};
+  for (const Record& record : page->records) {
+    auto values = measures->of(record);
+    if (std::ranges::any_of(values, [](double value) { return value > 0; }))
+      marks.of_key[record.key] = std::move(values);
+  }
+  return marks;
 }
 
 std::string plain_number(double value) { return csv_number(value, ','); }
@@ -57,7 +105,7 @@ double share_of(const query::Quantity& quantity, const query::Quantities& all) {
   return all.surface_m2 > 0 ? std::min(1.0, quantity.area_m2 / all.surface_m2) : 0;
 }
 
-nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const Names& names) {
+nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const Names& names, const OfMarks& marks) {
   nlohmann::json list = nlohmann::json::array();
   const auto add_share = [&](nlohmann::json json, const query::Quantity& quantity) {
     json["share"] = share_of(quantity, all);
@@ -71,6 +119,7 @@ nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const N
       const auto key = static_cast<std::int64_t>(*quantity.value);
       json["key"] = key;
       json["has_record"] = names.contains(key);
+      marks.add_to(json, marks.of(key));
     } else if (quantity.value) {
       json["value"] = *quantity.value;
     }
@@ -79,13 +128,13 @@ nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const N
     list.push_back(std::move(json));
   }
   const std::size_t count = list.size();
-  return {{"quantities", std::move(list)},
-          {"total", count},
-          {"sum", add_share(sums_json(all.sum), all.sum)},
-          {"surface_m2", all.surface_m2}};
+  nlohmann::json sum = add_share(sums_json(all.sum), all.sum);
+  marks.add_to(sum, marks.sum());
+  return {{"quantities", std::move(list)}, {"total", count}, {"sum", std::move(sum)}, {"surface_m2", all.surface_m2}};
 }
 
-Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& names, const std::string& name) {
+Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& names, const OfMarks& marks,
+               const std::string& name) {
   Sheet sheet{name, {"class"}, {}};
   const bool has_keys = layer.kind == LayerKind::database, has_values = query::classes_of(layer).each;
   if (has_keys)
@@ -94,24 +143,40 @@ Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& na
     sheet.heads.emplace_back("value");
   else
     sheet.heads.insert(sheet.heads.end(), {"from", "to"});
-  sheet.heads.insert(sheet.heads.end(), {"pieces", "texels", "area_m2", "percent_of_surface"});
+  sheet.heads.insert(sheet.heads.end(), {"pieces", "texels", "area_m2"});
+  sheet.heads.insert(sheet.heads.end(), marks.names.begin(), marks.names.end());
+  sheet.heads.emplace_back("percent_of_surface");
   const auto number = [](const std::optional<double>& value) { return value ? SheetCell(*value) : SheetCell(); };
-  const auto add = [&](const query::Quantity& quantity, SheetCell name_cell) {
+  const auto add = [&](const query::Quantity& quantity, SheetCell name_cell, const std::vector<double>& marked) {
     std::vector<SheetCell> row{std::move(name_cell)};
     if (has_keys || has_values)
       row.push_back(number(quantity.value));
     else
       row.insert(row.end(), {number(quantity.from), number(quantity.to)});
-    row.insert(row.end(),
-               {double(quantity.pieces), double(quantity.texels), quantity.area_m2, 100 * share_of(quantity, all)});
+    row.insert(row.end(), {double(quantity.pieces), double(quantity.texels), quantity.area_m2});
+    row.insert(row.end(), marked.begin(), marked.end());
+    row.emplace_back(100 * share_of(quantity, all));
     sheet.rows.push_back(std::move(row));
   };
   for (const query::Quantity& quantity : all.classes) {
     const std::string label = label_of(quantity, layer, names);
-    add(quantity, label.empty() && quantity.value ? SheetCell(*quantity.value) : class_text(quantity, label));
+    add(quantity, label.empty() && quantity.value ? SheetCell(*quantity.value) : class_text(quantity, label),
+        has_keys ? marks.of(static_cast<std::int64_t>(*quantity.value)) : std::vector<double>());
   }
-  add(all.sum, "total");
+  add(all.sum, "total", marks.sum());
   return sheet;
+}
+
+// Records that have lines or points, and nothing painted.
+void add_classes(query::Quantities& all, const OfMarks& marks) {
+  std::set<double> painted;
+  for (const query::Quantity& quantity : all.classes) painted.insert(*quantity.value);
+  for (const auto& [key, values] : marks.of_key) {
+    if (painted.contains(static_cast<double>(key))) continue;
+    query::Quantity& quantity = all.classes.emplace_back();
+    quantity.value = static_cast<double>(key);
+  }
+  std::ranges::stable_sort(all.classes, {}, [](const query::Quantity& quantity) { return *quantity.value; });
 }
 
 Result<Response> layer_quantities(const RouteContext& context, const Request& request) {
@@ -126,9 +191,10 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
   const auto at = find_sequence(context, **room, as_of(request));
   if (!at) return tl::unexpected(at.error());
   const auto sequence = at->value_or((*room)->sequence());
-  const auto all = (*room)->quantities(layer->slug, *at);
+  auto all = (*room)->quantities(layer->slug, *at);
   if (!all) return tl::unexpected(all.error());
   Names names;
+  OfMarks marks;
   if (layer->table) {
     std::optional<std::int64_t> records_at;  // as they were when that edit was made
     if (*at) {
@@ -136,6 +202,12 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
       if (!found) return tl::unexpected(found.error());
       records_at = *found;
     }
+    const auto table = context.store.table(std::to_string(*layer->table));
+    if (!table) return tl::unexpected(table.error());
+    auto marked = marks_of(context, *table, (*room)->model(), records_at);
+    if (!marked) return tl::unexpected(marked.error());
+    marks = std::move(*marked);
+    add_classes(*all, marks);
     std::vector<std::int64_t> keys;
     for (const query::Quantity& quantity : all->classes) keys.push_back(static_cast<std::int64_t>(*quantity.value));
     auto found = record_names(context, *layer->table, std::move(keys), records_at);
@@ -143,9 +215,9 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
     names = std::move(*found);
   }
   auto response = *format == SheetFormat::json
-                      ? json_response(to_json(*all, *layer, names))
-                      : sheet_response(to_sheet(*all, *layer, names, layer->slug + "-quantities"), *format, *separator,
-                                       context.options.upload_dir);
+                      ? json_response(to_json(*all, *layer, names, marks))
+                      : sheet_response(to_sheet(*all, *layer, names, marks, layer->slug + "-quantities"), *format,
+                                       *separator, context.options.upload_dir);
   if (!response) return response;
   add_sequences(*response, sequence, (*room)->durable_sequence());
   response->with("Vary", "Accept");
@@ -202,6 +274,9 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
       add(of_key[key], quantity);
       add(sum, quantity);
     }
+  const auto marks = marks_of(context, *table, {}, {});
+  if (!marks) return tl::unexpected(marks.error());
+  for (const auto& [key, values] : marks->of_key) of_key.try_emplace(key);
   std::vector<std::int64_t> keys;
   for (const auto& [key, quantity] : of_key) keys.push_back(key);
   const auto names = record_names(context, table->id, keys, {});
@@ -223,18 +298,24 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
       json["class"] = text_of(key);
       json["key"] = key;
       json["has_record"] = names->contains(key);
+      marks->add_to(json, marks->of(key));
       json["layers"] = std::move(parts);
       list.push_back(std::move(json));
     }
     const std::size_t count = list.size();
-    return json_response({{"quantities", std::move(list)}, {"total", count}, {"sum", sums_json(sum)}})
+    nlohmann::json total = sums_json(sum);
+    marks->add_to(total, marks->sum());
+    return json_response({{"quantities", std::move(list)}, {"total", count}, {"sum", std::move(total)}})
         .with("Vary", "Accept");
   }
   Sheet sheet{table->slug + "-quantities", {"class", "key", "pieces", "texels", "area_m2"}, {}};
+  sheet.heads.insert(sheet.heads.end(), marks->names.begin(), marks->names.end());
   for (const OfLayer& layer : *layers) sheet.heads.push_back(layer.model.slug + "/" + layer.layer.slug + " area_m2");
   for (const auto& [key, quantity] : of_key) {
     std::vector<SheetCell> row{text_of(key), double(key), double(quantity.pieces), double(quantity.texels),
                                quantity.area_m2};
+    const auto marked = marks->of(key);
+    row.insert(row.end(), marked.begin(), marked.end());
     for (const OfLayer& layer : *layers) {
       const auto part = layer.of_key.find(key);
       row.push_back(part == layer.of_key.end() ? SheetCell() : SheetCell(part->second.area_m2));
@@ -242,6 +323,8 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
     sheet.rows.push_back(std::move(row));
   }
   std::vector<SheetCell> last{std::string("total"), {}, double(sum.pieces), double(sum.texels), sum.area_m2};
+  const auto marked = marks->sum();
+  last.insert(last.end(), marked.begin(), marked.end());
   for (const OfLayer& layer : *layers) {
     query::Quantity of_layer;
     for (const auto& [key, quantity] : layer.of_key) add(of_layer, quantity);

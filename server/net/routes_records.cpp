@@ -4,6 +4,7 @@
 #include "net/answer_book.h"
 #include "net/painted_keys.h"
 #include "net/record_csv.h"
+#include "net/record_measures.h"
 #include "net/record_place.h"
 #include "net/routes.h"
 #include "net/sheet.h"
@@ -18,18 +19,6 @@ namespace {
 using TableChange = store::TableChange;
 
 constexpr std::uint64_t kMaxRecordsBytes = 64u << 20;
-
-Result<std::map<std::int64_t, query::KeyArea>> areas_of(const RouteContext& context, const RecordPlace& place) {
-  if (place.layer->sequence == 0) return std::map<std::int64_t, query::KeyArea>();  // nothing was ever painted there
-  auto room = context.rooms.open(std::to_string(place.model->id));
-  if (!room) return tl::unexpected(room.error());
-  return (*room)->key_areas(place.layer->slug);
-}
-
-double area_of(const std::map<std::int64_t, query::KeyArea>& areas, std::int64_t key) {
-  const auto area = areas.find(key);
-  return area == areas.end() ? 0 : area->second.area_m2;
-}
 
 // "name,-depth": descending after a minus.
 std::vector<std::pair<std::string, bool>> order_of(const std::string& text) {
@@ -47,8 +36,7 @@ std::vector<std::pair<std::string, bool>> order_of(const std::string& text) {
 
 // Sorted by the area that they have on the layer: the others' order is the database's.
 Result<store::Store::RecordPage> page_by_area(const RouteContext& context, const RecordPlace& place,
-                                              const std::map<std::int64_t, query::KeyArea>& areas,
-                                              store::Store::RecordQuery query) {
+                                              const RecordMeasures& measures, store::Store::RecordQuery query) {
   const bool descending = query.order.front().second;
   const auto limit = query.limit, offset = query.offset;
   query.order.erase(query.order.begin());
@@ -58,7 +46,7 @@ Result<store::Store::RecordPage> page_by_area(const RouteContext& context, const
   if (!page) return page;
   auto& records = page->records;
   std::stable_sort(records.begin(), records.end(), [&](const Record& a, const Record& b) {
-    const double left = area_of(areas, a.key), right = area_of(areas, b.key);
+    const double left = measures.area_m2(a.key), right = measures.area_m2(b.key);
     return descending ? left > right : left < right;
   });
   const auto count = static_cast<std::int64_t>(records.size());
@@ -69,16 +57,16 @@ Result<store::Store::RecordPage> page_by_area(const RouteContext& context, const
 
 // The columns of `records_csv`, with values of their own types.
 Result<Response> records_book(const RouteContext& context, const store::Store::RecordPage& page,
-                              const std::map<std::int64_t, query::KeyArea>* areas) {
+                              const RecordMeasures& measures) {
   std::vector<std::string> heads{"key"};
   for (const Column& column : page.table.columns) heads.push_back(column.slug);
-  if (areas) heads.emplace_back("area_m2");
+  heads.insert(heads.end(), measures.names().begin(), measures.names().end());
   Workbook book(context.options.upload_dir, page.table.slug, heads);
   std::vector<BookCell> cells;
   for (const Record& record : page.records) {
     cells.assign(1, double(record.key));
     for (const Column& column : page.table.columns) cells.push_back(book_cell(record, column));
-    if (areas) cells.emplace_back(area_of(*areas, record.key));
+    for (const double value : measures.of(record)) cells.emplace_back(value);
     book.add_row(cells);
   }
   return book.finish(page.table.slug + ".xlsx");
@@ -109,31 +97,30 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     if (!sequence) return tl::unexpected(sequence.error());
     query.at = *sequence;
   }
-  std::map<std::int64_t, query::KeyArea> areas;
-  if (place->layer) {
-    auto found = areas_of(context, *place);
-    if (!found) return tl::unexpected(found.error());
-    areas = std::move(*found);
-  }
+  // Of the columns as they are now: what was a line and is none any more has no length.
+  auto measures = RecordMeasures::of_place(context, *place, place->table.columns);
+  if (!measures) return tl::unexpected(measures.error());
   const bool by_area = place->layer && !query.order.empty() && query.order.front().first == "area_m2";
-  auto records = by_area ? page_by_area(context, *place, areas, query) : context.store.records(place->table.id, query);
+  auto records =
+      by_area ? page_by_area(context, *place, *measures, query) : context.store.records(place->table.id, query);
   if (!records) return tl::unexpected(records.error());
   Response response;
   if (*format == SheetFormat::xlsx) {
-    auto book = records_book(context, *records, place->layer ? &areas : nullptr);
+    auto book = records_book(context, *records, *measures);
     if (!book) return book;
     response = std::move(*book);
   } else if (*format == SheetFormat::csv) {
-    std::vector<double> areas_m2;
-    if (place->layer)
-      for (const Record& record : records->records) areas_m2.push_back(area_of(areas, record.key));
-    response = text_response(records_csv(records->records, records->table.columns, areas_m2, *separator), kCsvType);
+    std::vector<std::vector<double>> values;
+    for (const Record& record : records->records) values.push_back(measures->of(record));
+    response = text_response(
+        records_csv(records->records, records->table.columns, {measures->names(), std::move(values)}, *separator),
+        kCsvType);
     name_download(response, place->table.slug + ".csv");
   } else {
     nlohmann::json list = nlohmann::json::array();
     for (const Record& record : records->records) {
       nlohmann::json json = to_json(record, records->table.columns);
-      if (place->layer) json["area_m2"] = area_of(areas, record.key);
+      measures->add_to(json, record);
       list.push_back(std::move(json));
     }
     response = json_response({{"records", std::move(list)}, {"total", records->total}});
@@ -158,10 +145,10 @@ Result<Response> read_record(const RouteContext& context, const Request& request
   auto record = stored_record(context, place->table, *key, at, &then);
   if (!record) return tl::unexpected(record.error());
   nlohmann::json json = to_json(*record, then.columns);
+  const auto measures = RecordMeasures::of_place(context, *place, then.columns);
+  if (!measures) return tl::unexpected(measures.error());
+  measures->add_to(json, *record);
   if (!place->layer) return with_etag(json_response(json), request, record->version);
-  auto areas = areas_of(context, *place);
-  if (!areas) return tl::unexpected(areas.error());
-  json["area_m2"] = area_of(*areas, *key);
   return json_response(json).with("ETag", etag_of(record->version));
 }
 

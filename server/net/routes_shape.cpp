@@ -5,6 +5,7 @@
 #include "mesh/vertex_properties.h"
 #include "net/digest.h"
 #include "net/layer_jobs.h"
+#include "net/mark_transfer.h"
 #include "net/routes.h"
 
 namespace strata::net {
@@ -74,8 +75,8 @@ Layer copy_of(const Layer& from, int resolution, int order, const jobs::Transfer
   return layer;
 }
 
-Result<nlohmann::json> transfer(store::Store& store, room::Room& room, const jobs::TransferRequest& request,
-                                NewLayers& layers, Progress& progress) {
+Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room, const jobs::TransferRequest& request,
+                                const std::string& user, NewLayers& layers, Progress& progress) {
   jobs::TransferTarget target{room.model(), room.geometry(), room.search_tree(),
                               [&room](int resolution) { return room.surface_map(resolution); }};
   int order = order_on_top(room.layers());
@@ -98,10 +99,14 @@ Result<nlohmann::json> transfer(store::Store& store, room::Room& room, const job
                                 {"lost_m2", transferred.lost_m2}});
     return {};
   };
-  auto summary = jobs::transfer_layers(store, target, request, deliver, progress);
+  auto summary = jobs::transfer_layers(context.store, target, request, deliver, progress);
   if (!summary) return tl::unexpected(summary.error());
   report["area_m2"] = summary->area_m2;
   report["matched_m2"] = summary->matched_m2;
+  const auto brought = bring_marks(context, target, request, user);
+  if (!brought) return tl::unexpected(brought.error());
+  report["marks"] = brought->marks;
+  report["lost_marks"] = brought->lost_marks;
   return report;
 }
 
@@ -114,8 +119,8 @@ Result<Response> start_transfer(const RouteContext& context, JobBook& book, cons
   if (!wish) return tl::unexpected(wish.error());
   return start_layer_job(
       context, book, request, *room,
-      [&store = context.store, room = *room, wish = std::move(*wish)](NewLayers& layers, Progress& progress) {
-        return transfer(store, *room, wish, layers, progress);
+      [&context, room = *room, wish = std::move(*wish), user = request.user()](NewLayers& layers, Progress& progress) {
+        return transfer(context, *room, wish, user, layers, progress);
       });
 }
 

@@ -12,6 +12,9 @@ namespace {
 
 constexpr std::size_t kBytesCollectedPerStep = std::size_t{16} << 20;  // a few milliseconds
 
+// The surface between the places of a line may bulge, and that of a coarser copy lies where it likes.
+constexpr double kMarkLift_px = 3, kMarkLiftOfCopies_px = 10;
+
 double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
@@ -204,6 +207,9 @@ Result<void> FrameJob::choose_area(GpuScene& scene, const View& view) {
   }
   const FrameRequest::Box box{geometry.box_min, geometry.box_max};
   surface_ = intersection(frame_.rect, screen_rect({&box, 1}, clip, request.width, request.height, false));
+  if (request.marks)
+    marks_ = project_marks(*request.marks, request.camera, request.width, request.height,
+                           view.key.level == 0 ? kMarkLift_px : kMarkLiftOfCopies_px);
   auto pixels = scene.readback().begin(row_bytes() * static_cast<std::size_t>(frame_.rect.height));
   if (!pixels) return tl::unexpected(pixels.error());
   pixels_ = std::move(*pixels);
@@ -233,6 +239,8 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   }
   if (auto flushed = scene.tables().flush(); !flushed) return tl::unexpected(flushed.error());
   if (auto shaded = scene.shade_pass().shade(input, scene.tables()); !shaded) return tl::unexpected(shaded.error());
+  auto marked = scene.mark_pass().draw(marks_, view.shading, request.width, request.height, band);
+  if (!marked) return tl::unexpected(marked.error());
   shaded_rows_ += band.height;
 
   const std::size_t offset = row_bytes() * static_cast<std::size_t>(rect.height - shaded_rows_);
@@ -249,6 +257,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   view.background_top = request.background_top;
   view.background_bottom = request.background_bottom;
   view.unit_mm = request.unit_mm;
+  view.marks = request.marks;
   return true;
 }
 

@@ -35,9 +35,10 @@ class FrameJob {
   MeshProgress progress_;
   std::chrono::steady_clock::time_point mesh_begin_;  // when its first slice was drawn
   Frame frame_;
-  PixelRect surface_;    // of `frame_.rect`: may show surface
-  int shaded_rows_ = 0;  // of `frame_.rect`, from its top
-  gl::Readback pixels_;  // lowest row first
+  PixelRect surface_;                       // of `frame_.rect`: may show surface
+  int shaded_rows_ = 0;                     // of `frame_.rect`, from its top
+  std::vector<shader::MarkSegment> marks_;  // of the request, on the picture's plane
+  gl::Readback pixels_;                     // lowest row first
   double busy_ms_ = 0;
 };
 

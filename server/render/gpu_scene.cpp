@@ -95,6 +95,7 @@ Result<void> GpuScene::load() {
   if (auto made = keep(edit_pass_, EditPass::create(dir, readback_)); !made) return made;
   if (auto made = keep(tile_reader_, TileReader::create(dir, readback_)); !made) return made;
   if (auto made = keep(gbuffer_pass_, MeshPass::create(MeshPass::Kind::gbuffer, dir, slice)); !made) return made;
+  if (auto made = keep(mark_pass_, MarkPass::create(dir)); !made) return made;
   return keep(shade_pass_, ShadePass::create(dir, info_.software));
 }
 

@@ -10,6 +10,7 @@
 #include "render/edit_pass.h"
 #include "render/gpu_layer.h"
 #include "render/look_texture.h"
+#include "render/mark_pass.h"
 #include "render/shade_pass.h"
 #include "render/tile_reader.h"
 #include "render/view_cache.h"
@@ -51,6 +52,7 @@ class GpuScene {
   bool edits_on_cpu() const { return info_.edit_path == EditPath::kernel; }
   MeshPass& gbuffer_pass() { return *gbuffer_pass_; }
   ShadePass& shade_pass() { return *shade_pass_; }
+  MarkPass& mark_pass() { return *mark_pass_; }
   DetailBudget& detail_budget() { return detail_budget_; }
   // How much of a picture is shaded in a step, in pixels of one layer.
   int pixels_per_band() const { return info_.software ? kPixelsPerBandSoftware : kPixelsPerBandHardware; }
@@ -99,6 +101,7 @@ class GpuScene {
   std::optional<TileReader> tile_reader_;
   std::optional<MeshPass> gbuffer_pass_;
   std::optional<ShadePass> shade_pass_;
+  std::optional<MarkPass> mark_pass_;
   DetailBudget detail_budget_;
   std::unordered_map<ModelHandle, Model> models_;
   std::unordered_map<LayerHandle, GpuLayer> layers_;

@@ -18,6 +18,7 @@
 #include "mesh/geometry.h"
 #include "mesh/surface_map.h"
 #include "render/look_image.h"
+#include "render/marks.h"
 
 namespace strata::render {
 
@@ -80,9 +81,13 @@ struct LookStyle {  // one picture of the surface in a view, bottom to top, over
 };
 constexpr std::size_t kMaxLooksShown = 4;
 
+// Told apart by the object: nothing of it may change. Null: none.
+using MarksShown = std::shared_ptr<const std::vector<DrawnMark>>;
+
 struct ViewStyle {  // what a view shows of its model
   std::vector<LayerStyle> layers;
   std::vector<LookStyle> looks;  // kMaxLooksShown at most
+  MarksShown marks;              // over the layers, the last ones on top
   Light light;
   double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
   bool operator==(const ViewStyle&) const = default;
@@ -100,6 +105,7 @@ struct FrameRequest {
   int width = 0, height = 0;  // pixels of the picture (the camera's window scaled to this size)
   std::vector<LayerStyle> layers;
   std::vector<LookStyle> looks;  // kMaxLooksShown at most
+  MarksShown marks;              // over the layers, the last ones on top
   Light light;
   double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
   // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's last frame: the

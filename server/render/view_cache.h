@@ -28,6 +28,7 @@ struct View {
   std::vector<LayerStyle> layers;  // of the picture
   Rgba background_top{}, background_bottom{};
   double unit_mm = 0;
+  MarksShown marks;
 
   bool has_buffers() const { return static_cast<bool>(picture); }
   void drop_buffers();

@@ -38,6 +38,7 @@ render::ViewStyle RoomMember::style(std::uint32_t view_id, View& view) const {
   style.looks = room_->look_shelf().styles(view.looks);
   style.light = view.light;
   style.unit_mm = room_->model().metres() * 1000;
+  std::vector<LayerMarks> marked;
   for (const auto& state : room_->layer_states()) {
     auto own = view.overrides.find(state.layer.id);
     const LayerView none;
@@ -45,7 +46,15 @@ render::ViewStyle RoomMember::style(std::uint32_t view_id, View& view) const {
     if (!mine.visible.value_or(state.layer.visible)) continue;
     style.layers.push_back(
         {state.handle, palette(view_id, view, state), static_cast<float>(mine.opacity.value_or(state.layer.opacity))});
+    if (!state.layer.table) continue;
+    if (auto marks = room_->record_marks().find(*state.layer.table))
+      marked.push_back({std::move(marks), style.layers.back().palette, style.layers.back().opacity});
   }
+  if (marked != view.marked) {
+    view.marks = show_marks(marked);
+    view.marked = std::move(marked);
+  }
+  style.marks = view.marks;
   return style;
 }
 

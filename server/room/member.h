@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "room/record_marks.h"
 #include "room/room.h"
 
 namespace strata::room {
@@ -42,7 +43,9 @@ class RoomMember final : public Member {
     std::map<std::int64_t, std::shared_ptr<const Palette>> palettes;
     std::map<std::int64_t, std::shared_ptr<const Highlight>> highlights;
     std::map<std::int64_t, std::shared_ptr<const Palette>>
-        by_record;                                  // last made from records, drawn until the next is there
+        by_record;                   // last made from records, drawn until the next is there
+    std::vector<LayerMarks> marked;  // what `marks` was made of
+    render::MarksShown marks;
     std::set<std::shared_ptr<const Problem>> told;  // why one cannot be made
     std::optional<std::vector<LookView>> looks;
     Light light;

@@ -97,6 +97,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const s
   };
   room->look_shelf_ = std::make_shared<LookShelf>(parts.store, parts.renderer, parts.workers, restyle);
   room->record_colors_ = std::make_shared<RecordColors>(parts.store, parts.workers, restyle);
+  room->record_marks_ = std::make_shared<RecordMarks>(parts.store, parts.workers, room->id(), restyle);
   room->look_shelf_->set_model(gpu->model);
   for (const Look& look : *looks) room->look_shelf_->put(look);
   room->sequence_ = room->durable_ = journal->last_sequence;
@@ -250,6 +251,7 @@ void OpenRoom::outdate(const std::function<bool(const LayerFormula&)>& reads) {
 
 void OpenRoom::records_changed(std::int64_t table_id) {
   record_colors_->records_changed(table_id);
+  record_marks_->records_changed(table_id);
   // Layers that take their colours from the terms of the table.
   for (const Layer& layer : layers()) {
     if (!layer.palette_of_terms || layer.table != table_id) continue;
@@ -548,6 +550,7 @@ void OpenRoom::shut(const Problem& why) {
   maps_->stop();
   look_shelf_->stop();
   record_colors_->stop();
+  record_marks_->stop();
   surface_->stop();
   on_strand([&] {
     recovery_.shut = true;

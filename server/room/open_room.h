@@ -11,6 +11,7 @@
 #include "room/look_shelf.h"
 #include "room/member.h"
 #include "room/record_colors.h"
+#include "room/record_marks.h"
 #include "room/retired_keys.h"
 #include "room/room.h"
 
@@ -106,6 +107,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   stream::StreamContext stream_context() const { return parts_.stream; }
   LookShelf& look_shelf() const { return *look_shelf_; }
   RecordColors& record_colors() const { return *record_colors_; }
+  RecordMarks& record_marks() const { return *record_marks_; }
   std::vector<LayerState> layer_states() const;  // in drawing order
   std::optional<LayerState> layer_state(std::int64_t id) const;
   void leave(RoomMember* member);
@@ -160,6 +162,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   const std::shared_ptr<SurfaceMaps> maps_;
   std::shared_ptr<LookShelf> look_shelf_;
   std::shared_ptr<RecordColors> record_colors_;
+  std::shared_ptr<RecordMarks> record_marks_;
   const std::shared_ptr<SurfaceLookup> surface_;
   std::shared_ptr<EditPipeline> pipeline_;
 

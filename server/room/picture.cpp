@@ -39,6 +39,7 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
   Borrowed borrowed{parts_.renderer, 0, {}};
   const auto model = model_handle();
   render::FrameRequest request;
+  std::vector<LayerMarks> marked;
   for (const auto& item : shown) {
     render::LayerHandle handle = item.handle;
     if (asked.at) {
@@ -61,6 +62,10 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
       palette = std::move(*made);
     }
     request.layers.push_back({handle, std::move(palette), static_cast<float>(item.layer.opacity)});
+    if (!item.layer.table || asked.at) continue;  // lines and points of the past are not told by the layer's sequence
+    auto marks = record_marks_->read(*item.layer.table);
+    if (!marks) return tl::unexpected(marks.error());
+    if (*marks) marked.push_back({std::move(*marks), request.layers.back().palette, request.layers.back().opacity});
   }
   auto view = await<render::ViewHandle>([&](auto done) { parts_.renderer.add_view(model, std::move(done)); });
   if (!view) return tl::unexpected(gpu_problem(view.error()));
@@ -72,6 +77,7 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
   if (!looks) return tl::unexpected(gpu_problem(looks.error()));
   request.looks = std::move(*looks);
   request.light = asked.light;
+  request.marks = show_marks(marked);
   request.unit_mm = this->model().metres() * 1000;
   auto frame = await<render::Frame>([&](auto done) { parts_.renderer.draw(std::move(request), std::move(done)); });
   if (!frame) return tl::unexpected(gpu_problem(frame.error()));

@@ -18,7 +18,7 @@ using Op = Expression::Op;
 // Days as doubles tell milliseconds apart for some 100 000 years.
 constexpr const char* kToEndOfDay = "0.99999999";
 
-enum class Kind { number, truth, text, time, keys };
+enum class Kind { number, truth, text, time, keys, marks };
 
 const char* in_words(Kind kind) {
   switch (kind) {
@@ -26,6 +26,7 @@ const char* in_words(Kind kind) {
     case Kind::truth: return "true or false";
     case Kind::text: return "texts";
     case Kind::time: return "times";
+    case Kind::marks: return "lines or points";
     default: return "keys of records";
   }
 }
@@ -42,6 +43,8 @@ Kind kind_of(const Column& column) {
     case ColumnKind::relation:
     case ColumnKind::picture:
     case ColumnKind::document: return Kind::keys;
+    case ColumnKind::line:
+    case ColumnKind::point: return Kind::marks;
     default: return Kind::text;
   }
 }
@@ -347,8 +350,11 @@ class Writer {
       const Sql b = time(second);
       return turned ? comparison_of_times(e.op, b, a) : comparison_of_times(e.op, a, b);
     }
-    if (a.kind == Kind::keys || a.kind == Kind::truth)
-      refuse(wrong(first, a, Kind::number) + (a.kind == Kind::keys ? ": ask a_contains(…, (key))" : ""), first);
+    if (a.kind == Kind::keys || a.kind == Kind::truth || a.kind == Kind::marks)
+      refuse(wrong(first, a, Kind::number) + (a.kind == Kind::keys    ? ": ask a_contains(…, (key))"
+                                              : a.kind == Kind::marks ? ": ask whether it is null"
+                                                                      : ""),
+             first);
     if (a.kind == Kind::text) check_choice(a, second);
     if (a.kind == Kind::number && second.is_text()) refuse(wrong(first, a, Kind::text), first);
     const std::string b = a.kind == Kind::text ? text(second) : number(second);

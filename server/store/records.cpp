@@ -244,7 +244,7 @@ Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, const st
     const Column* column = find_column(open->table.columns, ref);
     if (!column)
       return fail(422, "No such column", "The table '" + open->table.name + "' has no column '" + ref + "'.", field);
-    if (column->kind == ColumnKind::relation || holds_attachments(column->kind))
+    if (holds_lists(column->kind))
       return fail(422, "Column holds lists", "'" + column->name + "' may hold several values in one record.", field);
     auto rows = load_all_rows(connection, table_id, {*column});
     if (!rows) return tl::unexpected(rows.error());
@@ -255,6 +255,30 @@ Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, const st
       texts.push_back({static_cast<std::uint32_t>(row.key), text_of(cell->second)});
     }
     return texts;
+  });
+}
+
+Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, std::int64_t model_id) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyMark>> {
+    auto open = read_table(connection, table_id);
+    if (!open) return tl::unexpected(open.error());
+    std::vector<Column> columns;
+    for (const Column& column : open->table.columns)
+      if (holds_marks(column.kind)) columns.push_back(column);
+    std::vector<KeyMark> found;
+    if (columns.empty()) return found;
+    auto rows = load_all_rows(connection, table_id, columns);
+    if (!rows) return tl::unexpected(rows.error());
+    for (const Record& row : *rows)
+      for (const Column& column : columns) {
+        const auto cell = row.values.find(column.id);
+        if (cell == row.values.end()) continue;
+        auto marks = read_marks(cell->second, column.kind == ColumnKind::line);
+        for (Mark& mark : marks.value_or(std::vector<Mark>()))
+          if (mark.model == model_id) found.push_back({row.key, column.id, std::move(mark)});
+      }
+    std::ranges::stable_sort(found, {}, &KeyMark::key);
+    return found;
   });
 }
 

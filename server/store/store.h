@@ -16,6 +16,7 @@
 #include "core/key_numbers.h"
 #include "core/layer.h"
 #include "core/look.h"
+#include "core/mark.h"
 #include "core/model.h"
 #include "core/shape_texture.h"
 #include "core/term.h"
@@ -184,6 +185,8 @@ class Store {
   // What a column holds for each record that has a value there, now: as text, canonical (of a term, its key). Refused (422 at
   // `field`): a column that is not there or holds lists.
   Result<std::vector<KeyText>> record_texts(std::int64_t table_id, const std::string& column, const std::string& field);
+  // The lines and points that records of a table have on a model, now, by key.
+  Result<std::vector<KeyMark>> marks(std::int64_t table_id, std::int64_t model_id);
   // All or none: where the change has problems, nothing was written.
   Result<TableChange> write_records(std::int64_t table_id, const WriteRecords& asked, const std::string& user,
                                     const FirstAnswer<TableChange>& answer = {});

@@ -25,6 +25,8 @@ const char* sql_type(ColumnKind kind) {
     case ColumnKind::relation:
     case ColumnKind::picture:
     case ColumnKind::document: return "bigint[]";
+    case ColumnKind::line:
+    case ColumnKind::point: return "jsonb";
     default: return "text";
   }
 }

@@ -192,6 +192,8 @@ class Writer {
         if (auto known = check_targets(column, then); !known) return known;
       if (holds_attachments(column.kind))
         if (auto known = check_attached(column, then); !known) return known;
+      if (holds_marks(column.kind))
+        if (auto known = check_marked(column, then); !known) return known;
     }
     if (auto free = check_named(); !free) return free;
     change_.records = std::move(then);
@@ -261,6 +263,33 @@ class Writer {
                               "\"" + column.name + "\" lists attachment " + id +
                                   (is_there ? ", which is " + type->second + ": attach it to a column of documents."
                                             : ", which the table does not have."),
+                              field_of(column)});
+        break;
+      }
+    }
+    return {};
+  }
+
+  // Lines and points that are written lie on models of the project. Those that are there may lie on one that is gone, and undo may
+  // bring such ones back.
+  Result<void> check_marked(const Column& column, std::span<const Record> rows) {
+    if (edit_.checks_values) return {};
+    auto models =
+        connection_.query("SELECT id FROM models WHERE project_id = $1", Params().integer(open_.table.project_id));
+    if (!models) return tl::unexpected(models.error());
+    std::set<std::int64_t> known;
+    for (int i = 0; i < models->rows(); ++i) known.insert(models->integer(i, 0));
+    for (const Record& row : rows) {
+      const auto value = row.values.find(column.id);
+      const Cells& after = edit_.records.at(row.key);
+      if (value == row.values.end() || value->second.is_null()) continue;
+      if (!after.contains(std::to_string(column.id)) && !after.contains(kExists)) continue;
+      for (const auto& mark : value->second) {
+        const auto model = mark.at("model").get<std::int64_t>();
+        if (known.contains(model)) continue;
+        add_problem(row.key, {422, "No such model",
+                              "\"" + column.name + "\" lies on model " + std::to_string(model) +
+                                  ", which the project does not have.",
                               field_of(column)});
         break;
       }

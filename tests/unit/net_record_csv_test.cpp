@@ -33,8 +33,9 @@ TEST(RecordCsv, what_is_written_is_read_again_with_every_separator) {
                                        {4294967295, 1, {{11, 1e-7}}},
                                        {7, 1, {}}};
   for (const char separator : {',', ';', '\t'})
-    for (const auto& areas : {std::vector<double>{}, std::vector<double>{0.25, 1e-9, 0}}) {
-      const auto text = records_csv(records, table.columns, areas, separator);
+    for (const auto& measured :
+         {MeasuredRecords{}, MeasuredRecords{{"area_m2", "length_m"}, {{0.25, 3}, {1e-9, 0}, {0, 1}}}}) {
+      const auto text = records_csv(records, table.columns, measured, separator);
       const auto rows = read_records_csv(text, table);
       ASSERT_TRUE(rows.has_value()) << rows.error().detail;
       EXPECT_TRUE(rows->mistakes.empty());

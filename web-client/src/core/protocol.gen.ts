@@ -25,10 +25,20 @@ export type TableRef = number | string;
 export type Labels = Record<string, string>;
 
 /** Kind of column. */
-export type ColumnKind = "text" | "integer" | "numeric" | "boolean" | "date" | "timestamp" | "period" | "enumeration" | "url" | "term" | "relation" | "picture" | "document";
+export type ColumnKind = "text" | "integer" | "numeric" | "boolean" | "date" | "timestamp" | "period" | "enumeration" | "url" | "term" | "relation" | "picture" | "document" | "line" | "point";
 
-/** Value of a record in a column. Texts, dates (2024-02-29), timestamps (RFC 3339, told in UTC), periods (EDTF: 1560~, 156X, -0043/0100, 1560/..), choices and addresses are strings; a term is a key of its target table, a relation a list of keys; pictures and documents are lists of ids of attachments. Null: no value. */
-export type CellValue = string | number | boolean | number[] | null;
+/** Value of a record in a column. Texts, dates (2024-02-29), timestamps (RFC 3339, told in UTC), periods (EDTF: 1560~, 156X, -0043/0100, 1560/..), choices and addresses are strings; a term is a key of its target table, a relation a list of keys; pictures and documents are lists of ids of attachments; lines and points are lists of marks. Null: no value. */
+export type CellValue = string | number | boolean | number[] | null | Mark[];
+
+/** Place of a mark. */
+export type MarkPlace = [number, number, number];
+
+/** Line or point of a record on a model. Of a line two places or more, of a point one. World coordinates in the model's unit; 10 000 places in a cell at most. */
+export interface Mark {
+  /** Its id. */
+  model: number;
+  coordinates: MarkPlace[];
+}
 
 /** Values by column. By the slug of the column, or its id. */
 export type CellValues = Record<string, CellValue>;
@@ -81,6 +91,10 @@ export interface TableRecord {
   values: CellValues;
   /** Under a layer: the surface that it has there. */
   area_m2?: number;
+  /** Where the table has columns of lines: how long they are; under a layer, those on its model. */
+  length_m?: number;
+  /** Where the table has columns of points: how many; under a layer, those on its model. */
+  point_count?: number;
 }
 
 /** Layer by id or slug. */
@@ -839,6 +853,10 @@ export interface TransferReport {
   /** Of that, what has a counterpart within the tolerance. */
   matched_m2: number;
   layers: TransferredLayer[];
+  /** Lines and points that records have on this model now, too. */
+  marks?: number;
+  /** Those of the other model that have no counterpart within the tolerance, as a whole or in part. */
+  lost_marks?: number;
 }
 
 /** Long work. */
@@ -1277,6 +1295,10 @@ export interface TableAreas {
 export interface QuantitySum {
   /** Connected areas, across the seams of the atlas. */
   pieces: number;
+  /** Where the table has columns of lines: how long they are. */
+  length_m?: number;
+  /** Where the table has columns of points: how many. */
+  point_count?: number;
   texels: number;
   area_m2: number;
   /** Of the model's surface; of layers. */
@@ -1295,6 +1317,10 @@ export interface LayerQuantity {
   to?: number;
   /** Connected areas, across the seams of the atlas. */
   pieces: number;
+  /** Where the table has columns of lines: how long they are. */
+  length_m?: number;
+  /** Where the table has columns of points: how many. */
+  point_count?: number;
   texels: number;
   area_m2: number;
   /** Of the model's surface. */
@@ -1329,6 +1355,10 @@ export interface TableQuantity {
   has_record: boolean;
   /** Connected areas, across the seams of the atlas. */
   pieces: number;
+  /** Where the table has columns of lines: how long they are. */
+  length_m?: number;
+  /** Where the table has columns of points: how many. */
+  point_count?: number;
   texels: number;
   area_m2: number;
   layers: QuantityOnLayer[];

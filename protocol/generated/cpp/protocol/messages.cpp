@@ -20,6 +20,8 @@ std::string_view name(ColumnKind value) {
     case ColumnKind::relation: return "relation";
     case ColumnKind::picture: return "picture";
     case ColumnKind::document: return "document";
+    case ColumnKind::line: return "line";
+    case ColumnKind::point: return "point";
   }
   return {};
 }
@@ -39,6 +41,8 @@ void read(const nlohmann::json& json, ColumnKind& value) {
   if (text == "relation") value = ColumnKind::relation;
   if (text == "picture") value = ColumnKind::picture;
   if (text == "document") value = ColumnKind::document;
+  if (text == "line") value = ColumnKind::line;
+  if (text == "point") value = ColumnKind::point;
 }
 
 nlohmann::json to_json(const ColumnKind& value) { return name(value); }
@@ -1339,6 +1343,8 @@ void read(const nlohmann::json& json, TransferReport& value) {
   read_member(json, "area_m2", value.area_m2);
   read_member(json, "matched_m2", value.matched_m2);
   read_member(json, "layers", value.layers);
+  read_optional_member(json, "marks", value.marks);
+  read_optional_member(json, "lost_marks", value.lost_marks);
 }
 
 nlohmann::json to_json(const TransferReport& value) {
@@ -1347,6 +1353,8 @@ nlohmann::json to_json(const TransferReport& value) {
   write_member(json, "area_m2", value.area_m2);
   write_member(json, "matched_m2", value.matched_m2);
   write_member(json, "layers", value.layers);
+  write_optional_member(json, "marks", value.marks);
+  write_optional_member(json, "lost_marks", value.lost_marks);
   return json;
 }
 

@@ -35,6 +35,8 @@ enum class Schema {
   Labels,
   ColumnKind,
   CellValue,
+  Mark,
+  MarkPlace,
   CellValues,
   Column,
   Table,
@@ -208,7 +210,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 182;
+constexpr int kSchemaCount = 184;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -226,10 +228,13 @@ using TableRef = std::variant<std::int64_t, std::string>;
 using Labels = std::map<std::string, std::string>;
 
 // Kind of column.
-enum class ColumnKind { text, integer, numeric, boolean, date, timestamp, period, enumeration, url, term, relation, picture, document };
+enum class ColumnKind { text, integer, numeric, boolean, date, timestamp, period, enumeration, url, term, relation, picture, document, line, point };
 std::string_view name(ColumnKind value);
 void read(const nlohmann::json& json, ColumnKind& value);
 nlohmann::json to_json(const ColumnKind& value);
+
+// Place of a mark.
+using MarkPlace = std::array<double, 3>;
 
 // Layer by id or slug.
 using LayerRef = std::variant<std::int64_t, std::string>;
@@ -1024,6 +1029,8 @@ struct TransferReport {
   double area_m2 = 0;  // Surface of the model they are put on.
   double matched_m2 = 0;  // Of that, what has a counterpart within the tolerance.
   std::vector<TransferredLayer> layers;
+  std::optional<std::int64_t> marks;  // Lines and points that records have on this model now, too.
+  std::optional<std::int64_t> lost_marks;  // Those of the other model that have no counterpart within the tolerance, as a whole or in part.
   bool operator==(const TransferReport&) const = default;
 };
 void read(const nlohmann::json& json, TransferReport& value);

@@ -1,0 +1,33 @@
+#include "jobs/transfer_marks.h"
+
+namespace strata::jobs {
+
+TransferredMarks transfer_marks(std::span<const Mark> marks, const Model& source, const TransferTarget& target,
+                                double tolerance_mm) {
+  const double scale = source.metres() / target.model.metres();
+  const auto farthest = static_cast<float>(tolerance_mm / 1000 / target.model.metres());
+  const glm::dvec3& origin = target.geometry->origin;
+  TransferredMarks found;
+  for (const Mark& mark : marks) {
+    const std::size_t least = mark.places.size() == 1 ? 1 : 2;
+    Mark part{target.model.id, {}};
+    bool is_whole = true;
+    const auto end_part = [&] {
+      if (part.places.size() >= least && (least == 1 || length_of(part) > 0)) found.marks.push_back(part);
+      part.places.clear();
+    };
+    for (const glm::dvec3& place : mark.places) {
+      if (const auto hit = target.tree->nearest(glm::vec3(place * scale - origin), farthest)) {
+        part.places.push_back(glm::dvec3(hit->position) + origin);
+      } else {
+        is_whole = false;
+        end_part();
+      }
+    }
+    end_part();
+    if (!is_whole) ++found.lost_marks;
+  }
+  return found;
+}
+
+}  // namespace strata::jobs

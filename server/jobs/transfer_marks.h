@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/mark.h"
+#include "jobs/transfer.h"
+
+namespace strata::jobs {
+
+struct TransferredMarks {
+  std::vector<Mark> marks;     // on the target
+  std::size_t lost_marks = 0;  // of those given: at least a part has no counterpart within the tolerance
+};
+
+// Lines and points of the source as they lie on the target: each place becomes the nearest one of its surface. A line is parted
+// where that is farther than the tolerance. Both models' world coordinates are taken to be of one system, in their own units.
+TransferredMarks transfer_marks(std::span<const Mark> marks, const Model& source, const TransferTarget& target,
+                                double tolerance_mm);
+
+}  // namespace strata::jobs

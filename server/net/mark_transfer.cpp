@@ -1,0 +1,72 @@
+#include "net/mark_transfer.h"
+
+#include <algorithm>
+#include <set>
+
+#include "jobs/transfer_marks.h"
+#include "net/table_events.h"
+
+namespace strata::net {
+namespace {
+
+Result<MarkTransfer> bring_marks_of(const RouteContext& context, std::int64_t table_id,
+                                    const jobs::TransferTarget& target, const jobs::TransferRequest& request,
+                                    const std::string& user) {
+  MarkTransfer brought;
+  store::Store::RecordQuery query;
+  query.limit = store::kMostRecords;
+  const auto page = context.store.records(table_id, query);
+  if (!page) return tl::unexpected(page.error());
+  store::WriteRecords write;
+  write.op = "transfer";
+  write.may_create = false;
+  for (const Record& record : page->records) {
+    store::RecordInput input{record.key, {}, record.version};
+    for (const Column& column : page->table.columns) {
+      const auto cell = record.values.find(column.id);
+      if (!holds_marks(column.kind) || cell == record.values.end()) continue;
+      auto marks = read_marks(cell->second, column.kind == ColumnKind::line).value_or(std::vector<Mark>());
+      if (std::ranges::any_of(marks, [&](const Mark& mark) { return mark.model == target.model.id; })) continue;
+      std::vector<Mark> there;
+      std::ranges::copy_if(marks, std::back_inserter(there),
+                           [&](const Mark& mark) { return mark.model == request.source.id; });
+      auto found = jobs::transfer_marks(there, request.source, target, request.tolerance_mm);
+      brought.lost_marks += found.lost_marks;
+      if (found.marks.empty()) continue;
+      marks.insert(marks.end(), found.marks.begin(), found.marks.end());
+      auto value = to_json(marks);
+      if (!read_marks(value, column.kind == ColumnKind::line)) {  // more than a cell may hold
+        brought.lost_marks += found.marks.size();
+        continue;
+      }
+      brought.marks += found.marks.size();
+      input.values[column.id] = std::move(value);
+    }
+    if (!input.values.empty()) write.records.push_back(std::move(input));
+  }
+  if (write.records.empty()) return brought;
+  const auto change = context.store.write_records(table_id, write, user);
+  if (!change) return tl::unexpected(change.error());
+  if (!change->problems.empty()) return tl::unexpected(change->problems.front().problem);
+  tell_change(context, *change, user);
+  return brought;
+}
+
+}  // namespace
+
+Result<MarkTransfer> bring_marks(const RouteContext& context, const jobs::TransferTarget& target,
+                                 const jobs::TransferRequest& request, const std::string& user) {
+  std::set<std::int64_t> tables;
+  for (const Layer& layer : request.layers)
+    if (layer.table) tables.insert(*layer.table);
+  MarkTransfer all;
+  for (const std::int64_t table : tables) {
+    const auto brought = bring_marks_of(context, table, target, request, user);
+    if (!brought) return brought;
+    all.marks += brought->marks;
+    all.lost_marks += brought->lost_marks;
+  }
+  return all;
+}
+
+}  // namespace strata::net

@@ -1,0 +1,79 @@
+#include "net/record_measures.h"
+
+#include <algorithm>
+
+#include "core/mark.h"
+
+namespace strata::net {
+
+Result<RecordMeasures> RecordMeasures::of_place(const RouteContext& context, const RecordPlace& place,
+                                                const std::vector<Column>& columns) {
+  RecordMeasures measures;
+  if (place.layer) {
+    measures.has_area_ = true;
+    measures.names_.emplace_back("area_m2");
+    if (place.layer->sequence > 0) {  // otherwise nothing was ever painted there
+      auto room = context.rooms.open(std::to_string(place.model->id));
+      if (!room) return tl::unexpected(room.error());
+      auto areas = (*room)->key_areas(place.layer->slug);
+      if (!areas) return tl::unexpected(areas.error());
+      measures.areas_ = std::move(*areas);
+    }
+  }
+  for (const Column& column : columns) {
+    if (column.kind == ColumnKind::line) measures.lines_.push_back(column.id);
+    if (column.kind == ColumnKind::point) measures.points_.push_back(column.id);
+  }
+  if (!measures.lines_.empty()) measures.names_.emplace_back("length_m");
+  if (!measures.points_.empty()) measures.names_.emplace_back("point_count");
+  if (measures.lines_.empty() && measures.points_.empty()) return measures;
+  if (place.model) {
+    measures.metres_[place.model->id] = place.model->metres();
+    return measures;
+  }
+  const auto models = context.store.models(place.table.project_id);
+  if (!models) return tl::unexpected(models.error());
+  for (const Model& model : *models) measures.metres_[model.id] = model.metres();
+  return measures;
+}
+
+double RecordMeasures::area_m2(std::int64_t key) const {
+  const auto area = areas_.find(key);
+  return area == areas_.end() ? 0 : area->second.area_m2;
+}
+
+std::vector<double> RecordMeasures::of(const Record& record) const {
+  std::vector<double> values;
+  if (has_area_) values.push_back(area_m2(record.key));
+  const auto for_each_mark = [&](const std::vector<std::int64_t>& columns, bool lines, auto visit) {
+    for (const auto column : columns) {
+      const auto cell = record.values.find(column);
+      if (cell == record.values.end()) continue;
+      for (const Mark& mark : read_marks(cell->second, lines).value_or(std::vector<Mark>()))
+        if (const auto metres = metres_.find(mark.model); metres != metres_.end()) visit(mark, metres->second);
+    }
+  };
+  if (!lines_.empty()) {
+    double length_m = 0;
+    for_each_mark(lines_, true, [&](const Mark& mark, double metres) { length_m += length_of(mark) * metres; });
+    values.push_back(length_m);
+  }
+  if (!points_.empty()) {
+    double count = 0;
+    for_each_mark(points_, false, [&](const Mark&, double) { ++count; });
+    values.push_back(count);
+  }
+  return values;
+}
+
+void RecordMeasures::add_to(nlohmann::json& json, const Record& record) const {
+  const auto values = of(record);
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    if (names_[i] == "point_count")
+      json[names_[i]] = static_cast<std::int64_t>(values[i]);
+    else
+      json[names_[i]] = values[i];
+  }
+}
+
+}  // namespace strata::net

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "net/record_place.h"
+#include "query/key_areas.h"
+
+namespace strata::net {
+
+// What a record has on the surface, beside what its columns hold: `area_m2` under a layer, the surface that it has there; `length_m` of
+// its lines and `point_count` of its points where the table has such columns, under a layer those on its model, otherwise on all that
+// are there.
+class RecordMeasures {
+ public:
+  // `columns`: those of the records that will be asked for. May open a room, and blocks.
+  static Result<RecordMeasures> of_place(const RouteContext& context, const RecordPlace& place,
+                                         const std::vector<Column>& columns);
+
+  const std::vector<std::string>& names() const { return names_; }
+  std::vector<double> of(const Record& record) const;  // one for each name
+  double area_m2(std::int64_t key) const;
+  void add_to(nlohmann::json& json, const Record& record) const;
+
+ private:
+  std::vector<std::string> names_;
+  bool has_area_ = false;
+  std::map<std::int64_t, query::KeyArea> areas_;
+  std::vector<std::int64_t> lines_, points_;  // ids of columns
+  std::map<std::int64_t, double> metres_;     // of the unit of each model whose marks count
+};
+
+}  // namespace strata::net

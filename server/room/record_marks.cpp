@@ -1,0 +1,81 @@
+#include "room/record_marks.h"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <cmath>
+
+#include "core/log.h"
+
+namespace strata::room {
+
+RecordMarks::RecordMarks(store::Store& store, boost::asio::thread_pool& workers, std::int64_t model_id,
+                         std::function<void()> ready)
+    : store_(store), workers_(workers), model_id_(model_id), ready_(std::move(ready)) {}
+
+Result<RecordMarks::Marks> RecordMarks::read(std::int64_t table_id) const {
+  auto marks = store_.marks(table_id, model_id_);
+  if (!marks) return tl::unexpected(marks.error());
+  return marks->empty() ? nullptr : std::make_shared<const std::vector<KeyMark>>(std::move(*marks));
+}
+
+RecordMarks::Marks RecordMarks::find(std::int64_t table_id) {
+  std::lock_guard lock(mutex_);
+  Entry& entry = entries_[table_id];
+  start(table_id, entry);
+  return entry.marks;
+}
+
+void RecordMarks::start(std::int64_t table_id, Entry& entry) {
+  if (stopped_ || entry.reading || !entry.outdated) return;
+  entry.reading = true;
+  entry.outdated = false;
+  boost::asio::post(workers_, [self = shared_from_this(), table_id] { self->run(table_id); });
+}
+
+void RecordMarks::run(std::int64_t table_id) {
+  auto marks = read(table_id);
+  if (!marks) log::warning("lines and points of table " + std::to_string(table_id) + ": " + marks.error().detail);
+  bool differ = false;
+  {
+    std::lock_guard lock(mutex_);
+    if (stopped_) return;
+    Entry& entry = entries_[table_id];
+    entry.reading = false;
+    // What cannot be read stays as it was, until records change again.
+    if (marks && !(!entry.marks && !*marks) && !(entry.marks && *marks && *entry.marks == **marks)) {
+      entry.marks = std::move(*marks);
+      differ = true;
+    }
+    start(table_id, entry);
+  }
+  if (differ && ready_) ready_();
+}
+
+void RecordMarks::records_changed(std::int64_t table_id) {
+  std::lock_guard lock(mutex_);
+  const auto entry = entries_.find(table_id);
+  if (entry == entries_.end()) return;
+  entry->second.outdated = true;
+  start(table_id, entry->second);
+}
+
+void RecordMarks::stop() {
+  std::lock_guard lock(mutex_);
+  stopped_ = true;
+}
+
+render::MarksShown show_marks(const std::vector<LayerMarks>& layers) {
+  auto shown = std::make_shared<std::vector<render::DrawnMark>>();
+  for (const LayerMarks& layer : layers) {
+    if (!layer.marks) continue;
+    for (const KeyMark& each : *layer.marks) {
+      Rgba color = color_of(*layer.palette, static_cast<double>(each.key));
+      color[3] = static_cast<std::uint8_t>(std::lround(color[3] * std::clamp(layer.opacity, 0.0f, 1.0f)));
+      if (color[3] > 0) shown->push_back({each.mark.places, color});
+    }
+  }
+  if (shown->empty()) return nullptr;
+  return shown;
+}
+
+}  // namespace strata::room

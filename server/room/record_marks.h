@@ -1,0 +1,61 @@
+#pragma once
+
+#include <boost/asio/thread_pool.hpp>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "core/palette.h"
+#include "render/renderer.h"
+#include "store/store.h"
+
+namespace strata::room {
+
+// The lines and points that records have on an open model, by table. They are read on a worker when a view first needs them, and anew
+// when records change. Thread-safe.
+class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
+ public:
+  using Marks = std::shared_ptr<const std::vector<KeyMark>>;  // by key; told apart by the object
+
+  // `ready` is called, on any thread, whenever marks that were asked for are there and differ from before.
+  RecordMarks(store::Store& store, boost::asio::thread_pool& workers, std::int64_t model_id,
+              std::function<void()> ready);
+
+  // The newest that are there; null: none are, as far as is known.
+  Marks find(std::int64_t table_id);
+  // Those of now, read on the calling thread. Blocks.
+  Result<Marks> read(std::int64_t table_id) const;
+  void records_changed(std::int64_t table_id);
+  void stop();  // nothing more is read, and `ready` not called
+
+ private:
+  struct Entry {
+    Marks marks;
+    bool reading = false;
+    bool outdated = true;
+  };
+  void start(std::int64_t table_id, Entry& entry);  // with the mutex held
+  void run(std::int64_t table_id);
+
+  store::Store& store_;
+  boost::asio::thread_pool& workers_;
+  const std::int64_t model_id_;
+  const std::function<void()> ready_;
+  std::mutex mutex_;
+  std::map<std::int64_t, Entry> entries_;
+  bool stopped_ = false;
+};
+
+// Marks of one layer's records, as the layer is drawn: in the colours of their keys, with its opacity.
+struct LayerMarks {
+  RecordMarks::Marks marks;
+  std::shared_ptr<const Palette> palette;  // by key
+  float opacity = 1;
+  bool operator==(const LayerMarks&) const = default;
+};
+// What is to be drawn of them; null: nothing.
+render::MarksShown show_marks(const std::vector<LayerMarks>& layers);
+
+}  // namespace strata::room

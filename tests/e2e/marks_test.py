@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+"""Lines and points that records have on the surface: cracks by the metre, samples by number; over HTTP, in pictures, in tables, and on another version of the scan."""
+import csv
+import io
+import math
+import os
+import sys
+import urllib.parse
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.cameras import camera_from
+from support.live_client import LiveClient
+from support.meshes import folded_grid
+from support.pictures import pixels
+from support.strata_server import StrataServer
+
+M, T = "/models/sheet", "/tables/damage"  # nearly flat, x and y from 0 to 100 mm
+L = M + "/layers/damage"
+RED, BLUE = (220, 0, 0), (0, 0, 220)
+
+
+def line(model, *places):
+    return {"model": model, "coordinates": [list(place) for place in places]}
+
+
+def near(a, b, by=1e-9):
+    assert abs(a - b) <= by, (a, b)
+
+
+def make(server):
+    server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
+    model = server.get(M).json()["id"]
+    table = server.ok("POST", "/projects/default/tables", {"name": "Damage", "columns": [
+        {"name": "Code", "required": True, "unique": True}, {"name": "Crack", "kind": "line"}, {"name": "Sample", "kind": "point"}]}).json()
+    assert [column["kind"] for column in table["columns"]] == ["text", "line", "point"], table
+    server.ok("POST", M + "/layers", {"name": "Damage", "kind": "database", "type": "u16", "table": "damage", "resolution": 2048,
+                                      "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#dc0000"}, {"at": 2, "color": "#0000dc"}]}})
+    return model
+
+
+def write(server, model):
+    crack = [line(model, (20, 50, 0), (50, 50, 0), (50, 90, 0)), line(model, (10, 10, 0), (10, 20, 0))]
+    made = server.ok("POST", T + "/records", {"values": {"code": "C 1", "crack": crack}}).json()
+    assert made["values"]["crack"] == crack, made
+    server.ok("POST", T + "/records", {"values": {"code": "S 1", "sample": [line(model, (80, 20, 0)), line(model, (85, 20, 0))]}})
+    server.ok("POST", T + "/records", {"values": {"code": "Nothing", "crack": []}})
+    for where in (T, L):
+        records = {record["values"]["code"]: record for record in server.ok("GET", where + "/records").json()["records"]}
+        near(records["C 1"]["length_m"], 0.080)
+        assert records["C 1"]["point_count"] == 0 and records["S 1"]["point_count"] == 2 and records["S 1"]["length_m"] == 0, records
+        assert records["Nothing"]["values"]["crack"] is None
+        assert ("area_m2" in records["C 1"]) == (where == L)
+        near(server.ok("GET", where + "/records/1").json()["length_m"], 0.080)
+    for crack, words in (([line(99, (0, 0, 0), (1, 1, 1))], "model 99"), ("x", "list of lines"), ([line(model, (0, 0, 0))], "list of lines"),
+                         ([{"model": model}], None), ([line(model, (0, 0, 0), (0, 0, 0))], "list of lines")):
+        refused = server.request("PATCH", T + "/records/1", {"values": {"crack": crack}})
+        assert refused.status in (400, 422) and (words is None or words in refused.json()["detail"]), (crack, refused)
+    filtered = server.ok("GET", T + "/records?filter=" + urllib.parse.quote("crack is not null")).json()
+    assert [record["key"] for record in filtered["records"]] == [1], filtered
+    assert server.get(T + "/records?filter=" + urllib.parse.quote("crack > 3")).json()["field"] == "filter"
+
+
+def tables(server):
+    """What spreadsheets and reports get, and what comes back from them."""
+    text = server.ok("GET", T + "/records?f=csv").body.decode("utf-8-sig")
+    rows = list(csv.DictReader(io.StringIO(text)))
+    near(float(rows[0]["length_m"]), 0.080)
+    assert rows[1]["point_count"] == "2" and "LINESTRING Z (20 50 0, 50 50 0, 50 90 0)" in rows[0]["crack"], rows[0]
+    report = server.ok("POST", T + "/records", text.encode(), headers={"Content-Type": "text/csv"}).json()
+    assert (report["unchanged"], report["problems"]) == (3, []), report
+    bad = server.ok("POST", T + "/records?dry_run=true", b"key,crack\n1,1 LINESTRING Z (0 0 0)\n", headers={"Content-Type": "text/csv"}).json()
+    assert len(bad["problems"]) == 1 and "LINESTRING" in bad["problems"][0]["detail"], bad
+    for path in (L, T):
+        told = server.ok("GET", path + "/quantities").json()
+        classes = {each["class"]: each for each in told["quantities"]}
+        near(classes["C 1"]["length_m"], 0.080)
+        assert classes["S 1"]["point_count"] == 2 and classes["S 1"]["area_m2"] == 0 and set(classes) == {"C 1", "S 1"}, told
+        near(told["sum"]["length_m"], 0.080)
+        sheet = list(csv.DictReader(io.StringIO(server.ok("GET", path + "/quantities?f=csv").body.decode("utf-8-sig"))))
+        assert sheet[-1]["class"] == "total" and sheet[-1]["point_count"] == "2", sheet
+        near(float(sheet[-1]["length_m"]), 0.080)
+    # The unit of a model is a fact about it: lengths follow, and nothing is written anew.
+    etag = server.get(M).headers["ETag"]
+    etag = server.ok("PATCH", M, {"unit": "cm"}, headers={"If-Match": etag}).headers["ETag"]
+    near(server.ok("GET", T + "/records/1").json()["length_m"], 0.80)
+    server.ok("PATCH", M, {"unit": "mm"}, headers={"If-Match": etag})
+
+
+def count(rows, color):
+    return sum(all(abs(a - b) <= 30 for a, b in zip(pixel, color)) for row in rows for pixel in row)
+
+
+def pictures(server, camera):
+    def shown(**more):
+        rows = pixels(server.ok("POST", M + "/frame", {"camera": camera, "light": {"mode": "unlit"}, "format": "png", **more}).body)
+        return count(rows, RED), count(rows, BLUE)
+
+    red, blue = shown()
+    assert red > 400 and 100 < blue < red, (red, blue)
+    assert shown(layers=[]) == (0, 0), "they come and go with the layer"
+    server.ok("PATCH", L, {"visible": False})
+    assert shown() == (0, 0)
+    server.ok("PATCH", L, {"visible": True})
+    from_below = camera_from(server.get(M).json(), (0, 0, -1), up=(0, 1, 0))
+    behind = pixels(server.ok("POST", M + "/frame", {"camera": from_below, "light": {"mode": "unlit"}, "format": "png"}).body)
+    assert count(behind, RED) > 0, "the sheet is thin: both sides show what lies on it"
+
+
+def live(server, model):
+    """Who is on the model hears of a line that somebody else writes."""
+    with LiveClient(server, "sheet") as viewer:
+        viewer.hello(dpr=1, accept=["jpeg"])
+        server.ok("PATCH", T + "/records/3", {"values": {"crack": [line(model, (60, 60, 0), (90, 60, 0))]}})
+        told = viewer.receive_until("record")
+        assert told["key"] == 3 and told["record"]["values"]["crack"][0]["model"] == model, told
+    server.ok("POST", T + "/undo")
+
+
+def history(server):
+    before = server.ok("GET", T + "/records/1").json()
+    sequence = int(server.get(T + "/records").headers["Strata-Sequence"])
+    server.ok("PATCH", T + "/records/1", {"values": {"crack": None}})
+    assert server.ok("GET", T + "/records/1").json()["length_m"] == 0
+    near(server.ok("GET", f"{T}/records/1?at={sequence}").json()["length_m"], 0.080)
+    server.ok("POST", T + "/undo")
+    assert server.ok("GET", T + "/records/1").json()["values"] == before["values"]
+    text = server.ok("PATCH", T + "/columns/crack", {"kind": "text"})
+    assert text.status == 200
+    assert "LINESTRING" in server.ok("GET", T + "/records/1").json()["values"]["crack"]
+    server.ok("POST", T + "/undo")
+    near(server.ok("GET", T + "/records/1").json()["length_m"], 0.080)
+
+
+def transfer(server):
+    """A second scan of the same wall, half as large: what lies on its half comes over, snapped to its surface."""
+    half = folded_grid(size=60.0, fold=0.001)
+    server.import_model(half, "half.ply", name="Half", unit="mm")
+    other = server.get("/models/half").json()["id"]
+    wish = {"from": "sheet", "tolerance_mm": 1}
+    report = server.wait_for_job(server.ok("POST", "/models/half/transfer", wish).json()["id"])["report"]
+    assert report["marks"] >= 2 and report["lost_marks"] >= 1, report
+    record = server.ok("GET", T + "/records/1").json()
+    there = [mark for mark in record["values"]["crack"] if mark["model"] == other]
+    assert [[round(number) for number in place[:2]] for place in there[0]["coordinates"]] == [[20, 50], [50, 50]], record
+    on_half = {each["key"]: each for each in server.ok("GET", "/models/half/layers/damage/records").json()["records"]}
+    near(on_half[1]["length_m"], 0.040, 1e-5)
+    near(server.ok("GET", T + "/records/1").json()["length_m"], 0.120, 1e-5)
+    again = server.wait_for_job(server.ok("POST", "/models/half/transfer", wish).json()["id"])["report"]
+    assert again["marks"] == 0, "what is there stays as it is"
+    server.ok("POST", T + "/undo")
+    near(server.ok("GET", T + "/records/1").json()["length_m"], 0.080)
+    server.ok("DELETE", "/models/half")
+    server.ok("POST", T + "/redo")  # brings back what lies on a model that is gone: it counts nowhere, and harms nobody
+    near(server.ok("GET", T + "/records/1").json()["length_m"], 0.080)
+    server.ok("PATCH", T + "/records/1", {"values": {"code": "C one"}})
+    assert math.isclose(server.ok("GET", L + "/records/1").json()["length_m"], 0.080)
+
+
+def main():
+    with StrataServer() as server:
+        model = make(server)
+        write(server, model)
+        tables(server)
+        camera = camera_from(server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
+        pictures(server, camera)
+        live(server, model)
+        history(server)
+        transfer(server)
+        assert server.stop() == 0
+        server.assert_clean_log()
+
+
+if __name__ == "__main__":
+    main()
