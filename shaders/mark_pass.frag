@@ -1,12 +1,11 @@
 #version 450 core
-// Lines with round ends and points, in a light casing that parts them from what lies below, also in greys.
+// Lines with round ends and points. Light casings part them from what lies below, also in greys; all of them are drawn before what is in
+// them, so that segments of a line do not cut each other.
 layout(location = 0) in vec2 place;
 layout(location = 1) flat in vec4 ends;
-layout(location = 2) flat in vec2 widths;  // half of the mark's, the casing's
+layout(location = 2) flat in float mark_half_width;
 layout(location = 3) flat in vec4 mark_color;
 layout(location = 0) out vec4 picture;
-
-const vec3 kCasing = vec3(1.0);
 
 float distance_to_segment(vec2 p, vec2 a, vec2 b) {
   vec2 along = b - a;
@@ -16,9 +15,7 @@ float distance_to_segment(vec2 p, vec2 a, vec2 b) {
 }
 
 void main() {
-  float from_middle = distance_to_segment(place, ends.xy, ends.zw);
-  float cover = clamp(widths.x + widths.y + 0.5 - from_middle, 0.0, 1.0);
+  float cover = clamp(mark_half_width + 0.5 - distance_to_segment(place, ends.xy, ends.zw), 0.0, 1.0);
   if (cover == 0.0) discard;
-  float core = clamp(widths.x + 0.5 - from_middle, 0.0, 1.0);
-  picture = vec4(mix(kCasing, mark_color.rgb, core), cover * mark_color.a);
+  picture = vec4(mark_color.rgb, cover * mark_color.a);
 }

@@ -5,8 +5,10 @@ layout(std140, binding = 0) uniform MarkBlock { MarkUniforms marks; };
 layout(std430, binding = 0) readonly buffer SegmentBlock { MarkSegment segments[]; };
 layout(location = 0) out vec2 place;  // pixels
 layout(location = 1) flat out vec4 ends;
-layout(location = 2) flat out vec2 widths;
+layout(location = 2) flat out float mark_half_width;
 layout(location = 3) flat out vec4 mark_color;
+
+const vec3 kCasing = vec3(1.0);
 
 void main() {
   MarkSegment segment = segments[gl_VertexID / 6];
@@ -15,11 +17,12 @@ void main() {
   vec2 along = segment.to.xy - segment.from.xy;
   along = dot(along, along) > 1e-12 ? normalize(along) : vec2(1.0, 0.0);
   vec2 across = vec2(-along.y, along.x) * ((corner & 2) != 0 ? 1.0 : -1.0);
-  float reach = segment.from.w + segment.to.w + 1.0;
+  float half_width = segment.from.w + (marks.size.z == 0.0 ? segment.to.w : 0.0);
+  float reach = half_width + 1.0;
   vec4 end = at_end ? segment.to : segment.from;
   place = end.xy + ((at_end ? along : -along) + across) * reach;
   ends = vec4(segment.from.xy, segment.to.xy);
-  widths = vec2(segment.from.w, segment.to.w);
-  mark_color = segment.color;
+  mark_half_width = half_width;
+  mark_color = marks.size.z == 0.0 ? vec4(kCasing, segment.color.a) : segment.color;
   gl_Position = vec4(place / marks.size.xy * 2.0 - 1.0, end.z * 2.0 - 1.0, 1.0);
 }

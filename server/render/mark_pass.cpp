@@ -13,10 +13,7 @@ Result<MarkPass> MarkPass::create(const std::filesystem::path& shader_dir) {
 Result<void> MarkPass::draw(std::span<const shader::MarkSegment> segments, const gl::Framebuffer& target, int width,
                             int height, const PixelRect& rect) {
   if (segments.empty() || rect.width == 0 || rect.height == 0) return {};
-  const shader::MarkUniforms uniforms{glm::vec4(width, height, 0, 0)};
-  if (auto sent = uniforms_.replace(std::span(&uniforms, 1)); !sent) return sent;
   if (auto sent = segments_.replace(segments); !sent) return sent;
-  uniforms_.bind_uniform(0);
   segments_.bind_storage(0);
   program_.use();
   no_vertices_.bind();
@@ -30,11 +27,18 @@ Result<void> MarkPass::draw(std::span<const shader::MarkSegment> segments, const
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // the picture stays opaque
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.x, height - rect.y - rect.height, rect.width, rect.height);
-  glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * segments.size()));
+  Result<void> sent;
+  for (const float part : {0.0f, 1.0f}) {
+    const shader::MarkUniforms uniforms{glm::vec4(width, height, part, 0)};
+    sent = uniforms_.replace(std::span(&uniforms, 1));
+    if (!sent) break;
+    uniforms_.bind_uniform(0);
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * segments.size()));
+  }
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
-  return {};
+  return sent;
 }
 
 }  // namespace strata::render

@@ -122,12 +122,12 @@ Result<void> Store::delete_table(std::int64_t id, const FirstAnswer<>& answer) {
     if (!users) return tl::unexpected(users.error());
     if (users->rows() > 0)
       return fail(409, "Table in use", "The table is named by " + users->text(0, 0) + ". Delete that one first.");
-    if (auto gone = drop_rows_table(connection, id); !gone) return gone;
+    if (auto dropped = drop_rows_table(connection, id); !dropped) return dropped;
     // Its own columns may point at it.
     auto columns = connection.query("DELETE FROM record_columns WHERE table_id = $1", Params().integer(id));
     if (!columns) return tl::unexpected(columns.error());
-    auto gone = connection.query("DELETE FROM record_tables WHERE id = $1", Params().integer(id));
-    return gone ? Result<void>{} : tl::unexpected(gone.error());
+    auto table = connection.query("DELETE FROM record_tables WHERE id = $1", Params().integer(id));
+    return table ? Result<void>{} : tl::unexpected(table.error());
   });
   // Afterwards, since those who attach hold a blob while they wait for the tables. What fails here is done at the next start.
   if (gone) (void)drop_orphans();

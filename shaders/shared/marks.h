@@ -8,7 +8,7 @@ struct MarkSegment {
   vec4 color;
 };
 struct MarkUniforms {
-  vec4 size;  // of the picture: width, height
+  vec4 size;  // of the picture: width, height; z is 0 where casings are drawn, 1 where what is in them is
 };
 STRATA_SHARED_END
 #ifdef __cplusplus

@@ -74,6 +74,13 @@ TEST_F(Marks, lines_are_as_wide_as_they_should_be_with_round_ends_and_a_casing) 
   }
 }
 
+TEST_F(Marks, a_line_of_many_parts_is_one_line) {
+  std::vector<glm::dvec3> places;
+  for (int i = 0; i <= 40; ++i) places.push_back(at(0.2 + i * 0.6 / 40, 0.5));
+  expect_mark(draw(from_above(), {{places, kRed}}), draw(from_above(), {}), on_picture(0.2, 0.5), on_picture(0.8, 0.5),
+              render::kLineWidth_px);
+}
+
 TEST_F(Marks, points_are_discs_and_pictures_that_are_larger_show_all_larger) {
   expect_mark(draw(from_above(), {{{at(0.4, 0.6)}, kRed}}), draw(from_above(), {}), on_picture(0.4, 0.6),
               on_picture(0.4, 0.6), render::kPointWidth_px);
