@@ -7,7 +7,7 @@ import { kPageRows, RecordRows } from "../src/app/record-rows";
 import { Tables } from "../src/app/tables";
 import { Api, ApiError, type RecordQuery } from "../src/core/api";
 import { label_column, label_of, label_of_record, named_keys, parse_cell } from "../src/core/cells";
-import type { CellValue, Column, ColumnKind, Picked, Table, TableRecord } from "../src/core/protocol.gen";
+import type { CellValue, Column, ColumnKind, Mark, Picked, Table, TableRecord } from "../src/core/protocol.gen";
 import type { Layer } from "../src/core/types";
 
 const column = (id: number, slug: string, kind: ColumnKind = "text", more: Partial<Column> = {}): Column => ({
@@ -60,12 +60,14 @@ describe("the rows of a table", () => {
   let asked: RecordQuery[];
   let answers: ((total: number, refuse?: ApiError) => Promise<void>)[];
   let rows: RecordRows;
+  let outdated: number;
 
   const all = (total: number): TableRecord[] => Array.from({ length: total }, (_, key) => record(key, { n: key }));
 
   beforeEach(() => {
     asked = [];
     answers = [];
+    outdated = 0;
     rows = new RecordRows({
       ask: (query) =>
         new Promise((resolve, reject) => {
@@ -77,6 +79,7 @@ describe("the rows of a table", () => {
           });
         }),
       changed: () => {},
+      measures_outdated: () => void (outdated += 1),
     });
   });
 
@@ -138,6 +141,20 @@ describe("the rows of a table", () => {
     rows.put(record(1, { n: 9 }, 4)); // told late
     expect(rows.row(1)?.values["n"]).toBe(8);
     rows.put(record(99, { n: 9 }, 4)); // of no row that is here
+  });
+
+  it("are measured anew when their lines or points change, and keep what they measured until then", async () => {
+    const cracks = [{ model: 1, coordinates: [[0, 0, 0], [1, 0, 0]] }] as Mark[]; // prettier-ignore
+    rows.want(0, 10);
+    await answers[0]!(3);
+    rows.put({ ...record(1, { cracks }, 5), area_m2: 2, length_m: 1 });
+    expect(outdated).toBe(0); // of the layer
+    rows.put({ ...record(1, { cracks, n: 8 }, 6), length_m: 7 }); // of all models
+    expect([rows.row(1)?.length_m, outdated]).toEqual([1, 0]);
+    rows.put({ ...record(1, { cracks: [...cracks, ...cracks] }, 7), length_m: 8 });
+    expect([rows.row(1)?.length_m, rows.row(1)?.area_m2, outdated]).toEqual([1, 2, 1]);
+    rows.put(record(1, { cracks: null }, 8));
+    expect(outdated).toBe(2);
   });
 
   it("are looked through for a record that is far away", async () => {

@@ -4,6 +4,7 @@ import { StrokeHandle } from "../src/core/connection";
 import type { ChangeMessage } from "../src/core/outbox";
 import { BrushTool, type BrushHost } from "../src/tools/brush";
 import { BucketTool } from "../src/tools/bucket";
+import { LineTool } from "../src/tools/line";
 import { OrbitTool, PanTool } from "../src/tools/navigate";
 import { kMostPoints, LassoTool, PolygonTool, type OutlineHost } from "../src/tools/outline";
 import { PickTool } from "../src/tools/pick";
@@ -303,6 +304,78 @@ describe("outlines", () => {
     manager.choose("pick");
     expect([manager.outline, outline_host.open, outlines.length]).toEqual([null, 0, 0]);
     expect(manager.key("Enter")).toBe(false);
+  });
+
+  it("a drag is a line, finished when it is let go", () => {
+    const tool = new LineTool(outline_host);
+    tool.down({ x: 0, y: 0 });
+    tool.move([{ x: 4, y: 0 }]); // a hand trembles
+    tool.move([{ x: 30, y: 0 }, { x: 31, y: 0 }, { x: 60, y: 9 }]); // prettier-ignore
+    expect(tool.outline).toMatchObject({ area: false, pointer: null, corners: [[0, 0]] });
+    tool.up();
+    expect(outlines).toEqual([[[0, 0], [30, 0], [60, 9]]]); // prettier-ignore
+    expect([outline_host.open, tool.outline]).toEqual([0, null]);
+  });
+
+  it.each<[string, (tool: LineTool) => unknown]>([
+    ["one more press on the last place", (tool) => press(tool, [101, 50])],
+    ["Enter", (tool) => tool.key("Enter")],
+  ])("presses are places of a line, and %s ends it", (_, end) => {
+    const tool = new LineTool(outline_host);
+    press(tool, [10, 10], [100, 10]);
+    tool.hover({ x: 50, y: 60 });
+    expect(tool.outline).toMatchObject({ corners: [[10, 10], [100, 10]], pointer: [50, 60] }); // prettier-ignore
+    press(tool, [100, 50]);
+    expect([outlines, outline_host.open]).toEqual([[], 1]);
+    end(tool);
+    expect(outlines).toEqual([[[10, 10], [100, 10], [100, 50]]]); // prettier-ignore
+    expect(outline_host.open).toBe(0);
+  });
+
+  it("a double click alone is no line, and a drag after presses goes on with it", () => {
+    const tool = new LineTool(outline_host);
+    press(tool, [10, 10], [10, 11]);
+    expect([outlines.length, outline_host.open]).toEqual([0, 1]);
+    tool.down({ x: 100, y: 10 });
+    tool.move([{ x: 150, y: 10 }]);
+    tool.up();
+    expect(outlines).toEqual([]);
+    tool.key("Enter");
+    expect(outlines).toEqual([[[10, 10], [100, 10], [150, 10]]]); // prettier-ignore
+  });
+
+  it("places of a line are taken back, by a key or where a second finger came", () => {
+    const tool = new LineTool(outline_host);
+    press(tool, [10, 10], [100, 10]);
+    tool.down({ x: 200, y: 10 });
+    tool.move([{ x: 260, y: 10 }]);
+    tool.cancel();
+    expect(tool.outline).toMatchObject({ points: [[10, 10], [100, 10]], corners: [[10, 10], [100, 10]] }); // prettier-ignore
+    tool.key("Backspace");
+    expect(tool.outline?.points).toEqual([[10, 10]]);
+    tool.key("Enter");
+    expect([outlines.length, outline_host.open, tool.outline]).toEqual([0, 0, null]);
+    press(tool, [10, 10], [100, 10]);
+    tool.key("Escape");
+    tool.down({ x: 5, y: 5 });
+    tool.cancel();
+    expect([outlines.length, outline_host.open, tool.outline]).toEqual([0, 0, null]);
+  });
+
+  it("a line has no more places than the server looks at, however long it is drawn", () => {
+    const tool = new LineTool(outline_host);
+    tool.down({ x: 0, y: 0 });
+    for (let at = 1; at < 5000; ++at) tool.move([{ x: 10 * at, y: 0 }]);
+    tool.up();
+    expect(outlines[0]!.length).toBeGreaterThan(400);
+    expect(outlines[0]!.length).toBeLessThanOrEqual(1000);
+  });
+
+  it("where there is no record to draw for no line begins", () => {
+    outline_host.refuse = true;
+    const tool = new LineTool(outline_host);
+    press(tool, [10, 10], [100, 10]);
+    expect([tool.outline, outline_host.open, tool.key("Escape")]).toEqual([null, 0, false]);
   });
 });
 

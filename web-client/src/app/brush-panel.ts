@@ -2,6 +2,8 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
+import { label_of } from "../core/cells";
+import type { MarkKind } from "../core/marks";
 import { format_length, format_number } from "../core/measure";
 import type { Layer } from "../core/types";
 import { describe_value, kWidths, type WidthUnit } from "./brush-settings";
@@ -72,6 +74,7 @@ export class StrataBrushPanel extends LitElement {
     if (!layer) return html`<p class="hint">${texts.brush.no_layer}</p>`;
     const tool = session.tools.active;
     if (tool === "brush" || tool === "eraser") return this.strokes(layer, tool === "eraser");
+    if (tool === "line" || tool === "point") return this.marks(layer, tool);
     return this.areas(layer, tool === "bucket" ? "bucket" : tool === "lasso" ? "lasso" : "polygon");
   }
 
@@ -111,6 +114,30 @@ export class StrataBrushPanel extends LitElement {
           })
         : this.through()}
       ${this.whole(layer)}`;
+  }
+
+  /** Of which record lines and points will be, and in which column. */
+  private marks(layer: Layer, kind: MarkKind): TemplateResult {
+    const { marks } = this.session;
+    const words = texts.marks;
+    const columns = marks.columns(kind);
+    const { table } = layer;
+    if (table === undefined || columns.length === 0) return html`<h2>${texts.tools[kind]}</h2><p class="hint">${words.no_column[kind]}</p>`;
+    const choose = (event: Event): void => {
+      const chosen = columns.find(({ id }) => `${id}` === (event.target as HTMLSelectElement).value);
+      if (chosen) marks.choose_column(table, chosen);
+    };
+    return html`<h2>${texts.tools[kind]}</h2>
+      <p class="hint">${words.how[kind]}</p>
+      ${this.value(layer)}
+      ${columns.length > 1
+        ? html`<label class="field">
+            <span>${words.into}</span>
+            <select @change=${choose}>
+              ${columns.map((column) => html`<option value=${column.id} ?selected=${column.id === marks.column(kind)?.id}>${label_of(column)}</option>`)}
+            </select>
+          </label>`
+        : nothing}`;
   }
 
   private value(layer: Layer): TemplateResult {

@@ -3,10 +3,13 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
 import { cell_text, is_number, label_of, named_keys, names_records, parse_cell } from "../core/cells";
+import { holds_marks, marks_of } from "../core/marks";
 import type { CellValue, Column } from "../core/protocol.gen";
 import type { ModelSession } from "./model-session";
 import "./files-field";
 import type { StrataFilesField } from "./files-field";
+import "./marks-field";
+import type { StrataMarksField } from "./marks-field";
 import "./record-chooser";
 import type { StrataRecordChooser } from "./record-chooser";
 import { number_field_styles, shared_styles } from "./styles";
@@ -16,7 +19,7 @@ export type CellRead = { value: CellValue } | { problem: string };
 
 /** Whether a letter can begin a new value; the others are chosen. */
 export const takes_typing = (column: Column): boolean =>
-  !names_records(column) && column.kind !== "boolean" && column.kind !== "enumeration" && column.kind !== "date";
+  !names_records(column) && !holds_marks(column) && column.kind !== "boolean" && column.kind !== "enumeration" && column.kind !== "date";
 
 @customElement("strata-cell-input")
 export class StrataCellInput extends LitElement {
@@ -29,6 +32,7 @@ export class StrataCellInput extends LitElement {
   /** Columns of files: the record that they are of, where it is there already. */
   @property({ attribute: false }) record: { table: number; key: number | null } | null = null;
   @query("strata-files-field") private files_!: StrataFilesField | null;
+  @query("strata-marks-field") private marks_!: StrataMarksField | null;
   @query("input, select, textarea, strata-record-chooser") private control_!:
     | HTMLInputElement
     | HTMLSelectElement
@@ -78,6 +82,7 @@ export class StrataCellInput extends LitElement {
   read(): CellRead {
     const { column } = this;
     if (this.files_) return { value: this.files_.ids.length > 0 ? [...this.files_.ids] : null };
+    if (this.marks_) return { value: this.marks_.marks.length > 0 ? [...this.marks_.marks] : null };
     if (names_records(column)) {
       const keys = [...(this.control_ as StrataRecordChooser).chosen];
       return { value: column.kind === "relation" ? (keys.length > 0 ? keys : null) : (keys[0] ?? null) };
@@ -93,6 +98,10 @@ export class StrataCellInput extends LitElement {
   put(value: CellValue): void {
     if (this.files_) {
       this.files_.ids = named_keys(value);
+      return;
+    }
+    if (this.marks_) {
+      this.marks_.marks = marks_of(value);
       return;
     }
     const control = this.control_;
@@ -138,6 +147,9 @@ export class StrataCellInput extends LitElement {
           .record=${this.record?.key ?? null}
           .ids=${named_keys(value)}
         ></strata-files-field>`;
+      case "line":
+      case "point":
+        return html`<strata-marks-field .session=${this.session} .column=${column} .marks=${marks_of(value)}></strata-marks-field>`;
       case "boolean":
         return this.choice(label, value === null ? "" : String(value), [
           ["true", texts.tables.yes],

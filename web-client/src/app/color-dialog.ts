@@ -3,7 +3,8 @@
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { is_number, label_of } from "../core/cells";
+import { holds_files, is_number, label_of } from "../core/cells";
+import { holds_marks } from "../core/marks";
 import { category_palette, css_gradient, graduated_palette, kClassColors, kRamps, opaque_color, ramp_colors, record_palette, swatch_style, type Ramp } from "../core/palette";
 import type { Column, ColumnClasses } from "../core/protocol.gen";
 import type { Layer, Palette, PalettePoint } from "../core/types";
@@ -26,7 +27,7 @@ const kMostCategories = 30;
 export const can_be_colored = (layer: Layer): boolean =>
   layer.table !== undefined || layer.palette.mode === "step" || (layer.palette.mode === "categorical" && layer.palette.points.length > 0);
 
-const colors_layers = ({ kind }: Column): boolean => kind !== "relation" && kind !== "picture" && kind !== "document";
+const colors_layers = (column: Column): boolean => column.kind !== "relation" && !holds_files(column) && !holds_marks(column);
 
 @customElement("strata-color-dialog")
 export class StrataColorDialog extends LitElement {

@@ -17,7 +17,7 @@ export interface ColumnWanted {
 }
 
 export const kColumnKinds: readonly ColumnKind[] = [
-  "text", "integer", "numeric", "boolean", "date", "timestamp", "period", "enumeration", "url", "term", "relation",
+  "text", "integer", "numeric", "boolean", "date", "timestamp", "period", "enumeration", "url", "term", "relation", "line", "point",
 ]; // prettier-ignore
 
 export const has_limits = (kind: ColumnKind): boolean => kind === "integer" || kind === "numeric";

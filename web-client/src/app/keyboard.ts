@@ -12,6 +12,8 @@ const kTools: Record<string, ToolName> = {
   l: "lasso",
   g: "bucket",
   i: "pick",
+  d: "line",
+  s: "point",
   v: "orbit",
   h: "pan",
 };
@@ -39,8 +41,8 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
   const { key } = event;
   if (event.ctrlKey || event.metaKey) {
     if (event.altKey || key.toLowerCase() !== "z") return false;
-    if (event.shiftKey) session.painting.redo();
-    else session.painting.undo();
+    if (event.shiftKey) session.redo();
+    else session.undo();
     return true;
   }
   if (event.altKey) return false;

@@ -7,17 +7,20 @@ import { Connection, type ConnectionState, type Point, type SavingState, type So
 import type { FrameMessage } from "../core/frame-header";
 import type { GestureHandler, PointerSample } from "../core/input";
 import type { LayerEvent, ModelEvent, Picked, PresenceUser, ProblemMessage, Welcome } from "../core/protocol.gen";
-import { complete_layer, may_curate, may_paint, type Layer, type Model, type ModelPatch, type Role } from "../core/types";
+import { complete_layer, may_curate, may_paint, type Column, type Layer, type Model, type ModelPatch, type Role } from "../core/types";
 import { BrushTool } from "../tools/brush";
 import { BucketTool } from "../tools/bucket";
+import { LineTool } from "../tools/line";
 import { OrbitTool, PanTool } from "../tools/navigate";
 import { LassoTool, PolygonTool } from "../tools/outline";
 import { PickTool } from "../tools/pick";
-import type { ToolName } from "../tools/tool";
+import { PointTool } from "../tools/point";
+import { kMarkingTools, type ToolName } from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
 import { Appearance } from "./appearance";
 import { LayerJobs } from "./layer-jobs";
 import { LayerList } from "./layer-list";
+import { MarkDrawing } from "./mark-drawing";
 import { notices } from "./notices";
 import { Painting } from "./painting";
 import { PointerWatch } from "./pointer-watch";
@@ -45,6 +48,7 @@ export class ModelSession {
   readonly painting: Painting;
   readonly shapes: ToolShapes;
   readonly tables: Tables;
+  readonly marks: MarkDrawing;
   readonly tools: ToolManager;
   /** Set by the stage. */
   on_frame: (part: FrameMessage) => void = () => {};
@@ -116,6 +120,14 @@ export class ModelSession {
       fly_to: (bounds) => this.view.fly_to(bounds),
       changed,
     });
+    this.marks = new MarkDrawing(api, {
+      view: this.view,
+      layers: this.layers,
+      painting: this.painting,
+      tables: this.tables,
+      model: () => this.model,
+      changed,
+    });
     this.tools = this.make_tools();
   }
 
@@ -185,6 +197,11 @@ export class ModelSession {
       scale: () => this.view.scale,
       outline_changed: () => this.changed(),
     };
+    const line_host = {
+      ...outline_host,
+      begin_outline: () => this.marks.begin_line(),
+      finish_outline: (path: Point[]) => this.marks.finish_line(path),
+    };
     return new ToolManager(
       [
         new OrbitTool(navigator),
@@ -195,6 +212,8 @@ export class ModelSession {
         new LassoTool(outline_host),
         new BucketTool((sample) => this.painting.fill_at(sample)),
         new PickTool((sample) => this.pointer.take(sample)),
+        new LineTool(line_host),
+        new PointTool((sample) => this.marks.set_point(sample)),
       ],
       "orbit",
       () => this.changed(),
@@ -276,6 +295,25 @@ export class ModelSession {
 
   choose_tool(name: ToolName): void {
     this.tools.choose(name);
+  }
+
+  /** What is drawn next goes into this column of the record. */
+  draw_marks(layer: Layer, key: number, column: Column): void {
+    if (layer.table === undefined) return;
+    this.layers.select(layer);
+    this.painting.set_brush((brush) => brush.set_value(layer, key));
+    this.marks.choose_column(layer.table, column);
+    this.tools.choose(column.kind === "line" ? "line" : "point");
+  }
+
+  /** Strokes; with tools that add to records, changes of the table. */
+  undo(): void {
+    if (kMarkingTools.includes(this.tools.active)) this.marks.undo();
+    else this.painting.undo();
+  }
+  redo(): void {
+    if (kMarkingTools.includes(this.tools.active)) this.marks.redo();
+    else this.painting.redo();
   }
 
   frame_drawn(part: FrameMessage): void {

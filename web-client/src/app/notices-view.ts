@@ -4,7 +4,7 @@ import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { icon } from "./icons";
-import { notices, type Notice } from "./notices";
+import { notices, type Notice, type NoticeLink } from "./notices";
 import { follow } from "./routes";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -100,7 +100,7 @@ export class StrataNotices extends LitElement {
         <div class="words">
           <strong>${notice.title}</strong>
           ${notice.detail ? html`<p>${notice.detail}</p>` : ""}
-          ${notice.link ? html`<a class="text" href=${notice.link.href} @click=${follow}>${notice.link.label}</a>` : ""}
+          ${notice.link ? link_of(notice, notice.link) : ""}
         </div>
         <button
           class="icon quiet"
@@ -112,4 +112,13 @@ export class StrataNotices extends LitElement {
       </div>`,
     )}`;
   }
+}
+
+function link_of({ id }: Notice, link: NoticeLink): TemplateResult {
+  if ("href" in link) return html`<a class="text" href=${link.href} @click=${follow}>${link.label}</a>`;
+  const act = (): void => {
+    notices.dismiss(id);
+    link.act();
+  };
+  return html`<button class="link" @click=${act}>${link.label}</button>`;
 }

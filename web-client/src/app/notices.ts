@@ -14,14 +14,13 @@ export interface Notice {
   link: NoticeLink | null;
 }
 
-export interface NoticeLink {
-  href: string;
-  label: string;
-}
+/** Where it leads, or what it does. */
+export type NoticeLink = { label: string } & ({ href: string } | { act: () => void });
 
 type Listener = (notices: readonly Notice[]) => void;
 
 const kShown_ms: Record<NoticeKind, number> = { info: 5000, success: 4000, problem: 12_000 };
+const kShownToAct_ms = 12_000;
 const kMostNotices = 4;
 
 class Notices {
@@ -35,13 +34,15 @@ class Notices {
     return () => this.listeners_.delete(listener);
   }
 
-  show(kind: NoticeKind, title: string, detail = "", link: NoticeLink | null = null): void {
+  /** Returns its id. */
+  show(kind: NoticeKind, title: string, detail = "", link: NoticeLink | null = null): number {
     const same = this.notices_.find((notice) => notice.title === title && notice.detail === detail);
     if (same) this.dismiss(same.id);
     const notice = { id: this.next_id_++, kind, title, detail, link };
     this.notices_ = [...this.notices_, notice].slice(-kMostNotices);
     this.tell();
-    setTimeout(() => this.dismiss(notice.id), kShown_ms[kind]);
+    setTimeout(() => this.dismiss(notice.id), link && "act" in link ? kShownToAct_ms : kShown_ms[kind]);
+    return notice.id;
   }
 
   problem(problem: Pick<ProblemBody, "title" | "detail" | "field">): void {

@@ -1,24 +1,23 @@
-// What polygon and lasso have drawn so far, over the picture.
+// What polygon, lasso and line have drawn so far, over the picture.
 
-import { html, svg, type TemplateResult } from "lit";
+import { html, nothing, svg, type TemplateResult } from "lit";
 import { color_of, css_color } from "../core/palette";
 import { kSnap_px, type Outline } from "../tools/outline";
 import type { ModelSession } from "./model-session";
 
-export function outline_overlay(session: ModelSession, { points, pointer, closable }: Outline): TemplateResult {
+export function outline_overlay(session: ModelSession, { points, corners, pointer, closable, area }: Outline): TemplateResult {
   const { scale } = session.view;
   const layer = session.layers.selected;
   const { brush } = session.painting;
-  const color = layer && !brush.areas.erases ? color_of(layer.palette, brush.value_of(layer)) : null;
+  const color = layer && !(area && brush.areas.erases) ? color_of(layer.palette, brush.value_of(layer)) : null;
   const line = [...points, ...(pointer ? [pointer] : [])].map(([x, y]) => `${x / scale},${y / scale}`).join(" ");
-  const corners = session.tools.active === "polygon" ? points : [];
   const [first] = points;
   const at_first =
     closable && first && pointer && Math.hypot(pointer[0] - first[0], pointer[1] - first[1]) <= kSnap_px * scale;
   return html`<svg class="over" aria-hidden="true">
-    <polygon points=${line} fill=${color ? css_color(color) : "#fff"} fill-opacity="0.28" stroke="none" />
+    ${area ? svg`<polygon points=${line} fill=${color ? css_color(color) : "#fff"} fill-opacity="0.28" stroke="none" />` : nothing}
     <polyline points=${line} fill="none" stroke="rgb(20 26 26 / 0.6)" stroke-width="3.4" stroke-linejoin="round" />
-    <polyline points=${line} fill="none" stroke="#fff" stroke-width="1.6" stroke-linejoin="round" />
+    <polyline points=${line} fill="none" stroke=${area || !color ? "#fff" : css_color(color)} stroke-width="1.6" stroke-linejoin="round" />
     ${corners.map(
       ([x, y], index) =>
         svg`<circle cx=${x / scale} cy=${y / scale} r=${index === 0 && at_first ? 8 : 4} fill=${index === 0 ? "#20292a" : "#fff"}

@@ -182,7 +182,8 @@ export class Painting {
     return wrong ? null : value;
   }
 
-  private layer_to_paint(): Layer | null {
+  /** The chosen layer, which is made visible; null: there is none to change, and the person was told why. */
+  layer_to_paint(): Layer | null {
     const { layers } = this.host_;
     if (!this.host_.may_paint()) {
       notices.show("problem", texts.brush.viewer_only);

@@ -3,12 +3,12 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { label_of, named_keys, naming_columns } from "../core/cells";
-import { format_area } from "../core/measure";
 import { css_color, record_color } from "../core/palette";
 import type { Table, TableRecord } from "../core/protocol.gen";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
+import { measures_of } from "./record-measures";
 import { shown_value } from "./shown-value";
 import { shared_styles } from "./styles";
 import { styled } from "./styled";
@@ -127,8 +127,11 @@ export class StrataRecordCard extends LitElement {
           html`<dt>${label_of(column)}</dt>
             <dd>${shown_value(this.session, column, record.values[column.slug] ?? null)}${column.unit ? ` ${column.unit}` : nothing}</dd>`,
       )}
-      <dt>${words.area}</dt>
-      <dd class="numeric">${format_area(record.area_m2 ?? 0)}</dd>
+      ${measures_of(table).map(
+        ({ label, text }) =>
+          html`<dt>${label}</dt>
+            <dd class="numeric">${text(record) || "–"}</dd>`,
+      )}
     </dl>`;
   }
 }

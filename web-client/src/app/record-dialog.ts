@@ -114,6 +114,7 @@ export class StrataRecordDialog extends LitElement {
         event.preventDefault();
         void this.save(false);
       }}
+      @draw=${(event: CustomEvent<Column>) => void this.draw(event.detail)}
       @keydown=${this.on_key}
     >
       ${table.columns.length === 0 ? html`<p class="hint">${words.no_columns}</p>` : nothing}
@@ -148,7 +149,7 @@ export class StrataRecordDialog extends LitElement {
   /** Enter saves, also from a field in an element of its own; in texts of several lines with Ctrl. */
   private on_key(event: KeyboardEvent): void {
     const field = event.composedPath()[0];
-    if (event.key !== "Enter" || (field instanceof HTMLTextAreaElement && !event.ctrlKey && !event.metaKey)) return;
+    if (event.key !== "Enter" || field instanceof HTMLButtonElement || (field instanceof HTMLTextAreaElement && !event.ctrlKey && !event.metaKey)) return;
     event.preventDefault();
     this.form_?.requestSubmit();
   }
@@ -168,12 +169,19 @@ export class StrataRecordDialog extends LitElement {
     return problems.size > 0 ? null : values;
   }
 
-  private async save(another: boolean): Promise<void> {
+  /** What is in the form is kept; lines and points are drawn without it. */
+  private async draw(column: Column): Promise<void> {
+    const { session, layer } = this;
+    if ((await this.save(false)) && this.record_) session.draw_marks(layer, this.record_.key, column);
+  }
+
+  /** True: all of it is saved. */
+  private async save(another: boolean): Promise<boolean> {
     const { table, session, record_: record } = this;
-    if (!table || this.busy_) return;
+    if (!table || this.busy_) return false;
     this.problem_ = "";
     const values = this.read(table);
-    if (!values) return;
+    if (!values) return false;
     this.busy_ = true;
     try {
       if (record && Object.keys(values).length > 0) {
@@ -190,8 +198,10 @@ export class StrataRecordDialog extends LitElement {
       if (another) this.record_ = null;
       if (another) this.begin_again();
       else this.dispatchEvent(new CustomEvent("closed"));
+      return true;
     } catch (error) {
       await this.refuse(error, table);
+      return false;
     } finally {
       this.busy_ = false;
     }

@@ -2,6 +2,8 @@
 // seen stays until its newer state is here, so that nothing flickers.
 
 import { ApiError, type RecordQuery } from "../core/api";
+import { same_value } from "../core/cells";
+import { marks_of } from "../core/marks";
 import type { RecordList, TableRecord } from "../core/protocol.gen";
 import type { ProblemBody } from "../core/types";
 
@@ -18,6 +20,8 @@ interface Page {
 export interface RecordRowsHost {
   ask(query: RecordQuery): Promise<RecordList>;
   changed(): void;
+  /** A record has other lines or points than before: what it measures on the model is not known. */
+  measures_outdated(): void;
 }
 
 export class RecordRows {
@@ -114,10 +118,11 @@ export class RecordRows {
       if (at < 0) continue;
       const before = page.rows[at]!;
       if (record.version < before.version) return; // told before, and late
-      const area = record.area_m2 ?? before.area_m2; // the table's own answers do not know the layer
-      const newest = { ...record, ...(area === undefined ? {} : { area_m2: area }) };
-      page.rows = page.rows.map((row) => (row === before ? newest : row));
+      const { area_m2, length_m, point_count } = before; // the table's own answers do not know the layer, or its model
+      const measures = Object.fromEntries(Object.entries({ area_m2, length_m, point_count }).filter(([, value]) => value !== undefined));
+      page.rows = page.rows.map((row) => (row === before ? { ...record, ...(record.area_m2 === undefined ? measures : {}) } : row));
       this.host_.changed();
+      if (record.area_m2 === undefined && !same_marks(before, record)) this.host_.measures_outdated();
       return;
     }
   }
@@ -163,4 +168,9 @@ export class RecordRows {
     this.loaded = true;
     for (const page of this.pages_.keys()) if (page * kPageRows >= total) this.pages_.delete(page);
   }
+}
+
+function same_marks(before: TableRecord, now: TableRecord): boolean {
+  const slugs = new Set([...Object.keys(before.values), ...Object.keys(now.values)]);
+  return [...slugs].every((slug) => same_value(marks_of(before.values[slug]), marks_of(now.values[slug])));
 }

@@ -2,6 +2,8 @@
 
 import { html } from "lit";
 import { cell_text, named_keys, names_records } from "../core/cells";
+import { holds_marks, marks_of, summary_of } from "../core/marks";
+import { format_length } from "../core/measure";
 import type { CellValue, Column } from "../core/protocol.gen";
 import type { ModelSession } from "./model-session";
 import { texts } from "./texts";
@@ -17,6 +19,7 @@ export function shown_value(session: ModelSession, column: Column, value: CellVa
       .map((key) => session.tables.label(target, key) ?? texts.tables.record(key))
       .join(", ");
   }
+  if (holds_marks(column)) return shown_marks(session, column, value);
   if (column.kind === "document") return texts.files.count(named_keys(value).length);
   if (column.kind === "picture") {
     const ids = named_keys(value);
@@ -30,4 +33,14 @@ export function shown_value(session: ModelSession, column: Column, value: CellVa
     return html`<a class="text" href=${text} target="_blank" rel="noopener noreferrer" tabindex="-1">${text}</a>`;
   }
   return text;
+}
+
+/** "2 lines · 1.24 m": on this model; others are counted. */
+export function shown_marks({ model }: ModelSession, { kind }: Pick<Column, "kind">, value: CellValue): string {
+  if (!model || marks_of(value).length === 0) return "";
+  const words = texts.marks;
+  const { here, elsewhere, metres } = summary_of(value, model);
+  const count = kind === "line" ? words.lines : words.points;
+  if (here === 0) return words.elsewhere(count(elsewhere));
+  return [count(here), kind === "line" ? format_length(metres) : [], elsewhere > 0 ? words.and_elsewhere(elsewhere) : []].flat().join(" · ");
 }

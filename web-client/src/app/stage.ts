@@ -197,7 +197,7 @@ export class StrataStage extends LitElement {
     const { session } = this;
     const tool = session.tools.active;
     const paints = tool === "brush" || tool === "eraser";
-    const aims = tool === "polygon" || tool === "lasso" || tool === "bucket" || tool === "pick";
+    const aims = tool === "polygon" || tool === "lasso" || tool === "bucket" || tool === "pick" || tool === "line" || tool === "point";
     return html`<div
         class="surface ${paints ? "paint" : aims ? "aim" : tool}"
         tabindex="0"

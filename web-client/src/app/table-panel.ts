@@ -4,6 +4,7 @@ import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { holds_files, is_number, label_of } from "../core/cells";
+import { holds_marks } from "../core/marks";
 import { format_area } from "../core/measure";
 import { css_color, record_color } from "../core/palette";
 import type { CellValue, Column, Table, TableRecord } from "../core/protocol.gen";
@@ -17,6 +18,7 @@ import { icon } from "./icons";
 import "./menu";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { measures_of, type RecordMeasure } from "./record-measures";
 import { save_from } from "./save-from";
 import { shown_value } from "./shown-value";
 import { shared_styles } from "./styles";
@@ -39,7 +41,7 @@ const kRow_px = 32;
 const kHead_px = 34;
 const kAbove = 6; // rows drawn beyond those in sight
 const kKeyWidth = 92;
-const kAreaWidth = 110;
+const kMeasureWidth = 110;
 const kWidths: Partial<Record<Column["kind"], number>> = { text: 190, numeric: 126, integer: 120, boolean: 110, date: 126, timestamp: 200, url: 200, relation: 190 };
 const kUsualWidth = 150;
 const kLeastWidth = 56;
@@ -117,10 +119,14 @@ export class StrataTablePanel extends LitElement {
   private width_of(column: Column): number {
     return this.widths_.get(column.slug) ?? kWidths[column.kind] ?? kUsualWidth;
   }
-  /** Left edges of the columns; after the last one, of the area. */
+  private width_of_measure({ name }: RecordMeasure): number {
+    return this.widths_.get(name) ?? kMeasureWidth;
+  }
+  /** Left edges of the columns, then of what is measured; at last the right one. */
   private edges(table: Table): number[] {
     const edges = [this.widths_.get("key") ?? kKeyWidth];
-    for (const column of table.columns) edges.push(edges[edges.length - 1]! + this.width_of(column));
+    const widths = [...table.columns.map((column) => this.width_of(column)), ...measures_of(table).map((measure) => this.width_of_measure(measure))];
+    for (const width of widths) edges.push(edges[edges.length - 1]! + width);
     return edges;
   }
 
@@ -281,7 +287,7 @@ export class StrataTablePanel extends LitElement {
     const { rows } = this.view;
     const { first, last } = this.in_sight();
     const edges = this.edges(table);
-    const widths = [edges[0]!, ...table.columns.map((column) => this.width_of(column)), this.widths_.get("area_m2") ?? kAreaWidth];
+    const widths = edges.map((edge, at) => edge - (edges[at - 1] ?? 0));
     const indices: number[] = [];
     for (let index = first; index < Math.min(last, rows.total); ++index) indices.push(index);
     const { row, column } = this.active_;
@@ -325,7 +331,7 @@ export class StrataTablePanel extends LitElement {
     return html`<div class="head" role="row" aria-rowindex="1">
       ${this.head_cell("key", words.key, "key")}
       ${table.columns.map((column) => this.head_cell(column.slug, label_of(column), is_number(column) ? "number" : "", column))}
-      ${this.head_cell("area_m2", words.area, "number")}
+      ${measures_of(table).map(({ name, label }) => this.head_cell(name, label, "number"))}
     </div>`;
   }
 
@@ -377,15 +383,18 @@ export class StrataTablePanel extends LitElement {
         ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}${record?.key ?? "…"}
       </div>
       ${table.columns.map((column, at) => this.cell(record, column, index, at + 1, is_active(at + 1)))}
-      <div
-        class="cell number numeric computed ${is_active(table.columns.length + 1)}"
-        role="gridcell"
-        aria-readonly="true"
-        id="cell-${index}-${table.columns.length + 1}"
-        @click=${() => this.activate(index, table.columns.length + 1)}
-      >
-        ${record?.area_m2 ? format_area(record.area_m2) : ""}
-      </div>
+      ${measures_of(table).map(({ text }, measure) => {
+        const at = table.columns.length + 1 + measure;
+        return html`<div
+          class="cell number numeric computed ${is_active(at)}"
+          role="gridcell"
+          aria-readonly="true"
+          id="cell-${index}-${at}"
+          @click=${() => this.activate(index, at)}
+        >
+          ${record ? text(record) : ""}
+        </div>`;
+      })}
     </div>`;
   }
 
@@ -495,7 +504,7 @@ export class StrataTablePanel extends LitElement {
     const record = this.view.rows.row(row);
     const column = this.view.table?.columns[at - 1];
     if (!this.can_write || !record || !column) return;
-    if (holds_files(column)) {
+    if (holds_files(column) || holds_marks(column)) {
       this.request({ dialog: "record", layer: this.layer!, key: record.key });
       return;
     }
@@ -575,7 +584,7 @@ export class StrataTablePanel extends LitElement {
   private move_to(row: number, column: number): void {
     const { table, rows } = this.view;
     if (!table || !this.scroller_) return;
-    this.activate(Math.min(Math.max(0, row), Math.max(0, rows.total - 1)), Math.min(Math.max(0, column), table.columns.length + 1));
+    this.activate(Math.min(Math.max(0, row), Math.max(0, rows.total - 1)), Math.min(Math.max(0, column), table.columns.length + measures_of(table).length));
     this.scroll_to_active(table);
     this.scroller_.focus({ preventScroll: true });
   }
@@ -589,7 +598,7 @@ export class StrataTablePanel extends LitElement {
     if (column === 0) return;
     const edges = this.edges(table);
     const left = edges[column - 1]!;
-    const right = edges[column] ?? left + (this.widths_.get("area_m2") ?? kAreaWidth);
+    const right = edges[column]!;
     if (left - edges[0]! < box.scrollLeft) box.scrollLeft = left - edges[0]!;
     else if (right > box.scrollLeft + box.clientWidth) box.scrollLeft = right - box.clientWidth;
   }
@@ -607,7 +616,7 @@ export class StrataTablePanel extends LitElement {
 
   private on_grid_key(event: KeyboardEvent, table: Table, row: number, column: number, total: number): boolean {
     const { key } = event;
-    const last = table.columns.length + 1;
+    const last = table.columns.length + measures_of(table).length;
     const page = Math.max(1, Math.floor(((this.scroller_?.clientHeight ?? 0) - kHead_px) / kRow_px) - 1);
     if (event.ctrlKey || event.metaKey) {
       if (event.altKey) return false;
@@ -643,7 +652,7 @@ export class StrataTablePanel extends LitElement {
     return true;
   }
 
-  /** A cell is written into; the key and the area open the whole record. */
+  /** A cell is written into; the key and what is measured open the whole record. */
   private enter(record: TableRecord | null, row: number, column: number): void {
     const { layer } = this;
     if (this.view.table?.columns[column - 1]) this.edit_at(row, column, null);

@@ -50,7 +50,7 @@ export class TableView {
     private readonly host_: TableViewHost,
   ) {
     const place = { model: host_.model_id, layer: host_.layer_id };
-    this.rows = new RecordRows({ ask: (query) => api_.records(place, query), changed: () => this.changed() });
+    this.rows = new RecordRows({ ask: (query) => api_.records(place, query), changed: () => this.changed(), measures_outdated: () => this.refresh_soon() });
     this.edits = new CellEdits(api_, {
       table: host_.table_id,
       row: (key) => this.rows.find(key),

@@ -7,6 +7,7 @@ import { notices } from "./notices";
 import { RecordNames } from "./record-names";
 import { TableView } from "./table-view";
 import { TermTree } from "./term-tree";
+import { texts } from "./texts";
 
 export interface TablesHost {
   model_id: string;
@@ -124,6 +125,29 @@ export class Tables {
   show_row(layer: Layer, key: number): void {
     this.open(layer);
     this.view?.show(key);
+  }
+
+  /** This person's newest change of the table is taken back, or the one that was comes again. */
+  undo(table: number): Promise<void> {
+    return this.turn(table, "undo");
+  }
+  redo(table: number): Promise<void> {
+    return this.turn(table, "redo");
+  }
+
+  private async turn(table: number, way: "undo" | "redo"): Promise<void> {
+    if (this.view?.table_id === table) {
+      await this.view[way]();
+      return;
+    }
+    try {
+      const what = await (way === "undo" ? this.api_.undo_table(table) : this.api_.redo_table(table));
+      if (what.columns_changed) await this.reload(table);
+      const told = way === "undo" ? texts.tables.undone : texts.tables.redone;
+      notices.show("success", told(what.created.length, what.changed.length, what.deleted.length));
+    } catch (error) {
+      notices.error(error);
+    }
   }
 
   /** With the areas that strokes leave. */

@@ -19,6 +19,8 @@ const kTools: [ToolName, string][] = [
   ["polygon", "A"],
   ["lasso", "L"],
   ["bucket", "G"],
+  ["line", "D"],
+  ["point", "S"],
   ["pick", "I"],
 ];
 const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
@@ -102,7 +104,7 @@ export class StrataToolRail extends LitElement {
   override render(): TemplateResult {
     const { session } = this;
     const words = texts.model;
-    const shown = session.can_paint ? kTools : kTools.filter(([name]) => !kPaintingTools.includes(name));
+    const shown = kTools.filter(([name]) => this.shows(name));
     return html`${shown.map(
         ([name, key]) =>
           html`<button
@@ -122,7 +124,7 @@ export class StrataToolRail extends LitElement {
               aria-label=${words.undo}
               title="${words.undo} (Ctrl Z)"
               ?disabled=${!session.layers.selected}
-              @click=${() => session.painting.undo()}
+              @click=${() => session.undo()}
             >
               ${icon("undo")}
             </button>
@@ -131,7 +133,7 @@ export class StrataToolRail extends LitElement {
               aria-label=${words.redo}
               title="${words.redo} (Ctrl Shift Z)"
               ?disabled=${!session.layers.selected}
-              @click=${() => session.painting.redo()}
+              @click=${() => session.redo()}
             >
               ${icon("redo")}
             </button>
@@ -155,6 +157,13 @@ export class StrataToolRail extends LitElement {
         <hr />
         ${this.projection(true, texts.views.perspective, "P")} ${this.projection(false, texts.views.orthographic, "O")}
       </strata-menu>`;
+  }
+
+  /** Lines and points have their tools where the layer's table has columns of them. */
+  private shows(name: ToolName): boolean {
+    const { session } = this;
+    if (kPaintingTools.includes(name) && !session.can_paint) return false;
+    return (name !== "line" && name !== "point") || session.tools.active === name || session.marks.column(name) !== null;
   }
 
   private projection(perspective: boolean, label: string, key: string): TemplateResult {

@@ -211,6 +211,10 @@ export class Api {
     return this.json("POST", `${table_path(table)}/redo`);
   }
   /** Newest first. */
+  async table_edits(table: Id, limit: number): Promise<wire.TableEdit[]> {
+    return (await this.json<wire.TableEditList>("GET", `${table_path(table)}/edits?${new URLSearchParams({ limit: `${limit}` })}`)).edits;
+  }
+  /** Of one record, newest first. */
   async record_edits(table: Id, key: number, limit: number): Promise<wire.TableEdit[]> {
     return (await this.json<wire.TableEditList>("GET", `${table_path(table)}/edits?${new URLSearchParams({ key: `${key}`, limit: `${limit}` })}`)).edits;
   }
@@ -316,6 +320,14 @@ export class Api {
   async classes(table: Id, column: Id, method: "equal" | "quantile" | "unique", count?: number): Promise<wire.ColumnClasses> {
     const query = new URLSearchParams({ method, ...(count === undefined ? {} : { count: `${count}` }) });
     return this.json("GET", `${table_path(table)}/columns/${encodeURIComponent(column)}/classes?${query}`);
+  }
+  /** What a camera sees at a pixel of its window. */
+  async pick(model: Id, camera: CameraMessage, [x, y]: readonly [number, number]): Promise<wire.SurfacePoint> {
+    return this.json("POST", `/models/${encodeURIComponent(model)}/pick`, { camera, x, y });
+  }
+  /** What it sees along a path of its window's pixels, at each of them. */
+  async profile(model: Id, camera: CameraMessage, path: readonly (readonly [number, number])[]): Promise<wire.Profile> {
+    return this.json("POST", `/models/${encodeURIComponent(model)}/profile`, { camera, path, layers: [] });
   }
   async statistics(model: Id, layer: Id): Promise<Statistics> {
     return this.json("GET", `${layer_path(model, layer)}/statistics`);

@@ -156,6 +156,13 @@ export class OrbitCamera {
     return (2 * kHalfFieldTangent * (this.perspective ? depth : this.distance)) / this.height;
   }
 
+  /** World length of a window pixel at a place, for the camera as it is now. */
+  pixel_size(): (place: Vec3) => number {
+    const [eye, { back }, unit] = [this.eye(), this.axes(), this.unit_per_pixel(1)];
+    const { perspective } = this;
+    return (place) => (perspective ? unit * dot(subtract(eye, place), back) : unit);
+  }
+
   depth_of(point: Vec3): number {
     return dot(subtract(this.eye(), point), this.axes().back);
   }

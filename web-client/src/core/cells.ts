@@ -1,5 +1,6 @@
 // Values of records as people read and write them. The server judges what a value may be; here is only what a field needs.
 
+import { is_list_of_marks } from "./marks";
 import type { CellValue, Column, Labels, Table, TableRecord } from "./protocol.gen";
 
 /** The language and those that it is a kind of: "es-MX", "es". */
@@ -24,14 +25,16 @@ export const names_records = (column: Column): boolean => column.kind === "term"
 
 /** Keys of the records that a term or a relation names. */
 export function named_keys(value: CellValue | undefined): number[] {
+  if (is_list_of_marks(value)) return [];
   if (Array.isArray(value)) return value;
   return typeof value === "number" ? [value] : [];
 }
 
-/** As it is typed and shown; what names records is shown by their labels instead. */
+/** As it is typed and shown; what names records is shown by their labels instead, and of lines and points how many there are. */
 export function cell_text(value: CellValue | undefined): string {
   if (value === null || value === undefined) return "";
-  return Array.isArray(value) ? value.join(" ") : String(value);
+  if (!Array.isArray(value)) return String(value);
+  return is_list_of_marks(value) ? String(value.length) : value.join(" ");
 }
 
 export const same_value = (a: CellValue | undefined, b: CellValue | undefined): boolean =>

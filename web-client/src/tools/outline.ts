@@ -1,5 +1,5 @@
 // Polygon and lasso: an outline in the picture, whose inside is painted. While one is drawn the camera stays, because its
-// points are pixels of the camera that it began with.
+// points are pixels of the camera that it began with. Lines are drawn the same way.
 
 import type { Point } from "../core/connection";
 import type { PointerSample } from "../core/input";
@@ -8,7 +8,7 @@ import type { Tool } from "./tool";
 export interface OutlineHost {
   /** False when there is nothing to paint on; the host has then told the person why. */
   begin_outline(): boolean;
-  /** At least three points, at most kMostPoints. */
+  /** Of an area at least three points, of a line two. */
   finish_outline(path: Point[]): void;
   /** After `begin_outline` returned true, finished or given up. */
   outline_ended(): void;
@@ -20,23 +20,32 @@ export interface OutlineHost {
 /** What is drawn over the picture. */
 export interface Outline {
   points: readonly Point[];
+  /** Those that were pressed one by one. */
+  corners: readonly Point[];
   /** Where the pointer is, if a line leads there. */
   pointer: Point | null;
   /** The next press at the first point closes it. */
   closable: boolean;
+  /** It goes round an area; otherwise it is a line. */
+  area: boolean;
 }
 
 export const kMostPoints = 4096;
 export const kSnap_px = 11; // CSS pixels: so near a press counts as on a point
-const kLassoSpacing_px = 2; // CSS pixels
+const kSpacing_px = 2; // CSS pixels
 
-abstract class OutlineTool {
+export abstract class OutlineTool {
   protected points: Point[] = [];
+  private spacing_ = kSpacing_px;
 
-  constructor(protected readonly host: OutlineHost) {}
+  constructor(
+    protected readonly host: OutlineHost,
+    private readonly least_ = 3,
+    protected readonly most = kMostPoints,
+  ) {}
 
   get outline(): Outline | null {
-    return this.points.length > 0 ? { points: this.points, pointer: null, closable: false } : null;
+    return this.points.length > 0 ? { points: this.points, corners: [], pointer: null, closable: false, area: true } : null;
   }
 
   activate(): void {}
@@ -46,15 +55,33 @@ abstract class OutlineTool {
 
   protected begin(at: PointerSample): boolean {
     if (!this.host.begin_outline()) return false;
+    this.spacing_ = kSpacing_px;
     this.points = [[at.x, at.y]];
     this.host.outline_changed();
     return true;
   }
 
+  /** Goes on to where the pointer was dragged. */
+  protected follow(samples: PointerSample[]): void {
+    for (const { x, y } of samples) {
+      const [last_x, last_y] = this.points[this.points.length - 1]!;
+      if (Math.hypot(x - last_x, y - last_y) < this.spacing_ * this.host.scale()) continue;
+      this.points.push([x, y]);
+      if (this.points.length < this.most) continue;
+      this.points = this.points.filter((_, index) => index % 2 === 0);
+      this.spacing_ *= 2;
+    }
+    this.host.outline_changed();
+  }
+
   protected finish(): void {
     const path = this.points;
     this.give_up();
-    if (path.length >= 3) this.host.finish_outline(path);
+    if (path.length >= this.least_) this.host.finish_outline(path);
+  }
+
+  protected is_at(sample: PointerSample, [x, y]: Point): boolean {
+    return Math.hypot(sample.x - x, sample.y - y) <= kSnap_px * this.host.scale();
   }
 
   protected give_up(): void {
@@ -68,24 +95,13 @@ abstract class OutlineTool {
 /** A drag goes round what is to be painted. */
 export class LassoTool extends OutlineTool implements Tool {
   readonly name = "lasso";
-  private spacing_ = kLassoSpacing_px;
 
   down(sample: PointerSample): void {
-    this.spacing_ = kLassoSpacing_px;
     this.begin(sample);
   }
 
   move(samples: PointerSample[]): void {
-    if (this.points.length === 0) return;
-    for (const { x, y } of samples) {
-      const [last_x, last_y] = this.points[this.points.length - 1]!;
-      if (Math.hypot(x - last_x, y - last_y) < this.spacing_ * this.host.scale()) continue;
-      this.points.push([x, y]);
-      if (this.points.length < kMostPoints) continue;
-      this.points = this.points.filter((_, index) => index % 2 === 0);
-      this.spacing_ *= 2;
-    }
-    this.host.outline_changed();
+    if (this.points.length > 0) this.follow(samples);
   }
 
   up(): void {
@@ -109,7 +125,7 @@ export class PolygonTool extends OutlineTool implements Tool {
 
   override get outline(): Outline | null {
     if (this.points.length === 0) return null;
-    return { points: this.points, pointer: this.pointer_, closable: this.points.length >= 3 };
+    return { points: this.points, corners: this.points, pointer: this.pointer_, closable: this.points.length >= 3, area: true };
   }
 
   down(sample: PointerSample): void {
@@ -124,7 +140,7 @@ export class PolygonTool extends OutlineTool implements Tool {
       if (this.points.length >= 3) this.finish();
       return;
     }
-    if (this.points.length === kMostPoints) return;
+    if (this.points.length === this.most) return;
     this.points.push([sample.x, sample.y]);
     this.added_ = true;
     this.host.outline_changed();
@@ -164,9 +180,5 @@ export class PolygonTool extends OutlineTool implements Tool {
     }
     this.points.pop();
     this.host.outline_changed();
-  }
-
-  private is_at(sample: PointerSample, [x, y]: Point): boolean {
-    return Math.hypot(sample.x - x, sample.y - y) <= kSnap_px * this.host.scale();
   }
 }

@@ -3,10 +3,12 @@
 import type { PointerSample } from "../core/input";
 import type { Outline } from "./outline";
 
-export type ToolName = "orbit" | "pan" | "brush" | "eraser" | "polygon" | "lasso" | "bucket" | "pick";
+export type ToolName = "orbit" | "pan" | "brush" | "eraser" | "polygon" | "lasso" | "bucket" | "pick" | "line" | "point";
 
-/** Those that change a layer. */
-export const kPaintingTools: readonly ToolName[] = ["brush", "eraser", "polygon", "lasso", "bucket"];
+/** Those that add to a record of the layer's table. */
+export const kMarkingTools: readonly ToolName[] = ["line", "point"];
+/** Those that change what a layer shows. */
+export const kPaintingTools: readonly ToolName[] = ["brush", "eraser", "polygon", "lasso", "bucket", ...kMarkingTools];
 
 export interface Tool {
   readonly name: ToolName;

@@ -1,0 +1,167 @@
+// Lines and points on the surface: columns of them are made on the page, a crack is drawn by a drag and by clicks, a sample by a click; the
+// table measures them, the picture shows them, undo takes them away, and the form of a record takes one out and leads to drawing more.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser, rgb } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kCrack = "#ff00ff";
+const kSample = "#00e0ff";
+
+const browser = await Browser.open();
+const { page } = browser;
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const base = "/models/demo-pot";
+const L = `${base}/layers/damages`;
+const button = (name) => page.getByRole("button", { name, exact: true });
+const panel = page.locator("strata-table-panel");
+const form = page.locator("strata-record-dialog");
+const notice = (text) => page.locator("strata-notices").getByText(text).last().waitFor();
+const row = (text) => panel.locator(".line", { hasText: text });
+const shot = async (name) => {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+};
+const record = (key) => server.json("GET", `${L}/records/${key}`);
+const marks = async (key, column) => (await record(key)).values[column] ?? [];
+const shows = (color, what) => wait_for(async () => (await browser.count(rgb(color))) > 40, what, 150);
+const hides = (color, what) => wait_for(async () => (await browser.count(rgb(color))) === 0, what, 150);
+const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
+const length_of = ({ coordinates }) => coordinates.slice(1).reduce((sum, place, at) => sum + distance(place, coordinates[at]), 0);
+/** What a pixel of the page is on the object, as the scale bar tells it. */
+async function metres_per_pixel() {
+  const [, number, unit] = /([\d.]+) (mm|cm|m)/.exec(await page.locator("strata-stage .scale").innerText());
+  const { width } = await page.locator("strata-stage .scale i").boundingBox();
+  return (Number(number) * { mm: 0.001, cm: 0.01, m: 1 }[unit]) / width;
+}
+async function click_at(x, y, count = 1) {
+  const box = await browser.stage_box();
+  await page.mouse.click(box.x + x * box.width, box.y + y * box.height, { clickCount: count });
+}
+async function make_column(name, kind) {
+  const dialog = page.locator("strata-column-dialog");
+  await button("More about the table").click();
+  await page.getByRole("menuitem", { name: "New column…" }).click();
+  await dialog.getByLabel("Name").fill(name);
+  await dialog.getByLabel("Holds").selectOption(kind);
+  await dialog.getByRole("button", { name: "Create column" }).click();
+  await panel.getByRole("columnheader", { name }).waitFor();
+}
+
+try {
+  await server.start();
+  await server.json("POST", `${base}/layers`, {
+    name: "Damages", kind: "database", type: "u16", resolution: 2048, columns: [{ name: "Name", required: true, unique: true }],
+    palette: { mode: "categorical", points: [{ at: 1, color: kCrack }, { at: 2, color: kSample }] },
+  });
+  for (const name of ["North crack", "Sample A"]) await server.json("POST", "/tables/damages/records", { values: { name } });
+  for (const other of ["pieces", "cracks"]) await server.json("PATCH", `${base}/layers/${other}`, { visible: false });
+  const metres_per = { mm: 0.001, cm: 0.01, m: 1 }[(await server.json("GET", base)).unit];
+
+  await page.goto(server.link);
+  await page.getByRole("link", { name: /Demo pot/ }).click();
+  await browser.drawn();
+  const later = page.getByRole("button", { name: "Decide later" });
+  if (await later.isVisible()) await later.click();
+  await button("Paint on Damages").click();
+  await page.keyboard.press("t");
+  await panel.getByText("2 records").waitFor();
+
+  say("the tools are there once the table has columns for them");
+  assert.deepEqual([await button("Line").count(), await button("Point").count()], [0, 0]);
+  await make_column("Cracks", "line");
+  await make_column("Samples", "point");
+  await panel.getByRole("columnheader", { name: "Length" }).waitFor();
+  await panel.getByRole("columnheader", { name: "Points" }).waitFor();
+  await button("Line").click();
+
+  say("a drag across the pot is a line, as long as it looks, in the record's colour");
+  await hides(kCrack, "nothing drawn yet");
+  await browser.drag([[0.42, 0.57], [0.5, 0.55], [0.58, 0.57]]);
+  await notice(/drawn for “North crack”\./);
+  await shows(kCrack, "the line on the pot");
+  const [crack] = await marks(1, "cracks");
+  const box = await browser.stage_box();
+  const drawn_m = 2 * Math.hypot(0.08 * box.width, 0.02 * box.height) * (await metres_per_pixel());
+  const length_m = length_of(crack) * metres_per;
+  assert.ok(length_m > 0.75 * drawn_m && length_m < 1.6 * drawn_m, `${length_m} m where ${drawn_m} m were drawn`);
+  assert.ok(crack.coordinates.length > 3 && crack.coordinates.length < 200, `${crack.coordinates.length} places`);
+  assert.ok(Math.abs((await record(1)).length_m - length_m) < 1e-9);
+  await wait_for(async () => /1 line · ([\d.]+ [mc]?m)[\s\S]*\1/.test(await row("North crack").innerText()), "the length beside the area");
+  await shot("mark-line");
+
+  say("what was drawn is taken back by the notice, and by keys");
+  await page.locator("strata-notices").getByRole("button", { name: "Undo" }).click();
+  await hides(kCrack, "the line to be gone");
+  assert.deepEqual(await marks(1, "cracks"), []);
+  await page.keyboard.press("Control+Shift+Z");
+  await shows(kCrack, "the line again");
+  await page.keyboard.press("Control+Z");
+  await hides(kCrack, "and gone");
+
+  say("clicks are its places; a double click ends it, Escape gives it up");
+  await click_at(0.42, 0.56);
+  await click_at(0.5, 0.6);
+  await page.keyboard.press("Escape");
+  await click_at(0.42, 0.56);
+  await click_at(0.5, 0.6);
+  await browser.point(0.56, 0.56);
+  await shot("mark-line-by-clicks");
+  await click_at(0.56, 0.56, 2);
+  await shows(kCrack, "the line of clicks");
+  assert.equal((await marks(1, "cracks")).length, 1);
+
+  say("where there is no surface there is no line, and a notice says so");
+  await browser.drag([[0.02, 0.1], [0.1, 0.12]]);
+  await notice("There is no surface there.");
+
+  say("a click sets a point, for the record that is chosen");
+  await row("Sample A").getByRole("rowheader").click();
+  await button("Paint with it").click();
+  await page.keyboard.press("s");
+  await click_at(0.54, 0.66);
+  await notice("A point was set for “Sample A”.");
+  await button("Choose none").click();
+  await shows(kSample, "the point on the pot");
+  await row("Sample A").getByText("1 point", { exact: true }).waitFor();
+  await wait_for(async () => (await row("Sample A").getByRole("gridcell").last().innerText()).trim() === "1", "the number of points");
+  await shot("mark-point");
+
+  say("the form lists what the record has, and takes one out");
+  await row("North crack").getByRole("rowheader").click();
+  await button("Edit the record").click();
+  const cracks = form.getByRole("group", { name: "Cracks" });
+  await cracks.getByRole("button", { name: /^Take out / }).waitFor();
+  await shot("mark-form");
+  await cracks.getByRole("button", { name: /^Take out / }).click();
+  await button("Save").click();
+  await hides(kCrack, "the line to be gone");
+  await wait_for(async () => !/ m/.test(await row("North crack").innerText()), "the length to be gone, too");
+
+  say("and leads to drawing more, after it has kept what was written");
+  await button("Edit the record").click();
+  await form.locator("textarea").fill("Long crack");
+  await cracks.getByRole("button", { name: "Draw…" }).click();
+  await wait_for(async () => (await form.count()) === 0, "the form to close");
+  assert.equal(await button("Line").getAttribute("aria-pressed"), "true");
+  await browser.drag([[0.54, 0.56], [0.62, 0.57]]);
+  await notice(/drawn for “Long crack”\./);
+  await shows(kCrack, "the next line");
+  await button("Choose none").click();
+  await page.keyboard.press("v");
+  await shot("marks");
+
+  say("the end");
+  browser.assert_no_complaints();
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`);
+  await shot("marks-failure");
+  throw error;
+} finally {
+  await browser.close();
+  await server.remove();
+}

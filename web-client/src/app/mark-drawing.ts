@@ -1,0 +1,152 @@
+// Lines and points that this person draws on the surface. They go to the record that the brush paints with, into the layer's table.
+
+import { ApiError, type Api } from "../core/api";
+import type { Point } from "../core/connection";
+import type { PointerSample } from "../core/input";
+import { lines_seen, mark_columns, mark_length, marks_of, type MarkKind } from "../core/marks";
+import { format_length, metres_per } from "../core/measure";
+import type { Column, MarkPlace, TableRecord } from "../core/protocol.gen";
+import type { Model } from "../core/types";
+import type { LayerList } from "./layer-list";
+import { notices } from "./notices";
+import type { Painting } from "./painting";
+import type { Tables } from "./tables";
+import { texts } from "./texts";
+import type { ViewControl } from "./view-control";
+
+export interface MarkDrawingHost {
+  readonly view: ViewControl;
+  readonly layers: LayerList;
+  readonly painting: Painting;
+  readonly tables: Tables;
+  model(): Model | null;
+  changed(): void;
+}
+
+/** What is drawn for. */
+interface Target {
+  model: Model;
+  table: number;
+  key: number;
+  column: Column;
+}
+
+const kMostTries = 5; // where others change the record at the same time
+const words = texts.marks;
+
+export class MarkDrawing {
+  private readonly chosen_ = new Map<string, number>(); // ids of columns, by table and kind
+  private work_: Promise<void> = Promise.resolve(); // one after the other
+  private notice_ = 0; // that offers to take the newest back
+
+  constructor(
+    private readonly api_: Api,
+    private readonly host_: MarkDrawingHost,
+  ) {}
+
+  /** Of the layer that is painted on: where such marks can go. */
+  columns(kind: MarkKind): Column[] {
+    const { table: id } = this.host_.layers.selected ?? {};
+    const table = id === undefined ? null : this.host_.tables.find(id);
+    return table ? mark_columns(table, kind) : [];
+  }
+  /** Where they go. */
+  column(kind: MarkKind): Column | null {
+    const columns = this.columns(kind);
+    const chosen = this.chosen_.get(`${this.host_.layers.selected?.table} ${kind}`);
+    return columns.find(({ id }) => id === chosen) ?? columns[0] ?? null;
+  }
+  choose_column(table: number, { id, kind }: Column): void {
+    this.chosen_.set(`${table} ${kind}`, id);
+    this.host_.changed();
+  }
+
+  /** False: there is no record to draw for, and the person was told. */
+  begin_line(): boolean {
+    if (!this.target("line")) return false;
+    this.host_.painting.stroking = true;
+    return true;
+  }
+
+  finish_line(path: Point[]): void {
+    const target = this.target("line");
+    if (!target) return;
+    const { camera } = this.host_.view;
+    const [seen_by, pixel_at] = [camera.message(), camera.pixel_size()];
+    this.queue(async () => {
+      const { samples } = await this.api_.profile(`${target.model.id}`, seen_by, path);
+      const lines = lines_seen(samples.map(({ point }) => (point.hit && point.position ? (point.position as MarkPlace) : null)), pixel_at);
+      const metres = lines.reduce((sum, coordinates) => sum + mark_length({ coordinates }), 0) * metres_per(target.model.unit);
+      await this.add(target, lines, (name) => words.line_drawn(format_length(metres), name));
+    });
+  }
+
+  set_point({ x, y }: PointerSample): void {
+    const target = this.target("point");
+    if (!target) return;
+    const seen_by = this.host_.view.camera.message();
+    this.queue(async () => {
+      const { hit, position } = await this.api_.pick(`${target.model.id}`, seen_by, [x, y]);
+      await this.add(target, hit && position ? [[position as MarkPlace]] : [], words.point_set);
+    });
+  }
+
+  undo(): void {
+    const { table } = this.host_.layers.selected ?? {};
+    if (table !== undefined) void this.host_.tables.undo(table);
+  }
+  redo(): void {
+    const { table } = this.host_.layers.selected ?? {};
+    if (table !== undefined) void this.host_.tables.redo(table);
+  }
+
+  private target(kind: MarkKind): Target | null {
+    const { painting, tables } = this.host_;
+    const model = this.host_.model();
+    const layer = painting.layer_to_paint();
+    if (!model || !layer) return null;
+    const column = this.column(kind);
+    const key = painting.brush.value_of(layer);
+    const wrong = layer.table === undefined || !column ? words.no_column[kind] : tables.lacks(layer.table, key) ? texts.brush.no_record(key) : null;
+    if (wrong) notices.show("problem", wrong);
+    return wrong || layer.table === undefined || !column ? null : { model, table: layer.table, key, column };
+  }
+
+  private queue(work: () => Promise<void>): void {
+    this.work_ = this.work_.then(work).catch((error: unknown) => notices.error(error));
+  }
+
+  private async add({ model, table, key, column }: Target, places: MarkPlace[][], told: (name: string) => string): Promise<void> {
+    if (places.length === 0) {
+      notices.show("info", words.missed);
+      return;
+    }
+    const marks = places.map((coordinates) => ({ model: model.id, coordinates }));
+    const changed = await this.change(table, key, ({ version, values }) =>
+      this.api_.change_record(table, key, { version, values: { [column.slug]: [...marks_of(values[column.slug]), ...marks] } }),
+    );
+    const { tables } = this.host_;
+    if (tables.view?.table_id === table) tables.view.rows.put(changed);
+    notices.dismiss(this.notice_);
+    const act = (): void => this.queue(() => this.take_back(table, changed.version));
+    this.notice_ = notices.show("success", told(tables.label(table, key) ?? texts.tables.record(key)), "", { label: texts.model.undo, act });
+  }
+
+  /** Onto the record as it is: marks that others add meanwhile stay. */
+  private async change(table: number, key: number, change: (record: TableRecord) => Promise<TableRecord>): Promise<TableRecord> {
+    for (let tries = 1; ; ++tries) {
+      try {
+        return await change(await this.api_.record({ table }, key));
+      } catch (error) {
+        if (!(error instanceof ApiError) || error.status !== 412 || tries === kMostTries) throw error;
+      }
+    }
+  }
+
+  /** Only that change: what came after it is not what the notice spoke of. */
+  private async take_back(table: number, version: number): Promise<void> {
+    const [newest] = await this.api_.table_edits(table, 1);
+    if (newest?.sequence === version) await this.host_.tables.undo(table);
+    else notices.show("info", words.changed_since);
+  }
+}

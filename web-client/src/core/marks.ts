@@ -1,0 +1,89 @@
+// Lines and points that records have on models, as cells of columns of these kinds hold them.
+
+import { format_length, metres_per } from "./measure";
+import type { CellValue, Column, Mark, MarkPlace, Table } from "./protocol.gen";
+import type { Model } from "./types";
+import { dot, length, scale, subtract } from "./vector";
+
+export type MarkKind = "line" | "point";
+
+export const holds_marks = (column: Pick<Column, "kind">): boolean => column.kind === "line" || column.kind === "point";
+export const mark_columns = (table: Pick<Table, "columns">, kind: MarkKind): Column[] => table.columns.filter((column) => column.kind === kind);
+
+export const is_list_of_marks = (value: CellValue | undefined): value is Mark[] => Array.isArray(value) && typeof value[0] === "object";
+
+/** Those of a cell; none where it holds something else. */
+export const marks_of = (value: CellValue | undefined): Mark[] => (is_list_of_marks(value) ? value : []);
+
+/** From place to place, in the unit of the model that it lies on. */
+export function mark_length({ coordinates }: Pick<Mark, "coordinates">): number {
+  return coordinates.slice(1).reduce((sum, place, index) => sum + length(subtract(place, coordinates[index]!)), 0);
+}
+
+export interface MarkSummary {
+  here: number; // on the model
+  elsewhere: number; // on others
+  metres: number; // of lines on the model
+}
+
+export function summary_of(value: CellValue | undefined, model: Pick<Model, "id" | "unit">): MarkSummary {
+  const marks = marks_of(value);
+  const here = marks.filter((mark) => mark.model === model.id);
+  const units = here.reduce((sum, mark) => sum + mark_length(mark), 0);
+  return { here: here.length, elsewhere: marks.length - here.length, metres: units * metres_per(model.unit) };
+}
+
+/** Of a line "1.24 m", of a point "12.1, 4.25, 30" in the model's unit. */
+export function describe_mark(mark: Mark, kind: MarkKind, model: Pick<Model, "unit">): string {
+  if (kind === "line") return format_length(mark_length(mark) * metres_per(model.unit));
+  return `${mark.coordinates[0]!.map((number) => Number(number.toPrecision(5))).join(", ")} ${model.unit}`;
+}
+
+const kLongestStep_px = 40; // between the places of two neighbouring pixels: the surface is seen at 1.5° or less
+
+/**
+ * The lines on a surface that were seen along a path, pixel by pixel. Where nothing was hit, and where the next place lies far before
+ * or behind the last, as at the edge of a handle, one line ends and another begins. `pixel_at`: the length of a pixel at a place.
+ * Lines are simplified to half a pixel.
+ */
+export function lines_seen(places: readonly (MarkPlace | null)[], pixel_at: (place: MarkPlace) => number): MarkPlace[][] {
+  const lines: MarkPlace[][] = [];
+  let line: MarkPlace[] = [];
+  for (const place of places) {
+    const last = line[line.length - 1];
+    const parts = place === null || (last && length(subtract(place, last)) > kLongestStep_px * pixel_at(place));
+    if (parts && line.length > 0) {
+      lines.push(line);
+      line = [];
+    }
+    if (place) line.push(place);
+  }
+  if (line.length > 0) lines.push(line);
+  return lines.map((each) => simplify_line(each, (place) => pixel_at(place) / 2)).filter((each) => mark_length({ coordinates: each }) > 0);
+}
+
+/** Leaves out places that are no farther than the tolerance there from the line that remains (Ramer 1972, Douglas and Peucker 1973). */
+export function simplify_line(places: readonly MarkPlace[], tolerance_at: (place: MarkPlace) => number): MarkPlace[] {
+  const kept = new Set([0, places.length - 1]);
+  const parts: [number, number][] = [[0, places.length - 1]];
+  for (let part = parts.pop(); part; part = parts.pop()) {
+    const [first, last] = part;
+    let [farthest, most] = [-1, 1];
+    for (let at = first + 1; at < last; ++at) {
+      const share = distance_to_segment(places[at]!, places[first]!, places[last]!) / tolerance_at(places[at]!);
+      if (share > most) [farthest, most] = [at, share];
+    }
+    if (farthest < 0) continue;
+    kept.add(farthest);
+    parts.push([first, farthest], [farthest, last]);
+  }
+  return places.filter((_, index) => kept.has(index));
+}
+
+function distance_to_segment(place: MarkPlace, from: MarkPlace, to: MarkPlace): number {
+  const along = subtract(to, from);
+  const out = subtract(place, from);
+  const squared = dot(along, along);
+  const share = squared > 0 ? Math.min(1, Math.max(0, dot(out, along) / squared)) : 0;
+  return length(subtract(out, scale(along, share)));
+}
