@@ -34,9 +34,10 @@ std::vector<std::pair<std::string, bool>> order_of(const std::string& text) {
   return order;
 }
 
-// Sorted by the area that they have on the layer: the others' order is the database's.
-Result<store::Store::RecordPage> page_by_area(const RouteContext& context, const RecordPlace& place,
-                                              const RecordMeasures& measures, store::Store::RecordQuery query) {
+// Sorted by what they measure, such as the area that they have on the layer: all other order is the database's.
+Result<store::Store::RecordPage> page_by_measure(const RouteContext& context, const RecordPlace& place,
+                                                 const RecordMeasures& measures, std::size_t measure,
+                                                 store::Store::RecordQuery query) {
   const bool descending = query.order.front().second;
   const auto limit = query.limit, offset = query.offset;
   query.order.erase(query.order.begin());
@@ -44,11 +45,17 @@ Result<store::Store::RecordPage> page_by_area(const RouteContext& context, const
   query.offset = 0;
   auto page = context.store.records(place.table.id, query);
   if (!page) return page;
+  std::vector<std::pair<double, Record>> by_value;  // worked out once: a line may have thousands of places
+  by_value.reserve(page->records.size());
+  for (Record& record : page->records) {
+    const double value = measures.of(record)[measure];
+    by_value.emplace_back(value, std::move(record));
+  }
+  std::ranges::stable_sort(
+      by_value, [&](const auto& a, const auto& b) { return descending ? a.first > b.first : a.first < b.first; });
   auto& records = page->records;
-  std::stable_sort(records.begin(), records.end(), [&](const Record& a, const Record& b) {
-    const double left = measures.area_m2(a.key), right = measures.area_m2(b.key);
-    return descending ? left > right : left < right;
-  });
+  records.clear();
+  for (auto& each : by_value) records.push_back(std::move(each.second));
   const auto count = static_cast<std::int64_t>(records.size());
   records.erase(records.begin(), records.begin() + std::min(offset, count));
   if (static_cast<std::int64_t>(records.size()) > limit) records.resize(static_cast<std::size_t>(limit));
@@ -100,9 +107,11 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   // Of the columns as they are now: what was a line and is none any more has no length.
   auto measures = RecordMeasures::of_place(context, *place, place->table.columns);
   if (!measures) return tl::unexpected(measures.error());
-  const bool by_area = place->layer && !query.order.empty() && query.order.front().first == "area_m2";
-  auto records =
-      by_area ? page_by_area(context, *place, *measures, query) : context.store.records(place->table.id, query);
+  const auto& names = measures->names();
+  const auto measure = query.order.empty() ? names.end() : std::ranges::find(names, query.order.front().first);
+  auto records = measure == names.end() ? context.store.records(place->table.id, query)
+                                        : page_by_measure(context, *place, *measures,
+                                                          static_cast<std::size_t>(measure - names.begin()), query);
   if (!records) return tl::unexpected(records.error());
   Response response;
   if (*format == SheetFormat::xlsx) {

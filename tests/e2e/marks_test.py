@@ -51,6 +51,10 @@ def write(server, model):
         assert records["Nothing"]["values"]["crack"] is None
         assert ("area_m2" in records["C 1"]) == (where == L)
         near(server.ok("GET", where + "/records/1").json()["length_m"], 0.080)
+        order = {by: [record["key"] for record in server.ok("GET", f"{where}/records?sortby={by}").json()["records"]]
+                 for by in ("-length_m", "point_count,-key", "-point_count")}
+        assert order == {"-length_m": [1, 2, 3], "point_count,-key": [3, 1, 2], "-point_count": [2, 1, 3]}, order
+        assert server.ok("GET", where + "/records?sortby=-point_count&limit=1&offset=1").json()["records"][0]["key"] == 1
     for crack, words in (([line(99, (0, 0, 0), (1, 1, 1))], "model 99"), ("x", "list of lines"), ([line(model, (0, 0, 0))], "list of lines"),
                          ([{"model": model}], None), ([line(model, (0, 0, 0), (0, 0, 0))], "list of lines")):
         refused = server.request("PATCH", T + "/records/1", {"values": {"crack": crack}})
