@@ -63,7 +63,7 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
     }
     request.layers.push_back({handle, std::move(palette), static_cast<float>(item.layer.opacity)});
     if (!item.layer.table || asked.at) continue;  // lines and points of the past are not told by the layer's sequence
-    auto marks = record_marks_->read(*item.layer.table);
+    auto marks = record_marks_->newest(*item.layer.table);
     if (!marks) return tl::unexpected(marks.error());
     if (*marks) marked.push_back({std::move(*marks), request.layers.back().palette, request.layers.back().opacity});
   }

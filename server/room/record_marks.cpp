@@ -25,6 +25,28 @@ RecordMarks::Marks RecordMarks::find(std::int64_t table_id) {
   return entry.marks;
 }
 
+Result<RecordMarks::Marks> RecordMarks::newest(std::int64_t table_id) {
+  {
+    std::lock_guard lock(mutex_);
+    Entry& entry = entries_[table_id];
+    if (entry.known && !entry.outdated && !entry.reading) return entry.marks;
+    if (!entry.known) entry.outdated = false;  // records that change from now on make it so again
+  }
+  auto marks = read(table_id);
+  std::lock_guard lock(mutex_);
+  Entry& entry = entries_[table_id];
+  if (!marks) {
+    entry.outdated = true;
+    return entry.known ? Result<Marks>(entry.marks) : marks;
+  }
+  // A worker that was faster has read them at least as late.
+  if (!entry.known) {
+    entry.marks = *marks;
+    entry.known = true;
+  }
+  return marks;
+}
+
 void RecordMarks::start(std::int64_t table_id, Entry& entry) {
   if (stopped_ || entry.reading || !entry.outdated) return;
   entry.reading = true;
@@ -42,6 +64,7 @@ void RecordMarks::run(std::int64_t table_id) {
     Entry& entry = entries_[table_id];
     entry.reading = false;
     // What cannot be read stays as it was, until records change again.
+    entry.known |= marks.has_value();
     if (marks && !(!entry.marks && !*marks) && !(entry.marks && *marks && *entry.marks == **marks)) {
       entry.marks = std::move(*marks);
       differ = true;

@@ -25,19 +25,21 @@ class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
 
   // The newest that are there; null: none are, as far as is known.
   Marks find(std::int64_t table_id);
-  // Those of now, read on the calling thread. Blocks.
-  Result<Marks> read(std::int64_t table_id) const;
+  // Those of now, read on the calling thread where they are not known. While the database is away, the last that were. Blocks.
+  Result<Marks> newest(std::int64_t table_id);
   void records_changed(std::int64_t table_id);
   void stop();  // nothing more is read, and `ready` not called
 
  private:
   struct Entry {
     Marks marks;
+    bool known = false;  // they were read once
     bool reading = false;
     bool outdated = true;
   };
   void start(std::int64_t table_id, Entry& entry);  // with the mutex held
   void run(std::int64_t table_id);
+  Result<Marks> read(std::int64_t table_id) const;
 
   store::Store& store_;
   boost::asio::thread_pool& workers_;
