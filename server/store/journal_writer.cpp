@@ -89,11 +89,15 @@ struct JournalWriter::Impl {
   }
 
   void answer_front(std::deque<Waiting>& group, const Result<void>& result) {
-    Waiting waiting = std::move(group.front());
-    group.pop_front();
-    waiting.done(result);
+    std::size_t bytes = 0;
+    {
+      Waiting waiting = std::move(group.front());
+      group.pop_front();
+      waiting.done(result);
+      bytes = waiting.bytes;
+    }  // gone before it counts as answered: who drains takes down what it refers to
     std::lock_guard lock(mutex);
-    waiting_bytes -= waiting.bytes;
+    waiting_bytes -= bytes;
     ++answered;
     changed.notify_all();
   }
