@@ -21,7 +21,7 @@ KILLS = int(os.environ.get("STRATA_CRASH_KILLS", "20"))  # of each kind
 LAYERS = [("marks", "u8", 2048, [1, 2, 3, 255]), ("depth", "f32", 2048, [0.0, 1.5, -2.25, 3e7]),
           ("shift", "i16", 2048, [-32768, -5, 12, 32767])]
 # What the log may say while PostgreSQL is being killed.
-FAULT_WORDS = ["PostgreSQL stopped", "a commit failed and is tried again", "took back", "could not be loaded again",
+FAULT_WORDS = ["PostgreSQL stopped", "unexpected postmaster exit", "a commit failed and is tried again", "took back", "could not be loaded again",
                "could not be kept for repeats"]
 
 

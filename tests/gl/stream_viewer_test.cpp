@@ -109,7 +109,7 @@ class StreamViewer : public ::testing::Test {
   static Camera camera(double x) { return test::perspective_camera({x, 0.5, 3}, {0, 0, 0}, kWidth, kHeight); }
   std::shared_ptr<Viewer> viewer(Client& client, Viewer::Options options = {}, bool acks = true) {
     auto made = Viewer::create({&renderer_.get(), &encoder_}, model_, options, client.send());
-    made->set_style({styles(), {}, {}});
+    made->set_style({styles(), {}, {}, {}});
     client.attach(made, acks);
     viewers_.push_back(made);
     return made;
@@ -168,7 +168,7 @@ TEST_F(StreamViewer, what_cannot_be_drawn_is_told_once_and_tried_again_when_some
   viewers_.push_back(view);
   auto without_colors = styles();
   without_colors[0].palette = std::make_shared<const Palette>(Palette{});
-  view->set_style({without_colors, {}, {}});
+  view->set_style({without_colors, {}, {}, {}});
   view->set_camera(1, camera(0), false);
   {
     std::unique_lock lock(mutex);
@@ -176,7 +176,7 @@ TEST_F(StreamViewer, what_cannot_be_drawn_is_told_once_and_tried_again_when_some
     EXPECT_EQ(told[0].status, 422);
   }
   view->set_camera(2, camera(0.1), false);  // refused again, but not told again
-  view->set_style({styles(), {}, {}});
+  view->set_style({styles(), {}, {}, {}});
   client.wait_for([](const FrameHeader& h) { return h.camera_seq == 2; });
   std::lock_guard lock(mutex);
   EXPECT_EQ(told.size(), 1u);
@@ -290,7 +290,7 @@ TEST_F(StreamViewer, after_a_lost_context_everything_comes_again) {
   view->set_camera(2, camera(0.3), false);  // fails or is drawn: the viewer must not stall
   ASSERT_EQ(lost.get_future().wait_for(kPatience), std::future_status::ready);
   load();
-  view->reset_model(model_, {styles(), {}, {}});
+  view->reset_model(model_, {styles(), {}, {}, {}});
   client.wait_for([](const FrameHeader& h) { return h.still && h.keyframe && h.camera_seq == 2; }, before.frame);
   paint(*view, 9, 160, 120);
   client.wait_for([](const FrameHeader& h) { return h.scene_sequence == 9; }, before.frame);
