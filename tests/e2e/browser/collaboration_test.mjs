@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
-import { Browser, rgb } from "../support/browser.mjs";
+import { Browser, kOfLostServer, rgb } from "../support/browser.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kScan = join(process.env.STRATA_TEST_DATA ?? "", "statue_nefertiti_70k.ply");
@@ -135,8 +135,7 @@ try {
   await anna.page.locator("strata-value-readout").getByText("Bone").waitFor();
 
   say("the end");
-  const lost = ["WebSocket connection", "ERR_CONNECTION_REFUSED", "ERR_EMPTY_RESPONSE", "ERR_CONNECTION_RESET"];
-  for (const who of [anna, bea]) who.assert_no_complaints(lost);
+  for (const who of [anna, bea]) who.assert_no_complaints(kOfLostServer);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
 } catch (error) {

@@ -2,7 +2,7 @@
 // nothing is lost on the way to another page, and what somebody else changed is not overwritten.
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { Browser, has_hue, rgb } from "../support/browser.mjs";
+import { Browser, has_hue, kOfLostServer, rgb } from "../support/browser.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kMagenta = "#ff00ffff"; // nothing on the pot has this hue
@@ -226,7 +226,7 @@ try {
   await page.getByText(/This object is .*: right\?/).waitFor();
 
   say("the end");
-  browser.assert_no_complaints(["WebSocket connection", "ERR_CONNECTION_REFUSED", "ERR_EMPTY_RESPONSE", "ERR_CONNECTION_RESET", "412", "404 (Not Found)"]);
+  browser.assert_no_complaints([...kOfLostServer, "412", "404 (Not Found)"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
 } catch (error) {

@@ -19,6 +19,9 @@ function load_playwright() {
 /** Call it first: nothing is left behind then when something is missing. */
 export const require_browser = () => void load_playwright();
 
+/** What the console says when a test takes the server away, whatever each connection was at. */
+export const kOfLostServer = ["WebSocket connection", "ERR_CONNECTION_REFUSED", "ERR_EMPTY_RESPONSE", "ERR_CONNECTION_RESET", "ERR_SOCKET_NOT_CONNECTED", "ERR_CONNECTION_CLOSED"];
+
 export class Browser {
   static async open(options = {}) {
     const { chromium } = load_playwright();
