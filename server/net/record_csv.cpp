@@ -45,14 +45,14 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, const Table& table) {
   std::set<std::string> met;
   for (const std::string& cell : row.cells) {
     Head head{std::string(trimmed(cell)), nullptr};
-    const bool is_word = head.text == kKey || head.text == kVersion || is_measure(head.text);
+    const bool is_word = head.text == kKey || head.text == kVersion;
     if (!is_word)
       for (const Column& column : table.columns)
         if (is_called(column, head.text)) {
           head.column = &column;
           break;
         }
-    if (!is_word && !head.column)
+    if (!is_word && !head.column && !is_measure(head.text))
       return fail(422, "Unknown column",
                   table.name + " has no column \"" + head.text +
                       "\". The first row names columns by slug, name or label, and `key`.",

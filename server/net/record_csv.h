@@ -38,9 +38,9 @@ struct RecordRows {
   std::size_t rows = 0;
 };
 
-// A head is `key`, `version` (of the record as it was read), `area_m2`, `length_m` and
-// `point_count` (passed over), or a column's slug, name or label in any
-// language. Rows without a key are new records. A Problem where the text is no CSV or its first row cannot be understood.
+// A head is `key`, `version` (of the record as it was read), a column's slug, name or label in any language, or, where no column is
+// called so, `area_m2`, `length_m` or `point_count`, which are passed over. Rows without a key are new records. A Problem where the text
+// is no CSV or its first row cannot be understood.
 Result<RecordRows> read_records_csv(std::string_view text, const Table& table);
 
 }  // namespace strata::net

@@ -62,6 +62,17 @@ TEST(RecordCsv, columns_are_known_by_slug_name_and_label) {
   EXPECT_EQ(rows->heads.at(10), "Código");
 }
 
+TEST(RecordCsv, what_records_measure_is_passed_over_unless_a_column_is_called_so) {
+  Table table = units();
+  const auto passed = read_records_csv("code,area_m2,length_m,point_count\nA,x,3,4\n", table);
+  ASSERT_TRUE(passed.has_value()) << passed.error().detail;
+  EXPECT_EQ(passed->records[0].values.size(), 1u);
+  table.columns[1].slug = table.columns[1].name = "length_m";
+  const auto read = read_records_csv("code,area_m2,length_m\nA,x,3\n", table);
+  ASSERT_TRUE(read.has_value()) << read.error().detail;
+  EXPECT_EQ(read->records[0].values.at(11), 3);
+}
+
 TEST(RecordCsv, a_first_row_that_cannot_be_understood_is_refused) {
   for (const char* text : {"", "\n\n", "colour\nred\n", "code,Código\na,b\n", "key,key\n1,2\n", "code,\na,b\n"}) {
     const auto rows = read_records_csv(text, units());
