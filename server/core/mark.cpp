@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/csv.h"
+
 namespace strata {
 namespace {
 
@@ -90,11 +92,6 @@ class MarkReader {
   const bool lines_;
 };
 
-void append_number(std::string& text, double value) {
-  char digits[40];
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
-}
-
 }  // namespace
 
 std::optional<std::vector<Mark>> read_marks(const json& value, bool lines) {
@@ -117,6 +114,12 @@ std::optional<std::vector<Mark>> read_marks(const json& value, bool lines) {
   return marks;
 }
 
+std::vector<Mark> marks_of(const Record& record, const Column& column) {
+  const auto cell = record.values.find(column.id);
+  if (cell == record.values.end()) return {};
+  return read_marks(cell->second, column.kind == ColumnKind::line).value_or(std::vector<Mark>());
+}
+
 json to_json(std::span<const Mark> marks) {
   json list = json::array();
   for (const Mark& mark : marks) {
@@ -135,7 +138,7 @@ std::string print_marks(std::span<const Mark> marks, bool lines) {
       if (i > 0) text += ", ";
       for (int axis = 0; axis < 3; ++axis) {
         if (axis > 0) text += ' ';
-        append_number(text, mark.places[i][axis]);
+        text += csv_number(mark.places[i][axis], ',');
       }
     }
     text += ')';

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/table.h"
+
 namespace strata {
 
 // What a record has on a model besides texels: a line (a crack, which is paid by the metre) or a point (a sample). Columns of kind `line`
@@ -21,7 +23,7 @@ struct Mark {
 };
 
 struct KeyMark {  // of a record
-  std::int64_t key = 0, column = 0;
+  std::int64_t key = 0;
   Mark mark;
   bool operator==(const KeyMark&) const = default;
 };
@@ -33,6 +35,8 @@ inline constexpr double kFarthestPlace = 1e12;
 // The marks of a cell's value; nothing where it is not one of this kind, within these bounds.
 std::optional<std::vector<Mark>> read_marks(const nlohmann::json& value, bool lines);
 nlohmann::json to_json(std::span<const Mark> marks);
+// Of a record in a column of lines or points; none where it has no value.
+std::vector<Mark> marks_of(const Record& record, const Column& column);
 
 // As cells of CSV have them: `3 LINESTRING Z (0 0 1, 2.5 0 1); 3 POINT Z (1 2 3)`, the model's id before well-known text (ISO 13249-3).
 std::string print_marks(std::span<const Mark> marks, bool lines);

@@ -37,34 +37,43 @@ Result<TexelGraph> build_texel_graph(const Geometry& geometry, const SurfaceMap&
 // The surface texel at a texture coordinate, or the one that the gutter there follows; nothing where the atlas is empty.
 std::optional<std::uint32_t> surface_texel_at(const SurfaceMap& map, glm::vec2 uv);
 
+enum class Way { right, upper, left, lower };
+constexpr std::uint32_t kNoNeighbour = 0xffffffffu;
+
+// The texel beside another one in the atlas, where both are joined; kNoNeighbour: they are not.
+inline std::uint32_t neighbour(const SurfaceMap& map, const TexelGraph& graph, std::uint32_t texel, Way way) {
+  const std::uint32_t slot = texel / 64, i = texel % 64, block = map.block_of_slot[slot];
+  const auto side = static_cast<std::uint32_t>(map.blocks_per_side);
+  const auto has = [](std::uint64_t bits, std::uint32_t index) { return ((bits >> index) & 1u) != 0; };
+  switch (way) {
+    case Way::right:
+      if (!has(graph.to_right[slot], i)) return kNoNeighbour;
+      return i % 8 < 7 ? texel + 1 : map.slot_of_block[block + 1] * 64 + i - 7;
+    case Way::upper:
+      if (!has(graph.to_upper[slot], i)) return kNoNeighbour;
+      return i < 56 ? texel + 8 : map.slot_of_block[block + side] * 64 + i - 56;
+    case Way::left: {
+      if (i % 8 > 0) return has(graph.to_right[slot], i - 1) ? texel - 1 : kNoNeighbour;
+      if (block % side == 0) return kNoNeighbour;
+      const std::uint32_t left = map.slot_of_block[block - 1];
+      return left != kNoSlot && has(graph.to_right[left], i + 7) ? left * 64 + i + 7 : kNoNeighbour;
+    }
+    case Way::lower: {
+      if (i >= 8) return has(graph.to_upper[slot], i - 8) ? texel - 8 : kNoNeighbour;
+      if (block < side) return kNoNeighbour;
+      const std::uint32_t lower = map.slot_of_block[block - side];
+      return lower != kNoSlot && has(graph.to_upper[lower], i + 56) ? lower * 64 + i + 56 : kNoNeighbour;
+    }
+  }
+  return kNoNeighbour;
+}
+
 // Calls visit(neighbour) for each texel that `texel` is joined to.
 template <class Visit>
 void for_each_neighbour(const SurfaceMap& map, const TexelGraph& graph, std::uint32_t texel, Visit&& visit) {
-  const std::uint32_t slot = texel / 64, i = texel % 64;
-  const std::uint32_t block = map.block_of_slot[slot];
-  const auto has = [](std::uint64_t bits, std::uint32_t index) { return ((bits >> index) & 1u) != 0; };
-  const auto right_of = [&](std::uint32_t s, std::uint32_t index) {
-    return index % 8 < 7 ? s * 64 + index + 1 : map.slot_of_block[map.block_of_slot[s] + 1] * 64 + index - 7;
-  };
-  const auto above = [&](std::uint32_t s, std::uint32_t index) {
-    return index < 56 ? s * 64 + index + 8
-                      : map.slot_of_block[map.block_of_slot[s] + map.blocks_per_side] * 64 + index - 56;
-  };
-  if (has(graph.to_right[slot], i)) visit(right_of(slot, i));
-  if (has(graph.to_upper[slot], i)) visit(above(slot, i));
-  if (i % 8 > 0) {
-    if (has(graph.to_right[slot], i - 1)) visit(texel - 1);
-  } else if (block % map.blocks_per_side > 0) {
-    const std::uint32_t left = map.slot_of_block[block - 1];
-    if (left != kNoSlot && has(graph.to_right[left], i + 7)) visit(left * 64 + i + 7);
-  }
-  if (i >= 8) {
-    if (has(graph.to_upper[slot], i - 8)) visit(texel - 8);
-  } else if (block >= static_cast<std::uint32_t>(map.blocks_per_side)) {
-    const std::uint32_t lower = map.slot_of_block[block - map.blocks_per_side];
-    if (lower != kNoSlot && has(graph.to_upper[lower], i + 56)) visit(lower * 64 + i + 56);
-  }
-  if (has(graph.has_links[slot], i))
+  for (const Way way : {Way::right, Way::upper, Way::left, Way::lower})
+    if (const std::uint32_t next = neighbour(map, graph, texel, way); next != kNoNeighbour) visit(next);
+  if (((graph.has_links[texel / 64] >> texel % 64) & 1u) != 0)
     for (const TexelGraph::Link& link : graph.links_of(texel)) visit(link.second);
 }
 

@@ -23,9 +23,8 @@ Result<MarkTransfer> bring_marks_of(const RouteContext& context, std::int64_t ta
   for (const Record& record : page->records) {
     store::RecordInput input{record.key, {}, record.version};
     for (const Column& column : page->table.columns) {
-      const auto cell = record.values.find(column.id);
-      if (!holds_marks(column.kind) || cell == record.values.end()) continue;
-      auto marks = read_marks(cell->second, column.kind == ColumnKind::line).value_or(std::vector<Mark>());
+      if (!holds_marks(column.kind)) continue;
+      auto marks = marks_of(record, column);
       if (std::ranges::any_of(marks, [&](const Mark& mark) { return mark.model == target.model.id; })) continue;
       std::vector<Mark> there;
       std::ranges::copy_if(marks, std::back_inserter(there),

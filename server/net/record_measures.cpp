@@ -21,8 +21,8 @@ Result<RecordMeasures> RecordMeasures::of_place(const RouteContext& context, con
     }
   }
   for (const Column& column : columns) {
-    if (column.kind == ColumnKind::line) measures.lines_.push_back(column.id);
-    if (column.kind == ColumnKind::point) measures.points_.push_back(column.id);
+    if (column.kind == ColumnKind::line) measures.lines_.push_back(column);
+    if (column.kind == ColumnKind::point) measures.points_.push_back(column);
   }
   if (!measures.lines_.empty()) measures.names_.emplace_back("length_m");
   if (!measures.points_.empty()) measures.names_.emplace_back("point_count");
@@ -45,34 +45,30 @@ double RecordMeasures::area_m2(std::int64_t key) const {
 std::vector<double> RecordMeasures::of(const Record& record) const {
   std::vector<double> values;
   if (has_area_) values.push_back(area_m2(record.key));
-  const auto for_each_mark = [&](const std::vector<std::int64_t>& columns, bool lines, auto visit) {
-    for (const auto column : columns) {
-      const auto cell = record.values.find(column);
-      if (cell == record.values.end()) continue;
-      for (const Mark& mark : read_marks(cell->second, lines).value_or(std::vector<Mark>()))
+  const auto for_each_mark = [&](const std::vector<Column>& columns, auto visit) {
+    for (const Column& column : columns)
+      for (const Mark& mark : marks_of(record, column))
         if (const auto metres = metres_.find(mark.model); metres != metres_.end()) visit(mark, metres->second);
-    }
   };
   if (!lines_.empty()) {
     double length_m = 0;
-    for_each_mark(lines_, true, [&](const Mark& mark, double metres) { length_m += length_of(mark) * metres; });
+    for_each_mark(lines_, [&](const Mark& mark, double metres) { length_m += length_of(mark) * metres; });
     values.push_back(length_m);
   }
   if (!points_.empty()) {
     double count = 0;
-    for_each_mark(points_, false, [&](const Mark&, double) { ++count; });
+    for_each_mark(points_, [&](const Mark&, double) { ++count; });
     values.push_back(count);
   }
   return values;
 }
 
-void RecordMeasures::add_to(nlohmann::json& json, const Record& record) const {
-  const auto values = of(record);
-  for (std::size_t i = 0; i < names_.size(); ++i) {
-    if (names_[i] == "point_count")
-      json[names_[i]] = static_cast<std::int64_t>(values[i]);
+void add_measures(nlohmann::json& json, const std::vector<std::string>& names, const std::vector<double>& values) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == "point_count")
+      json[names[i]] = static_cast<std::int64_t>(values[i]);
     else
-      json[names_[i]] = values[i];
+      json[names[i]] = values[i];
   }
 }
 

@@ -21,14 +21,16 @@ class RecordMeasures {
   const std::vector<std::string>& names() const { return names_; }
   std::vector<double> of(const Record& record) const;  // one for each name
   double area_m2(std::int64_t key) const;
-  void add_to(nlohmann::json& json, const Record& record) const;
 
  private:
   std::vector<std::string> names_;
   bool has_area_ = false;
   std::map<std::int64_t, query::KeyArea> areas_;
-  std::vector<std::int64_t> lines_, points_;  // ids of columns
-  std::map<std::int64_t, double> metres_;     // of the unit of each model whose marks count
+  std::vector<Column> lines_, points_;
+  std::map<std::int64_t, double> metres_;  // of the unit of each model whose marks count
 };
+
+// Each under its name: numbers, counts as whole ones.
+void add_measures(nlohmann::json& json, const std::vector<std::string>& names, const std::vector<double>& values);
 
 }  // namespace strata::net

@@ -40,14 +40,7 @@ struct OfMarks {
     const auto found = of_key.find(key);
     return found == of_key.end() ? std::vector<double>(names.size(), 0.0) : found->second;
   }
-  void add_to(nlohmann::json& json, const std::vector<double>& values) const {
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (names[i] == "point_count")
-        json[names[i]] = static_cast<std::int64_t>(values[i]);
-      else
-        json[names[i]] = values[i];
-    }
-  }
+  void add_to(nlohmann::json& json, const std::vector<double>& values) const { add_measures(json, names, values); }
 };
 
 // `model`: only those on it.

@@ -129,7 +129,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     nlohmann::json list = nlohmann::json::array();
     for (const Record& record : records->records) {
       nlohmann::json json = to_json(record, records->table.columns);
-      measures->add_to(json, record);
+      add_measures(json, measures->names(), measures->of(record));
       list.push_back(std::move(json));
     }
     response = json_response({{"records", std::move(list)}, {"total", records->total}});
@@ -156,7 +156,7 @@ Result<Response> read_record(const RouteContext& context, const Request& request
   nlohmann::json json = to_json(*record, then.columns);
   const auto measures = RecordMeasures::of_place(context, *place, then.columns);
   if (!measures) return tl::unexpected(measures.error());
-  measures->add_to(json, *record);
+  add_measures(json, measures->names(), measures->of(*record));
   if (!place->layer) return with_etag(json_response(json), request, record->version);
   return json_response(json).with("ETag", etag_of(record->version));
 }

@@ -16,7 +16,8 @@
 namespace strata::query {
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffu;
+using mesh::kNoNeighbour;
+using mesh::Way;
 
 // What lies at each surface texel of the map.
 class Classes {
@@ -46,50 +47,6 @@ class Classes {
   std::vector<std::uint32_t> class_of_;  // where valid; empty: all are one
 };
 
-// Steps from texel to texel of an island, along the surface.
-class Steps {
- public:
-  enum class Way { right, up, left, down };
-
-  Steps(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph) : map_(map), graph_(graph) {}
-
-  std::uint32_t step(std::uint32_t texel, Way way) const {
-    const std::uint32_t slot = texel / 64, i = texel % 64;
-    switch (way) {
-      case Way::right:
-        if (!has(graph_.to_right[slot], i)) return kNone;
-        return i % 8 < 7 ? texel + 1 : slot_beside(slot, 1, 0) * 64 + i - 7;
-      case Way::up:
-        if (!has(graph_.to_upper[slot], i)) return kNone;
-        return i < 56 ? texel + 8 : slot_beside(slot, 0, 1) * 64 + i - 56;
-      case Way::left: {
-        const std::uint32_t there = i % 8 > 0 ? slot : slot_beside(slot, -1, 0);
-        const std::uint32_t at = i % 8 > 0 ? i - 1 : i + 7;
-        return there != mesh::kNoSlot && has(graph_.to_right[there], at) ? there * 64 + at : kNone;
-      }
-      case Way::down: {
-        const std::uint32_t there = i >= 8 ? slot : slot_beside(slot, 0, -1);
-        const std::uint32_t at = i >= 8 ? i - 8 : i + 56;
-        return there != mesh::kNoSlot && has(graph_.to_upper[there], at) ? there * 64 + at : kNone;
-      }
-    }
-    return kNone;
-  }
-
-  // kNoSlot: nothing is there.
-  std::uint32_t slot_beside(std::uint32_t slot, int dx, int dy) const {
-    const auto block = static_cast<int>(map_.block_of_slot[slot]);
-    const int x = block % map_.blocks_per_side + dx, y = block / map_.blocks_per_side + dy;
-    if (x < 0 || y < 0 || x >= map_.blocks_per_side || y >= map_.blocks_per_side) return mesh::kNoSlot;
-    return map_.slot_of_block[static_cast<std::size_t>(y) * map_.blocks_per_side + x];
-  }
-
- private:
-  static bool has(std::uint64_t bits, std::uint32_t index) { return (bits >> index & 1u) != 0; }
-  const mesh::SurfaceMap& map_;
-  const mesh::TexelGraph& graph_;
-};
-
 constexpr std::size_t kDirections = 8;  // and their opposites
 constexpr std::array<std::array<int, 2>, kDirections> kDirection{
     {{1, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 1}, {-1, 2}, {-1, 1}, {-2, 1}}};
@@ -97,12 +54,11 @@ constexpr std::array<std::array<int, 2>, kDirections> kDirection{
 // The ways along the axes to the texel at an offset, the ones near the straight line first.
 struct Walk {
   int steps = 0;
-  std::array<std::array<Steps::Way, 3>, 3> orders{};
+  std::array<std::array<Way, 3>, 3> orders{};
   int order_count = 0;
 };
 Walk walk_along(int dx, int dy) {
-  using Way = Steps::Way;
-  const Way across = dx < 0 ? Way::left : Way::right, up = dy < 0 ? Way::down : Way::up;
+  const Way across = dx < 0 ? Way::left : Way::right, up = dy < 0 ? Way::lower : Way::upper;
   switch (std::abs(dx) * 10 + std::abs(dy)) {
     case 10: return {1, {{{across}}}, 1};
     case 1: return {1, {{{up}}}, 1};
@@ -120,7 +76,7 @@ struct Sums {
 class Measuring {
  public:
   Measuring(const Classes& classes, const mesh::SurfaceMap& map, const mesh::TexelGraph& graph)
-      : classes_(classes), map_(map), graph_(graph), steps_(map, graph) {
+      : classes_(classes), map_(map), graph_(graph) {
     for (std::size_t k = 0; k < kDirections; ++k) {
       walks_[k] = walk_along(kDirection[k][0], kDirection[k][1]);
       walks_[k + kDirections] = walk_along(-kDirection[k][0], -kDirection[k][1]);
@@ -140,7 +96,7 @@ class Measuring {
     const std::uint32_t a_class = full ? classes_.of(slot * 64) : 0;
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
-        const std::uint32_t beside = steps_.slot_beside(slot, dx, dy);
+        const std::uint32_t beside = slot_beside(slot, dx, dy);
         if (beside == mesh::kNoSlot) {
           full = false;
           continue;
@@ -157,8 +113,8 @@ class Measuring {
     const bool valid = classes_.is_valid(texel);
     for (std::size_t direction = 0; direction < walks_.size(); ++direction) {
       std::uint32_t other = walk(texel, walks_[direction]);
-      if (other == kNone) other = around.beyond_seam(direction);
-      if (other != kNone) {
+      if (other == kNoNeighbour) other = around.beyond_seam(direction);
+      if (other != kNoNeighbour) {
         if (differs(texel, other)) add(texel, other, around.weight(direction) / 2, sums);
       } else if (valid && around.is_at_open_edge()) {  // nothing is there to add the other half
         sums.all += around.weight(direction);
@@ -179,14 +135,24 @@ class Measuring {
     if (b_valid) sums.of_class[classes_.of(b)] += length;
   }
 
-  // kNone: the island ends before.
+  // kNoNeighbour: the island ends before.
   std::uint32_t walk(std::uint32_t texel, const Walk& walk) const {
     for (int order = 0; order < walk.order_count; ++order) {
       std::uint32_t at = texel;
-      for (int i = 0; i < walk.steps && at != kNone; ++i) at = steps_.step(at, walk.orders[order][i]);
-      if (at != kNone) return at;
+      for (int i = 0; i < walk.steps && at != kNoNeighbour; ++i) at = step(at, walk.orders[order][i]);
+      if (at != kNoNeighbour) return at;
     }
-    return kNone;
+    return kNoNeighbour;
+  }
+
+  std::uint32_t step(std::uint32_t texel, Way way) const { return mesh::neighbour(map_, graph_, texel, way); }
+
+  // kNoSlot: nothing is there.
+  std::uint32_t slot_beside(std::uint32_t slot, int dx, int dy) const {
+    const auto block = static_cast<int>(map_.block_of_slot[slot]);
+    const int x = block % map_.blocks_per_side + dx, y = block / map_.blocks_per_side + dy;
+    if (x < 0 || y < 0 || x >= map_.blocks_per_side || y >= map_.blocks_per_side) return mesh::kNoSlot;
+    return map_.slot_of_block[static_cast<std::size_t>(y) * map_.blocks_per_side + x];
   }
 
   glm::dvec3 place(std::uint32_t texel) const {
@@ -206,15 +172,15 @@ class Measuring {
 
     bool is_at_open_edge() { return reach().at_open_edge; }
 
-    // The texel on the other side of a seam that lies in this direction; kNone: there is no other side.
+    // The texel on the other side of a seam that lies in this direction; kNoNeighbour: there is no other side.
     std::uint32_t beyond_seam(std::size_t direction) {
-      if (reach().over_seam.empty()) return kNone;
+      if (reach().over_seam.empty()) return kNoNeighbour;
       const auto& [x, y] = sides();
       const auto [dx, dy] = kDirection[direction % kDirections];
       const glm::dvec3 way = (direction < kDirections ? 1.0 : -1.0) * (double(dx) * x + double(dy) * y);
       const glm::dvec3 here = measuring_.place(texel_);
       double nearest = std::numeric_limits<double>::infinity();
-      std::uint32_t found = kNone;
+      std::uint32_t found = kNoNeighbour;
       for (const std::uint32_t other : reach().over_seam) {
         const glm::dvec3 there = measuring_.place(other) - here;
         // Where a seam ends at an open edge, the one or the other lies ahead.
@@ -259,9 +225,8 @@ class Measuring {
       return *reach_;
     }
     bool are_beside(std::uint32_t a, std::uint32_t b) const {
-      using Way = Steps::Way;
-      return std::ranges::any_of(std::array{Way::right, Way::up, Way::left, Way::down},
-                                 [&](Way way) { return measuring_.steps_.step(a, way) == b; });
+      return std::ranges::any_of(std::array{Way::right, Way::upper, Way::left, Way::lower},
+                                 [&](Way way) { return measuring_.step(a, way) == b; });
     }
 
     std::array<double, kDirections> weigh() {
@@ -289,14 +254,13 @@ class Measuring {
     const std::pair<glm::dvec3, glm::dvec3>& sides() {
       if (sides_) return *sides_;
       const glm::dvec3 here = measuring_.place(texel_);
-      const auto side = [&](Steps::Way forward, Steps::Way back) {
-        const std::uint32_t next = measuring_.steps_.step(texel_, forward),
-                            before = measuring_.steps_.step(texel_, back);
-        const glm::dvec3 from = before != kNone ? measuring_.place(before) : here,
-                         to = next != kNone ? measuring_.place(next) : here;
-        return (to - from) / (before != kNone && next != kNone ? 2.0 : 1.0);
+      const auto side = [&](Way forward, Way back) {
+        const std::uint32_t next = measuring_.step(texel_, forward), before = measuring_.step(texel_, back);
+        const glm::dvec3 from = before != kNoNeighbour ? measuring_.place(before) : here,
+                         to = next != kNoNeighbour ? measuring_.place(next) : here;
+        return (to - from) / (before != kNoNeighbour && next != kNoNeighbour ? 2.0 : 1.0);
       };
-      sides_.emplace(side(Steps::Way::right, Steps::Way::left), side(Steps::Way::up, Steps::Way::down));
+      sides_.emplace(side(Way::right, Way::left), side(Way::upper, Way::lower));
       if (glm::length(glm::cross(sides_->first, sides_->second)) > 0) return *sides_;
       // An island that is one texel thin: as if the texel were a square.
       const double edge = std::sqrt(measuring_.map_.area[texel_]);
@@ -314,7 +278,6 @@ class Measuring {
   const Classes& classes_;
   const mesh::SurfaceMap& map_;
   const mesh::TexelGraph& graph_;
-  const Steps steps_;
   std::array<Walk, 2 * kDirections> walks_{};
 };
 

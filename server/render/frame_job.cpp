@@ -191,7 +191,7 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
   return true;
 }
 
-Result<void> FrameJob::choose_area(GpuScene& scene, const View& view) {
+Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
   const FrameRequest& request = task_.request;
   auto model = scene.model(view.model);
   if (!model) return tl::unexpected(model.error());
@@ -204,12 +204,14 @@ Result<void> FrameJob::choose_area(GpuScene& scene, const View& view) {
   if (request.changed && view.shows(request)) {
     frame_.rect = screen_rect(*request.changed, clip, request.width, request.height, request.align_to_16);
     if (frame_.rect.width == 0) return {};
+  } else {
+    view.mark_segments.clear();
+    if (request.marks)
+      view.mark_segments = project_marks(*request.marks, request.camera, request.width, request.height,
+                                         view.key.level == 0 ? kMarkLift_px : kMarkLiftOfCopies_px);
   }
   const FrameRequest::Box box{geometry.box_min, geometry.box_max};
   surface_ = intersection(frame_.rect, screen_rect({&box, 1}, clip, request.width, request.height, false));
-  if (request.marks)
-    marks_ = project_marks(*request.marks, request.camera, request.width, request.height,
-                           view.key.level == 0 ? kMarkLift_px : kMarkLiftOfCopies_px);
   auto pixels = scene.readback().begin(row_bytes() * static_cast<std::size_t>(frame_.rect.height));
   if (!pixels) return tl::unexpected(pixels.error());
   pixels_ = std::move(*pixels);
@@ -239,7 +241,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   }
   if (auto flushed = scene.tables().flush(); !flushed) return tl::unexpected(flushed.error());
   if (auto shaded = scene.shade_pass().shade(input, scene.tables()); !shaded) return tl::unexpected(shaded.error());
-  auto marked = scene.mark_pass().draw(marks_, view.shading, request.width, request.height, band);
+  auto marked = scene.mark_pass().draw(view.mark_segments, view.shading, request.width, request.height, band);
   if (!marked) return tl::unexpected(marked.error());
   shaded_rows_ += band.height;
 

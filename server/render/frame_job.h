@@ -24,7 +24,7 @@ class FrameJob {
   Result<bool> bring_layers(GpuScene& scene);  // true when all are on the GPU
   Result<int> choose_level(GpuScene& scene, const View& view) const;
   Result<bool> draw_slice(GpuScene& scene, View& view);  // true when complete
-  Result<void> choose_area(GpuScene& scene, const View& view);
+  Result<void> choose_area(GpuScene& scene, View& view);
   Result<bool> shade_band(GpuScene& scene, View& view);  // true when complete
   std::size_t row_bytes() const { return std::size_t{4} * static_cast<std::size_t>(frame_.rect.width); }
   bool collect_rows();  // true when complete
@@ -35,10 +35,9 @@ class FrameJob {
   MeshProgress progress_;
   std::chrono::steady_clock::time_point mesh_begin_;  // when its first slice was drawn
   Frame frame_;
-  PixelRect surface_;                       // of `frame_.rect`: may show surface
-  int shaded_rows_ = 0;                     // of `frame_.rect`, from its top
-  std::vector<shader::MarkSegment> marks_;  // of the request, on the picture's plane
-  gl::Readback pixels_;                     // lowest row first
+  PixelRect surface_;    // of `frame_.rect`: may show surface
+  int shaded_rows_ = 0;  // of `frame_.rect`, from its top
+  gl::Readback pixels_;  // lowest row first
   double busy_ms_ = 0;
 };
 

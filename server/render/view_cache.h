@@ -29,6 +29,7 @@ struct View {
   Rgba background_top{}, background_bottom{};
   double unit_mm = 0;
   MarksShown marks;
+  std::vector<shader::MarkSegment> mark_segments;  // of the marks, as the camera of the g-buffer sees them
 
   bool has_buffers() const { return static_cast<bool>(picture); }
   void drop_buffers();

@@ -233,16 +233,15 @@ std::size_t Rooms::open_rooms() const {
 }
 
 void Rooms::drain() {
-  std::vector<std::shared_ptr<OpenRoom>> rooms;
   {
     std::lock_guard lock(impl_->mutex);
     impl_->draining = true;  // a room that is being opened is not kept
     impl_->changed.notify_all();
-    for (auto& [id, room] : impl_->rooms) rooms.push_back(room);
   }
-  for (auto& room : rooms) room->take_no_edits();
+  const auto rooms = impl_->open_ones();
+  for (const auto& room : rooms) room->take_no_edits();
   const auto deadline = std::chrono::steady_clock::now() + impl_->parts.options.drain_for;
-  for (auto& room : rooms) {
+  for (const auto& room : rooms) {
     while (!room->idle() && std::chrono::steady_clock::now() < deadline)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     if (room->idle()) continue;

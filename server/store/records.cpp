@@ -270,13 +270,9 @@ Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, std::int64_t mo
     auto rows = load_all_rows(connection, table_id, columns);
     if (!rows) return tl::unexpected(rows.error());
     for (const Record& row : *rows)
-      for (const Column& column : columns) {
-        const auto cell = row.values.find(column.id);
-        if (cell == row.values.end()) continue;
-        auto marks = read_marks(cell->second, column.kind == ColumnKind::line);
-        for (Mark& mark : marks.value_or(std::vector<Mark>()))
-          if (mark.model == model_id) found.push_back({row.key, column.id, std::move(mark)});
-      }
+      for (const Column& column : columns)
+        for (Mark& mark : marks_of(row, column))
+          if (mark.model == model_id) found.push_back({row.key, std::move(mark)});
     std::ranges::stable_sort(found, {}, &KeyMark::key);
     return found;
   });

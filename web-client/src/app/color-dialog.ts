@@ -14,7 +14,7 @@ import { follow_session } from "./follow-session";
 import { class_range, value_label } from "./legend";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
-import { shared_styles } from "./styles";
+import { choices_styles, shared_styles } from "./styles";
 import { styled } from "./styled";
 import { texts } from "./texts";
 
@@ -50,15 +50,8 @@ export class StrataColorDialog extends LitElement {
 
   static override styles = [
     shared_styles,
+    choices_styles,
     css`
-      .choices {
-        display: grid;
-        grid-template-columns: 1fr 1fr;
-        gap: 12px;
-      }
-      .choices .full {
-        grid-column: 1 / -1;
-      }
       ul {
         display: grid;
         gap: 6px;

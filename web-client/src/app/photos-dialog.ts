@@ -9,7 +9,7 @@ import "./dialog";
 import type { StrataDialog } from "./dialog";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
-import { shared_styles } from "./styles";
+import { choices_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 
 const words = texts.files;
@@ -47,15 +47,8 @@ export class StrataPhotosDialog extends LitElement {
 
   static override styles = [
     shared_styles,
+    choices_styles,
     css`
-      .choices {
-        display: grid;
-        grid-template-columns: 1fr 1fr;
-        gap: 12px;
-      }
-      .choices .full {
-        grid-column: 1 / -1;
-      }
       .found {
         max-height: 300px;
         overflow: auto;

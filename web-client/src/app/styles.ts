@@ -254,6 +254,18 @@ export const shared_styles = css`
   }
 `;
 
+/** Fields of a dialog, two beside each other. */
+export const choices_styles = css`
+  .choices {
+    display: grid;
+    grid-template-columns: 1fr 1fr;
+    gap: 12px;
+  }
+  .choices .full {
+    grid-column: 1 / -1;
+  }
+`;
+
 /** A number with its unit inside the field. */
 export const number_field_styles = css`
   .number {
