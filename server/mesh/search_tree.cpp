@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -32,21 +33,44 @@ struct Boxes {
   }
   std::array<std::array<float, kWidth>, 3> low, high;
 };
-using Keys = std::array<double, kWidth>;
+template <class Key>
+using Keys = std::array<Key, kWidth>;
 
-// Not above the squared distances of the boxes: the margin is more than the floats round.
-Keys squared_distances(const Boxes& boxes, const glm::vec3& p) {
-  std::array<float, kWidth> sums{};
-  for (int axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0; i < kWidth; ++i) {
-      const float below = boxes.low[axis][i] - p[axis], above = p[axis] - boxes.high[axis][i];
-      const float outside = std::max(std::max(below, above), 0.0f);
-      sums[i] += outside * outside;
+// Several boxes at once. Compilers do not find this by themselves: they keep branches, which vectors of the CPU cannot take.
+template <class Number>
+struct LanesOf {
+  typedef Number Type __attribute__((vector_size(16)));
+};
+using Floats = LanesOf<float>::Type;
+using Doubles = LanesOf<double>::Type;
+
+template <class Lanes, class Number>
+Lanes load(const Number* from) {
+  Lanes lanes;
+  std::memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+
+// Not above the squared distances of the boxes: the margin is more than the floats round, those of a limit that they are held
+// against included.
+Keys<float> squared_distances(const Boxes& boxes, const glm::vec3& p) {
+  constexpr std::size_t kLanes = sizeof(Floats) / sizeof(float);
+  Keys<float> keys;
+  for (std::size_t first = 0; first < kWidth; first += kLanes) {
+    Floats sum{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float at = (&p.x)[axis];
+      const Floats below = load<Floats>(&boxes.low[axis][first]) - at;
+      const Floats above = at - load<Floats>(&boxes.high[axis][first]);
+      const Floats farther = below > above ? below : above;
+      const Floats outside = farther > 0.0f ? farther : Floats{};
+      sum += outside * outside;
     }
-  Keys keys;
-  // Points may be so far that a square is no float any more.
-  for (std::size_t i = 0; i < kWidth; ++i)
-    keys[i] = double{std::min(sums[i], std::numeric_limits<float>::max())} * (1 - 1e-6);
+    // Points may be so far that a square is no float any more.
+    const Floats most = Floats{} + std::numeric_limits<float>::max();
+    const Floats kept = (sum < most ? sum : most) * (1 - 1e-6f);
+    std::memcpy(&keys[first], &kept, sizeof kept);
+  }
   return keys;
 }
 
@@ -86,23 +110,26 @@ struct PreparedRay {
   }
 
   // Entry distances of the boxes, or infinity. The factor covers the rounding of the three divisions.
-  Keys enter(const Boxes& boxes, double limit) const {
-    Keys near{}, far;
-    far.fill(limit);
-    for (int axis = 0; axis < 3; ++axis) {
-      // From the side that the ray meets first.
-      const auto& first = inverse[axis] < 0 ? boxes.high[axis] : boxes.low[axis];
-      const auto& last = inverse[axis] < 0 ? boxes.low[axis] : boxes.high[axis];
-      for (std::size_t i = 0; i < kWidth; ++i) {
-        const double t0 = (first[i] - origin[axis]) * inverse[axis], t1 = (last[i] - origin[axis]) * inverse[axis];
+  Keys<double> enter(const Boxes& boxes, double limit) const {
+    constexpr std::size_t kLanes = sizeof(Doubles) / sizeof(double);
+    Keys<double> keys;
+    for (std::size_t begin = 0; begin < kWidth; begin += kLanes) {
+      Doubles near{}, far = Doubles{} + limit;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double at = (&origin.x)[axis], scale = (&inverse.x)[axis];
+        // From the side that the ray meets first.
+        const float* first = &(scale < 0 ? boxes.high : boxes.low)[axis][begin];
+        const float* last = &(scale < 0 ? boxes.low : boxes.high)[axis][begin];
+        const Doubles t0 = (Doubles{first[0], first[1]} - at) * scale, t1 = (Doubles{last[0], last[1]} - at) * scale;
         // 0 × infinity: the ray runs inside the face of the box, which bounds nothing.
-        near[i] = t0 > near[i] ? t0 : near[i];
-        far[i] = t1 < far[i] ? t1 : far[i];
+        near = t0 > near ? t0 : near;
+        far = t1 < far ? t1 : far;
       }
+      const Doubles none = Doubles{} + std::numeric_limits<double>::infinity();
+      const Doubles entry = near <= far * (1 + 1e-14) ? near : none;
+      std::memcpy(&keys[begin], &entry, sizeof entry);
     }
-    for (std::size_t i = 0; i < kWidth; ++i)
-      near[i] = near[i] <= far[i] * (1 + 1e-14) ? near[i] : std::numeric_limits<double>::infinity();
-    return near;
+    return keys;
   }
 
   // Distance to the triangle, in front of the origin; fills `weights`.
@@ -162,34 +189,37 @@ struct SearchTree::Impl {
 
   // Visits the triangles of leaves in the order of their keys while these are not above `limit`, which `visit` may lower.
   // `keys_of` gives those of a node's children: distances, infinity to skip.
-  template <class KeysOf, class Visit>
+  template <class Key, class KeysOf, class Visit>
   void search(double& limit, KeysOf keys_of, Visit visit) const {
     struct Entry {
-      double key;
-      std::size_t level;  // of nodes, 1 is the lowest; 0: a leaf
-      std::size_t index;
+      Key key;
+      std::uint32_t index;
+      std::uint32_t level;  // of nodes, 1 is the lowest; 0: a leaf
     };
     if (levels.empty()) return;
     std::array<Entry, kMaxLevels * kWidth> stack;
     std::size_t depth = 0;
-    stack[depth++] = {0, levels.size(), 0};
+    stack[depth++] = {0, 0, static_cast<std::uint32_t>(levels.size())};
     while (depth > 0) {
       const Entry entry = stack[--depth];
-      if (!(entry.key <= limit)) continue;
+      const Key most = static_cast<Key>(limit);
+      if (!(entry.key <= most)) continue;
       if (entry.level == 0) {
-        const std::size_t end = std::min(geometry->triangle_count(), (entry.index + 1) * kLeafTriangles);
-        for (std::size_t t = entry.index * kLeafTriangles; t < end; ++t) visit(t);
+        const std::size_t first = std::size_t{entry.index} * kLeafTriangles;
+        const std::size_t end = std::min(geometry->triangle_count(), first + kLeafTriangles);
+        for (std::size_t t = first; t < end; ++t) visit(t);
         continue;
       }
-      const Keys keys = keys_of(levels[entry.level - 1][entry.index]);
+      const Keys<Key> keys = keys_of(levels[entry.level - 1][entry.index]);
       const std::size_t below = entry.level == 1 ? leaves : levels[entry.level - 2].size();
-      const std::size_t first = depth, children = std::min(kWidth, below - entry.index * kWidth);
+      const std::size_t first_child = std::size_t{entry.index} * kWidth;
+      const std::size_t first = depth, children = std::min(kWidth, below - first_child);
       for (std::size_t child = 0; child < children; ++child) {
-        if (!(keys[child] <= limit)) continue;
+        if (!(keys[child] <= most)) continue;
         // The nearest is on top of the stack.
         std::size_t place = depth++;
         for (; place > first && stack[place - 1].key < keys[child]; --place) stack[place] = stack[place - 1];
-        stack[place] = {keys[child], entry.level - 1, entry.index * kWidth + child};
+        stack[place] = {keys[child], static_cast<std::uint32_t>(first_child + child), entry.level - 1};
       }
     }
   }
@@ -201,7 +231,7 @@ struct SearchTree::Impl {
     double limit = double{max_distance} * max_distance;
     std::size_t found = std::numeric_limits<std::size_t>::max();
     glm::dvec3 found_weights(0);
-    search(
+    search<float>(
         limit, [&](const Boxes& boxes) { return squared_distances(boxes, point); },
         [&](std::size_t triangle) {
           const auto [a, b, c] = corners(triangle);
@@ -265,7 +295,7 @@ std::optional<SearchTree::Hit> SearchTree::first_hit(const glm::vec3& origin, co
   double limit = std::numeric_limits<double>::max();
   std::size_t found = std::numeric_limits<std::size_t>::max();
   glm::dvec3 found_weights(0);
-  impl_->search(
+  impl_->search<double>(
       limit, [&](const Boxes& boxes) { return ray.enter(boxes, limit); },
       [&](std::size_t triangle) {
         const auto [a, b, c] = impl_->corners(triangle);

@@ -1,6 +1,7 @@
 #include "net/wire.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -377,22 +378,32 @@ std::string point_header(const std::vector<std::string>& layers) {
   return csv_line(cells, ',');
 }
 
+// Of a float no more digits than it has.
+template <class Number>
+void append_number(Number value, std::string& text) {
+  char digits[40];
+  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
+
 void append_point(const query::SurfacePoint& point, const std::vector<std::string>& layers, std::string& text) {
   if (!point.hit) {
     text += "false" + std::string(9 + layers.size(), ',') + "\r\n";
     return;
   }
   text += "true";
-  for (double value :
-       {point.position.x, point.position.y, point.position.z, double(point.normal.x), double(point.normal.y),
-        double(point.normal.z), point.distance, double(point.uv.x), double(point.uv.y)}) {
+  const auto add = [&](auto value) {
     text += ',';
-    text += number(value);
-  }
+    append_number(value, text);
+  };
+  for (int axis = 0; axis < 3; ++axis) add(point.position[axis]);
+  for (int axis = 0; axis < 3; ++axis) add(point.normal[axis]);
+  add(static_cast<float>(point.distance));
+  add(point.uv.x);
+  add(point.uv.y);
   for (const auto& layer : layers) {
     text += ',';
     for (const auto& value : point.values)
-      if (value.layer == layer && value.valid) text += number(value.value);
+      if (value.layer == layer && value.valid) append_number(value.value, text);
   }
   text += "\r\n";
 }
@@ -408,6 +419,9 @@ std::string points_csv(const std::vector<query::SurfacePoint>& points, const std
       append_point(points[i], layers, parts[part]);
   });
   std::string text = point_header(layers);
+  std::size_t size = text.size();
+  for (const std::string& part : parts) size += part.size();
+  text.reserve(size);
   for (const std::string& part : parts) text += part;
   return text;
 }

@@ -43,7 +43,11 @@ class StrictBuilder : public nlohmann::json_sax<json> {
     return true;
   }
   bool end_object() override { return close(); }
-  bool start_array(std::size_t) override { return open(json::array()); }
+  bool start_array(std::size_t) override {
+    json list = json::array();
+    list.get_ref<json::array_t&>().reserve(4);  // points, colours: most lists are short
+    return open(std::move(list));
+  }
   bool end_array() override { return close(); }
 
   bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
