@@ -62,8 +62,9 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
       palette = std::move(*made);
     }
     request.layers.push_back({handle, std::move(palette), static_cast<float>(item.layer.opacity)});
-    if (!item.layer.table || asked.at) continue;  // lines and points of the past are not told by the layer's sequence
-    auto marks = record_marks_->newest(*item.layer.table);
+    if (!item.layer.table) continue;
+    auto marks =
+        asked.at ? record_marks_->when(*item.layer.table, *asked.at) : record_marks_->newest(*item.layer.table);
     if (!marks) return tl::unexpected(marks.error());
     if (*marks) marked.push_back({std::move(*marks), request.layers.back().palette, request.layers.back().opacity});
   }

@@ -12,10 +12,16 @@ RecordMarks::RecordMarks(store::Store& store, boost::asio::thread_pool& workers,
                          std::function<void()> ready)
     : store_(store), workers_(workers), model_id_(model_id), ready_(std::move(ready)) {}
 
-Result<RecordMarks::Marks> RecordMarks::read(std::int64_t table_id) const {
-  auto marks = store_.marks(table_id, model_id_);
+Result<RecordMarks::Marks> RecordMarks::read(std::int64_t table_id, std::optional<std::int64_t> at) const {
+  auto marks = store_.marks(table_id, model_id_, at);
   if (!marks) return tl::unexpected(marks.error());
   return marks->empty() ? nullptr : std::make_shared<const std::vector<KeyMark>>(std::move(*marks));
+}
+
+Result<RecordMarks::Marks> RecordMarks::when(std::int64_t table_id, std::int64_t sequence) const {
+  const auto at = store_.table_sequence_when(table_id, model_id_, sequence);
+  if (!at) return tl::unexpected(at.error());
+  return read(table_id, *at);
 }
 
 RecordMarks::Marks RecordMarks::find(std::int64_t table_id) {

@@ -27,6 +27,8 @@ class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
   Marks find(std::int64_t table_id);
   // Those of now, read on the calling thread where they are not known. While the database is away, the last that were. Blocks.
   Result<Marks> newest(std::int64_t table_id);
+  // Those of when an edit of the model was made. Blocks.
+  Result<Marks> when(std::int64_t table_id, std::int64_t sequence) const;
   void records_changed(std::int64_t table_id);
   void stop();  // nothing more is read, and `ready` not called
 
@@ -39,7 +41,7 @@ class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
   };
   void start(std::int64_t table_id, Entry& entry);  // with the mutex held
   void run(std::int64_t table_id);
-  Result<Marks> read(std::int64_t table_id) const;
+  Result<Marks> read(std::int64_t table_id, std::optional<std::int64_t> at = {}) const;  // `at` of the table
 
   store::Store& store_;
   boost::asio::thread_pool& workers_;

@@ -301,6 +301,12 @@ Result<Transaction> Transaction::begin(PgConnection& connection) {
   return Transaction(connection);
 }
 
+Result<Transaction> Transaction::begin_reading(PgConnection& connection) {
+  auto begun = connection.script("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY");
+  if (!begun) return tl::unexpected(begun.error());
+  return Transaction(connection);
+}
+
 Transaction::~Transaction() {
   if (connection_) (void)connection_->script("ROLLBACK");  // a broken connection is closed by the pool
 }

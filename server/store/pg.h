@@ -177,6 +177,8 @@ class PgConnection {
 class Transaction {
  public:
   static Result<Transaction> begin(PgConnection& connection);
+  // All that is read in it is of one moment; nothing is written.
+  static Result<Transaction> begin_reading(PgConnection& connection);
   // For a transaction whose BEGIN goes out with a pipeline.
   static Transaction adopt(PgConnection& connection) { return Transaction(connection); }
   Transaction(Transaction&& other) noexcept : connection_(std::exchange(other.connection_, nullptr)) {}

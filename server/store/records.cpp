@@ -216,10 +216,8 @@ Result<TableChange> Store::delete_record(std::int64_t table_id, std::int64_t key
 Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, const Expression& expression,
                                                      std::optional<std::int64_t> at, const std::string& field) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyNumber>> {
-    auto transaction = Transaction::begin(connection);
+    auto transaction = Transaction::begin_reading(connection);
     if (!transaction) return tl::unexpected(transaction.error());
-    auto isolated = connection.script("SET TRANSACTION ISOLATION LEVEL REPEATABLE READ READ ONLY");
-    if (!isolated) return tl::unexpected(isolated.error());
     auto open = read_table(connection, table_id);
     if (!open) return tl::unexpected(open.error());
     auto past = rows_if_past(connection, *open, at);
@@ -258,33 +256,36 @@ Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, const st
   });
 }
 
-Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, std::int64_t model_id) {
+Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, std::int64_t model_id,
+                                          std::optional<std::int64_t> at) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyMark>> {
+    auto transaction = Transaction::begin_reading(connection);
+    if (!transaction) return tl::unexpected(transaction.error());
     auto open = read_table(connection, table_id);
     if (!open) return tl::unexpected(open.error());
+    auto past = rows_if_past(connection, *open, at);
+    if (!past) return tl::unexpected(past.error());
     std::vector<Column> columns;
     for (const Column& column : open->table.columns)
       if (holds_marks(column.kind)) columns.push_back(column);
     std::vector<KeyMark> found;
     if (columns.empty()) return found;
-    auto rows = load_all_rows(connection, table_id, columns);
+    auto rows = *past ? Result<std::vector<Record>>(std::move(**past)) : load_all_rows(connection, table_id, columns);
     if (!rows) return tl::unexpected(rows.error());
     for (const Record& row : *rows)
       for (const Column& column : columns)
         for (Mark& mark : marks_of(row, column))
           if (mark.model == model_id) found.push_back({row.key, std::move(mark)});
     std::ranges::stable_sort(found, {}, &KeyMark::key);
+    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
     return found;
   });
 }
 
 Result<Store::RecordPage> Store::records(std::int64_t table_id, const RecordQuery& query) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<RecordPage> {
-    // One moment for the columns and the rows.
-    auto transaction = Transaction::begin(connection);
+    auto transaction = Transaction::begin_reading(connection);
     if (!transaction) return tl::unexpected(transaction.error());
-    auto isolated = connection.script("SET TRANSACTION ISOLATION LEVEL REPEATABLE READ READ ONLY");
-    if (!isolated) return tl::unexpected(isolated.error());
     auto open = read_table(connection, table_id);
     if (!open) return tl::unexpected(open.error());
     RecordPage page;

@@ -185,8 +185,8 @@ class Store {
   // What a column holds for each record that has a value there, now: as text, canonical (of a term, its key). Refused (422 at
   // `field`): a column that is not there or holds lists.
   Result<std::vector<KeyText>> record_texts(std::int64_t table_id, const std::string& column, const std::string& field);
-  // The lines and points that records of a table have on a model, now, by key.
-  Result<std::vector<KeyMark>> marks(std::int64_t table_id, std::int64_t model_id);
+  // The lines and points that records of a table have on a model, by key; after sequence `at` of the table, or now.
+  Result<std::vector<KeyMark>> marks(std::int64_t table_id, std::int64_t model_id, std::optional<std::int64_t> at = {});
   // All or none: where the change has problems, nothing was written.
   Result<TableChange> write_records(std::int64_t table_id, const WriteRecords& asked, const std::string& user,
                                     const FirstAnswer<TableChange>& answer = {});

@@ -135,6 +135,26 @@ def history(server):
     near(server.ok("GET", T + "/records/1").json()["length_m"], 0.080)
 
 
+def past_pictures(server, camera):
+    """A picture of the past shows the lines of when its edit was made."""
+    def dab(x):
+        return server.ok("POST", L + "/readings?radius_mm=2", f"x,y,z,value\n{x},95,0,3\n", headers={"Content-Type": "text/csv"}).json()["sequence"]
+
+    def shown(**more):
+        asked = {"camera": camera, "light": {"mode": "unlit"}, "format": "png", **more}
+        return count(pixels(server.ok("POST", M + "/frame", asked).body), RED)
+
+    before, first = shown(), dab(5)
+    assert before > 400, before
+    server.ok("PATCH", T + "/records/1", {"values": {"crack": None}})
+    second = dab(95)
+    assert shown() == shown(at=second) == 0 and shown(at=first) == before, (shown(), shown(at=second), shown(at=first), before)
+    server.ok("POST", T + "/undo")
+    for _ in range(2):
+        server.ok("POST", L + "/undo")
+    assert shown() == before
+
+
 def transfer(server):
     """A second scan of the same wall, half as large: what lies on its half comes over, snapped to its surface."""
     half = folded_grid(size=60.0, fold=0.001)
@@ -169,6 +189,7 @@ def main():
         pictures(server, camera)
         live(server, model)
         history(server)
+        past_pictures(server, camera)
         transfer(server)
         assert server.stop() == 0
         server.assert_clean_log()
