@@ -7,10 +7,18 @@
 #include "net/wire.h"
 
 namespace strata::net {
+namespace {
+constexpr int kMostTries = 50;  // more than ever change one thing at once
+}
 
 Handler answering(std::function<Result<Response>(const Request&)> answer) {
   return [answer = std::move(answer)](const Request& request, const Respond& respond) {
     auto response = answer(request);
+    // Who names no version means the newest, also where others change the same thing at once: one of them gets on each time.
+    const bool means_any =
+        (request.method == Method::patch || request.method == Method::remove) && request.header("if-match").empty();
+    for (int tries = 1; means_any && tries < kMostTries && !response && response.error().status == 412; ++tries)
+      response = answer(request);
     if (response)
       respond(std::move(*response));
     else

@@ -151,7 +151,8 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   if (!asked) return tl::unexpected(asked.error());
   auto room = context.rooms.open(request.param("model"));
   if (!room) return tl::unexpected(room.error());
-  auto layer = (*room)->layer(request.param("layer"));
+  // As it is stored: what is open may be a moment behind.
+  auto layer = context.store.layer((*room)->model().id, request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
   if (auto fresh = check_if_match(request, layer->version); !fresh) return tl::unexpected(fresh.error());
   const auto answer = [](const Layer& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };

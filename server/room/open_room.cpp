@@ -220,6 +220,7 @@ Layer OpenRoom::replace_layer(const Layer& stored) {
     std::lock_guard lock(mutex_);
     auto found = layers_.find(now.id);
     if (found == layers_.end()) return now;
+    if (found->second.layer.version > now.version) return now;  // a later change came by first
     now.sequence = found->second.layer.sequence;
     found->second.layer = now;
     found->second.palette = std::make_shared<const Palette>(now.palette);

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """What the HTTP interface answers to everything but good requests: one table, then the cases that need several steps."""
+import concurrent.futures
 import json
 import os
 import socket
@@ -306,6 +307,10 @@ def check_versions(server):
     assert server.request("PATCH", M, {"unit": "m"}, headers=tag).status == 412
     assert server.get(M).json()["unit"] == "cm"
     server.ok("PATCH", M, {"unit": "mm"}, headers={"If-Match": changed.headers["ETag"]})
+    # Who names no version is not told of others who change the same thing at once.
+    with concurrent.futures.ThreadPoolExecutor(8) as people:
+        answers = list(people.map(lambda i: server.request("PATCH", L, {"description": f"change {i}"}), range(64)))
+    assert {answer.status for answer in answers} == {200}, [answer for answer in answers if answer.status != 200]
 
 
 def things(server):
