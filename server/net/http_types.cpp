@@ -235,6 +235,8 @@ Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std:
   return value;
 }
 
+std::string asked_language(const Request& request) { return to_lower(request.query_or("lang", {})); }
+
 Result<Page> page_of(const Request& request) {
   Page page;
   if (auto found = request.query.find("limit"); found != request.query.end()) {

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "core/csv.h"
+#include "core/term_list.h"
 #include "net/as_of.h"
 #include "net/painted_keys.h"
 #include "net/record_measures.h"
@@ -13,14 +14,20 @@ namespace {
 
 using Names = std::map<std::int64_t, std::string>;  // of records, by key; those that are there, also without a name
 
+// Terms by their labels in `language`.
 Result<Names> record_names(const RouteContext& context, std::int64_t table_id, std::vector<std::int64_t> keys,
-                           std::optional<std::int64_t> at) {
+                           std::optional<std::int64_t> at, const std::string& language) {
   store::Store::RecordQuery query;
   query.keys = std::move(keys);
   query.at = at;
   auto page = context.store.records(table_id, query);
   if (!page) return tl::unexpected(page.error());
   Names names;
+  if (const auto columns = term_columns(page->table)) {
+    for (const ListedTerm& listed : list_terms(*columns, page->records))
+      names[listed.key] = label_in(listed.term, language);
+    return names;
+  }
   for (const Record& record : page->records) names[record.key] = record_name(record, page->table.columns);
   return names;
 }
@@ -40,7 +47,6 @@ struct OfMarks {
     const auto found = of_key.find(key);
     return found == of_key.end() ? std::vector<double>(names.size(), 0.0) : found->second;
   }
-  void add_to(nlohmann::json& json, const std::vector<double>& values) const { add_measures(json, names, values); }
 };
 
 // `model`: only those on it.
@@ -112,7 +118,7 @@ nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const N
       const auto key = static_cast<std::int64_t>(*quantity.value);
       json["key"] = key;
       json["has_record"] = names.contains(key);
-      marks.add_to(json, marks.of(key));
+      add_measures(json, marks.names, marks.of(key));
     } else if (quantity.value) {
       json["value"] = *quantity.value;
     }
@@ -122,7 +128,7 @@ nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const N
   }
   const std::size_t count = list.size();
   nlohmann::json sum = add_share(sums_json(all.sum), all.sum);
-  marks.add_to(sum, marks.sum());
+  add_measures(sum, marks.names, marks.sum());
   return {{"quantities", std::move(list)}, {"total", count}, {"sum", std::move(sum)}, {"surface_m2", all.surface_m2}};
 }
 
@@ -203,7 +209,7 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
     add_classes(*all, marks);
     std::vector<std::int64_t> keys;
     for (const query::Quantity& quantity : all->classes) keys.push_back(static_cast<std::int64_t>(*quantity.value));
-    auto found = record_names(context, *layer->table, std::move(keys), records_at);
+    auto found = record_names(context, *layer->table, std::move(keys), records_at, asked_language(request));
     if (!found) return tl::unexpected(found.error());
     names = std::move(*found);
   }
@@ -272,7 +278,7 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   for (const auto& [key, values] : marks->of_key) of_key.try_emplace(key);
   std::vector<std::int64_t> keys;
   for (const auto& [key, quantity] : of_key) keys.push_back(key);
-  const auto names = record_names(context, table->id, keys, {});
+  const auto names = record_names(context, table->id, keys, {}, asked_language(request));
   if (!names) return tl::unexpected(names.error());
   const auto text_of = [&](std::int64_t key) {
     const auto name = names->find(key);
@@ -291,13 +297,13 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
       json["class"] = text_of(key);
       json["key"] = key;
       json["has_record"] = names->contains(key);
-      marks->add_to(json, marks->of(key));
+      add_measures(json, marks->names, marks->of(key));
       json["layers"] = std::move(parts);
       list.push_back(std::move(json));
     }
     const std::size_t count = list.size();
     nlohmann::json total = sums_json(sum);
-    marks->add_to(total, marks->sum());
+    add_measures(total, marks->names, marks->sum());
     return json_response({{"quantities", std::move(list)}, {"total", count}, {"sum", std::move(total)}})
         .with("Vary", "Accept");
   }
@@ -335,11 +341,11 @@ void add_quantity_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/layers/{layer}/quantities",
               .handler = answering([&context](const Request& request) { return layer_quantities(context, request); }),
-              .query = {"at", "f", "separator"}});
+              .query = {"at", "lang", "f", "separator"}});
   router.add({.method = Method::get,
               .pattern = "/api/v1/tables/{table}/quantities",
               .handler = answering([&context](const Request& request) { return table_quantities(context, request); }),
-              .query = {"f", "separator"}});
+              .query = {"lang", "f", "separator"}});
 }
 
 }  // namespace strata::net

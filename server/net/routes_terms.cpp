@@ -152,7 +152,7 @@ std::vector<bool> with_those_above(const std::vector<ListedTerm>& terms, const s
 }
 
 Response tree_response(const Request& request, const std::vector<ListedTerm>& terms, const Page& page) {
-  const std::string language = to_lower(request.query_or("lang", {}));
+  const std::string language = asked_language(request);
   const Palette palette = terms_palette(terms);
   std::map<std::int64_t, int> below;
   for (const ListedTerm& listed : terms)

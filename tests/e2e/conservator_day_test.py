@@ -172,13 +172,13 @@ def report(server, keys):
     by_class = {each["key"]: each for each in answer["quantities"]}
     near(by_class[keys["flaking"]]["area_m2"], disc(12))
     near(by_class[keys["salts"]]["area_m2"], disc(10))
-    assert by_class[keys["flaking"]]["pieces"] == 1 and by_class[keys["flaking"]]["class"] == "flaking", by_class
+    assert by_class[keys["flaking"]]["pieces"] == 1 and by_class[keys["flaking"]]["class"] == "Flaking", by_class
     near(answer["sum"]["area_m2"], disc(12) + disc(10))
     near(answer["sum"]["share"], (disc(12) + disc(10)) / 0.01)
     lines = rows_of(server.ok("GET", NORTH + "/layers/damage/quantities?f=csv").body)
     assert lines[-1]["class"] == "total" and abs(float(lines[-1]["area_m2"]) - answer["sum"]["area_m2"]) < 1e-12, lines
     book = Workbook(server.ok("GET", NORTH + "/layers/damage/quantities?f=xlsx").body)
-    assert [each["class"] for each in book.records] == ["flaking", "salts", "total"] and book.records[0]["pieces"] == 1, book.records
+    assert [each["class"] for each in book.records] == ["Flaking", "Salts", "total"] and book.records[0]["pieces"] == 1, book.records
     near(book.records[2]["area_m2"], answer["sum"]["area_m2"], 1e-12)
     [crack] = [each for each in server.ok("GET", SOUTH + "/layers/damage/quantities").json()["quantities"] if each["key"] == keys["loss"]]
     near(crack["area_m2"], swept(2, 60))

@@ -140,6 +140,10 @@ def colours(server, camera):
     legend = {point["label"]: (point["at"], point["color"]) for point in layer["palette"]["points"]}
     assert legend["Loss"] == (1, "#cc79a7ff") and legend["Salt crystals"] == (5, "#56b4e9ff") and len(legend) == 6, legend
     server.ok("POST", "/models/wall/layers/stone/edits", {"op": "stroke", "camera": camera, "radius_px": 40, "path": [[320, 240]], "value": 1})
+    for path in ("/models/wall/layers/stone", LIST):
+        for query, name in (("", "Loss"), ("lang=es", "Pérdida"), ("lang=ES-MX&f=csv", "Pérdida"), ("lang=de", "Loss")):
+            told = server.ok("GET", f"{path}/quantities?{query}").body.decode("utf-8-sig")
+            assert name in told and "loss" not in told, (path, query, told)
     etag = server.get("/models/wall/layers/stone").headers["ETag"]
     with LiveClient(server, "wall") as live:
         live.send({"op": "hello", "client": "test", "dpr": 1, "accept": ["jpeg"]})
