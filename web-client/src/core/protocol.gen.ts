@@ -762,15 +762,142 @@ export interface Problem {
   rows?: RecordsReport;
 }
 
-/** Sign-in by a token or by the secret of an owner link. */
+/** Sign-in. By name and password, or by a token or the secret of an owner link. */
 export interface Login {
-  token: string;
+  /** In any case. */
+  user?: string;
+  password?: string;
+  token?: string;
 }
 
 /** Who is signed in. */
 export interface Me {
   user: string;
+  full_name: string;
   role: Role;
+  has_password: boolean;
+}
+
+/** New password. Whoever has one already says it. Ends all other sessions. */
+export interface PasswordChange {
+  current?: string;
+  /** Ten characters or more; not the name. */
+  new: string;
+}
+
+/** Changes of oneself. */
+export interface MePatch {
+  full_name: string;
+}
+
+/** A browser in which somebody is signed in. */
+export interface SignInSession {
+  id: number;
+  created: string;
+  expires: string;
+  /** To some minutes. */
+  last_used?: string;
+  /** What the browser calls itself. */
+  agent: string;
+  /** It sent this request. */
+  current: boolean;
+}
+
+/** Sessions. */
+export interface SignInSessionList {
+  sessions: SignInSession[];
+  total: number;
+}
+
+/** A token for scripts. It does what its role and that of its person both allow. */
+export interface ScriptToken {
+  id: number;
+  name: string;
+  role: Role;
+  created: string;
+  expires?: string;
+  /** To some minutes. */
+  last_used?: string;
+}
+
+/** Tokens. */
+export interface ScriptTokenList {
+  tokens: ScriptToken[];
+  total: number;
+}
+
+/** New token. */
+export interface ScriptTokenCreate {
+  /** What it is for. */
+  name: string;
+  role?: Role;
+  /** Until it expires. Default: 365. */
+  days?: number;
+}
+
+/** The token, told this once. */
+export interface ScriptTokenMade {
+  /** For `Authorization: Bearer`. */
+  secret: string;
+  token: ScriptToken;
+}
+
+/** Whether a person can sign in. Invited: no password was chosen yet. */
+export type PersonState = "invited" | "active" | "disabled";
+
+/** A person with an account. */
+export interface Person {
+  id: number;
+  user: string;
+  full_name: string;
+  role: Role;
+  state: PersonState;
+  created: string;
+  /** To some minutes. */
+  last_seen?: string;
+}
+
+/** People. */
+export interface PersonList {
+  users: Person[];
+  total: number;
+}
+
+/** New account. */
+export interface PersonCreate {
+  /** For signing in, and in the history of what was done. Unique in any case. */
+  user: string;
+  full_name?: string;
+  role?: Role;
+}
+
+/** Changes of an account. */
+export interface PersonPatch {
+  full_name?: string;
+  role?: Role;
+  /** Signs out everywhere, and lets nobody in. */
+  disabled?: boolean;
+}
+
+/** A link that lets a person choose a password. Told this once; good for one use. */
+export interface Invitation {
+  /** To be put behind the server's address. */
+  path: string;
+  expires: string;
+  user: Person;
+}
+
+/** An invitation, to see whose it is. */
+export interface InvitationShow {
+  invitation: string;
+}
+
+/** An invitation and the password that is chosen. */
+export interface InvitationAccept {
+  invitation: string;
+  /** Ten characters or more; not the name. */
+  password: string;
+  full_name?: string;
 }
 
 /** Project: a site. */

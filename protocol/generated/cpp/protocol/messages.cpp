@@ -265,6 +265,24 @@ void read(const nlohmann::json& json, TableEventEvent& value) {
 
 nlohmann::json to_json(const TableEventEvent& value) { return name(value); }
 
+std::string_view name(PersonState value) {
+  switch (value) {
+    case PersonState::invited: return "invited";
+    case PersonState::active: return "active";
+    case PersonState::disabled: return "disabled";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, PersonState& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "invited") value = PersonState::invited;
+  if (text == "active") value = PersonState::active;
+  if (text == "disabled") value = PersonState::disabled;
+}
+
+nlohmann::json to_json(const PersonState& value) { return name(value); }
+
 std::string_view name(JobState value) {
   switch (value) {
     case JobState::queued: return "queued";
@@ -1231,24 +1249,104 @@ nlohmann::json to_json(const ProblemMessage& value) {
 }
 
 void read(const nlohmann::json& json, Login& value) {
-  read_member(json, "token", value.token);
+  read_optional_member(json, "user", value.user);
+  read_optional_member(json, "password", value.password);
+  read_optional_member(json, "token", value.token);
 }
 
 nlohmann::json to_json(const Login& value) {
   nlohmann::json json = nlohmann::json::object();
-  write_member(json, "token", value.token);
+  write_optional_member(json, "user", value.user);
+  write_optional_member(json, "password", value.password);
+  write_optional_member(json, "token", value.token);
   return json;
 }
 
-void read(const nlohmann::json& json, Me& value) {
-  read_member(json, "user", value.user);
-  read_member(json, "role", value.role);
+void read(const nlohmann::json& json, PasswordChange& value) {
+  read_optional_member(json, "current", value.current);
+  read_member(json, "new", value.new);
 }
 
-nlohmann::json to_json(const Me& value) {
+nlohmann::json to_json(const PasswordChange& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "current", value.current);
+  write_member(json, "new", value.new);
+  return json;
+}
+
+void read(const nlohmann::json& json, MePatch& value) {
+  read_member(json, "full_name", value.full_name);
+}
+
+nlohmann::json to_json(const MePatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "full_name", value.full_name);
+  return json;
+}
+
+void read(const nlohmann::json& json, ScriptTokenCreate& value) {
+  read_member(json, "name", value.name);
+  read_optional_member(json, "role", value.role);
+  read_optional_member(json, "days", value.days);
+}
+
+nlohmann::json to_json(const ScriptTokenCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_optional_member(json, "role", value.role);
+  write_member(json, "days", value.days);
+  return json;
+}
+
+void read(const nlohmann::json& json, PersonCreate& value) {
+  read_member(json, "user", value.user);
+  read_optional_member(json, "full_name", value.full_name);
+  read_optional_member(json, "role", value.role);
+}
+
+nlohmann::json to_json(const PersonCreate& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "user", value.user);
-  write_member(json, "role", value.role);
+  write_optional_member(json, "full_name", value.full_name);
+  write_optional_member(json, "role", value.role);
+  return json;
+}
+
+void read(const nlohmann::json& json, PersonPatch& value) {
+  read_optional_member(json, "full_name", value.full_name);
+  read_optional_member(json, "role", value.role);
+  read_optional_member(json, "disabled", value.disabled);
+}
+
+nlohmann::json to_json(const PersonPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "full_name", value.full_name);
+  write_optional_member(json, "role", value.role);
+  write_optional_member(json, "disabled", value.disabled);
+  return json;
+}
+
+void read(const nlohmann::json& json, InvitationShow& value) {
+  read_member(json, "invitation", value.invitation);
+}
+
+nlohmann::json to_json(const InvitationShow& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "invitation", value.invitation);
+  return json;
+}
+
+void read(const nlohmann::json& json, InvitationAccept& value) {
+  read_member(json, "invitation", value.invitation);
+  read_member(json, "password", value.password);
+  read_optional_member(json, "full_name", value.full_name);
+}
+
+nlohmann::json to_json(const InvitationAccept& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "invitation", value.invitation);
+  write_member(json, "password", value.password);
+  write_optional_member(json, "full_name", value.full_name);
   return json;
 }
 

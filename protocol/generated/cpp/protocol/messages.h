@@ -110,6 +110,22 @@ enum class Schema {
   Problem,
   Login,
   Me,
+  PasswordChange,
+  MePatch,
+  SignInSession,
+  SignInSessionList,
+  ScriptToken,
+  ScriptTokenList,
+  ScriptTokenCreate,
+  ScriptTokenMade,
+  PersonState,
+  Person,
+  PersonList,
+  PersonCreate,
+  PersonPatch,
+  Invitation,
+  InvitationShow,
+  InvitationAccept,
   Project,
   ProjectList,
   ProjectCreate,
@@ -210,7 +226,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 184;
+constexpr int kSchemaCount = 200;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -939,9 +955,11 @@ nlohmann::json to_json(const ProblemMessage& value);
 template <>
 inline constexpr Schema kSchemaOf<ProblemMessage> = Schema::ProblemMessage;
 
-// Sign-in by a token or by the secret of an owner link.
+// Sign-in. By name and password, or by a token or the secret of an owner link.
 struct Login {
-  std::string token;
+  std::optional<std::string> user;  // In any case.
+  std::optional<std::string> password;
+  std::optional<std::string> token;
   bool operator==(const Login&) const = default;
 };
 void read(const nlohmann::json& json, Login& value);
@@ -949,16 +967,90 @@ nlohmann::json to_json(const Login& value);
 template <>
 inline constexpr Schema kSchemaOf<Login> = Schema::Login;
 
-// Who is signed in.
-struct Me {
-  std::string user;
-  Role role{};
-  bool operator==(const Me&) const = default;
+// New password. Whoever has one already says it. Ends all other sessions.
+struct PasswordChange {
+  std::optional<std::string> current;
+  std::string new;  // Ten characters or more; not the name.
+  bool operator==(const PasswordChange&) const = default;
 };
-void read(const nlohmann::json& json, Me& value);
-nlohmann::json to_json(const Me& value);
+void read(const nlohmann::json& json, PasswordChange& value);
+nlohmann::json to_json(const PasswordChange& value);
 template <>
-inline constexpr Schema kSchemaOf<Me> = Schema::Me;
+inline constexpr Schema kSchemaOf<PasswordChange> = Schema::PasswordChange;
+
+// Changes of oneself.
+struct MePatch {
+  std::string full_name;
+  bool operator==(const MePatch&) const = default;
+};
+void read(const nlohmann::json& json, MePatch& value);
+nlohmann::json to_json(const MePatch& value);
+template <>
+inline constexpr Schema kSchemaOf<MePatch> = Schema::MePatch;
+
+// New token.
+struct ScriptTokenCreate {
+  std::string name;  // What it is for.
+  std::optional<Role> role;
+  int days = 365;  // Until it expires.
+  bool operator==(const ScriptTokenCreate&) const = default;
+};
+void read(const nlohmann::json& json, ScriptTokenCreate& value);
+nlohmann::json to_json(const ScriptTokenCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<ScriptTokenCreate> = Schema::ScriptTokenCreate;
+
+// Whether a person can sign in. Invited: no password was chosen yet.
+enum class PersonState { invited, active, disabled };
+std::string_view name(PersonState value);
+void read(const nlohmann::json& json, PersonState& value);
+nlohmann::json to_json(const PersonState& value);
+
+// New account.
+struct PersonCreate {
+  std::string user;  // For signing in, and in the history of what was done. Unique in any case.
+  std::optional<std::string> full_name;
+  std::optional<Role> role;
+  bool operator==(const PersonCreate&) const = default;
+};
+void read(const nlohmann::json& json, PersonCreate& value);
+nlohmann::json to_json(const PersonCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<PersonCreate> = Schema::PersonCreate;
+
+// Changes of an account.
+struct PersonPatch {
+  std::optional<std::string> full_name;
+  std::optional<Role> role;
+  std::optional<bool> disabled;  // Signs out everywhere, and lets nobody in.
+  bool operator==(const PersonPatch&) const = default;
+};
+void read(const nlohmann::json& json, PersonPatch& value);
+nlohmann::json to_json(const PersonPatch& value);
+template <>
+inline constexpr Schema kSchemaOf<PersonPatch> = Schema::PersonPatch;
+
+// An invitation, to see whose it is.
+struct InvitationShow {
+  std::string invitation;
+  bool operator==(const InvitationShow&) const = default;
+};
+void read(const nlohmann::json& json, InvitationShow& value);
+nlohmann::json to_json(const InvitationShow& value);
+template <>
+inline constexpr Schema kSchemaOf<InvitationShow> = Schema::InvitationShow;
+
+// An invitation and the password that is chosen.
+struct InvitationAccept {
+  std::string invitation;
+  std::string password;  // Ten characters or more; not the name.
+  std::optional<std::string> full_name;
+  bool operator==(const InvitationAccept&) const = default;
+};
+void read(const nlohmann::json& json, InvitationAccept& value);
+nlohmann::json to_json(const InvitationAccept& value);
+template <>
+inline constexpr Schema kSchemaOf<InvitationAccept> = Schema::InvitationAccept;
 
 // New project.
 struct ProjectCreate {

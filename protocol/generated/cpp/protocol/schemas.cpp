@@ -90,6 +90,22 @@ std::string_view name(Schema schema) {
     case Schema::Problem: return "Problem";
     case Schema::Login: return "Login";
     case Schema::Me: return "Me";
+    case Schema::PasswordChange: return "PasswordChange";
+    case Schema::MePatch: return "MePatch";
+    case Schema::SignInSession: return "SignInSession";
+    case Schema::SignInSessionList: return "SignInSessionList";
+    case Schema::ScriptToken: return "ScriptToken";
+    case Schema::ScriptTokenList: return "ScriptTokenList";
+    case Schema::ScriptTokenCreate: return "ScriptTokenCreate";
+    case Schema::ScriptTokenMade: return "ScriptTokenMade";
+    case Schema::PersonState: return "PersonState";
+    case Schema::Person: return "Person";
+    case Schema::PersonList: return "PersonList";
+    case Schema::PersonCreate: return "PersonCreate";
+    case Schema::PersonPatch: return "PersonPatch";
+    case Schema::Invitation: return "Invitation";
+    case Schema::InvitationShow: return "InvitationShow";
+    case Schema::InvitationAccept: return "InvitationAccept";
     case Schema::Project: return "Project";
     case Schema::ProjectList: return "ProjectList";
     case Schema::ProjectCreate: return "ProjectCreate";
@@ -278,8 +294,24 @@ std::string_view schema_bundle() {
 "Picked":{"type":"object","additionalProperties":false,"required":["op","hit"],"properties":{"op":{"const":"picked"},"id":{"type":"string","minLength":1,"maxLength":64},"hit":{"type":"boolean"},"position":{"$ref":"#/definitions/Point3"},"normal":{"$ref":"#/definitions/Point3"},"uv":{"$ref":"#/definitions/Point2"},"distance":{"type":"number","minimum":0,"maximum":1000000000000000.0},"values":{"$ref":"#/definitions/SurfaceValues"}}},
 "ProblemMessage":{"type":"object","additionalProperties":false,"required":["op","title","status","detail"],"properties":{"op":{"const":"problem"},"ref":{"type":"string","minLength":1,"maxLength":64},"type":{"type":"string","maxLength":500},"title":{"type":"string","minLength":1,"maxLength":200},"status":{"type":"integer","minimum":400,"maximum":599},"detail":{"type":"string","maxLength":10000},"field":{"type":"string","maxLength":500},"offset":{"type":"integer","minimum":0,"maximum":1000000}}},
 "Problem":{"type":"object","additionalProperties":false,"required":["title","status","detail"],"properties":{"type":{"type":"string","maxLength":500},"title":{"type":"string","minLength":1,"maxLength":200},"status":{"type":"integer","minimum":400,"maximum":599},"detail":{"type":"string","maxLength":10000},"field":{"type":"string","maxLength":500},"offset":{"type":"integer","minimum":0,"maximum":1000000},"instance":{"type":"string","maxLength":500},"rows":{"$ref":"#/definitions/RecordsReport"}}},
-"Login":{"type":"object","additionalProperties":false,"required":["token"],"properties":{"token":{"type":"string","minLength":1,"maxLength":1000}}},
-"Me":{"type":"object","additionalProperties":false,"required":["user","role"],"properties":{"user":{"type":"string","minLength":1,"maxLength":200},"role":{"$ref":"#/definitions/Role"}}},
+"Login":{"type":"object","additionalProperties":false,"oneOf":[{"required":["user","password"],"not":{"anyOf":[{"required":["token"]}]}},{"required":["token"],"not":{"anyOf":[{"required":["user"]},{"required":["password"]}]}}],"properties":{"user":{"type":"string","minLength":1,"maxLength":200},"password":{"type":"string","minLength":1,"maxLength":1024},"token":{"type":"string","minLength":1,"maxLength":1000}}},
+"Me":{"type":"object","additionalProperties":false,"required":["user","full_name","role","has_password"],"properties":{"user":{"type":"string","minLength":1,"maxLength":200},"full_name":{"type":"string","minLength":0,"maxLength":200},"role":{"$ref":"#/definitions/Role"},"has_password":{"type":"boolean"}}},
+"PasswordChange":{"type":"object","additionalProperties":false,"required":["new"],"properties":{"current":{"type":"string","minLength":1,"maxLength":1024},"new":{"type":"string","minLength":1,"maxLength":1024}}},
+"MePatch":{"type":"object","additionalProperties":false,"required":["full_name"],"properties":{"full_name":{"type":"string","minLength":0,"maxLength":200}}},
+"SignInSession":{"type":"object","additionalProperties":false,"required":["id","created","expires","agent","current"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"created":{"type":"string","minLength":1,"maxLength":40},"expires":{"type":"string","minLength":1,"maxLength":40},"last_used":{"type":"string","minLength":1,"maxLength":40},"agent":{"type":"string","minLength":0,"maxLength":400},"current":{"type":"boolean"}}},
+"SignInSessionList":{"type":"object","additionalProperties":false,"required":["sessions","total"],"properties":{"sessions":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/SignInSession"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
+"ScriptToken":{"type":"object","additionalProperties":false,"required":["id","name","role","created"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"name":{"type":"string","minLength":1,"maxLength":200},"role":{"$ref":"#/definitions/Role"},"created":{"type":"string","minLength":1,"maxLength":40},"expires":{"type":"string","minLength":1,"maxLength":40},"last_used":{"type":"string","minLength":1,"maxLength":40}}},
+"ScriptTokenList":{"type":"object","additionalProperties":false,"required":["tokens","total"],"properties":{"tokens":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/ScriptToken"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
+"ScriptTokenCreate":{"type":"object","additionalProperties":false,"required":["name"],"properties":{"name":{"type":"string","minLength":1,"maxLength":200},"role":{"$ref":"#/definitions/Role"},"days":{"type":"integer","minimum":1,"maximum":3650}}},
+"ScriptTokenMade":{"type":"object","additionalProperties":false,"required":["secret","token"],"properties":{"secret":{"type":"string","minLength":1,"maxLength":200},"token":{"$ref":"#/definitions/ScriptToken"}}},
+"PersonState":{"type":"string","enum":["invited","active","disabled"]},
+"Person":{"type":"object","additionalProperties":false,"required":["id","user","full_name","role","state","created"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"user":{"type":"string","minLength":1,"maxLength":200},"full_name":{"type":"string","minLength":0,"maxLength":200},"role":{"$ref":"#/definitions/Role"},"state":{"$ref":"#/definitions/PersonState"},"created":{"type":"string","minLength":1,"maxLength":40},"last_seen":{"type":"string","minLength":1,"maxLength":40}}},
+"PersonList":{"type":"object","additionalProperties":false,"required":["users","total"],"properties":{"users":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/Person"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
+"PersonCreate":{"type":"object","additionalProperties":false,"required":["user"],"properties":{"user":{"type":"string","minLength":1,"maxLength":64,"pattern":"^[A-Za-z0-9][A-Za-z0-9._@-]*$"},"full_name":{"type":"string","minLength":0,"maxLength":200},"role":{"$ref":"#/definitions/Role"}}},
+"PersonPatch":{"type":"object","additionalProperties":false,"minProperties":1,"properties":{"full_name":{"type":"string","minLength":0,"maxLength":200},"role":{"$ref":"#/definitions/Role"},"disabled":{"type":"boolean"}}},
+"Invitation":{"type":"object","additionalProperties":false,"required":["path","expires","user"],"properties":{"path":{"type":"string","minLength":1,"maxLength":400},"expires":{"type":"string","minLength":1,"maxLength":40},"user":{"$ref":"#/definitions/Person"}}},
+"InvitationShow":{"type":"object","additionalProperties":false,"required":["invitation"],"properties":{"invitation":{"type":"string","minLength":1,"maxLength":200}}},
+"InvitationAccept":{"type":"object","additionalProperties":false,"required":["invitation","password"],"properties":{"invitation":{"type":"string","minLength":1,"maxLength":200},"password":{"type":"string","minLength":1,"maxLength":1024},"full_name":{"type":"string","minLength":0,"maxLength":200}}},
 "Project":{"type":"object","additionalProperties":false,"required":["id","name","slug","description"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"name":{"type":"string","minLength":1,"maxLength":200},"slug":{"type":"string","minLength":1,"maxLength":128},"description":{"type":"string","maxLength":10000}}},
 "ProjectList":{"type":"object","additionalProperties":false,"required":["projects","total"],"properties":{"projects":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/Project"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
 "ProjectCreate":{"type":"object","additionalProperties":false,"required":["name"],"properties":{"name":{"type":"string","minLength":1,"maxLength":200},"slug":{"type":"string","minLength":1,"maxLength":128,"pattern":"^[a-z0-9-]{1,128}$"},"description":{"type":"string","maxLength":10000}}},
