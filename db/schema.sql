@@ -561,8 +561,20 @@ CREATE TABLE public.tokens (
     created timestamp with time zone DEFAULT now() NOT NULL,
     expires timestamp with time zone,
     revoked timestamp with time zone,
+    id bigint NOT NULL,
+    label text DEFAULT ''::text NOT NULL,
+    last_used timestamp with time zone,
     CONSTRAINT tokens_hash_check CHECK ((octet_length(hash) = 32)),
-    CONSTRAINT tokens_kind_check CHECK ((kind = ANY (ARRAY['session'::text, 'script'::text, 'owner_link'::text])))
+    CONSTRAINT tokens_kind_check CHECK ((kind = ANY (ARRAY['session'::text, 'script'::text, 'owner_link'::text, 'invitation'::text])))
+);
+
+ALTER TABLE public.tokens ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.tokens_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
 );
 
 CREATE TABLE public.tool_shapes (
@@ -592,7 +604,13 @@ CREATE TABLE public.users (
     name text NOT NULL,
     role text NOT NULL,
     created timestamp with time zone DEFAULT now() NOT NULL,
-    CONSTRAINT users_name_check CHECK ((name <> ''::text))
+    full_name text DEFAULT ''::text NOT NULL,
+    password text,
+    disabled timestamp with time zone,
+    deleted timestamp with time zone,
+    CONSTRAINT users_name_check CHECK ((name <> ''::text)),
+    CONSTRAINT users_password_check CHECK ((password <> ''::text)),
+    CONSTRAINT users_role_check CHECK ((role = ANY (ARRAY['viewer'::text, 'annotator'::text, 'curator'::text, 'administrator'::text, 'owner'::text])))
 );
 
 ALTER TABLE public.users ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
@@ -692,6 +710,9 @@ ALTER TABLE ONLY public.tile_sums
     ADD CONSTRAINT tile_sums_pkey PRIMARY KEY (layer_id, tile_y, tile_x);
 
 ALTER TABLE ONLY public.tokens
+    ADD CONSTRAINT tokens_id_key UNIQUE (id);
+
+ALTER TABLE ONLY public.tokens
     ADD CONSTRAINT tokens_pkey PRIMARY KEY (hash);
 
 ALTER TABLE ONLY public.tool_shapes
@@ -754,6 +775,8 @@ CREATE INDEX tile_revisions_key ON public.tile_revisions USING btree (layer_id, 
 CREATE INDEX tokens_user ON public.tokens USING btree (user_name);
 
 CREATE UNIQUE INDEX tool_shapes_slug ON public.tool_shapes USING btree (slug) WHERE (deleted IS NULL);
+
+CREATE UNIQUE INDEX users_name_in_any_case ON public.users USING btree (lower(name));
 
 CREATE CONSTRAINT TRIGGER column_is_changed AFTER UPDATE ON public.record_columns DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN (((old.hidden <> new.hidden) OR ((old.properties -> 'name'::text) <> (new.properties -> 'name'::text)) OR ((old.properties -> 'order'::text) <> (new.properties -> 'order'::text)))) EXECUTE FUNCTION public.analysis_table_changed();
 

@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
   const std::map<std::string, strata::cli::Command> commands{
       {"serve", strata::cli::add_serve(app)},   {"import", strata::cli::add_import(app)},
       {"demo", strata::cli::add_demo(app)},     {"migrate", strata::cli::add_migrate(app)},
-      {"doctor", strata::cli::add_doctor(app)},
+      {"doctor", strata::cli::add_doctor(app)}, {"user", strata::cli::add_user(app)},
+      {"token", strata::cli::add_token(app)},
   };
   try {
     app.parse(argc, argv);

@@ -13,5 +13,7 @@ Command add_import(CLI::App& app);
 Command add_demo(CLI::App& app);
 Command add_migrate(CLI::App& app);
 Command add_doctor(CLI::App& app);
+Command add_user(CLI::App& app);
+Command add_token(CLI::App& app);
 
 }  // namespace strata::cli

@@ -41,6 +41,15 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) 
   return open;
 }
 
+Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& options) {
+  if (!options.database.empty()) return open_database(options);
+  const auto state = store::Cluster::inspect(options.data);
+  if (!state.running) return open_database(options);
+  DataOptions beside = options;
+  beside.database = state.dsn;
+  return open_database(beside);
+}
+
 int report(const Problem& problem) {
   std::cerr << "strata: " << problem.title << ": " << problem.detail
             << (problem.field.empty() ? "" : " (" + problem.field + ")") << std::endl;

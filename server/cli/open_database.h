@@ -25,6 +25,8 @@ struct OpenDatabase {
   ~OpenDatabase() { store.reset(); }
 };
 Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options);
+// The same, also while a server runs on that data: beside it, on its database.
+Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& options);
 
 // "title: detail" on stderr; returns 1.
 int report(const Problem& problem);

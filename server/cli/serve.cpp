@@ -48,16 +48,27 @@ Result<Address> parse_address(const std::string& text, const std::string& option
   return address;
 }
 
-Result<Address> parse_listen(const std::string& text) {
-  auto address = parse_address(text, "--listen");
-  // Accounts are what would protect a server that others can reach.
-  if (address && !is_loopback(address->host))
-    return fail(
-        403, "Listen address not allowed",
-        "This server has no accounts, so it listens on loopback only (127.0.0.1). Reach it from elsewhere through an SSH "
-        "tunnel or a proxy that signs people in.",
-        "--listen");
-  return address;
+Result<Address> parse_listen(const std::string& text) { return parse_address(text, "--listen"); }
+
+// A server that others can reach is protected by its accounts alone.
+Result<void> check_reach(store::Store& store, const Address& address) {
+  if (is_loopback(address.host)) return {};
+  const auto people = store.people();
+  if (!people) return tl::unexpected(people.error());
+  const bool has_account = std::ranges::any_of(*people, [](const store::Person& person) {
+    return person.has_password && !person.disabled && person.role >= Role::administrator;
+  });
+  if (has_account) {
+    log::warning("listening on " + address.host +
+                 ": passwords travel unencrypted unless a proxy with TLS stands before this server");
+    return {};
+  }
+  return fail(
+      403, "No account",
+      "Others can reach " + address.host +
+          ", and nobody has an account with a password who could let them in. Make one: strata user add NAME --role "
+          "administrator --password-stdin. Or listen on 127.0.0.1.",
+      "--listen");
 }
 
 Result<store::Cluster::SqlListen> parse_sql_listen(const std::string& text) {
@@ -123,6 +134,7 @@ int run(ServeOptions options) {
   auto database = open_database(options.data);
   if (!database) return report(database.error());
   store::Store& store = *(*database)->store;
+  if (auto safe = check_reach(store, *address); !safe) return report(safe.error());
   auto orphans = store.drop_orphans();
   if (!orphans) return report(orphans.error());
   if (*orphans > 0) log::info("dropped " + std::to_string(*orphans) + " files that nothing uses");
@@ -157,7 +169,7 @@ int run(ServeOptions options) {
   const std::string url =
       "http://" + (address->host == "::1" ? "[::1]" : address->host) + ":" + std::to_string((*server)->port());
   std::cout << "listening on " << url << std::endl;
-  auto link = store.create_token(store::Store::TokenKind::owner_link, "owner", "owner", std::chrono::hours(24));
+  auto link = store.create_token(store::TokenKind::owner_link, "owner", Role::owner, std::chrono::hours(24));
   if (!link) return report(link.error());
   if (options.data.sql)
     std::cout << "SQL on " << options.data.sql->host << ":" << options.data.sql->port

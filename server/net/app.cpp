@@ -57,6 +57,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       recomputer_(context_) {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
+  add_people_routes(router_, context_);
   add_project_routes(router_, context_);
   add_model_routes(router_, context_);
   add_import_routes(router_, context_);

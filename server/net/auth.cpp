@@ -2,6 +2,7 @@
 
 #include "net/digest.h"
 #include "net/origin.h"
+#include "store/password.h"
 
 namespace strata::net {
 namespace {
@@ -23,12 +24,13 @@ Authenticator::Authenticator(store::Store& store, std::string owner_token)
 
 Result<std::optional<Principal>> Authenticator::identify_token(const std::string& token) {
   if (token.empty() || token.size() > kMaxTokenLength) return std::nullopt;
-  if (!owner_token_.empty() && equal_in_constant_time(token, owner_token_))
-    return Principal{"owner", Role::owner, false};
+  if (!owner_token_.empty() && equal_in_constant_time(token, owner_token_)) return Principal{"owner", Role::owner};
   const auto now = std::chrono::steady_clock::now();
   const std::string key = sha256_hex(token);
+  std::uint64_t changes = 0;
   {
     std::lock_guard lock(mutex_);
+    changes = changes_;
     if (auto found = remembered_.find(key); found != remembered_.end()) {
       if (found->second.until > now) return found->second.principal;
       remembered_.erase(found);
@@ -36,10 +38,12 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
   }
   auto stored = store_.find_token(token);
   if (!stored) return tl::unexpected(stored.error());
-  // An owner link is traded for a session; it is no token of its own.
-  if (!*stored || (*stored)->kind == store::Store::TokenKind::owner_link) return std::nullopt;
-  Principal principal{(*stored)->user, parse_role((*stored)->role).value_or(Role::viewer), false};
+  // Links are traded for sessions; they are no tokens of their own.
+  using store::TokenKind;
+  if (!*stored || ((*stored)->kind != TokenKind::session && (*stored)->kind != TokenKind::script)) return std::nullopt;
+  Principal principal{(*stored)->user, (*stored)->role, false, (*stored)->kind == TokenKind::script, (*stored)->token};
   std::lock_guard lock(mutex_);
+  if (changes != changes_) return principal;  // what was read may be of before
   if (remembered_.size() >= kMaxRemembered) remembered_.clear();
   remembered_[key] = {principal, now + kRememberFor};
   return principal;
@@ -64,22 +68,39 @@ Result<std::optional<Principal>> Authenticator::identify(const Request& request)
   return principal;
 }
 
-Result<std::string> Authenticator::session_for_token(const std::string& token) {
+Result<std::string> Authenticator::session_for_password(const std::string& user, const std::string& password,
+                                                        const std::string& agent) {
+  const auto hash = store_.password_of(user);
+  if (!hash) return tl::unexpected(hash.error());
+  if (!store::password_fits(*hash, password))
+    return fail(401, "Not signed in", "Name and password do not fit together. Whoever invited you can send a new link.",
+                "password");
+  auto person = store_.person(user);
+  if (!person) return tl::unexpected(person.error());
+  return store_.create_token(store::TokenKind::session, person->name, person->role, kSessionLifetime, agent);
+}
+
+Result<std::string> Authenticator::session_for_token(const std::string& token, const std::string& agent) {
   auto principal = identify_token(token);
   if (!principal) return tl::unexpected(principal.error());
+  if (*principal && (*principal)->is_script)
+    return fail(
+        403, "A token for scripts",
+        "This token is for scripts, as `Authorization: Bearer TOKEN`. In a browser sign in with name and password.",
+        "token");
   if (!*principal) {
     if (token.size() > kMaxTokenLength) return unknown_secret();
-    auto by_link = store_.redeem_owner_link(token, kSessionLifetime);
+    auto by_link = store_.redeem_owner_link(token, kSessionLifetime, agent);
     if (!by_link) return tl::unexpected(by_link.error());
     if (!*by_link) return unknown_secret();
     return **by_link;
   }
-  return store_.create_token(store::Store::TokenKind::session, (*principal)->user,
-                             std::string(name((*principal)->role)), kSessionLifetime);
+  return store_.create_token(store::TokenKind::session, (*principal)->user, (*principal)->role, kSessionLifetime,
+                             agent);
 }
 
-Result<std::string> Authenticator::session_for_link(const std::string& link) {
-  auto session = store_.redeem_owner_link(link, kSessionLifetime);
+Result<std::string> Authenticator::session_for_link(const std::string& link, const std::string& agent) {
+  auto session = store_.redeem_owner_link(link, kSessionLifetime, agent);
   if (!session) return tl::unexpected(session.error());
   if (!*session)
     return fail(401, "Link not valid",
@@ -87,12 +108,16 @@ Result<std::string> Authenticator::session_for_link(const std::string& link) {
   return **session;
 }
 
+void Authenticator::forget() {
+  std::lock_guard lock(mutex_);
+  ++changes_;
+  remembered_.clear();
+}
+
 Result<void> Authenticator::end_session(const std::string& session_token) {
-  {
-    std::lock_guard lock(mutex_);
-    remembered_.erase(sha256_hex(session_token));
-  }
-  return store_.revoke_token(session_token);
+  auto ended = store_.revoke_token(session_token);
+  forget();
+  return ended;
 }
 
 std::string Authenticator::set_cookie(const std::string& session_token, bool secure) {

@@ -28,10 +28,15 @@ class Authenticator {
   // What the request shows: a bearer token, else the session's cookie; empty when neither.
   static std::string secret_of(const Request& request);
 
-  // A new browser session for who holds the token (a script's, the owner's, or the secret of an owner link) or the link.
-  Result<std::string> session_for_token(const std::string& token);
-  Result<std::string> session_for_link(const std::string& link);
+  // The secret of a new browser session for who knows the password, holds the token (the owner's, or the secret of an owner link)
+  // or the link. `agent`: what the browser calls itself. 401: they do not fit. 403: a token for scripts.
+  Result<std::string> session_for_password(const std::string& user, const std::string& password,
+                                           const std::string& agent);
+  Result<std::string> session_for_token(const std::string& token, const std::string& agent);
+  Result<std::string> session_for_link(const std::string& link, const std::string& agent);
   Result<void> end_session(const std::string& session_token);
+  // What is remembered of anybody; for when accounts or tokens changed.
+  void forget();
 
   static std::string set_cookie(const std::string& session_token, bool secure);
   static std::string clear_cookie(bool secure);
@@ -45,6 +50,7 @@ class Authenticator {
   const std::string owner_token_;
   std::mutex mutex_;
   std::unordered_map<std::string, Remembered> remembered_;
+  std::uint64_t changes_ = 0;  // `forget`s so far
 };
 
 }  // namespace strata::net

@@ -76,6 +76,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         app_(connections_->app),
         bucket_(app_.options().requests_per_second, app_.options().request_burst) {
     ++app_.metrics().open_connections;
+    beast::error_code gone;
+    peer_ = stream_.socket().remote_endpoint(gone).address().to_string();
   }
   ~HttpSession() {
     if (!connections_->stopping) --app_.metrics().open_connections;
@@ -127,6 +129,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       co_return co_await send(malformed, method_of(head.get().method()), false);
     }
     const auto request = std::make_shared<Request>(std::move(*parsed));
+    request->peer = peer_;
     Response response;
     if (!bucket_.take()) {
       response = problem_response({429, "Too many requests", "This connection asks too fast; wait a second.", {}});
@@ -447,6 +450,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   App& app_;
   beast::flat_buffer buffer_;
   TokenBucket bucket_;
+  std::string peer_;            // address at the other end
   unsigned http_version_ = 11;  // of the request: 10 or 11
   bool handed_over_ = false;
 };

@@ -10,12 +10,6 @@
 namespace strata::net {
 namespace {
 
-constexpr std::pair<Role, std::string_view> kRoles[] = {{Role::viewer, "viewer"},
-                                                        {Role::annotator, "annotator"},
-                                                        {Role::curator, "curator"},
-                                                        {Role::administrator, "administrator"},
-                                                        {Role::owner, "owner"}};
-
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -29,14 +23,6 @@ std::string_view name(Method method) {
   static constexpr std::string_view kNames[] = {"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "?"};
   return kNames[static_cast<int>(method)];
 }
-
-std::optional<Role> parse_role(std::string_view text) {
-  for (const auto& [role, role_name] : kRoles)
-    if (role_name == text) return role;
-  return std::nullopt;
-}
-
-std::string_view name(Role role) { return kRoles[static_cast<int>(role)].second; }
 
 std::string_view Request::header(std::string_view lower_case_name) const {
   for (const auto& [key, value] : headers)

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/problem.h"
+#include "core/role.h"
 
 namespace strata::net {
 
@@ -22,16 +23,13 @@ namespace strata::net {
 enum class Method { get, head, post, put, patch, remove, options, unknown };
 std::string_view name(Method method);
 
-// Ascending: each may do what the ones before may.
-enum class Role { viewer, annotator, curator, administrator, owner };
-std::optional<Role> parse_role(std::string_view name);
-std::string_view name(Role role);
-
 // Who asks. `by_cookie`: the browser sent the secret by itself, so changing calls must prove where they come from.
 struct Principal {
   std::string user;
   Role role = Role::viewer;
   bool by_cookie = false;
+  bool is_script = false;   // it came with a token for scripts
+  std::int64_t secret = 0;  // id of the session or token; 0: the owner's token of the environment
 };
 
 using Headers = std::vector<std::pair<std::string, std::string>>;
@@ -48,6 +46,7 @@ struct Request {
   std::filesystem::path body_file;            // …in a file that is removed after the answer unless a handler moves it
   std::uint64_t body_bytes = 0;
   std::optional<Principal> principal;
+  std::string peer;  // address at the other end of the connection
 
   std::string_view header(std::string_view lower_case_name) const;  // empty when absent
   const std::string& param(const std::string& name) const { return params.at(name); }

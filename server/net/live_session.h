@@ -69,6 +69,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void on_binary();
   void on_closed();
   std::int64_t project_id() const { return room_->model().project_id; }  // of the model; any thread
+  const std::string& user() const { return principal_.user; }
   // What concerns the whole site or project; only who was welcomed hears it. Any thread.
   void tell(const protocol::ServerMessage& message);
 

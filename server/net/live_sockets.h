@@ -33,6 +33,15 @@ class LiveSockets {
   void close_those_of(const std::string& secret, int code, const std::string& reason) {
     close_if([&](const Entry& entry) { return entry.secret == secret; }, code, reason);
   }
+  // Of a person; those that may stay come back by themselves, as who the person is now.
+  void close_user(const std::string& user, int code, const std::string& reason) {
+    close_if(
+        [&](const Entry& entry) {
+          const auto session = entry.session.lock();
+          return session && session->user() == user;
+        },
+        code, reason);
+  }
 
  private:
   struct Entry {

@@ -62,4 +62,8 @@ Result<void> check_upgrade_origin(const Request& request, const std::vector<std:
               "Live connections are taken from this server's own pages only. Add the origin with --origin.", "Origin");
 }
 
+bool came_by_https(const Request& request) {
+  return request.header("x-forwarded-proto") == "https" || request.header("origin").starts_with("https://");
+}
+
 }  // namespace strata::net

@@ -38,6 +38,7 @@ struct RouteContext {
 
 void add_system_routes(Router& router, const RouteContext& context);
 void add_auth_routes(Router& router, const RouteContext& context);
+void add_people_routes(Router& router, const RouteContext& context);
 void add_project_routes(Router& router, const RouteContext& context);
 void add_model_routes(Router& router, const RouteContext& context);
 void add_import_routes(Router& router, const RouteContext& context);
@@ -95,6 +96,12 @@ void apply_edit(
 Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,
                                        const std::string& field);
 std::vector<std::string> split_list(const std::string& text);  // at commas, without empty parts
+
+// Who is signed in, as `GET /me` tells it; the second with the cookie of a session that was just opened.
+Result<Response> me(const RouteContext& context, const std::string& user, Role role);
+Result<Response> signed_in(const RouteContext& context, const Request& request, const std::string& session);
+// What the browser calls itself, for its person to know the session by.
+std::string agent_of(const Request& request);
 
 // 202 with the job and its address.
 Response job_response(const RouteContext& context, std::int64_t job);

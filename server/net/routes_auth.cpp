@@ -1,50 +1,197 @@
+// Signing in and out, and what people change of themselves.
 #include <memory>
-#include <mutex>
 
+#include "core/utf8.h"
 #include "net/origin.h"
 #include "net/routes.h"
-#include "net/token_bucket.h"
+#include "net/sign_in_gate.h"
+#include "net/wire.h"
+#include "store/password.h"
 
 namespace strata::net {
-namespace {
 
-constexpr double kLoginsPerSecond = 5;
-constexpr double kLoginBurst = 20;
-
-// Guards against guessing, for all connections together.
-class LoginGate {
- public:
-  Result<void> pass() {
-    std::lock_guard lock(mutex_);
-    if (bucket_.take()) return {};
-    return fail(429, "Too many sign-ins", "Wait a second and try again.");
-  }
-
- private:
-  std::mutex mutex_;
-  TokenBucket bucket_{kLoginsPerSecond, kLoginBurst};
-};
-
-// Through a proxy that speaks https: then the cookie must not travel without it.
-bool came_by_https(const Request& request) {
-  return request.header("x-forwarded-proto") == "https" || request.header("origin").starts_with("https://");
+Result<Response> me(const RouteContext& context, const std::string& user, Role role) {
+  const auto person = context.store.person(user);
+  if (!person) return tl::unexpected(person.error());
+  return json_response({{"user", person->name},
+                        {"full_name", person->full_name},
+                        {"role", std::string(name(role))},
+                        {"has_password", person->has_password}});
 }
 
-Response me(const Principal& principal) {
-  return json_response({{"user", principal.user}, {"role", std::string(name(principal.role))}});
+Result<Response> signed_in(const RouteContext& context, const Request& request, const std::string& session) {
+  auto principal = context.auth.identify_token(session);
+  if (!principal) return tl::unexpected(principal.error());
+  if (!*principal) return fail(401, "Not signed in", "This account was closed meanwhile.");
+  auto response = me(context, (*principal)->user, (*principal)->role);
+  if (response) response->with("Set-Cookie", Authenticator::set_cookie(session, came_by_https(request)));
+  return response;
+}
+
+std::string agent_of(const Request& request) {
+  const std::string_view agent = request.header("user-agent");
+  return is_utf8(agent) ? mended_utf8(agent.substr(0, 390)) : std::string();
+}
+
+namespace {
+
+using store::TokenKind;
+
+Result<Response> sign_in(const RouteContext& context, SignInGate& gate, const Request& request) {
+  const auto asked = body_of<protocol::Login>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const std::string user = asked->user.value_or(""), address = address_of(request);
+  if (auto free = gate.pass(address, user); !free) return tl::unexpected(free.error());
+  const auto session = asked->token ? context.auth.session_for_token(*asked->token, agent_of(request))
+                                    : context.auth.session_for_password(user, *asked->password, agent_of(request));
+  if (!session) return tl::unexpected(session.error());
+  gate.was_right(address, user);
+  return signed_in(context, request, *session);
+}
+
+Result<Response> sign_out(const RouteContext& context, const Request& request) {
+  // A script's token stays valid: it is revoked by name, not by using it here.
+  if (request.principal->by_cookie) {
+    const std::string session = Authenticator::secret_of(request);
+    auto ended = context.auth.end_session(session);
+    if (!ended) return tl::unexpected(ended.error());
+    context.live_sockets.close_those_of(session, kClosePolicy, "signed out");
+  }
+  return empty_response(204).with("Set-Cookie", Authenticator::clear_cookie(came_by_https(request)));
+}
+
+Result<Response> change_me(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::MePatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto person = context.store.person(request.user());
+  if (!person) return tl::unexpected(person.error());
+  person->full_name = asked->full_name;
+  if (auto done = context.store.update_person(*person); !done) return tl::unexpected(done.error());
+  return me(context, request.user(), request.principal->role);
+}
+
+Result<Response> change_password(const RouteContext& context, SignInGate& gate, const Request& request) {
+  const auto asked = body_of<protocol::PasswordChange>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  if (request.principal->is_script)
+    return fail(403, "Not for scripts", "A token for scripts changes no password. Do it in the page.");
+  if (auto good = store::check_password(asked->password, request.user(), "password"); !good)
+    return tl::unexpected(good.error());
+  const auto hash = context.store.password_of(request.user());
+  if (!hash) return tl::unexpected(hash.error());
+  if (!hash->empty()) {
+    // Whoever sits at somebody else's browser guesses no faster than from anywhere.
+    if (auto free = gate.pass(address_of(request), request.user()); !free) return tl::unexpected(free.error());
+    if (!asked->current || !store::password_fits(*hash, *asked->current))
+      return fail(422, "Password does not fit", "This is not the password that you have now.", "current");
+    gate.was_right(address_of(request), request.user());
+  }
+  auto set =
+      context.store.set_password(request.user(), store::hash_password(asked->password), request.principal->secret);
+  if (!set) return tl::unexpected(set.error());
+  context.auth.forget();
+  return empty_response(204);
+}
+
+std::optional<std::string> text_of(const std::optional<std::chrono::system_clock::time_point>& time) {
+  return time ? std::optional(utc_text(*time)) : std::nullopt;
+}
+
+nlohmann::json session_json(const store::Token& token, std::int64_t current) {
+  nlohmann::json json{{"id", token.id},
+                      {"created", utc_text(token.created)},
+                      {"expires", utc_text(token.expires.value_or(token.created))},
+                      {"agent", token.label},
+                      {"current", token.id == current}};
+  if (const auto used = text_of(token.last_used)) json["last_used"] = *used;
+  return json;
+}
+
+nlohmann::json token_json(const store::Token& token) {
+  nlohmann::json json{{"id", token.id},
+                      {"name", token.label},
+                      {"role", std::string(name(token.role))},
+                      {"created", utc_text(token.created)}};
+  if (const auto expires = text_of(token.expires)) json["expires"] = *expires;
+  if (const auto used = text_of(token.last_used)) json["last_used"] = *used;
+  return json;
+}
+
+template <class Write>
+Result<Response> list_of(const RouteContext& context, const Request& request, TokenKind kind, const char* member,
+                         Write write) {
+  const auto tokens = context.store.tokens(request.user(), kind);
+  if (!tokens) return tl::unexpected(tokens.error());
+  nlohmann::json list = nlohmann::json::array();
+  for (const store::Token& token : *tokens)
+    if (list.size() < kMaxPage) list.push_back(write(token));
+  return json_response({{member, std::move(list)}, {"total", tokens->size()}});
+}
+
+Result<Response> end_one(const RouteContext& context, const Request& request, TokenKind kind,
+                         const std::string& param) {
+  const auto id = parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), param);
+  if (!id) return tl::unexpected(id.error());
+  if (auto ended = context.store.revoke_token(request.user(), kind, *id); !ended) return tl::unexpected(ended.error());
+  context.auth.forget();
+  context.live_sockets.close_user(request.user(), kClosePolicy, "a session ended");
+  return empty_response(204);
+}
+
+Result<Response> end_others(const RouteContext& context, const Request& request) {
+  auto ended = context.store.revoke_tokens(request.user(), TokenKind::session, request.principal->secret);
+  if (!ended) return tl::unexpected(ended.error());
+  context.auth.forget();
+  context.live_sockets.close_user(request.user(), kClosePolicy, "other sessions ended");
+  return empty_response(204);
+}
+
+Result<Response> create_token(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::ScriptTokenCreate>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const Role own = request.principal->role;
+  const Role role = asked->role ? static_cast<Role>(static_cast<int>(*asked->role)) : own;
+  if (role > own)
+    return fail(403, "Not allowed", "Your role is " + std::string(name(own)) + ": a token of yours can do no more.",
+                "role");
+  const auto known = context.store.tokens(request.user(), TokenKind::script);
+  if (!known) return tl::unexpected(known.error());
+  if (known->size() >= kMaxPage)
+    return fail(409, "Too many tokens", "You have " + std::to_string(kMaxPage) + " tokens. Revoke some first.");
+  const auto secret = context.store.create_token(TokenKind::script, request.user(), role,
+                                                 std::chrono::hours(24 * asked->days), asked->name);
+  if (!secret) return tl::unexpected(secret.error());
+  const auto now = context.store.tokens(request.user(), TokenKind::script);
+  const auto made = context.store.find_token(*secret);
+  if (!now) return tl::unexpected(now.error());
+  if (!made) return tl::unexpected(made.error());
+  for (const store::Token& token : *now)
+    if (*made && token.id == (*made)->token)
+      return json_response({{"secret", *secret}, {"token", token_json(token)}}, 201).with("Cache-Control", "no-store");
+  return fail(409, "Account closed", "The account was closed meanwhile.");
 }
 
 }  // namespace
 
 void add_auth_routes(Router& router, const RouteContext& context) {
-  auto gate = std::make_shared<LoginGate>();
+  auto gate = std::make_shared<SignInGate>();
+  const auto add = [&](Method method, std::string pattern, auto answer, bool open = false) {
+    const bool has_body = method == Method::post || method == Method::patch;
+    router.add({.method = method,
+                .pattern = std::move(pattern),
+                .handler = answering(answer),
+                .role = open ? std::nullopt : std::optional(Role::viewer),
+                .body = has_body ? BodyKind::memory : BodyKind::none,
+                .max_body = has_body ? context.options.max_json_bytes : 0});
+  };
 
   router.add({.method = Method::get,
               .pattern = "/login",
               .handler = answering([&context, gate](const Request& request) -> Result<Response> {
-                if (auto free = gate->pass(); !free) return tl::unexpected(free.error());
-                auto session = context.auth.session_for_link(request.query_or("link", {}));
+                if (auto free = gate->pass(address_of(request), {}); !free) return tl::unexpected(free.error());
+                auto session = context.auth.session_for_link(request.query_or("link", {}), agent_of(request));
                 if (!session) return tl::unexpected(session.error());
+                gate->was_right(address_of(request), {});
                 return empty_response(303)
                     .with("Location", "/")
                     .with("Set-Cookie", Authenticator::set_cookie(*session, came_by_https(request)))
@@ -52,40 +199,31 @@ void add_auth_routes(Router& router, const RouteContext& context) {
               }),
               .role = std::nullopt,
               .query = {"link"}});
-
-  router.add(
-      {.method = Method::post,
-       .pattern = "/api/v1/login",
-       .handler = answering([&context, gate](const Request& request) -> Result<Response> {
-         if (auto free = gate->pass(); !free) return tl::unexpected(free.error());
-         auto asked = body_of<protocol::Login>(request);
-         if (!asked) return tl::unexpected(asked.error());
-         auto session = context.auth.session_for_token(asked->token);
-         if (!session) return tl::unexpected(session.error());
-         auto principal = context.auth.identify_token(*session);
-         if (!principal) return tl::unexpected(principal.error());
-         return me(principal->value()).with("Set-Cookie", Authenticator::set_cookie(*session, came_by_https(request)));
-       }),
-       .role = std::nullopt,
-       .body = BodyKind::memory,
-       .max_body = context.options.max_json_bytes});
-
+  add(
+      Method::post, "/api/v1/login",
+      [&context, gate](const Request& request) { return sign_in(context, *gate, request); }, true);
   router.add({.method = Method::post,
               .pattern = "/api/v1/logout",
-              .handler = answering([&context](const Request& request) -> Result<Response> {
-                // A script's token stays valid: it is revoked by name, not by using it here.
-                if (request.principal->by_cookie) {
-                  const std::string session = Authenticator::secret_of(request);
-                  auto ended = context.auth.end_session(session);
-                  if (!ended) return tl::unexpected(ended.error());
-                  context.live_sockets.close_those_of(session, kClosePolicy, "signed out");
-                }
-                return empty_response(204).with("Set-Cookie", Authenticator::clear_cookie(came_by_https(request)));
-              })});
-
-  router.add({.method = Method::get,
-              .pattern = "/api/v1/me",
-              .handler = answering([](const Request& request) -> Result<Response> { return me(*request.principal); })});
+              .handler = answering([&context](const Request& request) { return sign_out(context, request); })});
+  add(Method::get, "/api/v1/me",
+      [&context](const Request& request) { return me(context, request.user(), request.principal->role); });
+  add(Method::patch, "/api/v1/me", [&context](const Request& request) { return change_me(context, request); });
+  add(Method::post, "/api/v1/me/password",
+      [&context, gate](const Request& request) { return change_password(context, *gate, request); });
+  add(Method::get, "/api/v1/me/sessions", [&context](const Request& request) {
+    return list_of(context, request, TokenKind::session, "sessions",
+                   [&](const store::Token& token) { return session_json(token, request.principal->secret); });
+  });
+  add(Method::remove, "/api/v1/me/sessions",
+      [&context](const Request& request) { return end_others(context, request); });
+  add(Method::remove, "/api/v1/me/sessions/{session}",
+      [&context](const Request& request) { return end_one(context, request, TokenKind::session, "session"); });
+  add(Method::get, "/api/v1/me/tokens", [&context](const Request& request) {
+    return list_of(context, request, TokenKind::script, "tokens", token_json);
+  });
+  add(Method::post, "/api/v1/me/tokens", [&context](const Request& request) { return create_token(context, request); });
+  add(Method::remove, "/api/v1/me/tokens/{token}",
+      [&context](const Request& request) { return end_one(context, request, TokenKind::script, "token"); });
 }
 
 }  // namespace strata::net

@@ -22,6 +22,9 @@ class TokenBucket {
     return true;
   }
 
+  // What was taken last cost nothing.
+  void give_back() { tokens_ = std::min(burst_, tokens_ + 1); }
+
  private:
   double per_second_, burst_, tokens_;
   Clock::time_point filled_at_;

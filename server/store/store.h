@@ -24,6 +24,7 @@
 #include "core/tool.h"
 #include "store/first_answer.h"
 #include "store/journal.h"
+#include "store/people.h"
 #include "store/pg_limits.h"
 #include "store/table_changes.h"
 
@@ -278,19 +279,37 @@ class Store {
   // --- answers to changing HTTP calls, by Idempotency-Key; kept for 7 days
   Result<std::optional<nlohmann::json>> find_answer(const std::string& key);
 
-  // --- people: users, sessions and tokens; secrets are stored hashed (SHA-256 of random 256-bit tokens)
-  enum class TokenKind { session, script, owner_link };
-  struct Principal {
-    std::string user;
-    std::string role;
-    TokenKind kind;
-  };  // role: "owner"
-  Result<std::string> create_token(TokenKind kind, const std::string& user, const std::string& role,
-                                   std::optional<std::chrono::seconds> lifetime);
-  Result<std::optional<Principal>> find_token(const std::string& token);
-  // → session token; a link may be used again until revoked
-  Result<std::optional<std::string>> redeem_owner_link(const std::string& link, std::chrono::seconds lifetime);
-  Result<void> revoke_token(const std::string& token);
+  // --- people: accounts, sessions and tokens. Nobody is deleted for good: a name that was somebody's is never somebody else's.
+  Result<std::vector<Person>> people();  // by name
+  Result<Person> person(const std::string& name);
+  // 409: the name is taken, in whatever case.
+  Result<Person> create_person(const std::string& name, const std::string& full_name, Role role);
+  // What `person` says of full_name, role and disabled. Who is disabled is signed out everywhere.
+  Result<Person> update_person(const Person& person);
+  // Their account ends, and what they did stays under a name that tells nothing, here and in all journals.
+  Result<void> delete_person(const std::string& name);
+  // The hash (store/password.h); empty where there is none, or nobody of the name who may sign in. In whatever case.
+  Result<std::string> password_of(const std::string& name);
+  // Ends all sessions but `kept`, and all invitations.
+  Result<void> set_password(const std::string& name, const std::string& hash, std::optional<std::int64_t> kept);
+
+  // The secret of a new one. `user` is made, with that role, where there is nobody of the name.
+  Result<std::string> create_token(TokenKind kind, const std::string& user, Role role,
+                                   std::optional<std::chrono::seconds> lifetime, const std::string& label = {});
+  // Nothing: unknown, expired or revoked, or of somebody who may not sign in.
+  Result<std::optional<Principal>> find_token(const std::string& secret);
+  // Those that are good, the newest first.
+  Result<std::vector<Token>> tokens(const std::string& user, TokenKind kind);
+  Result<std::optional<std::string>> redeem_owner_link(const std::string& link, std::chrono::seconds lifetime,
+                                                       const std::string& label = {});  // the secret of a session
+  // Sets the password, uses the invitation up, and opens a session, whose secret is told. Nothing: it is none.
+  Result<std::optional<std::string>> accept_invitation(const std::string& invitation, const std::string& hash,
+                                                       const std::optional<std::string>& full_name,
+                                                       std::chrono::seconds lifetime, const std::string& label);
+  Result<void> revoke_token(const std::string& secret);
+  // 404: the person has none of the kind with that id.
+  Result<void> revoke_token(const std::string& user, TokenKind kind, std::int64_t id);
+  Result<void> revoke_tokens(const std::string& user, TokenKind kind, std::optional<std::int64_t> kept = {});
 
  private:
   Store();

@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+
+#include "store/password.h"
 #include "store/pg.h"
 #include "support/test_cluster.h"
 
@@ -10,36 +14,36 @@ using std::chrono::seconds;
 
 TEST(Tokens, a_token_is_found_until_it_is_revoked_or_expires) {
   auto store = test::fresh_store();
-  const auto token = store->create_token(Store::TokenKind::script, "Ada", "owner", {}).value();
+  const auto token = store->create_token(TokenKind::script, "Ada", Role::owner, {}).value();
   EXPECT_EQ(token.size(), 43u);
   EXPECT_EQ(token.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"),
             std::string::npos);
   const auto found = store->find_token(token).value();
   ASSERT_TRUE(found);
   EXPECT_EQ(found->user, "Ada");
-  EXPECT_EQ(found->role, "owner");
-  EXPECT_EQ(found->kind, Store::TokenKind::script);
+  EXPECT_EQ(found->role, Role::owner);
+  EXPECT_EQ(found->kind, TokenKind::script);
   ASSERT_TRUE(store->revoke_token(token));
   EXPECT_FALSE(store->find_token(token).value());
-  const auto old = store->create_token(Store::TokenKind::session, "Ada", "owner", seconds(-1)).value();
+  const auto old = store->create_token(TokenKind::session, "Ada", Role::owner, seconds(-1)).value();
   EXPECT_FALSE(store->find_token(old).value());
-  const auto fresh = store->create_token(Store::TokenKind::session, "Ada", "owner", seconds(3600)).value();
+  const auto fresh = store->create_token(TokenKind::session, "Ada", Role::owner, seconds(3600)).value();
   EXPECT_TRUE(store->find_token(fresh).value());
-  EXPECT_NE(fresh, store->create_token(Store::TokenKind::session, "Ada", "owner", seconds(3600)).value());
+  EXPECT_NE(fresh, store->create_token(TokenKind::session, "Ada", Role::owner, seconds(3600)).value());
 }
 
 TEST(Tokens, guesses_and_oddities_are_nobody) {
   auto store = test::fresh_store();
   for (const std::string guess : {"", "x", "' OR 1=1 --", "\xff\xff"})
     EXPECT_FALSE(store->find_token(guess).value()) << guess;
-  EXPECT_EQ(store->create_token(Store::TokenKind::script, "", "owner", {}).error().status, 400);
-  EXPECT_EQ(store->create_token(Store::TokenKind::script, "\xff", "owner", {}).error().status, 400);
+  EXPECT_EQ(store->create_token(TokenKind::script, "", Role::owner, {}).error().status, 400);
+  EXPECT_EQ(store->create_token(TokenKind::script, "\xff", Role::owner, {}).error().status, 400);
 }
 
 TEST(Tokens, secrets_are_not_in_the_database) {
   const auto dsn = test::fresh_database();
   auto store = test::open_store(dsn);
-  const auto token = store->create_token(Store::TokenKind::script, "Ada", "owner", {}).value();
+  const auto token = store->create_token(TokenKind::script, "Ada", Role::owner, {}).value();
   auto rows = PgConnection::connect(dsn)->query(
       "SELECT octet_length(hash)::bigint, position(convert_to($1, 'UTF8') in hash) "
       "FROM tokens",
@@ -51,18 +55,121 @@ TEST(Tokens, secrets_are_not_in_the_database) {
 
 TEST(Tokens, an_owner_link_opens_sessions_until_it_is_revoked) {
   auto store = test::fresh_store();
-  const auto link = store->create_token(Store::TokenKind::owner_link, "owner", "owner", {}).value();
+  const auto link = store->create_token(TokenKind::owner_link, "owner", Role::owner, {}).value();
   const auto first = store->redeem_owner_link(link, seconds(60)).value();
   const auto second = store->redeem_owner_link(link, seconds(60)).value();
   ASSERT_TRUE(first && second);
   EXPECT_NE(*first, *second);
-  EXPECT_EQ(store->find_token(*first).value()->kind, Store::TokenKind::session);
-  EXPECT_EQ(store->find_token(*first).value()->role, "owner");
+  EXPECT_EQ(store->find_token(*first).value()->kind, TokenKind::session);
+  EXPECT_EQ(store->find_token(*first).value()->role, Role::owner);
   EXPECT_FALSE(store->redeem_owner_link(*first, seconds(60)).value());  // a session is no link
   EXPECT_FALSE(store->redeem_owner_link("guess", seconds(60)).value());
   ASSERT_TRUE(store->revoke_token(link));
   EXPECT_FALSE(store->redeem_owner_link(link, seconds(60)).value());
   EXPECT_TRUE(store->find_token(*first).value());
+}
+
+TEST(People, names_are_one_persons_in_any_case) {
+  auto store = test::fresh_store();
+  const Person ada = store->create_person("Ada", "Ada L.", Role::annotator).value();
+  EXPECT_EQ(store->create_person("aDA", "", Role::viewer).error().status, 409);
+  EXPECT_EQ(store->person("ADA").value().id, ada.id);
+  EXPECT_EQ(store->person("nobody").error().status, 404);
+  EXPECT_EQ(store->person("\xff").error().status, 404);
+  EXPECT_EQ(store->password_of("ada").value(), "");
+  ASSERT_TRUE(store->set_password("ada", "a hash", {}));
+  EXPECT_EQ(store->password_of("ADA").value(), "a hash");
+  EXPECT_TRUE(store->person("Ada").value().has_password);
+  std::vector<std::string> names;
+  const auto people = store->people().value();
+  for (const Person& person : people) names.push_back(person.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"Ada", "owner"}));
+}
+
+TEST(People, a_token_does_no_more_than_its_person_and_a_session_the_same) {
+  auto store = test::fresh_store();
+  Person ada = store->create_person("Ada", "", Role::curator).value();
+  const auto session = store->create_token(TokenKind::session, "Ada", Role::curator, seconds(60)).value();
+  const auto weak = store->create_token(TokenKind::script, "Ada", Role::viewer, {}).value();
+  const auto strong = store->create_token(TokenKind::script, "Ada", Role::owner, {}).value();
+  const auto role_of = [&](const std::string& secret) { return store->find_token(secret).value()->role; };
+  EXPECT_EQ(role_of(session), Role::curator);
+  EXPECT_EQ(role_of(weak), Role::viewer);
+  EXPECT_EQ(role_of(strong), Role::curator);
+  ada.role = Role::administrator;
+  ASSERT_TRUE(store->update_person(ada));
+  EXPECT_EQ(role_of(session), Role::administrator);
+  EXPECT_EQ(role_of(weak), Role::viewer);
+  ada.disabled = true;
+  ASSERT_TRUE(store->update_person(ada));
+  for (const auto& secret : {session, weak, strong}) EXPECT_FALSE(store->find_token(secret).value());
+  ada.disabled = false;
+  ASSERT_TRUE(store->update_person(ada));
+  EXPECT_FALSE(store->find_token(session).value());
+  EXPECT_TRUE(store->find_token(weak).value());
+}
+
+TEST(People, an_invitation_is_good_for_one_of_many_who_use_it_at_once) {
+  auto store = test::fresh_store();
+  ASSERT_TRUE(store->create_person("Ada", "", Role::annotator));
+  const auto invitation = store->create_token(TokenKind::invitation, "Ada", Role::annotator, seconds(60)).value();
+  EXPECT_FALSE(store->redeem_owner_link(invitation, seconds(60)).value());
+  std::atomic<int> in = 0;
+  {
+    std::vector<std::jthread> browsers;
+    for (int i = 0; i < 8; ++i)
+      browsers.emplace_back([&] {
+        const auto session = store->accept_invitation(invitation, "hash", "Ada L.", seconds(60), "");
+        if (session && *session) ++in;
+      });
+  }
+  EXPECT_EQ(in, 1);
+  EXPECT_EQ(store->person("Ada").value().full_name, "Ada L.");
+  EXPECT_FALSE(store->accept_invitation("guess", "hash", {}, seconds(60), "").value());
+}
+
+TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
+  const auto dsn = test::fresh_database();
+  auto store = test::open_store(dsn);
+  const Person ada = store->create_person("Ada Lovelace", "The Countess", Role::annotator).value();
+  ASSERT_TRUE(store->create_token(TokenKind::script, "Ada Lovelace", Role::annotator, {}, "Countess's script"));
+  Table finds;
+  finds.project_id = 1;
+  finds.name = "Finds";
+  finds.columns.resize(1);
+  finds.columns[0].name = "Code";
+  finds = store->create_table(finds).value();
+  WriteRecords asked;
+  asked.records = {{{}, {{finds.columns[0].id, "F 1"}}, {}}};
+  ASSERT_TRUE(store->write_records(finds.id, asked, "Ada Lovelace"));
+  ASSERT_TRUE(store->delete_person("ada lovelace"));
+  auto connection = PgConnection::connect(dsn);
+  // Whatever tables there are, and whatever columns come to them.
+  auto tables =
+      connection->query("SELECT format('%I.%I', schemaname, tablename) FROM pg_tables WHERE schemaname = 'public'");
+  ASSERT_TRUE(tables);
+  for (int i = 0; i < tables->rows(); ++i) {
+    auto found = connection->query_once("SELECT count(*) FROM " + tables->text(i, 0) +
+                                        " t WHERE t::text ~* 'lovelace|countess'");
+    ASSERT_TRUE(found) << found.error().detail;
+    EXPECT_EQ(found->integer(0, 0), 0) << tables->text(i, 0);
+  }
+  const auto history = connection->query("SELECT count(*) FROM table_edits WHERE user_name = $1",
+                                         Params().text("former-" + std::to_string(ada.id)));
+  EXPECT_EQ(history->integer(0, 0), 1);
+  EXPECT_EQ(store->create_person("former-" + std::to_string(ada.id), "", Role::viewer).error().status, 409);
+  EXPECT_TRUE(store->create_person("Ada Lovelace", "", Role::viewer));
+}
+
+TEST(Passwords, fit_only_their_own_hash) {
+  const std::string hash = hash_password("seven blue herons");
+  EXPECT_TRUE(hash.starts_with("$argon2id$")) << hash;
+  EXPECT_NE(hash, hash_password("seven blue herons"));
+  EXPECT_TRUE(password_fits(hash, "seven blue herons"));
+  for (const char* guess : {"", "seven blue heron", "Seven blue herons", "seven blue herons "})
+    EXPECT_FALSE(password_fits(hash, guess)) << guess;
+  for (const char* broken : {"", "x", "$argon2id$v=19$m=65536,t=2,p=1$", "a password that nobody has"})
+    EXPECT_FALSE(password_fits(broken, "a password that nobody has")) << broken;
 }
 
 FirstAnswer<Project> answer_of(const std::string& key) {

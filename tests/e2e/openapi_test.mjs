@@ -36,11 +36,14 @@ const secrets = () =>
     ["(a viewer's token)", server.viewer],
     ["(the owner's link)", new URL(server.link).searchParams.get("link")],
     ["(a job)", site.job],
+    ["(an invitation)", site.invitations?.[0]],
+    ["(an invitation to accept)", site.invitations?.[1]],
   ]);
 
 function bytes_of(body) {
   if (body === null) return null;
-  if (body.json !== undefined) return Buffer.from(JSON.stringify(body.json).replace("(the owner's token)", server.token));
+  if (body.json !== undefined)
+    return Buffer.from([...secrets()].reduce((text, [word, secret]) => text.replaceAll(word, secret), JSON.stringify(body.json)));
   if (body.text !== undefined) return Buffer.from(body.text);
   if (body.hex !== undefined) return Buffer.from(body.hex, "hex");
   if (body.file) return site.files[body.file];
@@ -143,7 +146,7 @@ const begin = performance.now();
 try {
   console.log(`STRATA_SEED=${seed}`);
   await server.start();
-  server.viewer = server.add_person("Vera", "viewer");
+  server.viewer = (await server.add_person("Vera", "viewer")).token;
   await site.make();
   const chosen = contract.operations.filter(({ id }) => (process.env.STRATA_OPERATION ?? id) === id);
   for (let round = 0; round < kRounds; ++round) {

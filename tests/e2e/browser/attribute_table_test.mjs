@@ -161,7 +161,7 @@ try {
   await cell(2, "Period").getByText("1560~").waitFor();
 
   say("what others do is seen at once; of two who write into one cell the second is asked");
-  const anna = server.add_person("anna", "annotator");
+  const anna = (await server.add_person("anna", "annotator")).token;
   const as_anna = async (method, path, body) => {
     const answer = await fetch(`${server.url}/api/v1${path}`, {
       method,

@@ -56,7 +56,7 @@ try {
   for (const other of layers.layers) if (other.id !== layer.id) await server.json("PATCH", `/models/${id}/layers/${other.id}`, { visible: false });
 
   say("somebody else opens the same model and looks from another side");
-  await bea.sign_in(server, server.add_person("bea", "annotator"));
+  await bea.sign_in(server, await server.add_person("bea", "annotator"));
   await bea.page.goto(`${server.url}/models/${id}`);
   await bea.drawn();
   // She may paint, but not say what layers there are and how large the model is.

@@ -137,7 +137,7 @@ try {
   assert.ok(depth.texels > 1000 && depth.min >= 0 && depth.max <= 7.5, JSON.stringify(depth).slice(0, 200));
 
   say("who may only paint adds no names to the legend, and paints those that are there");
-  const annotator = server.add_person("ann", "annotator");
+  const annotator = (await server.add_person("ann", "annotator")).token;
   const as_annotator = (query) => {
     const form = new FormData();
     for (const name of ["walls.shp", "walls.dbf"]) form.append("files", new Blob([readFileSync(file(name))]), name);

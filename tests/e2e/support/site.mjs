@@ -118,6 +118,8 @@ export class Site {
   async make() {
     const { server } = this;
     await server.json("POST", "/projects", { name: "Site" });
+    this.invitations = [];
+    for (const user of ["guest", "newcomer"]) this.invitations.push((await server.json("POST", "/users", { user })).path.split("#")[1]);
     for (const name of ["Wall", "Wall 2"]) await this.#import(name, "site");
     await this.#post("/projects/site/terms?name=Damage", "terms.csv", "text/csv");
     await server.json("POST", "/projects/site/tables", { name: "Units", columns: kColumns.filter(({ target }) => target !== "units") });
@@ -210,6 +212,17 @@ export class Site {
           (await this.#post(`/tables/units/records/2/attachments?name=${encodeURIComponent(`${name}.txt`)}`, "letter.txt")).attachments[0]
             .id,
         );
+      case "user":
+        return (await server.json("POST", "/users", { user: `spare-${this.#made}` })).user.user;
+      case "token":
+        return String((await server.json("POST", "/me/tokens", { name })).token.id);
+      case "session":
+        await fetch(`${server.url}/api/v1/login`, {
+          method: "POST",
+          headers: { "Content-Type": "application/json", "X-Forwarded-For": `10.0.0.${this.#made % 250}` },
+          body: JSON.stringify({ token: server.token }),
+        });
+        return String((await server.json("GET", "/me/sessions")).sessions[0]?.id ?? 1);
       case "job":
         return String((await this.#post(`/models?filename=wall.ply&name=${encodeURIComponent(name)}`, "wall.ply")).id);
       default:

@@ -77,13 +77,21 @@ export class StrataServer {
     if (bad.length > 0) throw new Error(`the log of the server is not clean:\n${bad.slice(0, 50).join("\n")}`);
   }
 
-  /** A person beside the owner: there is no address for it yet, so it is written into the database. Returns the token. */
-  add_person(name, role) {
-    const token = randomBytes(24).toString("hex");
-    const sql = `INSERT INTO users (name, role) VALUES ('${name}', '${role}');
-      INSERT INTO tokens (hash, kind, user_name, role) VALUES (sha256('${token}'), 'script', '${name}', '${role}')`;
-    execFileSync("psql", ["-h", join(this.data, "postgres"), "-U", "strata", "-d", "strata", "-q", "-v", "ON_ERROR_STOP=1", "-c", sql]);
-    return token;
+  /** A person beside the owner: what they sign in with, and a token for their scripts. */
+  async add_person(user, role) {
+    const password = `${user} and seven blue herons`;
+    const invitation = (await this.json("POST", "/users", { user, role })).path.split("#")[1];
+    const post = (path, body, headers = {}) =>
+      fetch(`${this.url}/api/v1${path}`, {
+        method: "POST",
+        headers: { "Content-Type": "application/json", Origin: this.url, ...headers },
+        body: JSON.stringify(body),
+      });
+    const joined = await post("/invitations/accept", { invitation, password });
+    if (!joined.ok) throw new Error(`joining: ${joined.status} ${await joined.text()}`);
+    const made = await post("/me/tokens", { name: "tests" }, { Cookie: joined.headers.get("set-cookie").split(";")[0] });
+    if (!made.ok) throw new Error(`a token: ${made.status} ${await made.text()}`);
+    return { user, password, token: (await made.json()).secret };
   }
 
   async request(method, path, body) {

@@ -4,6 +4,7 @@ import { fc, strange_text } from "./arbitraries.mjs";
 import { kColumnSlugs, kLayers } from "./site.mjs";
 
 /** Stands in a path for something that is made for this call alone. */
+const kPassword = "seven blue herons at noon";
 export const kSpare = "(a spare one)";
 
 export const one = (...values) => fc.constantFrom(...values);
@@ -127,6 +128,9 @@ export const path_words = {
   name: mostly("wall.ply"),
   format: one("png", "npy", "tif"),
   template: mostly("stone-condition", "excavation-units"),
+  user: mostly("guest", "Vera"),
+  session: mostly("1"),
+  token: mostly("1"),
 };
 export const query_words = {
   at: at.map(String),
@@ -201,6 +205,15 @@ const what_of_texels = one({}, { texels: "clear" }, { texels: "reassign", to: "2
 /** What an operation wants that its schema and the words above do not say. What takes something away takes a spare one; what changes how things are called or kept is done to what others do not need. */
 export const particulars = {
   login: json({ by_name: { token: fc.oneof(one("(the owner's token)"), strange_text) } }),
+  change_password: json({ by_schema: { PasswordChange: one({ password: kPassword }, { current: kPassword, password: kPassword }, { password: "short" }) } }),
+  end_session: { path: spare("session") },
+  revoke_token: { path: spare("token") },
+  get_user: { path: { user: mostly("guest", "VERA", "owner") } },
+  change_user: { path: spare("user", "guest") },
+  delete_user: { path: spare("user", "owner") },
+  invite_again: { path: spare("user", "owner") },
+  show_invitation: json({ by_name: { invitation: one("(an invitation)", "(an invitation)", "guess") } }),
+  accept_invitation: json({ by_name: { invitation: one("(an invitation to accept)", "guess"), password: one(kPassword, "short") } }),
   delete_project: { path: spare("project", "site") },
   delete_model: { path: spare("model") },
   delete_layer: { path: { model: one("wall"), ...spare("layer") } },

@@ -762,7 +762,7 @@ export interface Problem {
   rows?: RecordsReport;
 }
 
-/** Sign-in. By name and password, or by a token or the secret of an owner link. */
+/** Sign-in. By name and password, or by the secret of an owner link. */
 export interface Login {
   /** In any case. */
   user?: string;
@@ -782,7 +782,7 @@ export interface Me {
 export interface PasswordChange {
   current?: string;
   /** Ten characters or more; not the name. */
-  new: string;
+  password: string;
 }
 
 /** Changes of oneself. */

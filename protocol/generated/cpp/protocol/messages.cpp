@@ -1264,13 +1264,13 @@ nlohmann::json to_json(const Login& value) {
 
 void read(const nlohmann::json& json, PasswordChange& value) {
   read_optional_member(json, "current", value.current);
-  read_member(json, "new", value.new);
+  read_member(json, "password", value.password);
 }
 
 nlohmann::json to_json(const PasswordChange& value) {
   nlohmann::json json = nlohmann::json::object();
   write_optional_member(json, "current", value.current);
-  write_member(json, "new", value.new);
+  write_member(json, "password", value.password);
   return json;
 }
 

@@ -955,7 +955,7 @@ nlohmann::json to_json(const ProblemMessage& value);
 template <>
 inline constexpr Schema kSchemaOf<ProblemMessage> = Schema::ProblemMessage;
 
-// Sign-in. By name and password, or by a token or the secret of an owner link.
+// Sign-in. By name and password, or by the secret of an owner link.
 struct Login {
   std::optional<std::string> user;  // In any case.
   std::optional<std::string> password;
@@ -970,7 +970,7 @@ inline constexpr Schema kSchemaOf<Login> = Schema::Login;
 // New password. Whoever has one already says it. Ends all other sessions.
 struct PasswordChange {
   std::optional<std::string> current;
-  std::string new;  // Ten characters or more; not the name.
+  std::string password;  // Ten characters or more; not the name.
   bool operator==(const PasswordChange&) const = default;
 };
 void read(const nlohmann::json& json, PasswordChange& value);

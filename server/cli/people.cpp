@@ -1,0 +1,220 @@
+// `strata user` and `strata token`: accounts from the server's own machine, also while a server runs there.
+#include <iomanip>
+#include <iostream>
+#include <iterator>
+
+#include "cli/commands.h"
+#include "cli/open_database.h"
+#include "store/password.h"
+
+namespace strata::cli {
+namespace {
+
+using store::TokenKind;
+
+constexpr std::chrono::hours kInvitationLifetime{24 * 7};
+
+struct PeopleOptions {
+  DataOptions data;
+  std::string name, role, full_name, user, url = "http://127.0.0.1:8080";
+  std::int64_t id = 0;
+  int days = 365;
+  bool password_stdin = false;
+};
+using Options = std::shared_ptr<PeopleOptions>;
+using Work = std::function<Result<void>(store::Store&, const PeopleOptions&)>;
+
+// A command below `strata user` or `strata token`.
+CLI::App* add(CLI::App& app, const Options& options, const char* name, const char* what) {
+  auto* command = app.add_subcommand(name, what);
+  add_data_options(*command, options->data);
+  return command;
+}
+
+void add_role(CLI::App& command, const Options& options, const char* what) {
+  command.add_option("--role", options->role, what)
+      ->check(CLI::IsMember({"viewer", "annotator", "curator", "administrator"}));
+}
+
+void add_password(CLI::App& command, const Options& options) {
+  command.add_flag("--password-stdin", options->password_stdin,
+                   "Read the password from standard input, instead of printing a link to choose one");
+  command.add_option("--url", options->url, "Address of the server, for the link")->capture_default_str();
+}
+
+// By the password that is given, or by a link under which the person chooses one.
+Result<void> let_in(store::Store& store, const PeopleOptions& options, const store::Person& person) {
+  if (options.password_stdin) {
+    std::string password{std::istreambuf_iterator<char>(std::cin), {}};
+    while (!password.empty() && (password.back() == '\n' || password.back() == '\r')) password.pop_back();
+    if (auto good = store::check_password(password, person.name, "--password-stdin"); !good) return good;
+    return store.set_password(person.name, store::hash_password(password), {});
+  }
+  if (auto old = store.revoke_tokens(person.name, TokenKind::invitation); !old) return old;
+  auto secret = store.create_token(TokenKind::invitation, person.name, person.role, kInvitationLifetime);
+  if (!secret) return tl::unexpected(secret.error());
+  std::cout << "For " << person.name << ", to choose a password within 7 days:\n"
+            << options.url << "/join#" << *secret << std::endl;
+  return {};
+}
+
+std::string day_of(const std::optional<std::chrono::system_clock::time_point>& time) {
+  if (!time) return "never";
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(*time);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  char text[20];
+  std::strftime(text, sizeof text, "%Y-%m-%d", &utc);
+  return text;
+}
+
+Result<void> add_person(store::Store& store, const PeopleOptions& options) {
+  const bool is_name = !options.name.empty() && std::ranges::all_of(options.name, [](unsigned char c) {
+    return std::isalnum(c) || std::string_view("._@-").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (!is_name || options.name.size() > 64 || !std::isalnum(static_cast<unsigned char>(options.name.front())))
+    return fail(400, "Bad name",
+                "A name has 1 to 64 letters, digits, `.`, `_`, `@` and `-`, and begins with a letter or digit.");
+  const auto person =
+      store.create_person(options.name, options.full_name, parse_role(options.role).value_or(Role::annotator));
+  if (!person) return tl::unexpected(person.error());
+  return let_in(store, options, *person);
+}
+
+Result<void> list_people(store::Store& store, const PeopleOptions&) {
+  const auto people = store.people();
+  if (!people) return tl::unexpected(people.error());
+  for (const store::Person& person : *people)
+    std::cout << std::left << std::setw(24) << person.name << std::setw(15) << name(person.role) << std::setw(10)
+              << (person.disabled       ? "disabled"
+                  : person.has_password ? "active"
+                                        : "invited")
+              << "last seen " << std::setw(12) << day_of(person.last_seen) << person.full_name << "\n";
+  return {};
+}
+
+// Changes of one who is there.
+Work changing(std::function<Result<void>(store::Store&, const PeopleOptions&, store::Person)> change) {
+  return [change = std::move(change)](store::Store& store, const PeopleOptions& options) -> Result<void> {
+    auto person = store.person(options.name);
+    if (!person) return tl::unexpected(person.error());
+    return change(store, options, std::move(*person));
+  };
+}
+
+Result<void> update(store::Store& store, const store::Person& person) {
+  if (auto done = store.update_person(person); !done) return tl::unexpected(done.error());
+  return {};
+}
+
+Result<void> set_role(store::Store& store, const PeopleOptions& options, store::Person person) {
+  if (person.role == Role::owner) return fail(409, "The owner", "The owner stays the owner.");
+  person.role = *parse_role(options.role);
+  return update(store, person);
+}
+
+Result<void> remove_person(store::Store& store, const PeopleOptions&, store::Person person) {
+  if (person.role == Role::owner) return fail(409, "The owner", "A server keeps its owner.");
+  return store.delete_person(person.name);
+}
+
+Result<void> add_token_of(store::Store& store, const PeopleOptions& options) {
+  const auto person = store.person(options.user);
+  if (!person) return tl::unexpected(person.error());
+  const Role role = parse_role(options.role).value_or(person->role);
+  if (role > person->role)
+    return fail(400, "Role above the person's",
+                person->name + " is " + std::string(name(person->role)) + ": a token can do no more.", "--role");
+  auto secret =
+      store.create_token(TokenKind::script, person->name, role, std::chrono::hours(24 * options.days), options.name);
+  if (!secret) return tl::unexpected(secret.error());
+  std::cout << *secret << std::endl;
+  return {};
+}
+
+Result<void> list_tokens(store::Store& store, const PeopleOptions& options) {
+  const auto person = store.person(options.user);
+  if (!person) return tl::unexpected(person.error());
+  const auto tokens = store.tokens(person->name, TokenKind::script);
+  if (!tokens) return tl::unexpected(tokens.error());
+  for (const store::Token& token : *tokens)
+    std::cout << std::left << std::setw(8) << token.id << std::setw(15) << name(token.role) << "until " << std::setw(12)
+              << day_of(token.expires) << "last used " << std::setw(12) << day_of(token.last_used) << token.label
+              << "\n";
+  return {};
+}
+
+Result<void> revoke_token(store::Store& store, const PeopleOptions& options) {
+  const auto person = store.person(options.user);
+  if (!person) return tl::unexpected(person.error());
+  return store.revoke_token(person->name, TokenKind::script, options.id);
+}
+
+// Runs the subcommand that was chosen.
+Command choosing(CLI::App* parent, Options options, std::map<std::string, Work> works) {
+  parent->require_subcommand(1);
+  return [parent, options = std::move(options), works = std::move(works)] {
+    auto database = open_database_beside(options->data);
+    if (!database) return report(database.error());
+    const auto done = works.at(parent->get_subcommands().front()->get_name())(*(*database)->store, *options);
+    return done ? 0 : report(done.error());
+  };
+}
+
+}  // namespace
+
+Command add_user(CLI::App& app) {
+  auto* parent = app.add_subcommand("user", "Accounts of this server");
+  auto options = std::make_shared<PeopleOptions>();
+  std::map<std::string, Work> works;
+  const auto add_named = [&](const char* name, const char* what, Work work) {
+    auto* command = add(*parent, options, name, what);
+    command->add_option("name", options->name, "What the person signs in with")->required();
+    works[name] = std::move(work);
+    return command;
+  };
+  auto* made = add_named("add", "A new account, and a link by which its person chooses a password", add_person);
+  add_role(*made, options, "What they may do (annotator)");
+  made->add_option("--full-name", options->full_name, "How the page calls them");
+  add_password(*made, options);
+  add(*parent, options, "list", "Everybody with an account");
+  works["list"] = list_people;
+  auto* role = add_named("role", "What somebody may do", changing(set_role));
+  role->add_option("role", options->role, "viewer, annotator, curator or administrator")
+      ->required()
+      ->check(CLI::IsMember({"viewer", "annotator", "curator", "administrator"}));
+  add_password(*add_named("password", "A new link to choose a password, or a new password", changing(let_in)), options);
+  add_named("disable", "Signs somebody out everywhere, and lets them in no more",
+            changing([](store::Store& store, const PeopleOptions&, store::Person person) {
+              person.disabled = true;
+              return update(store, person);
+            }));
+  add_named("enable", "Lets somebody in again",
+            changing([](store::Store& store, const PeopleOptions&, store::Person person) {
+              person.disabled = false;
+              return update(store, person);
+            }));
+  add_named("remove", "Deletes somebody; what they did stays, under a name that tells nothing",
+            changing(remove_person));
+  return choosing(parent, options, std::move(works));
+}
+
+Command add_token(CLI::App& app) {
+  auto* parent = app.add_subcommand("token", "Tokens for scripts");
+  auto options = std::make_shared<PeopleOptions>();
+  options->user = "owner";
+  const auto add_of = [&](const char* name, const char* what) {
+    auto* command = add(*parent, options, name, what);
+    command->add_option("--user", options->user, "Whose token")->capture_default_str();
+    return command;
+  };
+  auto* made = add_of("add", "A new token, printed this once");
+  made->add_option("name", options->name, "What it is for")->required();
+  add_role(*made, options, "At most what it may do (as its person)");
+  made->add_option("--days", options->days, "Until it expires")->check(CLI::Range(1, 3650))->capture_default_str();
+  add_of("list", "Tokens of a person");
+  add_of("revoke", "Makes a token worthless")->add_option("id", options->id, "As `list` tells it")->required();
+  return choosing(parent, options, {{"add", add_token_of}, {"list", list_tokens}, {"revoke", revoke_token}});
+}
+
+}  // namespace strata::cli

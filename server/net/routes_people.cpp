@@ -1,0 +1,186 @@
+// Accounts: who there is, what they may do, and how they come in.
+#include "net/origin.h"
+#include "net/routes.h"
+#include "net/wire.h"
+#include "store/password.h"
+
+namespace strata::net {
+namespace {
+
+using store::Person;
+using store::TokenKind;
+
+constexpr std::chrono::hours kInvitationLifetime{24 * 7};
+
+nlohmann::json to_json(const Person& person) {
+  nlohmann::json json{{"id", person.id},
+                      {"user", person.name},
+                      {"full_name", person.full_name},
+                      {"role", std::string(name(person.role))},
+                      {"state", person.disabled       ? "disabled"
+                                : person.has_password ? "active"
+                                                      : "invited"},
+                      {"created", utc_text(person.created)}};
+  if (person.last_seen) json["last_seen"] = utc_text(*person.last_seen);
+  return json;
+}
+
+Result<Response> list_people(const RouteContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  auto people = context.store.people();
+  if (!people) return tl::unexpected(people.error());
+  nlohmann::json list = nlohmann::json::array();
+  const int total = static_cast<int>(people->size());
+  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json((*people)[i]));
+  Response response = json_response({{"users", std::move(list)}, {"total", total}});
+  add_page_links(response, request, *page, total);
+  return response;
+}
+
+Result<Role> usable_role(const Request& request, std::optional<protocol::Role> asked, Role otherwise) {
+  const Role role = asked ? static_cast<Role>(static_cast<int>(*asked)) : otherwise;
+  if (role == Role::owner)
+    return fail(422, "One owner", "A server has one owner. Make the person administrator.", "role");
+  if (role > request.principal->role) return fail(403, "Not allowed", "Nobody gives a role above their own.", "role");
+  return role;
+}
+
+Result<Response> with_invitation(const RouteContext& context, const Person& person, int status) {
+  auto old = context.store.revoke_tokens(person.name, TokenKind::invitation);
+  if (!old) return tl::unexpected(old.error());
+  const auto expires = std::chrono::system_clock::now() + kInvitationLifetime;
+  auto secret = context.store.create_token(TokenKind::invitation, person.name, person.role, kInvitationLifetime);
+  if (!secret) return tl::unexpected(secret.error());
+  // Behind a #, so that it is in no log: browsers keep that to themselves.
+  return json_response({{"path", "/join#" + *secret}, {"expires", utc_text(expires)}, {"user", to_json(person)}},
+                       status)
+      .with("Cache-Control", "no-store");
+}
+
+Result<Response> invite(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::PersonCreate>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto role = usable_role(request, asked->role, Role::viewer);
+  if (!role) return tl::unexpected(role.error());
+  const auto person = context.store.create_person(asked->user, asked->full_name.value_or(""), *role);
+  if (!person) return tl::unexpected(person.error());
+  auto response = with_invitation(context, *person, 201);
+  if (response) response->with("Location", "/api/v1/users/" + percent_encode(person->name));
+  return response;
+}
+
+// Whom the caller may change: not themselves, so that no server is left without who runs it, and not the owner.
+Result<Person> somebody_else(const RouteContext& context, const Request& request) {
+  auto person = context.store.person(request.param("user"));
+  if (!person) return person;
+  if (person->name == request.user())
+    return fail(409, "That is you", "Nobody changes their own account here. Ask another administrator.");
+  if (person->role == Role::owner) return fail(409, "The owner", "The owner's account is changed by nobody else.");
+  return person;
+}
+
+Result<Response> change_person(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::PersonPatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto person = somebody_else(context, request);
+  if (!person) return tl::unexpected(person.error());
+  const auto role = usable_role(request, asked->role, person->role);
+  if (!role) return tl::unexpected(role.error());
+  const bool may_do_else = *role != person->role || asked->disabled.value_or(person->disabled) != person->disabled;
+  person->role = *role;
+  if (asked->full_name) person->full_name = *asked->full_name;
+  if (asked->disabled) person->disabled = *asked->disabled;
+  const auto changed = context.store.update_person(*person);
+  if (!changed) return tl::unexpected(changed.error());
+  context.auth.forget();
+  if (may_do_else) context.live_sockets.close_user(changed->name, kClosePolicy, "your account was changed");
+  return json_response(to_json(*changed));
+}
+
+Result<Response> delete_person(const RouteContext& context, const Request& request) {
+  const auto person = somebody_else(context, request);
+  if (!person) return tl::unexpected(person.error());
+  // Out first, so that nothing more is written under the name.
+  Person out = *person;
+  out.disabled = true;
+  if (auto done = context.store.update_person(out); !done) return tl::unexpected(done.error());
+  context.auth.forget();
+  context.live_sockets.close_user(person->name, kClosePolicy, "your account was deleted");
+  if (auto done = context.store.delete_person(person->name); !done) return tl::unexpected(done.error());
+  return empty_response(204);
+}
+
+// --- from the other side of the link
+
+Result<Person> invited_by(const RouteContext& context, const std::string& invitation) {
+  const auto principal = context.store.find_token(invitation);
+  if (!principal) return tl::unexpected(principal.error());
+  if (!*principal || (*principal)->kind != TokenKind::invitation)
+    return fail(401, "Link not valid", "This invitation was used, or is too old. Ask for a new one.", "invitation");
+  return context.store.person((*principal)->user);
+}
+
+Result<Response> show_invitation(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::InvitationShow>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto person = invited_by(context, asked->invitation);
+  if (!person) return tl::unexpected(person.error());
+  return json_response(to_json(*person)).with("Cache-Control", "no-store");
+}
+
+Result<Response> accept_invitation(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::InvitationAccept>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto person = invited_by(context, asked->invitation);
+  if (!person) return tl::unexpected(person.error());
+  if (auto good = store::check_password(asked->password, person->name, "password"); !good)
+    return tl::unexpected(good.error());
+  const auto session = context.store.accept_invitation(asked->invitation, store::hash_password(asked->password),
+                                                       asked->full_name, kSessionLifetime, agent_of(request));
+  if (!session) return tl::unexpected(session.error());
+  if (!*session) return fail(401, "Link not valid", "This invitation was used meanwhile.", "invitation");
+  context.auth.forget();
+  return signed_in(context, request, **session);
+}
+
+}  // namespace
+
+void add_people_routes(Router& router, const RouteContext& context) {
+  const auto add = [&](Method method, std::string pattern,
+                       Result<Response> (*answer)(const RouteContext&, const Request&), std::optional<Role> role,
+                       std::vector<std::string> query = {}) {
+    const bool has_body = method == Method::patch || (method == Method::post && !pattern.ends_with("/invite"));
+    router.add({.method = method,
+                .pattern = std::move(pattern),
+                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
+                .role = role,
+                .query = std::move(query),
+                .body = has_body ? BodyKind::memory : BodyKind::none,
+                .max_body = has_body ? context.options.max_json_bytes : 0});
+  };
+  add(Method::get, "/api/v1/users", list_people, Role::administrator, {"limit", "offset"});
+  add(Method::post, "/api/v1/users", invite, Role::administrator);
+  add(
+      Method::get, "/api/v1/users/{user}",
+      [](const RouteContext& of, const Request& request) -> Result<Response> {
+        const auto person = of.store.person(request.param("user"));
+        if (!person) return tl::unexpected(person.error());
+        return json_response(to_json(*person));
+      },
+      Role::administrator);
+  add(Method::patch, "/api/v1/users/{user}", change_person, Role::administrator);
+  add(Method::remove, "/api/v1/users/{user}", delete_person, Role::administrator);
+  add(
+      Method::post, "/api/v1/users/{user}/invite",
+      [](const RouteContext& of, const Request& request) -> Result<Response> {
+        const auto person = somebody_else(of, request);
+        if (!person) return tl::unexpected(person.error());
+        return with_invitation(of, *person, 200);
+      },
+      Role::administrator);
+  add(Method::post, "/api/v1/invitations/show", show_invitation, std::nullopt);
+  add(Method::post, "/api/v1/invitations/accept", accept_invitation, std::nullopt);
+}
+
+}  // namespace strata::net

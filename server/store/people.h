@@ -1,0 +1,50 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/role.h"
+
+namespace strata::store {
+
+// Someone with an account. `name` is what they sign in with, in any case, and what journals say of them.
+struct Person {
+  std::int64_t id = 0;
+  std::string name;
+  std::string full_name;
+  Role role = Role::viewer;
+  bool has_password = false;
+  bool disabled = false;
+  std::chrono::system_clock::time_point created;
+  std::optional<std::chrono::system_clock::time_point> last_seen;  // to some minutes
+};
+
+enum class TokenKind {
+  session,     // of a browser; does what its person may do
+  script,      // the same, but no more than its own role
+  owner_link,  // is traded for sessions until it expires
+  invitation,  // is traded for a password and a session, once
+};
+
+// What a secret stands for. The secret itself is nowhere: its SHA-256 is kept, of 256 random bits.
+struct Token {
+  std::int64_t id = 0;
+  TokenKind kind = TokenKind::session;
+  std::string label;  // what the browser calls itself, or what the token is for
+  Role role = Role::viewer;
+  std::chrono::system_clock::time_point created;
+  std::optional<std::chrono::system_clock::time_point> expires, last_used;
+};
+
+// Who a secret speaks for, and as what.
+struct Principal {
+  std::string user;
+  Role role = Role::viewer;
+  TokenKind kind = TokenKind::session;
+  std::int64_t token = 0;  // its id
+};
+
+}  // namespace strata::store

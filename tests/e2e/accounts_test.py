@@ -1,0 +1,287 @@
+#!/usr/bin/env python3
+"""Accounts over HTTP and from the command line: who comes in, what each role may do, what ends when, and that guessing is slow."""
+import os
+import re
+import subprocess
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.live_client import Closed, LiveClient, Refused
+from support.meshes import folded_grid
+from support.strata_server import LONG_S, StrataServer
+
+M, L = "/models/sheet", "/models/sheet/layers/marks"
+PASSWORD, OTHER = "seven blue herons at noon", "no herons any more, a pity"
+FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
+
+
+class Browser:
+    """Somebody's browser: keeps the cookie, and says where its page is from."""
+
+    def __init__(self, server, agent="Mozilla/5.0 (X11; Linux) Firefox/128.0"):
+        self.server, self.agent, self.cookie = server, agent, None
+
+    def request(self, method, path, body=None, **headers):
+        sent = {"User-Agent": self.agent, "Origin": self.server.url, **headers}
+        if self.cookie:
+            sent["Cookie"] = self.cookie
+        answer = self.server.request(method, path, body, headers=sent, token=False)
+        if answer.headers.get("Set-Cookie"):
+            self.cookie = answer.headers["Set-Cookie"].split(";")[0]
+        return answer
+
+    def ok(self, method, path, body=None):
+        answer = self.request(method, path, body)
+        assert answer.status in (200, 201, 202, 204), (method, path, answer)
+        return answer
+
+    def sign_in(self, user, password):
+        return self.request("POST", "/login", {"user": user, "password": password})
+
+
+def secret_of(invitation):
+    path, _, secret = invitation["path"].partition("#")
+    assert path == "/join" and len(secret) == 43, invitation
+    return secret
+
+
+def join(server, invitation, password=PASSWORD, **more):
+    browser = Browser(server)
+    browser.ok("POST", "/invitations/accept", {"invitation": secret_of(invitation), "password": password, **more})
+    return browser
+
+
+def invitations(server):
+    """A link is good once, for a week, for one person, and is no token."""
+    made = server.ok("POST", "/users", {"user": "Ada", "full_name": "Ada L.", "role": "annotator"})
+    invitation, secret = made.json(), secret_of(made.json())
+    assert made.headers["Location"] == "/api/v1/users/Ada" and made.headers["Cache-Control"] == "no-store"
+    assert invitation["user"] == {**invitation["user"], "user": "Ada", "role": "annotator", "state": "invited", "full_name": "Ada L."}, invitation
+    for name, status in (("ada", 409), ("ADA", 409), ("", 422), ("a b", 422), ("<b>", 422), ("x" * 65, 422), ("owner", 409)):
+        assert server.post("/users", {"user": name}).status == status, name
+    refused = server.post("/users", {"user": "boss", "role": "owner"})
+    assert refused.status == 422 and refused.json()["field"] == "role", refused
+    assert server.get("/me", token=secret).status == 401, "an invitation is no token"
+    assert Browser(server).request("POST", "/login", {"token": secret}).status == 401
+    shown = Browser(server).ok("POST", "/invitations/show", {"invitation": secret}).json()
+    assert shown["user"] == "Ada", shown
+    for password, title in (("short", "Password too short"), ("ünßé", "Password too short"), ("ada ada 1", "Password too short"), ("xxAda123456", "Password too easy")):
+        refused = Browser(server).request("POST", "/invitations/accept", {"invitation": secret, "password": password})
+        assert refused.status == 422 and refused.json()["field"] == "password" and refused.json()["title"] == title, (password, refused)
+    ada = join(server, invitation, full_name="Ada Lovelace")
+    me = ada.ok("GET", "/me").json()
+    assert me == {"user": "Ada", "full_name": "Ada Lovelace", "role": "annotator", "has_password": True}, me
+    for path in ("show", "accept"):
+        body = {"invitation": secret, **({"password": PASSWORD} if path == "accept" else {})}
+        assert Browser(server).request("POST", "/invitations/" + path, body).status == 401, "used"
+    # A new link makes the earlier one worthless, and the password good until another is chosen.
+    first = server.ok("POST", "/users/ada/invite").json()
+    second = server.ok("POST", "/users/Ada/invite").json()
+    assert Browser(server).request("POST", "/invitations/show", {"invitation": secret_of(first)}).status == 401
+    assert Browser(server).sign_in("ada", PASSWORD).status == 200
+    other = join(server, second, OTHER)
+    assert ada.request("GET", "/me").status == 401, "a new password ends the sessions of before"
+    assert Browser(server).sign_in("ada", PASSWORD).status == 401 and Browser(server).sign_in("ADA", OTHER).status == 200
+    return other
+
+
+def roles(server, ada):
+    """What each role may do, and that a change of it counts at once, for open connections too."""
+    vera = join(server, server.ok("POST", "/users", {"user": "vera"}).json())
+    assert vera.ok("GET", "/me").json()["role"] == "viewer"
+    carl = join(server, server.ok("POST", "/users", {"user": "carl", "role": "curator"}).json())
+    anne = join(server, server.ok("POST", "/users", {"user": "anne", "role": "administrator"}).json())
+    calls = {"look": ("GET", M, None, 200), "paint": ("POST", L + "/edits", FILL, 200), "layer": ("POST", M + "/layers", {"name": "New"}, 201),
+             "people": ("GET", "/users", None, 200), "project": ("POST", "/projects", {"name": "P"}, 201)}
+    may = {"viewer": {"look"}, "annotator": {"look", "paint"}, "curator": {"look", "paint", "layer"}, "administrator": set(calls)}
+    for browser, role in ((vera, "viewer"), (ada, "annotator"), (carl, "curator"), (anne, "administrator")):
+        for what, (method, path, body, good) in calls.items():
+            status = browser.request(method, path, body).status
+            assert status == (good if what in may[role] else 403), (role, what, status)
+    history = server.ok("GET", L + "/edits").json()["edits"]
+    assert {edit["user"] for edit in history} == {"Ada", "carl", "anne"}, history
+    # Administrators: not themselves, not the owner, nothing above themselves.
+    for path in ("/users/anne", "/users/owner"):
+        for method, body in (("PATCH", {"role": "viewer"}), ("PATCH", {"disabled": True}), ("DELETE", None)):
+            assert anne.request(method, path, body).status == 409, (method, path)
+    assert anne.request("PATCH", "/users/ada", {"role": "owner"}).status == 422
+    assert anne.request("PATCH", "/users/nobody", {"role": "viewer"}).status == 404
+    assert anne.request("PATCH", "/users/ada", {}).status == 422
+    # A cookie is for this server's own page.
+    for origin in ("https://elsewhere.example", "null"):
+        assert anne.request("PATCH", "/users/ada", {"role": "viewer"}, Origin=origin).status == 403
+    live = LiveClient(server, "sheet", token="", cookie=ada.cookie, origin=server.url)
+    assert live.hello(dpr=1, accept=["jpeg"])["role"] == "annotator"
+    anne.ok("PATCH", "/users/ada", {"role": "viewer"})
+    closed(live)
+    assert ada.request("POST", L + "/edits", FILL).status == 403
+    with LiveClient(server, "sheet", token="", cookie=ada.cookie, origin=server.url) as live:
+        assert live.hello(dpr=1, accept=["jpeg"])["role"] == "viewer"
+        anne.ok("PATCH", "/users/Ada", {"role": "annotator", "disabled": True})
+        closed(live)
+    assert ada.request("GET", M).status == 401 and ada.sign_in("ada", OTHER).status == 401
+    try:
+        LiveClient(server, "sheet", token="", cookie=ada.cookie, origin=server.url)
+        raise AssertionError("a disabled person came in")
+    except Refused as refused:
+        assert refused.status == 401, refused
+    assert server.ok("GET", "/users/ada").json()["state"] == "disabled"
+    anne.ok("PATCH", "/users/ada", {"disabled": False})
+    assert ada.request("GET", "/me").status == 401, "the sessions of before stay ended"
+    assert ada.sign_in("Ada", OTHER).status == 200
+    return vera, anne
+
+
+def closed(live):
+    try:
+        while True:
+            live.receive()
+    except Closed:
+        pass
+
+
+def sessions(server, ada):
+    phone = Browser(server, "Mozilla/5.0 (Android 15) Chrome/130")
+    assert phone.sign_in("ada", OTHER).status == 200
+    listed = phone.ok("GET", "/me/sessions").json()["sessions"]
+    assert len(listed) == 2 and [each["current"] for each in listed] == [True, False] and "Android" in listed[0]["agent"], listed
+    ada.ok("DELETE", f"/me/sessions/{listed[0]['id']}")
+    assert phone.request("GET", "/me").status == 401
+    assert ada.request("DELETE", f"/me/sessions/{listed[0]['id']}").status == 404
+    of_owner = server.ok("GET", "/me/sessions").json()["sessions"]
+    assert not set(each["id"] for each in of_owner) & set(each["id"] for each in listed)
+    phone.sign_in("ada", OTHER)
+    ada.ok("DELETE", "/me/sessions")
+    assert phone.request("GET", "/me").status == 401 and ada.ok("GET", "/me/sessions").json()["total"] == 1
+    phone.sign_in("ada", OTHER)
+    for body, field in (({"password": PASSWORD}, "current"), ({"current": "wrong", "password": PASSWORD}, "current"), ({"current": OTHER, "password": "short"}, "password")):
+        refused = ada.request("POST", "/me/password", body)
+        assert refused.status == 422 and refused.json()["field"] == field, refused
+    ada.ok("POST", "/me/password", {"current": OTHER, "password": PASSWORD})
+    assert phone.request("GET", "/me").status == 401 and ada.request("GET", "/me").status == 200
+    ada.ok("PATCH", "/me", {"full_name": "Ada, Countess"})
+    assert ada.ok("GET", "/me").json()["full_name"] == "Ada, Countess"
+    signed_out = ada.cookie
+    assert ada.ok("POST", "/logout").status == 204
+    ada.cookie = signed_out
+    assert ada.request("GET", "/me").status == 401
+    assert ada.sign_in("ada", PASSWORD).status == 200
+
+
+def tokens(server, ada, anne):
+    """A script's token does what both it and its person may, and opens no session."""
+    made = ada.ok("POST", "/me/tokens", {"name": "nightly", "role": "viewer", "days": 3}).json()
+    secret = made["secret"]
+    assert made["token"]["role"] == "viewer" and made["token"]["expires"] > made["token"]["created"], made
+    assert server.get(M, token=secret).status == 200 and server.post(L + "/edits", FILL, token=secret).status == 403
+    assert ada.request("POST", "/me/tokens", {"name": "more", "role": "curator"}).status == 403
+    assert server.post("/me/tokens", {"name": "more", "role": "annotator"}, token=secret).status == 403, "a token makes no stronger one"
+    refused = Browser(server).request("POST", "/login", {"token": secret})
+    assert refused.status == 403 and "script" in refused.json()["detail"], refused
+    assert server.post("/me/password", {"current": PASSWORD, "password": OTHER}, token=secret).status == 403
+    painting = ada.ok("POST", "/me/tokens", {"name": "painter"}).json()
+    assert server.post(L + "/edits", FILL, token=painting["secret"]).status == 200
+    anne.ok("PATCH", "/users/ada", {"role": "viewer"})
+    assert server.post(L + "/edits", FILL, token=painting["secret"]).status == 403, "no more than its person"
+    anne.ok("PATCH", "/users/ada", {"role": "annotator"})
+    listed = ada.ok("GET", "/me/tokens").json()
+    assert [each["name"] for each in listed["tokens"]] == ["painter", "nightly"] and all("last_used" in each for each in listed["tokens"]), listed
+    assert secret not in str(listed)
+    assert anne.request("DELETE", f"/me/tokens/{made['token']['id']}").status == 404, "somebody else's"
+    ada.ok("DELETE", f"/me/tokens/{made['token']['id']}")
+    assert server.get(M, token=secret).status == 401
+    assert server.post(L + "/edits", FILL, token=painting["secret"]).status == 200
+
+
+def deletion(server, anne):
+    """Who is deleted cannot be told from the history any more, and nobody gets their name."""
+    before = server.ok("GET", L + "/edits").json()["edits"]
+    mine = [edit["sequence"] for edit in before if edit["user"] == "Ada"]
+    number = server.ok("GET", "/users/ada").json()["id"]
+    anne.ok("DELETE", "/users/ada")
+    after = server.ok("GET", L + "/edits").json()["edits"]
+    assert mine and [edit["sequence"] for edit in after if edit["user"] == f"former-{number}"] == mine, after
+    assert server.get("/users/ada").status == 404 and "ada" not in str(server.ok("GET", "/users").json()).lower()
+    assert Browser(server).sign_in("ada", PASSWORD).status == 401
+    assert Browser(server).sign_in(f"former-{number}", PASSWORD).status == 401
+    assert server.post("/users", {"user": f"former-{number}"}).status == 409
+
+
+def guessing(server, vera):
+    """Guesses are slowed down for a name wherever they come from; whoever is in stays in."""
+    statuses = [Browser(server).sign_in("vera", f"guess number {i}").status for i in range(14)]
+    assert set(statuses) == {401, 429} and statuses[0] == 401 and statuses[-1] == 429, statuses
+    refused = Browser(server).sign_in("vera", PASSWORD)
+    assert refused.status == 429 and refused.headers["Retry-After"], refused
+    assert vera.request("GET", "/me").status == 200
+    # Others come in meanwhile, from another address.
+    anne = Browser(server)
+    assert anne.request("POST", "/login", {"user": "anne", "password": PASSWORD}, **{"X-Forwarded-For": "10.9.8.7"}).status == 200
+    for body in ({"user": "vera"}, {"password": "x"}, {"user": "vera", "password": "x", "token": "y"}, {}, {"user": ["vera"], "password": {}}):
+        assert Browser(server).request("POST", "/login", body).status == 422, body
+
+
+def commands(server):
+    """The same from the server's own machine, while it runs."""
+    def strata(*words, entered=None, code=0):
+        done = subprocess.run([server.binary, *words, "--data", server.data], capture_output=True, text=True, check=False, timeout=LONG_S, input=entered)
+        assert done.returncode == code, (words, done)
+        return done.stdout + done.stderr
+
+    link = re.search(r"http://here/join#(\S+)", strata("user", "add", "Max", "--url", "http://here"))
+    assert Browser(server).ok("POST", "/invitations/show", {"invitation": link[1]}).json()["role"] == "annotator"
+    assert "too short" in strata("user", "password", "max", "--password-stdin", entered="short\n", code=1)
+    strata("user", "password", "max", "--password-stdin", entered="a horse, a kingdom\n")
+    assert server.get("/users/max").json()["state"] == "active"
+    strata("user", "role", "max", "curator")
+    listed = strata("user", "list")
+    assert re.search(r"Max +curator +active", listed) and "owner" in listed, listed
+    secret = strata("token", "add", "report", "--user", "max", "--role", "viewer").strip()
+    assert server.get("/me", token=secret).json()["role"] == "viewer"
+    number = re.search(r"(\d+) +viewer .*report", strata("token", "list", "--user", "max"))[1]
+    strata("token", "revoke", number, "--user", "max")
+    assert "report" not in strata("token", "list", "--user", "max")
+    for words in (("user", "role", "owner", "viewer"), ("user", "remove", "owner"), ("user", "remove", "nobody"), ("user", "add", "max"), ("user", "add", "a b"),
+                  ("token", "add", "x", "--user", "max", "--role", "administrator"), ("token", "revoke", number, "--user", "max")):
+        assert "strata: " in strata(*words, code=1), words
+    strata("user", "role", "max", "king", code=2)
+    strata("user", "remove", "max")
+    assert server.get("/users/max").status == 404
+
+
+def reach(server):
+    """A server that others can reach needs somebody who can let them in."""
+    assert server.stop() == 0
+
+    def serve():
+        done = subprocess.Popen([server.binary, "serve", "--data", server.data, "--listen", "0.0.0.0:0"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        first = done.stdout.readline()
+        done.terminate()
+        return first, done.communicate(timeout=LONG_S)[1]
+
+    started, _ = serve()
+    assert started.startswith("listening on http://0.0.0.0:"), started
+    for name in ("anne",):
+        subprocess.run([server.binary, "user", "disable", name, "--data", server.data], check=True, timeout=LONG_S, capture_output=True)
+    started, said = serve()
+    assert not started and "strata user add" in said, (started, said)
+
+
+def main():
+    with StrataServer() as server:
+        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
+        server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
+        ada = invitations(server)
+        vera, anne = roles(server, ada)
+        sessions(server, ada)
+        tokens(server, ada, anne)
+        deletion(server, anne)
+        commands(server)
+        guessing(server, vera)
+        server.assert_clean_log()
+        reach(server)
+    print("accounts: invitations, roles, sessions, tokens, deletion, commands, guessing")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,73 @@
+#include "net/sign_in_gate.h"
+
+#include <gtest/gtest.h>
+
+namespace strata::net {
+namespace {
+
+using std::chrono::seconds;
+
+struct Gate {
+  SignInGate gate;
+  SignInGate::Clock::time_point now = SignInGate::Clock::now();
+  bool pass(const std::string& address, const std::string& name) { return gate.pass(address, name, now).has_value(); }
+  int passed(int tries, const std::string& address, const std::string& name) {
+    int count = 0;
+    for (int i = 0; i < tries; ++i) {
+      count += pass(address, name);
+      now += seconds(1);
+    }
+    return count;
+  }
+};
+
+TEST(SignInGate, guesses_for_a_name_are_few_wherever_they_come_from) {
+  Gate at;
+  int count = 0;
+  for (int i = 0; i < 600; ++i) count += at.passed(1, "10.0.0." + std::to_string(i % 200), i % 2 ? "Ada" : "ada");
+  EXPECT_GE(count, 60);
+  EXPECT_LE(count, 72);  // in ten minutes
+  const auto refused = at.gate.pass("10.0.0.1", "ada", at.now);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().status, 429);
+  EXPECT_TRUE(at.pass("10.0.0.1", "grace"));
+}
+
+TEST(SignInGate, an_address_that_is_too_fast_takes_nothing_from_others) {
+  Gate at;
+  for (int i = 0; i < 100; ++i) at.pass("10.0.0.1", "name" + std::to_string(i));
+  EXPECT_FALSE(at.pass("10.0.0.1", "ada"));
+  at.now += seconds(2);
+  EXPECT_TRUE(at.pass("10.0.0.2", "ada"));
+}
+
+TEST(SignInGate, who_is_right_may_come_again_and_again) {
+  Gate at;
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_TRUE(at.pass("10.0.0.1", "ada")) << i;
+    at.gate.was_right("10.0.0.1", "ADA");
+  }
+}
+
+TEST(SignInGate, so_many_addresses_that_none_can_be_kept_in_mind_are_slowed_down_together) {
+  Gate at;
+  int count = 0;
+  for (int i = 0; i < 30'000; ++i) count += at.pass("10.1." + std::to_string(i), "name" + std::to_string(i));
+  EXPECT_LE(count, 20);
+}
+
+TEST(SignInGate, the_address_is_that_of_the_peer_unless_it_is_a_proxy_of_this_machine) {
+  Request request;
+  request.peer = "192.0.2.7";
+  request.headers = {{"x-forwarded-for", "10.0.0.1"}};
+  EXPECT_EQ(address_of(request), "192.0.2.7");
+  request.peer = "127.0.0.1";
+  EXPECT_EQ(address_of(request), "10.0.0.1");
+  request.headers = {{"x-forwarded-for", "6.6.6.6, 10.0.0.2"}};
+  EXPECT_EQ(address_of(request), "10.0.0.2");
+  request.headers.clear();
+  EXPECT_EQ(address_of(request), "127.0.0.1");
+}
+
+}  // namespace
+}  // namespace strata::net
