@@ -23,6 +23,8 @@ TokenKind parse_kind(const std::string& text) {
   return TokenKind::session;
 }
 
+constexpr std::string_view kFormer = "former-";
+
 // `last_used` is right to this, so that most requests write nothing.
 #define STRATA_SOME_MINUTES "interval '5 minutes'"
 #define STRATA_GOOD_TOKEN "revoked IS NULL AND (expires IS NULL OR expires > now())"
@@ -116,13 +118,16 @@ Result<Person> Store::person(const std::string& name) {
 Result<Person> Store::create_person(const std::string& name, const std::string& full_name, Role role) {
   if (auto good = check_name(name); !good) return tl::unexpected(good.error());
   if (auto good = check_texts({{&full_name, "full_name"}}); !good) return tl::unexpected(good.error());
+  if (name.starts_with(kFormer))
+    return fail(409, "Name taken", "Names that begin with `former-` are kept for who is deleted. Choose another name.",
+                "user");
   return impl_->pool.write([&](PgConnection& connection) -> Result<Person> {
     auto made = connection.query(
         "INSERT INTO users (name, full_name, role) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING RETURNING id",
         Params().text(name).text(full_name).text(strata::name(role)));
     if (!made) return tl::unexpected(made.error());
     if (made->rows() == 0)
-      return fail(409, "Name taken", "There is or was somebody called `" + name + "`. Choose another name.", "user");
+      return fail(409, "Name taken", "There is somebody called `" + name + "`. Choose another name.", "user");
     return load_person(connection, name);
   });
 }
@@ -147,7 +152,7 @@ Result<void> Store::delete_person(const std::string& name) {
   return impl_->pool.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
     auto person = load_person(connection, name);
     if (!person) return tl::unexpected(person.error());
-    const std::string former = "former-" + std::to_string(person->id);
+    const std::string former = std::string(kFormer) + std::to_string(person->id);
     auto ended = run(connection, "DELETE FROM tokens WHERE user_name = $1", Params().text(person->name));
     if (!ended) return ended;
     for (const char* sql :

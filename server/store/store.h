@@ -279,10 +279,10 @@ class Store {
   // --- answers to changing HTTP calls, by Idempotency-Key; kept for 7 days
   Result<std::optional<nlohmann::json>> find_answer(const std::string& key);
 
-  // --- people: accounts, sessions and tokens. Nobody is deleted for good: a name that was somebody's is never somebody else's.
+  // --- people: accounts, sessions and tokens
   Result<std::vector<Person>> people();  // by name
   Result<Person> person(const std::string& name);
-  // 409: the name is taken, in whatever case.
+  // 409: the name is taken, in whatever case, or of the form that is kept for who is deleted (`former-7`).
   Result<Person> create_person(const std::string& name, const std::string& full_name, Role role);
   // What `person` says of full_name, role and disabled. Who is disabled is signed out everywhere.
   Result<Person> update_person(const Person& person);
