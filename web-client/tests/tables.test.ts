@@ -42,6 +42,7 @@ describe("cells", () => {
     const thing = { name: "Depth", labels: { es: "Profundidad", "pt-BR": "Profundidade" } };
     expect(label_of(thing, ["es-MX", "en"])).toBe("Profundidad");
     expect(label_of(thing, ["fr", "pt-BR"])).toBe("Profundidade");
+    expect(label_of(thing, ["pt-br"])).toBe("Profundidade");
     expect(label_of(thing, ["fr"])).toBe("Depth");
   });
 
@@ -375,14 +376,14 @@ describe("the card of a record", () => {
 
 describe("the dialog of a column", () => {
   const wanted = (more: Partial<ColumnWanted> = {}): ColumnWanted => ({
-    name: "Depth", kind: "numeric", unit: "m", required: false, unique: false, comment: "", choices: ["a"], target: 4, minimum: 0, maximum: null, ...more,
+    name: "Depth", labels: {}, kind: "numeric", unit: "m", required: false, unique: false, comment: "", choices: ["a"], target: 4, minimum: 0, maximum: null, ...more,
   }); // prettier-ignore
 
   it("sends what suits the kind", () => {
-    expect(of_kind(wanted())).toEqual({ name: "Depth", kind: "numeric", required: false, unique: false, comment: "", unit: "m", minimum: 0, maximum: null });
+    expect(of_kind(wanted())).toEqual({ name: "Depth", labels: {}, kind: "numeric", required: false, unique: false, comment: "", unit: "m", minimum: 0, maximum: null });
     expect(of_kind(wanted({ kind: "enumeration" }))).toMatchObject({ choices: ["a"] });
     expect(of_kind(wanted({ kind: "relation" }))).toMatchObject({ target: 4 });
-    expect(of_kind(wanted({ kind: "text" }))).toEqual({ name: "Depth", kind: "text", required: false, unique: false, comment: "" });
+    expect(of_kind(wanted({ kind: "text" }))).toEqual({ name: "Depth", labels: {}, kind: "text", required: false, unique: false, comment: "" });
   });
 
   it("sends of a column that is there only what differs", () => {
@@ -390,5 +391,8 @@ describe("the dialog of a column", () => {
     expect(column_changes(depth, wanted())).toEqual({});
     expect(column_changes(depth, wanted({ name: "Depth below surface", minimum: null }))).toEqual({ name: "Depth below surface", minimum: null });
     expect(column_changes(depth, wanted({ kind: "text" }))).toEqual({ kind: "text" });
+    const labelled = { ...depth, labels: { es: "Profundidad", de: "Tiefe" } };
+    expect(column_changes(labelled, wanted({ labels: { de: "Tiefe", es: "Profundidad" } }))).toEqual({});
+    expect(column_changes(labelled, wanted({ labels: { de: "Tiefe" } }))).toEqual({ labels: { de: "Tiefe" } });
   });
 });

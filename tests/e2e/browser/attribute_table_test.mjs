@@ -274,13 +274,33 @@ try {
   const [download] = await Promise.all([page.waitForEvent("download"), menu("More about the table", /^Save as CSV$/)]);
   assert.equal(download.suggestedFilename(), "units.csv");
 
-  say("columns come, change their kind and tell what that loses, and go");
+  say("columns come, get names in other languages, change their kind and tell what that loses, and go");
   await menu("More about the table", "New column…");
   await dialog.getByLabel("Name").fill("Bags");
   await dialog.getByLabel("Holds").selectOption("integer");
   await dialog.getByLabel("At least").fill("0");
   await button("Create column").click();
   await panel.getByRole("columnheader", { name: /^Bags/ }).waitFor();
+  await menu("Options for the column Bags", "Change…");
+  await button("Add a language").click();
+  await dialog.getByLabel("Language 1", { exact: true }).fill("es_MX");
+  await dialog.getByRole("textbox", { name: "Name in es_MX" }).fill("Bolsas");
+  await button("Save").click();
+  await dialog.getByText('"es_MX" is no language tag such as `es` or `pt-BR`.').waitFor();
+  assert.equal(await dialog.getByLabel("Language 1", { exact: true }).getAttribute("aria-invalid"), "true");
+  await shot("column-language-refused");
+  await dialog.getByLabel("Language 1", { exact: true }).fill("es");
+  await button("Add a language").click();
+  await dialog.getByLabel("Language 2", { exact: true }).fill("EN");
+  await dialog.getByRole("textbox", { name: "Name in English" }).fill("Finds bags");
+  await shot("column-languages");
+  await dialog.getByRole("textbox", { name: "Name in English" }).press("Enter");
+  await panel.getByRole("columnheader", { name: /^Finds bags/ }).waitFor(); // the browser's language is English
+  const bags = (await server.json("GET", T)).columns.find(({ slug }) => slug === "bags");
+  assert.deepEqual([bags.name, bags.labels], ["Bags", { en: "Finds bags", es: "Bolsas" }]);
+  await button("New record").click();
+  await dialog.getByLabel("Finds bags").waitFor();
+  await button("Cancel").click();
   await menu("Options for the column Note", "Change…");
   await dialog.getByLabel("Holds").selectOption("numeric");
   await button("Save").click();
@@ -288,9 +308,9 @@ try {
   await shot("column-lost");
   await button("Take it back").click();
   await cell(1, "Note").getByText("changed").waitFor();
-  await menu("Options for the column Bags", "Drop…");
+  await menu("Options for the column Finds bags", "Drop…");
   await button("Drop").click();
-  await wait_for(async () => (await panel.getByRole("columnheader", { name: /^Bags/ }).count()) === 0, "the column to go");
+  await wait_for(async () => (await panel.getByRole("columnheader", { name: /^Finds bags/ }).count()) === 0, "the column to go");
 
   say("on a phone, too");
   await page.setViewportSize({ width: 400, height: 800 });

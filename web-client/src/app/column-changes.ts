@@ -1,10 +1,12 @@
 // What somebody changed in the dialog of a column.
 
 import { same_value } from "../core/cells";
-import type { CellValue, Column, ColumnKind, ColumnPatch } from "../core/protocol.gen";
+import { rows_of } from "../core/languages";
+import type { CellValue, Column, ColumnKind, ColumnPatch, Labels } from "../core/protocol.gen";
 
 export interface ColumnWanted {
   name: string;
+  labels: Labels;
   kind: ColumnKind;
   unit: string;
   required: boolean;
@@ -25,9 +27,10 @@ export const has_target = (kind: ColumnKind): boolean => kind === "term" || kind
 
 /** Only what suits the kind. */
 export function of_kind(wanted: ColumnWanted): ColumnPatch {
-  const { name, kind, required, unique, comment } = wanted;
+  const { name, labels, kind, required, unique, comment } = wanted;
   return {
     name,
+    labels,
     kind,
     required,
     unique,
@@ -41,6 +44,11 @@ export function of_kind(wanted: ColumnWanted): ColumnPatch {
 /** Only what differs: what this person left alone is not theirs to set. */
 export function column_changes(column: Column, wanted: ColumnWanted): ColumnPatch {
   const now: Record<string, unknown> = { unit: "", minimum: null, maximum: null, ...column };
-  const entries = Object.entries(of_kind(wanted)).filter(([member, value]) => !same_value(value as CellValue, (now[member] ?? null) as CellValue));
+  const entries = Object.entries(of_kind(wanted)).filter(([member, value]) =>
+    member === "labels" ? !same_labels(wanted.labels, column.labels) : !same_value(value as CellValue, (now[member] ?? null) as CellValue),
+  );
   return Object.fromEntries(entries) as ColumnPatch;
 }
+
+/** In whatever order. */
+const same_labels = (a: Labels, b: Labels): boolean => JSON.stringify(rows_of(a)) === JSON.stringify(rows_of(b));

@@ -8,11 +8,14 @@ import type { Column, ColumnChanged, ColumnCreate, ColumnKind, Table } from "../
 import { column_changes, has_limits, has_target, kColumnKinds, of_kind, type ColumnWanted } from "./column-changes";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
+import "./labels-field";
+import type { StrataLabelsField } from "./labels-field";
 import type { ModelSession } from "./model-session";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
 const words = texts.column_dialog;
+const kNoLabels = {};
 
 @customElement("strata-column-dialog")
 export class StrataColumnDialog extends LitElement {
@@ -27,6 +30,7 @@ export class StrataColumnDialog extends LitElement {
   @state() private outcome_: ColumnChanged | null = null; // values were lost: is that well?
   @query("strata-dialog") private dialog_!: StrataDialog;
   @query("form") private form_!: HTMLFormElement;
+  @query("strata-labels-field") private labels_!: StrataLabelsField;
 
   static override styles = [
     shared_styles,
@@ -85,6 +89,7 @@ export class StrataColumnDialog extends LitElement {
         <span>${words.name}</span>
         <input type="text" name="name" maxlength="200" autofocus .value=${column?.name ?? ""} />
       </label>
+      <strata-labels-field .labels=${column?.labels ?? kNoLabels} @keydown=${this.on_key}></strata-labels-field>
       <label class="field">
         <span>${words.kind}</span>
         <select name="kind" @change=${(event: Event) => (this.kind_ = (event.target as HTMLSelectElement).value as ColumnKind)}>
@@ -135,6 +140,14 @@ export class StrataColumnDialog extends LitElement {
       <p class="hint numeric">${words.lost_of(lost_keys.join(", "))}</p>`;
   }
 
+  /** Enter saves, also from a field in an element of its own. */
+  private on_key(event: KeyboardEvent): void {
+    if (event.key !== "Enter" || event.composedPath()[0] instanceof HTMLButtonElement) return;
+    event.preventDefault();
+    this.form_.requestSubmit();
+  }
+
+  /** Otherwise what is wrong; empty where that is said at its field. */
   private wanted(): ColumnWanted | string {
     const data = new FormData(this.form_);
     const text = (name: string): string => String(data.get(name) ?? "").trim();
@@ -142,8 +155,11 @@ export class StrataColumnDialog extends LitElement {
     const [minimum, maximum] = limits.map((parsed) => ("value" in parsed ? (parsed.value as number | null) : undefined));
     if (text("name") === "") return words.name_missing;
     if (minimum === undefined || maximum === undefined) return texts.tables.bad_number;
+    const labels = this.labels_.read();
+    if (!labels) return "";
     return {
       name: text("name"),
+      labels,
       kind: this.kind_,
       unit: text("unit"),
       required: data.has("required"),
@@ -192,7 +208,8 @@ export class StrataColumnDialog extends LitElement {
       await task();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.problem_ = error.message;
+      if (/^labels\b/.test(error.problem.field ?? "")) this.labels_.refuse(error.message);
+      else this.problem_ = error.message;
     } finally {
       this.busy_ = false;
     }

@@ -4,6 +4,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
+import { label_of } from "../core/cells";
 import { complete, marked_at, name_in_text, type Completion, type Suggestion } from "../core/completion";
 import { format_area } from "../core/measure";
 import { follow_session } from "./follow-session";
@@ -184,7 +185,7 @@ export class StrataExpressionField extends LitElement {
       names.push({ text: slug, hint: layer.name });
       if (layer.table === undefined) continue;
       for (const column of this.session.tables.find(layer.table)?.columns ?? [])
-        names.push({ text: `${slug}.${name_in_text(column.slug)}`, hint: words.column(column.name, layer.name) });
+        names.push({ text: `${slug}.${name_in_text(column.slug)}`, hint: words.column(label_of(column), layer.name) });
     }
     const surface = this.computes ? kSurface : kSurface.slice(0, 4);
     for (const name of surface) names.push({ text: name, hint: words.surface[name] });

@@ -3,6 +3,7 @@
 import { css, html, LitElement, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
+import { label_of } from "../core/cells";
 import { format_bytes } from "../core/measure";
 import type { Attachment, Column } from "../core/protocol.gen";
 import { dropped_files } from "./drop";
@@ -120,7 +121,7 @@ export class StrataFilesField extends LitElement {
   }
 
   override render(): TemplateResult {
-    return html`<div class="field ${this.over_ ? "over" : ""}" role="group" aria-label=${this.column.name} @dragover=${this.on_over} @dragleave=${() => (this.over_ = false)} @drop=${this.on_drop}>
+    return html`<div class="field ${this.over_ ? "over" : ""}" role="group" aria-label=${label_of(this.column)} @dragover=${this.on_over} @dragleave=${() => (this.over_ = false)} @drop=${this.on_drop}>
       ${this.ids.map((id) => this.kept(id))} ${this.pending_.map((file) => this.waiting(file))}
       <button type="button" class="add" @click=${() => this.input_.click()}>${icon("plus")}${this.is_pictures ? words.add_pictures : words.add_documents}</button>
       <input type="file" multiple tabindex="-1" aria-label=${words.choose} accept=${this.is_pictures ? "image/*" : ""} @change=${this.on_chosen} />

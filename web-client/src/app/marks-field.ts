@@ -3,6 +3,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
+import { label_of } from "../core/cells";
 import { describe_mark, type MarkKind } from "../core/marks";
 import type { Column, Mark } from "../core/protocol.gen";
 import { icon } from "./icons";
@@ -61,7 +62,7 @@ export class StrataMarksField extends LitElement {
     const { column, marks, session } = this;
     const here = marks.filter((mark) => mark.model === session.model?.id);
     const elsewhere = marks.length - here.length;
-    return html`<div class="field" role="group" aria-label=${column.name}>
+    return html`<div class="field" role="group" aria-label=${label_of(column)}>
       ${here.map((mark) => this.mark(mark))}
       ${elsewhere > 0 ? html`<span class="hint">${words.and_elsewhere(elsewhere)}</span>` : nothing}
       <button type="button" title=${words.draw_hint} @click=${this.on_draw}>${icon(this.kind)}${words.draw}</button>

@@ -801,6 +801,17 @@ export const texts = {
     keep: "Keep the new kind",
   },
 
+  labels: {
+    title: "In other languages",
+    add: "Add a language",
+    language: (row: number) => `Language ${row}`,
+    language_example: "es, pt-BR",
+    label: (language: string) => `Name in ${language}`,
+    remove: (language: string) => `Remove the name${language ? ` in ${language}` : ""}`,
+    no_language: "Say which language this name is in.",
+    twice: "This language has a name already.",
+  },
+
   layer_jobs: {
     queued: "Waiting for its turn",
     running: "At work",
@@ -933,6 +944,7 @@ export const texts = {
       ["Delete", "empty the cell"],
       ["Space, or click a key", "choose the row; with Ctrl: more, with Shift: all between"],
       ["Ctrl + Z · Ctrl + Shift + Z", "undo · redo your changes of the table"],
+      ["A column's ⋯ → Change", "what it is called, also in other languages: each person sees the name in the language of their browser"],
       ["Drop a CSV", "tells what it would change, line by line, then imports it; on a list of terms CSV and SKOS are terms for it"],
     ],
     brush: "What the brush reaches",

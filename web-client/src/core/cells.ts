@@ -3,17 +3,18 @@
 import { is_list_of_marks } from "./marks";
 import type { CellValue, Column, Labels, Table, TableRecord } from "./protocol.gen";
 
-/** The language and those that it is a kind of: "es-MX", "es". */
+/** The language and those that it is a kind of, in lower case: "es-mx", "es". */
 function kinds_of_language(language: string): string[] {
   const tags: string[] = [];
-  for (let tag = language; tag !== ""; tag = tag.slice(0, Math.max(0, tag.lastIndexOf("-")))) tags.push(tag);
+  for (let tag = language.toLowerCase(); tag !== ""; tag = tag.slice(0, Math.max(0, tag.lastIndexOf("-")))) tags.push(tag);
   return tags;
 }
 
 /** What it is called in the first of the person's languages that it has a name in: of "es-MX" also the name in "es". */
 export function label_of(thing: { name: string; labels: Labels }, languages: readonly string[] = navigator.languages): string {
+  const labels = new Map(Object.entries(thing.labels).map(([tag, label]) => [tag.toLowerCase(), label]));
   for (const tag of languages.flatMap(kinds_of_language)) {
-    const label = thing.labels[tag];
+    const label = labels.get(tag);
     if (label) return label;
   }
   return thing.name;
@@ -85,7 +86,7 @@ type Naming = Pick<Table, "columns" | "kind">;
 export function naming_columns(table: Naming, languages?: readonly string[]): Column[] {
   const last = label_column(table) ?? [];
   if (table.kind !== "terms") return [last].flat();
-  const slugs = (languages ?? navigator.languages).flatMap(kinds_of_language).map((tag) => `label-${tag.toLowerCase()}`);
+  const slugs = (languages ?? navigator.languages).flatMap(kinds_of_language).map((tag) => `label-${tag}`);
   const labels = [...slugs, "label"].map((slug) => table.columns.find((column) => column.kind === "text" && column.slug === slug) ?? []);
   return [...new Set([...labels, last].flat())];
 }

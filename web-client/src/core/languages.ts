@@ -1,0 +1,50 @@
+// Languages by their tags (BCP 47), and names of things in several of them.
+
+import type { Labels } from "./protocol.gen";
+
+/** Those that are offered; any other tag may be written. */
+export const kCommonLanguages: readonly string[] = [
+  "ar", "bg", "ca", "cs", "da", "de", "el", "en", "es", "et", "eu", "fa", "fi", "fr", "gl", "he", "hi", "hr", "hu", "it", "ja", "ka", "ko", "la",
+  "lt", "lv", "mk", "mt", "nb", "nl", "pl", "pt", "pt-BR", "ro", "ru", "sk", "sl", "sq", "sr", "sv", "sw", "tr", "uk", "ur", "vi", "zh-Hans", "zh-Hant",
+]; // prettier-ignore
+
+/** As tags are usually written, "pt-BR"; null where it is none. */
+export function well_written_tag(tag: string): string | null {
+  try {
+    return Intl.getCanonicalLocales(tag)[0] ?? null;
+  } catch {
+    return null; // a RangeError
+  }
+}
+
+/** What those who speak it call it: "español"; empty where that is not known. */
+export function name_of_language(tag: string): string {
+  const locale = well_written_tag(tag);
+  if (!locale) return "";
+  return new Intl.DisplayNames([locale], { type: "language", fallback: "none" }).of(locale) ?? "";
+}
+
+export interface LabelRow {
+  language: string; // as it was written
+  label: string;
+}
+
+export type ReadLabels = { labels: Labels } | { row: number; wrong: "no_language" | "twice" };
+
+/** One row for each language, by tag. */
+export const rows_of = (labels: Labels): LabelRow[] => Object.keys(labels).sort().map((language) => ({ language, label: labels[language]! }));
+
+/** What the rows say; those without a label say nothing. Whether a tag is one is for the server to judge. */
+export function labels_of(rows: readonly LabelRow[]): ReadLabels {
+  const labels = new Map<string, string>();
+  const taken = new Set<string>();
+  for (const [row, { language, label }] of rows.entries()) {
+    const [tag, text] = [language.trim(), label.trim()];
+    if (text === "") continue;
+    if (tag === "") return { row, wrong: "no_language" };
+    if (taken.has(tag.toLowerCase())) return { row, wrong: "twice" };
+    taken.add(tag.toLowerCase());
+    labels.set(tag, text);
+  }
+  return { labels: Object.fromEntries(labels) };
+}
