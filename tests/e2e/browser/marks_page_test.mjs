@@ -32,13 +32,17 @@ const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis])
 const length_of = ({ coordinates }) => coordinates.slice(1).reduce((sum, place, at) => sum + distance(place, coordinates[at]), 0);
 /** What a pixel of the page is on the object, as the scale bar tells it. */
 async function metres_per_pixel() {
-  const [, number, unit] = /([\d.]+) (mm|cm|m)/.exec(await page.locator("strata-stage .scale").innerText());
   const { width } = await page.locator("strata-stage .scale i").boundingBox();
-  return (Number(number) * { mm: 0.001, cm: 0.01, m: 1 }[unit]) / width;
+  return metres_of(await page.locator("strata-stage .scale").innerText()) / width;
 }
 async function click_at(x, y, count = 1) {
   const box = await browser.stage_box();
   await page.mouse.click(box.x + x * box.width, box.y + y * box.height, { clickCount: count });
+}
+const so_far = page.locator("strata-stage .length");
+function metres_of(text) {
+  const [, number, unit] = /([\d.]+) (mm|cm|m)/.exec(text);
+  return Number(number) * { mm: 0.001, cm: 0.01, m: 1 }[unit];
 }
 async function make_column(name, kind) {
   const dialog = page.locator("strata-column-dialog");
@@ -101,17 +105,33 @@ try {
   await page.keyboard.press("Control+Z");
   await hides(kCrack, "and gone");
 
-  say("clicks are its places; a double click ends it, Escape gives it up");
+  say("clicks are its places; a double click ends it, Escape gives it up; how long it is so far stands at the pointer");
   await click_at(0.42, 0.56);
   await click_at(0.5, 0.6);
+  await browser.point(0.52, 0.58);
+  await so_far.waitFor();
   await page.keyboard.press("Escape");
+  assert.equal(await so_far.count(), 0);
   await click_at(0.42, 0.56);
   await click_at(0.5, 0.6);
+  await browser.point(0.52, 0.58);
+  await so_far.waitFor();
+  const short = metres_of(await so_far.innerText());
   await browser.point(0.56, 0.56);
+  await wait_for(async () => metres_of(await so_far.innerText()) > short, "the length to grow with the line");
   await shot("mark-line-by-clicks");
   await click_at(0.56, 0.56, 2);
   await shows(kCrack, "the line of clicks");
-  assert.equal((await marks(1, "cracks")).length, 1);
+  const [by_clicks, ...others] = await marks(1, "cracks");
+  assert.deepEqual([others, await so_far.count()], [[], 0]);
+
+  say("and told while it is drawn what the line then has");
+  await click_at(0.42, 0.56);
+  await click_at(0.5, 0.6);
+  await browser.point(0.56, 0.56);
+  const made_m = length_of(by_clicks) * metres_per;
+  await wait_for(async () => Math.abs(metres_of(await so_far.innerText()) / made_m - 1) < 0.02, `the length to be ${made_m} m`);
+  await page.keyboard.press("Escape");
 
   say("where there is no surface there is no line, and a notice says so");
   await browser.drag([[0.02, 0.1], [0.1, 0.12]]);

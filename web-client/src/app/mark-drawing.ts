@@ -1,13 +1,16 @@
 // Lines and points that this person draws on the surface. They go to the record that the brush paints with, into the layer's table.
 
 import { ApiError, type Api } from "../core/api";
+import type { CameraMessage } from "../core/camera";
 import type { Point } from "../core/connection";
 import type { PointerSample } from "../core/input";
 import { lines_seen, mark_columns, mark_length, marks_of, type MarkKind } from "../core/marks";
 import { format_length, metres_per } from "../core/measure";
 import type { Column, MarkPlace, TableRecord } from "../core/protocol.gen";
 import type { Model } from "../core/types";
+import type { Outline } from "../tools/outline";
 import type { LayerList } from "./layer-list";
+import { LineMeasure, type PlacesSeen } from "./line-measure";
 import { notices } from "./notices";
 import type { Painting } from "./painting";
 import type { Tables } from "./tables";
@@ -34,15 +37,30 @@ interface Target {
 const kMostTries = 5; // where others change the record at the same time
 const words = texts.marks;
 
+const metres_of = (lines: readonly MarkPlace[][], { unit }: Model): number =>
+  lines.reduce((sum, coordinates) => sum + mark_length({ coordinates }), 0) * metres_per(unit);
+
 export class MarkDrawing {
   private readonly chosen_ = new Map<string, number>(); // ids of columns, by table and kind
   private work_: Promise<void> = Promise.resolve(); // one after the other
   private notice_ = 0; // that offers to take the newest back
+  private readonly measure_: LineMeasure; // of the line that is being drawn
 
   constructor(
     private readonly api_: Api,
     private readonly host_: MarkDrawingHost,
-  ) {}
+  ) {
+    this.measure_ = new LineMeasure({
+      look_along: async (path) => this.look_along(host_.model()!, host_.view.camera.message(), path),
+      metres_along: (places) => metres_of(lines_seen(places, host_.view.camera.pixel_size()), host_.model()!),
+      changed: () => host_.changed(),
+    });
+  }
+
+  /** Of what is being drawn, to the pointer; null where that is not known. */
+  get metres_so_far(): number | null {
+    return this.measure_.metres;
+  }
 
   /** Of the layer that is painted on: where such marks can go. */
   columns(kind: MarkKind): Column[] {
@@ -68,16 +86,19 @@ export class MarkDrawing {
     return true;
   }
 
+  /** More of it is drawn, or taken back; null: no longer. */
+  line_changed(outline: Outline | null): void {
+    this.measure_.follow(outline);
+  }
+
   finish_line(path: Point[]): void {
     const target = this.target("line");
     if (!target) return;
     const { camera } = this.host_.view;
     const [seen_by, pixel_at] = [camera.message(), camera.pixel_size()];
     this.queue(async () => {
-      const { samples } = await this.api_.profile(`${target.model.id}`, seen_by, path);
-      const lines = lines_seen(samples.map(({ point }) => (point.hit && point.position ? (point.position as MarkPlace) : null)), pixel_at);
-      const metres = lines.reduce((sum, coordinates) => sum + mark_length({ coordinates }), 0) * metres_per(target.model.unit);
-      await this.add(target, lines, (name) => words.line_drawn(format_length(metres), name));
+      const lines = lines_seen(await this.look_along(target.model, seen_by, path), pixel_at);
+      await this.add(target, lines, (name) => words.line_drawn(format_length(metres_of(lines, target.model)), name));
     });
   }
 
@@ -110,6 +131,11 @@ export class MarkDrawing {
     const wrong = layer.table === undefined || !column ? words.no_column[kind] : tables.lacks(layer.table, key) ? texts.brush.no_record(key) : null;
     if (wrong) notices.show("problem", wrong);
     return wrong || layer.table === undefined || !column ? null : { model, table: layer.table, key, column };
+  }
+
+  private async look_along({ id }: Model, seen_by: CameraMessage, path: readonly Point[]): Promise<PlacesSeen> {
+    const { samples } = await this.api_.profile(`${id}`, seen_by, path);
+    return samples.map(({ point }) => (point.hit && point.position ? (point.position as MarkPlace) : null));
   }
 
   private queue(work: () => Promise<void>): void {

@@ -201,6 +201,10 @@ export class ModelSession {
       ...outline_host,
       begin_outline: () => this.marks.begin_line(),
       finish_outline: (path: Point[]) => this.marks.finish_line(path),
+      outline_changed: () => {
+        this.marks.line_changed(this.tools.outline);
+        this.changed();
+      },
     };
     return new ToolManager(
       [

@@ -1,9 +1,16 @@
 // What polygon, lasso and line have drawn so far, over the picture.
 
 import { html, nothing, svg, type TemplateResult } from "lit";
+import { beside } from "../core/beside";
+import type { Point } from "../core/connection";
+import { format_length } from "../core/measure";
 import { color_of, css_color } from "../core/palette";
 import { kSnap_px, type Outline } from "../tools/outline";
 import type { ModelSession } from "./model-session";
+import { styled } from "./styled";
+
+const kLength = { width: 96, height: 28 }; // room for how long a line is, CSS pixels
+const kGap_px = 14;
 
 export function outline_overlay(session: ModelSession, { points, corners, pointer, closable, area }: Outline): TemplateResult {
   const { scale } = session.view;
@@ -15,13 +22,26 @@ export function outline_overlay(session: ModelSession, { points, corners, pointe
   const at_first =
     closable && first && pointer && Math.hypot(pointer[0] - first[0], pointer[1] - first[1]) <= kSnap_px * scale;
   return html`<svg class="over" aria-hidden="true">
-    ${area ? svg`<polygon points=${line} fill=${color ? css_color(color) : "#fff"} fill-opacity="0.28" stroke="none" />` : nothing}
-    <polyline points=${line} fill="none" stroke="rgb(20 26 26 / 0.6)" stroke-width="3.4" stroke-linejoin="round" />
-    <polyline points=${line} fill="none" stroke=${area || !color ? "#fff" : css_color(color)} stroke-width="1.6" stroke-linejoin="round" />
-    ${corners.map(
-      ([x, y], index) =>
-        svg`<circle cx=${x / scale} cy=${y / scale} r=${index === 0 && at_first ? 8 : 4} fill=${index === 0 ? "#20292a" : "#fff"}
-          stroke=${index === 0 ? "#fff" : "#20292a"} stroke-width="1.5" />`,
-    )}
-  </svg>`;
+      ${area ? svg`<polygon points=${line} fill=${color ? css_color(color) : "#fff"} fill-opacity="0.28" stroke="none" />` : nothing}
+      <polyline points=${line} fill="none" stroke="rgb(20 26 26 / 0.6)" stroke-width="3.4" stroke-linejoin="round" />
+      <polyline points=${line} fill="none" stroke=${area || !color ? "#fff" : css_color(color)} stroke-width="1.6" stroke-linejoin="round" />
+      ${corners.map(
+        ([x, y], index) =>
+          svg`<circle cx=${x / scale} cy=${y / scale} r=${index === 0 && at_first ? 8 : 4} fill=${index === 0 ? "#20292a" : "#fff"}
+            stroke=${index === 0 ? "#fff" : "#20292a"} stroke-width="1.5" />`,
+      )}
+    </svg>
+    ${area ? nothing : length_so_far(session, pointer ?? points[points.length - 1]!)}`;
+}
+
+/** Beside the end of a line that is being drawn. Who cannot see it is told when the line is finished. */
+function length_so_far({ marks, view }: ModelSession, [x, y]: Point): TemplateResult | typeof nothing {
+  const metres = marks.metres_so_far;
+  if (metres === null) return nothing;
+  const { camera, scale } = view;
+  const end = [x / scale, y / scale] as const;
+  const place = beside(end, kLength, { width: camera.width / scale, height: camera.height / scale }, kGap_px);
+  if (!place) return nothing;
+  const at = { left: `${place.left}px`, top: `${place.top}px`, width: `${kLength.width}px`, "justify-content": place.left < end[0] ? "end" : "start" };
+  return html`<div class="length numeric" aria-hidden="true" ${styled(at)}><b>${format_length(metres)}</b></div>`;
 }

@@ -94,6 +94,20 @@ export class StrataStage extends LitElement {
         height: 100%;
         mask: center / 100% 100% no-repeat;
       }
+      .length {
+        position: absolute;
+        display: flex;
+        pointer-events: none;
+      }
+      .length b {
+        padding: 3px 9px;
+        border-radius: 99px;
+        background: rgb(20 26 26 / 0.78);
+        color: #fff;
+        font-size: 0.82rem;
+        font-weight: 600;
+        white-space: nowrap;
+      }
       .waiting {
         position: absolute;
         inset: 0;

@@ -614,7 +614,7 @@ export const texts = {
     draw_hint: "Saves the record and goes to the model, where new ones are drawn",
     remove: (what: string) => `Take out ${what}`,
     how: {
-      line: "Drag along the surface, or click from place to place and end with a double click or Enter. Backspace takes a place back, Escape gives up.",
+      line: "Drag along the surface, or click from place to place and end with a double click or Enter; how long it is so far stands at its end. Backspace takes a place back, Escape gives up.",
       point: "Click where it lies.",
     },
     into: "Column",
@@ -920,7 +920,7 @@ export const texts = {
     key_rows: [
       ["B · E · I", "brush · eraser · pick a value"],
       ["A · L · G", "polygon · lasso · fill connected"],
-      ["D · S", "line · point, for the record that is painted"],
+      ["D · S", "line, with its length while you draw · point, for the record that is painted"],
       ["Enter · Backspace · Escape", "close the polygon, end the line · take a corner back · give up"],
       ["V · H", "turn · move"],
       ["[ · ]", "narrower · wider brush"],

@@ -21,7 +21,8 @@ export class LineTool extends OutlineTool implements Tool {
 
   override get outline(): Outline | null {
     if (this.points.length === 0) return null;
-    return { points: this.points, corners: this.corners_, pointer: this.press_ ? null : this.pointer_, closable: false, area: false };
+    const leads_on = !this.press_ && this.points.length < this.most;
+    return { points: this.points, corners: this.corners_, pointer: leads_on ? this.pointer_ : null, closable: false, area: false };
   }
 
   down(sample: PointerSample): void {
