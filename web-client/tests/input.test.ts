@@ -39,6 +39,7 @@ beforeEach(() => {
     zoom: vi.fn(),
     twist: vi.fn(),
     hover: vi.fn(),
+    free_mouse: vi.fn(),
   };
   input = new StageInput(element as unknown as HTMLElement, handler, () => 2);
 });
@@ -55,6 +56,14 @@ describe("mouse", () => {
     expect(handler.tool_down.mock.calls).toEqual([[{ x: 20, y: 40 }]]);
     expect(handler.tool_move.mock.calls).toEqual([[[{ x: 22, y: 44 }]]]);
     expect(handler.tool_up).toHaveBeenCalledTimes(1);
+  });
+
+  it("is free where nothing is pressed, until something is", () => {
+    element.fire("pointermove", mouse(0, 10, 20, { buttons: 0 }));
+    element.fire("pointerdown", mouse(2, 10, 20, { buttons: 2 }));
+    element.fire("pointermove", mouse(2, 11, 22, { buttons: 2 }));
+    element.fire("pointermove", { ...mouse(0, 12, 20, { buttons: 0 }), pointerType: "pen" });
+    expect(handler.free_mouse.mock.calls).toEqual([[{ x: 20, y: 40 }], [null], [null], [null]]);
   });
 
   it("all the points between two pictures are kept", () => {

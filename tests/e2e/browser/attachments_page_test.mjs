@@ -36,13 +36,30 @@ function photo(name, red) {
 const files = async (key) => (await server.json("GET", `${T}/records/${key}/attachments`)).attachments.map(({ name, column }) => [name, column]);
 const shown = (images) => wait_for(() => images.evaluateAll((all) => all.length > 0 && all.every((image) => image.complete && image.naturalWidth > 0)), "thumbnails to be drawn");
 
+const glance = page.locator("strata-hover-card section");
+let mouse = [0, 0];
+/** In shares of the stage; on the way it comes over something else. */
+async function rest_at(x, y) {
+  const stage = await browser.stage_box();
+  mouse = [stage.x + x * stage.width, stage.y + y * stage.height];
+  await page.mouse.move(...mouse, { steps: 3 });
+}
+async function lies_beside() {
+  const [stage, box] = [await browser.stage_box(), await glance.boundingBox()];
+  const [x, y] = mouse;
+  assert.ok(box.x >= stage.x && box.y >= stage.y && box.x + box.width <= stage.x + stage.width && box.y + box.height <= stage.y + stage.height, "within the stage");
+  assert.ok(x < box.x || x > box.x + box.width || y < box.y || y > box.y + box.height, "not over the pointer");
+}
+
 try {
   await server.start();
   await server.json("POST", `${base}/layers`, {
     name: "Finds", kind: "database", type: "u16", resolution: 2048,
-    columns: [{ name: "Code", required: true, unique: true }, { name: "Photos", kind: "picture" }, { name: "Reports", kind: "document" }],
+    columns: [{ name: "Code", required: true, unique: true }, { name: "Photos", kind: "picture" }, { name: "Reports", kind: "document" },
+      { name: "Depth", kind: "numeric", unit: "m" }, { name: "Note", labels: { en: "Remark" } }],
   });
-  for (const code of ["SU 1", "SU 2", "SU 3"]) await server.json("POST", `${T}/records`, { values: { code } });
+  await server.json("POST", `${T}/records`, { values: { code: "SU 1", depth: 1.2, note: "Charcoal and burnt clay, cut by the later pit in the north" } });
+  for (const code of ["SU 2", "SU 3"]) await server.json("POST", `${T}/records`, { values: { code } });
   await server.json("POST", `${base}/layers/finds/edits`, { op: "fill", value: 1, mode: "where", where: "true" });
 
   await page.goto(server.link);
@@ -103,6 +120,56 @@ try {
   await card.getByText("SU 1").first().waitFor();
   await shown(card.locator("img"));
   await shot("card-with-picture");
+
+  say("a mouse that rests on a record sees it at a glance, beside the pointer");
+  await button("Close the record").click();
+  await server.json("POST", `${base}/layers/finds/edits`, { op: "fill", value: 2, mode: "where", where: "x > 0" });
+  const asked = [];
+  page.on("request", (request) => /\/tables\/\d+\/records\/\d+$/.test(request.url()) && asked.push(request.url().split("/").at(-1)));
+  await rest_at(0.37, 0.57);
+  await glance.getByText("SU 1", { exact: true }).waitFor();
+  await shown(glance.locator("img"));
+  assert.deepEqual(await glance.locator("dt").allInnerTexts(), ["Reports", "Depth", "Remark"]);
+  assert.deepEqual((await glance.locator("dd").allInnerTexts()).slice(0, 2), ["1 file", "1.2 m"]);
+  await shot("glance");
+  await rest_at(0.38, 0.6);
+  await lies_beside();
+  assert.equal(await glance.evaluate((element) => getComputedStyle(element).pointerEvents), "none");
+  assert.equal(await page.locator("strata-hover-card").getAttribute("aria-hidden"), "true");
+
+  say("until the mouse rests on another, something is pressed or the view moves");
+  await rest_at(0.62, 0.62);
+  await glance.getByText("SU 2", { exact: true }).waitFor();
+  await page.keyboard.press("Escape");
+  assert.equal(await glance.count(), 0);
+  await rest_at(0.61, 0.6);
+  await glance.getByText("SU 2", { exact: true }).waitFor();
+  await page.keyboard.press("b");
+  assert.equal(await glance.count(), 0);
+  await page.keyboard.press("v");
+  await rest_at(0.6, 0.62);
+  await glance.waitFor();
+  await page.mouse.down();
+  assert.equal(await glance.count(), 0);
+  await page.mouse.up();
+  await card.getByText("SU 2").first().waitFor(); // the tap shows all of it
+  await button("Close the record").click();
+  await rest_at(0.37, 0.57);
+  await glance.getByText("SU 1", { exact: true }).waitFor();
+  await rest_at(0.52, 0.66);
+  await glance.getByText("SU 2", { exact: true }).waitFor();
+  const before = await glance.elementHandle();
+  await page.mouse.wheel(0, -240);
+  await wait_for(() => before.evaluate((element) => !element.isConnected), "the glance to go as the view comes nearer");
+  for (let steps = 0; steps < 5; ++steps) await page.mouse.wheel(0, -240);
+  for (const at of [[0.03, 0.04], [0.97, 0.04], [0.03, 0.96], [0.97, 0.96]]) {
+    await rest_at(...at);
+    await glance.getByText(at[0] > 0.9 ? "SU 2" : "SU 1", { exact: true }).waitFor();
+    await lies_beside();
+    await shot(`glance-${at.join("-")}`);
+  }
+  assert.equal(asked.filter((key) => key === "1").length, 1, "a record is asked for once");
+  await page.keyboard.press("Home");
 
   say("a folder of photos finds its records by their names");
   await button("More about the table").click();

@@ -18,6 +18,7 @@ import "./delete-record-dialog";
 import { ask, modal_is_open } from "./dialog";
 import { icon, logo } from "./icons";
 import { handle_key, is_for_field } from "./keyboard";
+import "./hover-card";
 import "./layer-dialog";
 import type { LayerPanelRequest } from "./layer-panel";
 import "./layer-panel";
@@ -161,6 +162,7 @@ export class StrataModelPage extends LitElement {
               : nothing}
             <strata-value-readout .session=${session}></strata-value-readout>
           </div>
+          <strata-hover-card .session=${session}></strata-hover-card>
         </main>
         ${session.tables.view ? this.table(session, session.tables.view) : nothing} ${this.panel_shown_ ? this.panel(session) : nothing}
       </div>

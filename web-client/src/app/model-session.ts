@@ -1,5 +1,5 @@
 // One open model on this page: its life, and the messages between its parts. `view` is the camera, `layers` what is painted on,
-// `tables` the records that layers hold the keys of, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits. Elements
+// `tables` the records that layers hold the keys of, `hovered` the one that the mouse rests on, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits. Elements
 // subscribe and draw themselves from their state; they change it only through their methods.
 
 import { Api, ApiError, type Versioned } from "../core/api";
@@ -24,6 +24,7 @@ import { MarkDrawing } from "./mark-drawing";
 import { notices } from "./notices";
 import { Painting } from "./painting";
 import { PointerWatch } from "./pointer-watch";
+import { RecordHover, type RecordAt } from "./record-hover";
 import { forget, remember } from "./sessions";
 import { Tables } from "./tables";
 import { texts } from "./texts";
@@ -49,6 +50,7 @@ export class ModelSession {
   readonly shapes: ToolShapes;
   readonly tables: Tables;
   readonly marks: MarkDrawing;
+  readonly hovered: RecordHover;
   readonly tools: ToolManager;
   /** Set by the stage. */
   on_frame: (part: FrameMessage) => void = () => {};
@@ -69,7 +71,10 @@ export class ModelSession {
     this.connection_ = this.make_connection(make_socket);
     const changed = (): void => this.changed();
     this.view = new ViewControl({
-      send: (moving) => this.connection_.set_camera(this.view.camera.message(), moving),
+      send: (moving) => {
+        this.hovered.wait_again();
+        this.connection_.set_camera(this.view.camera.message(), moving);
+      },
       when_free: (action) => this.painting.when_free(action),
       is_painting: () => this.painting.stroking,
       came_to_rest: () => this.pointer.ask_again(),
@@ -96,6 +101,7 @@ export class ModelSession {
         this.tables.show_card(this.layers.selected, message);
       },
       looked: (message) => this.tables.show_card(this.layer_with_record(message), message),
+      learned: () => this.hovered.picked(),
       changed,
     });
     this.painting = new Painting({
@@ -128,6 +134,11 @@ export class ModelSession {
       model: () => this.model,
       changed,
     });
+    this.hovered = new RecordHover({
+      here: () => this.record_here(),
+      settled: () => this.pointer.settled,
+      changed,
+    });
     this.tools = this.make_tools();
   }
 
@@ -144,6 +155,7 @@ export class ModelSession {
       this.tools.hover(sample);
       this.pointer.hover(sample);
     },
+    free_mouse: (sample) => this.hovered.move(sample),
   };
 
   private make_connection(make_socket?: (url: string, protocol: string) => SocketLike): Connection {
@@ -245,6 +257,7 @@ export class ModelSession {
     this.tools.stop();
     this.view.stop();
     this.pointer.stop();
+    this.hovered.end();
     this.tables.close();
     this.listeners_.clear();
     this.on_frame = this.on_reset_frames = () => {};
@@ -280,12 +293,26 @@ export class ModelSession {
   }
 
   /** The one that is painted on, if there is a record, or the topmost that shows one. */
-  private layer_with_record({ values }: Picked): Layer | null {
-    const { layers } = this;
-    const has_record = (layer: Layer): boolean => layer.table !== undefined && layers.visible(layer) && values?.[layer.slug]?.valid === true;
-    const { selected } = layers;
-    if (selected && has_record(selected)) return selected;
-    return [...layers.all].reverse().find(has_record) ?? null;
+  private layer_with_record(picked: Picked): Layer | null {
+    const { selected, all } = this.layers;
+    if (selected && this.shows_record(selected, picked)) return selected;
+    return [...all].reverse().find((layer) => this.shows_record(layer, picked)) ?? null;
+  }
+  private shows_record(layer: Layer, { values }: Picked): boolean {
+    return layer.table !== undefined && this.layers.visible(layer) && values?.[layer.slug]?.valid === true;
+  }
+
+  /** Under the pointer, where the tool's tap would show its card, and does not already. */
+  private record_here(): RecordAt | null {
+    const { picked } = this.pointer;
+    const { active } = this.tools;
+    const { selected } = this.layers;
+    if (!picked) return null;
+    const looks = active === "orbit" || active === "pan";
+    const layer = looks ? this.layer_with_record(picked) : active === "pick" && selected && this.shows_record(selected, picked) ? selected : null;
+    const key = layer ? picked.values?.[layer.slug]?.value : undefined;
+    const { card } = this.tables;
+    return !layer || key === undefined || (card?.layer.id === layer.id && card.key === key) ? null : { layer, key };
   }
 
   /** The table of the layer that is painted on: shown, or no longer. */

@@ -23,6 +23,11 @@ export class PickProbe {
 
   constructor(private readonly host_: PickProbeHost) {}
 
+  /** No question waits, and no answer is on its way. */
+  get idle(): boolean {
+    return this.asked_ === null && this.waiting_ === null;
+  }
+
   /** A press that still waits keeps its purpose, wherever the pointer goes meanwhile. */
   ask(sample: PointerSample, purpose: PickPurpose = "hover"): void {
     this.waiting_ = { sample, purpose: purpose === "hover" ? (this.waiting_?.purpose ?? "hover") : purpose };

@@ -15,6 +15,8 @@ export interface PointerHost {
   /** Somebody pressed here to take the value, or tapped to look closer. */
   taken(message: Picked): void;
   looked(message: Picked): void;
+  /** `picked` is newer. */
+  learned(): void;
   changed(): void;
 }
 
@@ -32,6 +34,11 @@ export class PointerWatch {
       ask: (id, sample) => host_.ask(id, sample),
       answered: (message, purpose) => this.on_picked(message, purpose),
     });
+  }
+
+  /** `picked` is of where the pointer is now. */
+  get settled(): boolean {
+    return this.probe_.idle;
   }
 
   hover(sample: PointerSample | null): void {
@@ -82,6 +89,7 @@ export class PointerWatch {
     if (message.hit && message.position) this.depth_ = this.host_.camera().depth_of(message.position);
     if (purpose === "take") this.host_.taken(message);
     if (purpose === "look") this.host_.looked(message);
+    this.host_.learned();
     this.host_.changed();
   }
 

@@ -2,7 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { label_of, named_keys, naming_columns } from "../core/cells";
+import { first_picture, label_of, telling_columns } from "../core/cells";
 import { css_color, record_color } from "../core/palette";
 import type { Table, TableRecord } from "../core/protocol.gen";
 import { follow_session } from "./follow-session";
@@ -103,26 +103,22 @@ export class StrataRecordCard extends LitElement {
     </section>`;
   }
 
-  /** The first one that the record has. */
   private picture(table: Table, record: TableRecord): TemplateResult | typeof nothing {
     const { api } = this.session;
-    const column = table.columns.find(({ kind, slug }) => kind === "picture" && named_keys(record.values[slug]).length > 0);
-    const [id] = column ? named_keys(record.values[column.slug]) : [];
-    if (id === undefined) return nothing;
+    const id = first_picture(table, record);
+    if (id === null) return nothing;
     return html`<a class="picture" href=${api.attachment_url(id)} target="_blank" rel="noopener">
       <img src=${api.attachment_url(id, 512)} alt=${texts.files.file(id)} />
     </a>`;
   }
 
-  /** The first columns that say something; the one that names the record is its heading. */
+  /** The first columns that say something; what the record is called is its heading. */
   private lines(table: Table, record: TableRecord): TemplateResult {
     const words = texts.tables;
-    const [name] = naming_columns(table);
-    const told = table.columns.filter((column) => column !== name && column.kind !== "picture" && (record.values[column.slug] ?? null) !== null);
     return html`<dl>
       <dt>${words.key}</dt>
       <dd class="numeric">${record.key}</dd>
-      ${told.slice(0, kMostLines).map(
+      ${telling_columns(table, record).slice(0, kMostLines).map(
         (column) =>
           html`<dt>${label_of(column)}</dt>
             <dd>${shown_value(this.session, column, record.values[column.slug] ?? null)}${column.unit ? ` ${column.unit}` : nothing}</dd>`,

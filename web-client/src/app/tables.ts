@@ -5,6 +5,7 @@ import type { Bounds, Highlight, Picked, RecordEvent, Table, TableEvent, TableRe
 import type { Layer } from "../core/types";
 import { notices } from "./notices";
 import { RecordNames } from "./record-names";
+import { RecordShelf } from "./record-shelf";
 import { TableView } from "./table-view";
 import { TermTree } from "./term-tree";
 import { texts } from "./texts";
@@ -27,11 +28,14 @@ export class Tables {
   private readonly tables_ = new Map<number, Table | "asked">();
   private readonly names_ = new Map<number, RecordNames>();
   private readonly terms_ = new Map<number, TermTree>();
+  private readonly records_: RecordShelf;
 
   constructor(
     private readonly api_: Api,
     private readonly host_: TablesHost,
-  ) {}
+  ) {
+    this.records_ = new RecordShelf(api_, () => host_.changed());
+  }
 
   /** Null until it is here; it is asked for. */
   find(id: number): Table | null {
@@ -55,6 +59,11 @@ export class Tables {
   /** What a record of the table is called; null where it has no name, or none that is known yet. */
   label(id: number, key: number): string | null {
     return this.names(id)?.label(key) ?? null;
+  }
+
+  /** Null until it is here, and where there is none. */
+  record(id: number, key: number): TableRecord | null {
+    return this.records_.find(id, key);
   }
 
   /** Whether it is known that the table has no such record. */
@@ -160,10 +169,12 @@ export class Tables {
   refresh(): void {
     for (const id of this.tables_.keys()) void this.load(id);
     for (const kept of [...this.names_.values(), ...this.terms_.values()]) kept.refresh();
+    this.records_.forget_all();
     this.view?.rows.refresh();
   }
 
   on_record(event: RecordEvent): void {
+    this.records_.forget(event.table, event.key);
     const names = this.names_.get(event.table);
     if (event.event === "deleted") names?.remove(event.key);
     else if (event.record) names?.put(event.record);
@@ -175,6 +186,7 @@ export class Tables {
   }
 
   on_table(event: TableEvent): void {
+    this.records_.forget_table(event.table_id);
     if (event.event === "deleted") {
       this.tables_.delete(event.table_id);
       this.names_.delete(event.table_id);
@@ -200,6 +212,7 @@ export class Tables {
   /** This person changed its columns: the rows are read anew with them. */
   async reload(id: number): Promise<void> {
     await this.load(id);
+    this.records_.forget_table(id);
     this.names_.get(id)?.refresh();
     this.terms_.get(id)?.refresh();
     if (this.view?.table_id === id) this.view.rows.refresh();

@@ -907,6 +907,7 @@ export const texts = {
     keys: "Keys",
     mouse_rows: [
       ["Left drag", "the chosen tool"],
+      ["Rest while turning or moving", "the record that lies there, at a glance; Escape puts it away"],
       ["Click while turning or moving", "the record that lies there"],
       ["Right drag, or Space + left", "turn the model"],
       ["Middle drag, or Shift + right", "move the model"],

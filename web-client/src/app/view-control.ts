@@ -142,13 +142,11 @@ export class ViewControl {
   private moved(moving: boolean): void {
     if (this.fitted_) this.host_.send(moving);
     this.stop_waiting();
-    if (moving) {
-      this.still_timer_ = setTimeout(() => {
-        this.still_timer_ = null;
-        this.host_.send(false);
-        this.host_.came_to_rest();
-      }, kStillAfter_ms);
-    }
+    this.still_timer_ = setTimeout(() => {
+      this.still_timer_ = null;
+      if (moving) this.host_.send(false);
+      this.host_.came_to_rest();
+    }, kStillAfter_ms);
     this.host_.changed();
   }
 }

@@ -99,3 +99,14 @@ export function label_of_record(table: Naming, record: Pick<TableRecord, "values
   }
   return "";
 }
+
+/** The first one that the record has: the number of its file. */
+export function first_picture(table: Pick<Table, "columns">, { values }: Pick<TableRecord, "values">): number | null {
+  return table.columns.filter(({ kind }) => kind === "picture").flatMap(({ slug }) => named_keys(values[slug]))[0] ?? null;
+}
+
+/** Those that say something of the record in words: not the one that names it, nor pictures. */
+export function telling_columns(table: Naming, { values }: Pick<TableRecord, "values">): Column[] {
+  const [name] = naming_columns(table);
+  return table.columns.filter((column) => column !== name && column.kind !== "picture" && cell_text(values[column.slug]) !== "");
+}

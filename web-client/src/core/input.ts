@@ -20,6 +20,8 @@ export interface GestureHandler {
   /** Two fingers turned against each other, radians clockwise on the screen. */
   twist(angle: number): void;
   hover(sample: PointerSample | null): void;
+  /** A mouse is there with nothing pressed; null: no longer, or something else points. */
+  free_mouse(sample: PointerSample | null): void;
 }
 
 type Drag = "tool" | "orbit" | "pan";
@@ -52,6 +54,7 @@ export class StageInput {
     this.listen("pointercancel", (event: PointerEvent) => this.on_up(event, true));
     this.listen("pointerleave", (event: PointerEvent) => {
       if (event.pointerType === "mouse" && !this.drag_) this.handler_.hover(null);
+      this.handler_.free_mouse(null);
     });
     this.listen("wheel", (event: WheelEvent) => this.on_wheel(event), { passive: false });
     this.listen("contextmenu", (event: Event) => event.preventDefault());
@@ -82,6 +85,7 @@ export class StageInput {
     const at = this.css_position(event);
     this.element_.setPointerCapture(event.pointerId);
     this.pointers_.set(event.pointerId, at);
+    this.handler_.free_mouse(null);
     if (event.pointerType === "touch") {
       this.on_touch_down(event.pointerId, at);
       return;
@@ -129,6 +133,7 @@ export class StageInput {
       return;
     }
     if (event.pointerType !== "touch") this.handler_.hover(this.to_window(at));
+    this.handler_.free_mouse(event.pointerType === "mouse" && event.buttons === 0 ? this.to_window(at) : null);
     const waiting = this.waiting_touch_;
     if (waiting?.pointer === event.pointerId) {
       if (Math.hypot(at.x - waiting.start.x, at.y - waiting.start.y) < kTouchSlop) return;
