@@ -134,6 +134,27 @@ std::vector<std::string> exclusive_members(const json* schema) {
   return names;
 }
 
+// Where just one choice of a `oneOf` of an object is begun: that choice; null otherwise.
+const json* begun_choice(const json* schema, const json* value) {
+  if (schema == nullptr || value == nullptr || !value->is_object()) return nullptr;
+  const json& node = resolve(*schema);
+  if (!node.contains("oneOf")) return nullptr;
+  const json* begun = nullptr;
+  for (const auto& choice : node["oneOf"]) {
+    if (!choice.contains("required") || !value->contains(choice["required"][0])) continue;
+    if (begun != nullptr) return nullptr;
+    begun = &choice;
+  }
+  return begun;
+}
+
+// The first member that a choice rules out, and that is given all the same; empty where there is none.
+std::string ruled_out(const json& choice, const json& value) {
+  for (const auto& other : choice.value("not", json::object()).value("anyOf", json::array()))
+    if (value.contains(other["required"][0])) return other["required"][0].get<std::string>();
+  return {};
+}
+
 tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::string& field,
                                 const valijson::ValidationResults::Error& error) {
   std::string path = field;
@@ -173,7 +194,13 @@ tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::str
     return fail(422, "Member missing",
                 "It must be given" + (missing ? ": " + expectation(*missing) : std::string()) + ".", path);
   }
-  if (said.starts_with("Failed to validate against exactly one")) {
+  if (said.starts_with("Failed to validate against exactly one") || said.starts_with("Target should not validate")) {
+    if (const json* choice = begun_choice(rule, value))
+      if (const std::string member = ruled_out(*choice, *value); !member.empty()) {
+        enter(member);
+        return fail(422, "Members exclude each other", "It does not go with " + listed((*choice)["required"]) + ".",
+                    path);
+      }
     const auto exclusive = exclusive_members(rule);
     if (exclusive.size() > 1) enter(exclusive.back());
     return fail(422, "Members exclude each other", "Give exactly one of " + listed(json(exclusive)) + ".", path);
