@@ -25,10 +25,12 @@ def check_usage(folder):
                                (("import", "--resolution", "1024", "a.ply"), {}), (("nonsense",), {})):
         done = strata(*words, **{"STRATA_DATA": data, **environment})
         assert done.returncode == 2 and done.stderr, (words, done)
-    for words in (("serve", "--listen", "0.0.0.0:0"), ("import", os.path.join(folder, "nothing.ply"), "--server", "http://127.0.0.1:1", "--token", "t")):
-        done = strata(*words, STRATA_DATA=data)
-        assert done.returncode == 1 and done.stderr, (words, done)
+    done = strata("import", os.path.join(folder, "nothing.ply"), "--server", "http://127.0.0.1:1", "--token", "t", STRATA_DATA=data)
+    assert done.returncode == 1 and done.stderr, done
     assert not os.path.exists(data)
+    os.chmod(folder, 0o755)  # PostgreSQL does not run as root, so its user must reach the folder
+    done = strata("serve", "--listen", "0.0.0.0:0", STRATA_DATA=os.path.join(folder, "in-reach"))
+    assert done.returncode == 1 and "strata user add" in done.stderr and not done.stdout, done
 
 
 def check_other_servers(folder):
