@@ -606,6 +606,7 @@ CREATE TABLE public.users (
     created timestamp with time zone DEFAULT now() NOT NULL,
     full_name text DEFAULT ''::text NOT NULL,
     password text,
+    last_seen timestamp with time zone,
     disabled timestamp with time zone,
     deleted timestamp with time zone,
     CONSTRAINT users_name_check CHECK ((name <> ''::text)),

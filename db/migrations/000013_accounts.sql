@@ -5,6 +5,7 @@
 ALTER TABLE users
   ADD COLUMN full_name text NOT NULL DEFAULT '',
   ADD COLUMN password text CHECK (password <> ''),
+  ADD COLUMN last_seen timestamptz,
   ADD COLUMN disabled timestamptz,
   ADD COLUMN deleted timestamptz,
   ADD CONSTRAINT users_role_check CHECK (role IN ('viewer', 'annotator', 'curator', 'administrator', 'owner'));

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "cli/install_dirs.h"
+#include "store/inspect.h"
 #include "store/sql_readers.h"
 
 namespace strata::cli {
@@ -44,7 +45,18 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) 
 Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& options) {
   if (!options.database.empty()) return open_database(options);
   const auto state = store::Cluster::inspect(options.data);
+  if (!state.running && state.version == 0 && !state.trouble)
+    return fail(404, "No database",
+                "There is no database in " + std::filesystem::absolute(options.data).string() +
+                    ". Name the server's folder with --data, or start the server once.");
   if (!state.running) return open_database(options);
+  // The server's database is brought to another version by its own start, not under its feet.
+  const auto schema = store::inspect_database(state.dsn, install_dirs().migrations);
+  if (!schema) return tl::unexpected(schema.error());
+  if (schema->schema_version != schema->known_version)
+    return fail(409, "Another version",
+                "The server that runs on " + options.data.string() +
+                    " is of another version than this program. Use its own, or restart it.");
   DataOptions beside = options;
   beside.database = state.dsn;
   return open_database(beside);

@@ -12,8 +12,6 @@ namespace {
 
 using store::TokenKind;
 
-constexpr std::chrono::hours kInvitationLifetime{24 * 7};
-
 struct PeopleOptions {
   DataOptions data;
   std::string name, role, full_name, user, url = "http://127.0.0.1:8080";
@@ -42,19 +40,26 @@ void add_password(CLI::App& command, const Options& options) {
   command.add_option("--url", options->url, "Address of the server, for the link")->capture_default_str();
 }
 
+// From standard input; nothing where a link is wanted.
+Result<std::optional<std::string>> given_password(const PeopleOptions& options, const std::string& name) {
+  if (!options.password_stdin) return std::nullopt;
+  std::string password{std::istreambuf_iterator<char>(std::cin), {}};
+  while (!password.empty() && (password.back() == '\n' || password.back() == '\r')) password.pop_back();
+  if (auto good = store::check_password(password, name, "--password-stdin"); !good) return tl::unexpected(good.error());
+  return password;
+}
+
 // By the password that is given, or by a link under which the person chooses one.
-Result<void> let_in(store::Store& store, const PeopleOptions& options, const store::Person& person) {
-  if (options.password_stdin) {
-    std::string password{std::istreambuf_iterator<char>(std::cin), {}};
-    while (!password.empty() && (password.back() == '\n' || password.back() == '\r')) password.pop_back();
-    if (auto good = store::check_password(password, person.name, "--password-stdin"); !good) return good;
-    return store.set_password(person.name, store::hash_password(password), {});
+Result<void> let_in(store::Store& store, const PeopleOptions& options, const store::Person& person,
+                    const std::optional<std::string>& password) {
+  if (password) {
+    const auto hash = store::hash_password(*password);
+    return hash ? store.set_password(person.name, *hash, {}) : tl::unexpected(hash.error());
   }
-  if (auto old = store.revoke_tokens(person.name, TokenKind::invitation); !old) return old;
-  auto secret = store.create_token(TokenKind::invitation, person.name, person.role, kInvitationLifetime);
-  if (!secret) return tl::unexpected(secret.error());
+  const auto link = store.create_link(TokenKind::invitation, person.name, store::kInvitationLifetime);
+  if (!link) return tl::unexpected(link.error());
   std::cout << "For " << person.name << ", to choose a password within 7 days:\n"
-            << options.url << "/join#" << *secret << std::endl;
+            << options.url << "/join#" << link->secret << std::endl;
   return {};
 }
 
@@ -69,16 +74,17 @@ std::string day_of(const std::optional<std::chrono::system_clock::time_point>& t
 }
 
 Result<void> add_person(store::Store& store, const PeopleOptions& options) {
-  const bool is_name = !options.name.empty() && std::ranges::all_of(options.name, [](unsigned char c) {
-    return std::isalnum(c) || std::string_view("._@-").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (!is_name || options.name.size() > 64 || !std::isalnum(static_cast<unsigned char>(options.name.front())))
-    return fail(400, "Bad name",
-                "A name has 1 to 64 letters, digits, `.`, `_`, `@` and `-`, and begins with a letter or digit.");
+  const auto password = given_password(options, options.name);  // before there is anybody who would be left without
+  if (!password) return tl::unexpected(password.error());
   const auto person =
       store.create_person(options.name, options.full_name, parse_role(options.role).value_or(Role::annotator));
   if (!person) return tl::unexpected(person.error());
-  return let_in(store, options, *person);
+  return let_in(store, options, *person, *password);
+}
+
+Result<void> renew(store::Store& store, const PeopleOptions& options, const store::Person& person) {
+  const auto password = given_password(options, person.name);
+  return password ? let_in(store, options, person, *password) : tl::unexpected(password.error());
 }
 
 Result<void> list_people(store::Store& store, const PeopleOptions&) {
@@ -94,27 +100,32 @@ Result<void> list_people(store::Store& store, const PeopleOptions&) {
 }
 
 // Changes of one who is there.
-Work changing(std::function<Result<void>(store::Store&, const PeopleOptions&, store::Person)> change) {
+Work changing(std::function<Result<void>(store::Store&, const PeopleOptions&, const store::Person&)> change) {
   return [change = std::move(change)](store::Store& store, const PeopleOptions& options) -> Result<void> {
-    auto person = store.person(options.name);
+    const auto person = store.person(options.name);
     if (!person) return tl::unexpected(person.error());
-    return change(store, options, std::move(*person));
+    return change(store, options, *person);
   };
 }
 
-Result<void> update(store::Store& store, const store::Person& person) {
-  if (auto done = store.update_person(person); !done) return tl::unexpected(done.error());
+Result<void> change(store::Store& store, const store::Person& person, const store::PersonChange& change) {
+  if (person.role == Role::owner) return fail(409, "The owner", "The owner stays the owner, and may always come in.");
+  if (auto done = store.change_person(person.id, change); !done) return tl::unexpected(done.error());
   return {};
 }
 
-Result<void> set_role(store::Store& store, const PeopleOptions& options, store::Person person) {
-  if (person.role == Role::owner) return fail(409, "The owner", "The owner stays the owner.");
-  person.role = *parse_role(options.role);
-  return update(store, person);
+Result<void> set_role(store::Store& store, const PeopleOptions& options, const store::Person& person) {
+  return change(store, person, {.full_name = {}, .role = parse_role(options.role), .disabled = {}});
 }
 
-Result<void> remove_person(store::Store& store, const PeopleOptions&, store::Person person) {
-  if (person.role == Role::owner) return fail(409, "The owner", "A server keeps its owner.");
+Work disabling(bool disabled) {
+  return changing([disabled](store::Store& store, const PeopleOptions&, const store::Person& person) {
+    return change(store, person, {.full_name = {}, .role = {}, .disabled = disabled});
+  });
+}
+
+Result<void> remove_person(store::Store& store, const PeopleOptions&, const store::Person& person) {
+  if (auto out = change(store, person, {.full_name = {}, .role = {}, .disabled = true}); !out) return out;
   return store.delete_person(person.name);
 }
 
@@ -125,10 +136,10 @@ Result<void> add_token_of(store::Store& store, const PeopleOptions& options) {
   if (role > person->role)
     return fail(400, "Role above the person's",
                 person->name + " is " + std::string(name(person->role)) + ": a token can do no more.", "--role");
-  auto secret =
+  const auto made =
       store.create_token(TokenKind::script, person->name, role, std::chrono::hours(24 * options.days), options.name);
-  if (!secret) return tl::unexpected(secret.error());
-  std::cout << *secret << std::endl;
+  if (!made) return tl::unexpected(made.error());
+  std::cout << made->secret << std::endl;
   return {};
 }
 
@@ -183,17 +194,9 @@ Command add_user(CLI::App& app) {
   role->add_option("role", options->role, "viewer, annotator, curator or administrator")
       ->required()
       ->check(CLI::IsMember({"viewer", "annotator", "curator", "administrator"}));
-  add_password(*add_named("password", "A new link to choose a password, or a new password", changing(let_in)), options);
-  add_named("disable", "Signs somebody out everywhere, and lets them in no more",
-            changing([](store::Store& store, const PeopleOptions&, store::Person person) {
-              person.disabled = true;
-              return update(store, person);
-            }));
-  add_named("enable", "Lets somebody in again",
-            changing([](store::Store& store, const PeopleOptions&, store::Person person) {
-              person.disabled = false;
-              return update(store, person);
-            }));
+  add_password(*add_named("password", "A new link to choose a password, or a new password", changing(renew)), options);
+  add_named("disable", "Signs somebody out everywhere, and lets them in no more", disabling(true));
+  add_named("enable", "Lets somebody in again", disabling(false));
   add_named("remove", "Deletes somebody; what they did stays, under a name that tells nothing",
             changing(remove_person));
   return choosing(parent, options, std::move(works));

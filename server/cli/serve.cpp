@@ -169,13 +169,20 @@ int run(ServeOptions options) {
   const std::string url =
       "http://" + (address->host == "::1" ? "[::1]" : address->host) + ":" + std::to_string((*server)->port());
   std::cout << "listening on " << url << std::endl;
-  auto link = store.create_token(store::TokenKind::owner_link, "owner", Role::owner, std::chrono::hours(24));
-  if (!link) return report(link.error());
+  const auto owner = store.person("owner");
+  if (!owner) return report(owner.error());
   if (options.data.sql)
     std::cout << "SQL on " << options.data.sql->host << ":" << options.data.sql->port
               << ": database strata, user strata_reader, password in " << (options.data.data / "sql-password").string()
               << std::endl;
-  std::cout << "owner link: " << url << "/login?link=" << *link << std::endl;
+  // Who has a password needs no link, which would stand in logs.
+  if (owner->has_password) {
+    std::cout << "sign in at: " << url << "/" << std::endl;
+  } else {
+    auto link = store.create_link(store::TokenKind::owner_link, owner->name, std::chrono::hours(24));
+    if (!link) return report(link.error());
+    std::cout << "owner link: " << url << "/login?link=" << link->secret << std::endl;
+  }
 
   if ((*database)->cluster) (*database)->cluster->watch();
   wait_for_end(ending);

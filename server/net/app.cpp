@@ -134,9 +134,7 @@ Result<void> App::identify(Request& request, std::optional<Role> least) {
   if (!principal) return tl::unexpected(principal.error());
   request.principal = std::move(*principal);
   if (!least) return {};
-  if (!request.principal)
-    return fail(401, "Not signed in",
-                "Open the sign-in link that the server prints, or send `Authorization: Bearer TOKEN`.");
+  if (!request.principal) return fail(401, "Not signed in", "Sign in, or send `Authorization: Bearer TOKEN`.");
   if (request.principal->role < *least)
     return fail(403, "Not allowed",
                 "This takes the role " + std::string(name(*least)) + "; yours is " +
@@ -155,6 +153,14 @@ std::optional<Response> App::admit(Request& request, const Route& route) {
     if (auto good = route.check(request); !good) return problem_response(good.error());
   if (request.header("idempotency-key").size() > kMaxKey)
     return problem_response({400, "Key too long", "An Idempotency-Key has at most 255 characters.", "Idempotency-Key"});
+  return std::nullopt;
+}
+
+std::optional<Response> App::admit_again(Request& request, const Route& route) {
+  if (!route.role) return std::nullopt;
+  const std::string user = request.user();
+  if (auto known = identify(request, route.role); !known) return problem_response(known.error());
+  if (request.user() != user) return problem_response({401, "Not signed in", "Somebody else is signed in now.", {}});
   return std::nullopt;
 }
 

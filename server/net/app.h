@@ -36,6 +36,8 @@ class App {
   const Route* find_route(Request& request, Response& refusal) const;
   // On a worker, before the body is read: the refusal, if any.
   std::optional<Response> admit(Request& request, const Route& route);
+  // On a worker, once the body is there, which may have taken long: who asks may be in no longer, or may do less.
+  std::optional<Response> admit_again(Request& request, const Route& route);
   // On a worker, with the body.
   void handle(const Request& request, const Route& route, const Respond& respond);
 

@@ -72,31 +72,34 @@ Result<std::string> Authenticator::session_for_password(const std::string& user,
                                                         const std::string& agent) {
   const auto hash = store_.password_of(user);
   if (!hash) return tl::unexpected(hash.error());
-  if (!store::password_fits(*hash, password))
+  const auto fits = store::password_fits(*hash, password);
+  if (!fits) return tl::unexpected(fits.error());
+  if (!*fits)
     return fail(401, "Not signed in", "Name and password do not fit together. Whoever invited you can send a new link.",
                 "password");
-  auto person = store_.person(user);
-  if (!person) return tl::unexpected(person.error());
-  return store_.create_token(store::TokenKind::session, person->name, person->role, kSessionLifetime, agent);
+  auto session = store_.create_token(store::TokenKind::session, user, Role::viewer, kSessionLifetime, agent, *hash);
+  if (!session) return session.error().status == 404 ? unknown_secret() : tl::unexpected(session.error());
+  return std::move(session->secret);
 }
 
 Result<std::string> Authenticator::session_for_token(const std::string& token, const std::string& agent) {
+  if (token.size() > kMaxTokenLength) return unknown_secret();
+  auto by_link = store_.redeem_owner_link(token, kSessionLifetime, agent);
+  if (!by_link) return tl::unexpected(by_link.error());
+  if (*by_link) return **by_link;
   auto principal = identify_token(token);
   if (!principal) return tl::unexpected(principal.error());
-  if (*principal && (*principal)->is_script)
+  if (!*principal) return unknown_secret();
+  // Another session of a session, or of a token, would outlive what it was made of.
+  if ((*principal)->secret != 0)
     return fail(
-        403, "A token for scripts",
+        403, "Not for signing in",
         "This token is for scripts, as `Authorization: Bearer TOKEN`. In a browser sign in with name and password.",
         "token");
-  if (!*principal) {
-    if (token.size() > kMaxTokenLength) return unknown_secret();
-    auto by_link = store_.redeem_owner_link(token, kSessionLifetime, agent);
-    if (!by_link) return tl::unexpected(by_link.error());
-    if (!*by_link) return unknown_secret();
-    return **by_link;
-  }
-  return store_.create_token(store::TokenKind::session, (*principal)->user, (*principal)->role, kSessionLifetime,
-                             agent);
+  auto session =
+      store_.create_token(store::TokenKind::session, (*principal)->user, Role::owner, kSessionLifetime, agent);
+  if (!session) return tl::unexpected(session.error());
+  return std::move(session->secret);
 }
 
 Result<std::string> Authenticator::session_for_link(const std::string& link, const std::string& agent) {

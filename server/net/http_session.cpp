@@ -153,7 +153,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response = co_await on_worker(connections_, stream_.get_executor(), admit);
     if (response.status != 100) co_return co_await refuse(head, *request, response, keep_alive);
 
-    if (!head.is_done()) {
+    const bool has_body = !head.is_done();
+    if (has_body) {
       if (beast::iequals(head.get()[http::field::expect], "100-continue")) {
         const bool told = co_await send_continue();
         if (!told) co_return false;
@@ -171,7 +172,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         co_return co_await send(response, request->method, false);
       }
     }
-    const Work handle = [this, request, route](const Respond& respond) { app_.handle(*request, *route, respond); };
+    const Work handle = [this, request, route, has_body](const Respond& respond) {
+      if (has_body)
+        if (auto refused = app_.admit_again(*request, *route)) return respond(std::move(*refused));
+      app_.handle(*request, *route, respond);
+    };
     response = co_await on_worker(connections_, stream_.get_executor(), handle);
     remove_body_file(*request);
     co_return co_await send(response, request->method, keep_alive);

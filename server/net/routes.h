@@ -97,9 +97,11 @@ Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector
                                        const std::string& field);
 std::vector<std::string> split_list(const std::string& text);  // at commas, without empty parts
 
-// Who is signed in, as `GET /me` tells it; the second with the cookie of a session that was just opened.
-Result<Response> me(const RouteContext& context, const std::string& user, Role role);
+// As `GET /me` tells it; the second with the cookie of a session that was just opened.
+Result<Response> who_is_signed_in(const RouteContext& context, const std::string& user, Role role);
 Result<Response> signed_in(const RouteContext& context, const Request& request, const std::string& session);
+// 403: what a token does must not outlive it, so that scripts change no accounts.
+Result<void> check_no_script(const Request& request);
 // What the browser calls itself, for its person to know the session by.
 std::string agent_of(const Request& request);
 

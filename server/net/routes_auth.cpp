@@ -10,8 +10,9 @@
 
 namespace strata::net {
 
-Result<Response> me(const RouteContext& context, const std::string& user, Role role) {
+Result<Response> who_is_signed_in(const RouteContext& context, const std::string& user, Role role) {
   const auto person = context.store.person(user);
+  if (!person && person.error().status == 404) return fail(401, "Not signed in", "This account was closed meanwhile.");
   if (!person) return tl::unexpected(person.error());
   return json_response({{"user", person->name},
                         {"full_name", person->full_name},
@@ -23,9 +24,14 @@ Result<Response> signed_in(const RouteContext& context, const Request& request, 
   auto principal = context.auth.identify_token(session);
   if (!principal) return tl::unexpected(principal.error());
   if (!*principal) return fail(401, "Not signed in", "This account was closed meanwhile.");
-  auto response = me(context, (*principal)->user, (*principal)->role);
+  auto response = who_is_signed_in(context, (*principal)->user, (*principal)->role);
   if (response) response->with("Set-Cookie", Authenticator::set_cookie(session, came_by_https(request)));
   return response;
+}
+
+Result<void> check_no_script(const Request& request) {
+  if (!request.principal->is_script) return {};
+  return fail(403, "Not for scripts", "A token for scripts does nothing to accounts. Sign in with name and password.");
 }
 
 std::string agent_of(const Request& request) {
@@ -63,18 +69,17 @@ Result<Response> sign_out(const RouteContext& context, const Request& request) {
 Result<Response> change_me(const RouteContext& context, const Request& request) {
   const auto asked = body_of<protocol::MePatch>(request);
   if (!asked) return tl::unexpected(asked.error());
-  auto person = context.store.person(request.user());
+  const auto person = context.store.person(request.user());
   if (!person) return tl::unexpected(person.error());
-  person->full_name = asked->full_name;
-  if (auto done = context.store.update_person(*person); !done) return tl::unexpected(done.error());
-  return me(context, request.user(), request.principal->role);
+  const auto changed =
+      context.store.change_person(person->id, {.full_name = asked->full_name, .role = {}, .disabled = {}});
+  if (!changed) return tl::unexpected(changed.error());
+  return who_is_signed_in(context, request.user(), request.principal->role);
 }
 
 Result<Response> change_password(const RouteContext& context, SignInGate& gate, const Request& request) {
   const auto asked = body_of<protocol::PasswordChange>(request);
   if (!asked) return tl::unexpected(asked.error());
-  if (request.principal->is_script)
-    return fail(403, "Not for scripts", "A token for scripts changes no password. Do it in the page.");
   if (auto good = store::check_password(asked->password, request.user(), "password"); !good)
     return tl::unexpected(good.error());
   const auto hash = context.store.password_of(request.user());
@@ -82,14 +87,17 @@ Result<Response> change_password(const RouteContext& context, SignInGate& gate, 
   if (!hash->empty()) {
     // Whoever sits at somebody else's browser guesses no faster than from anywhere.
     if (auto free = gate.pass(address_of(request), request.user()); !free) return tl::unexpected(free.error());
-    if (!asked->current || !store::password_fits(*hash, *asked->current))
-      return fail(422, "Password does not fit", "This is not the password that you have now.", "current");
+    const auto fits = asked->current ? store::password_fits(*hash, *asked->current) : Result<bool>(false);
+    if (!fits) return tl::unexpected(fits.error());
+    if (!*fits) return fail(422, "Password does not fit", "This is not the password that you have now.", "current");
     gate.was_right(address_of(request), request.user());
   }
-  auto set =
-      context.store.set_password(request.user(), store::hash_password(asked->password), request.principal->secret);
+  const auto chosen = store::hash_password(asked->password);
+  if (!chosen) return tl::unexpected(chosen.error());
+  auto set = context.store.set_password(request.user(), *chosen, request.principal->secret);
   if (!set) return tl::unexpected(set.error());
   context.auth.forget();
+  context.live_sockets.close_user(request.user(), kClosePolicy, "the password was changed");
   return empty_response(204);
 }
 
@@ -154,33 +162,24 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
   if (role > own)
     return fail(403, "Not allowed", "Your role is " + std::string(name(own)) + ": a token of yours can do no more.",
                 "role");
-  const auto known = context.store.tokens(request.user(), TokenKind::script);
-  if (!known) return tl::unexpected(known.error());
-  if (known->size() >= kMaxPage)
-    return fail(409, "Too many tokens", "You have " + std::to_string(kMaxPage) + " tokens. Revoke some first.");
-  const auto secret = context.store.create_token(TokenKind::script, request.user(), role,
-                                                 std::chrono::hours(24 * asked->days), asked->name);
-  if (!secret) return tl::unexpected(secret.error());
-  const auto now = context.store.tokens(request.user(), TokenKind::script);
-  const auto made = context.store.find_token(*secret);
-  if (!now) return tl::unexpected(now.error());
+  const auto made = context.store.create_token(TokenKind::script, request.user(), role,
+                                               std::chrono::hours(24 * asked->days), asked->name);
   if (!made) return tl::unexpected(made.error());
-  for (const store::Token& token : *now)
-    if (*made && token.id == (*made)->token)
-      return json_response({{"secret", *secret}, {"token", token_json(token)}}, 201).with("Cache-Control", "no-store");
-  return fail(409, "Account closed", "The account was closed meanwhile.");
+  return json_response({{"secret", made->secret}, {"token", token_json(made->token)}}, 201)
+      .with("Cache-Control", "no-store");
 }
 
 }  // namespace
 
 void add_auth_routes(Router& router, const RouteContext& context) {
   auto gate = std::make_shared<SignInGate>();
-  const auto add = [&](Method method, std::string pattern, auto answer, bool open = false) {
+  // What people change of themselves.
+  const auto add = [&](Method method, std::string pattern, auto answer) {
     const bool has_body = method == Method::post || method == Method::patch;
     router.add({.method = method,
                 .pattern = std::move(pattern),
                 .handler = answering(answer),
-                .role = open ? std::nullopt : std::optional(Role::viewer),
+                .check = check_no_script,
                 .body = has_body ? BodyKind::memory : BodyKind::none,
                 .max_body = has_body ? context.options.max_json_bytes : 0});
   };
@@ -199,14 +198,20 @@ void add_auth_routes(Router& router, const RouteContext& context) {
               }),
               .role = std::nullopt,
               .query = {"link"}});
-  add(
-      Method::post, "/api/v1/login",
-      [&context, gate](const Request& request) { return sign_in(context, *gate, request); }, true);
+  router.add(
+      {.method = Method::post,
+       .pattern = "/api/v1/login",
+       .handler = answering([&context, gate](const Request& request) { return sign_in(context, *gate, request); }),
+       .role = std::nullopt,
+       .body = BodyKind::memory,
+       .max_body = context.options.max_json_bytes});
   router.add({.method = Method::post,
               .pattern = "/api/v1/logout",
               .handler = answering([&context](const Request& request) { return sign_out(context, request); })});
-  add(Method::get, "/api/v1/me",
-      [&context](const Request& request) { return me(context, request.user(), request.principal->role); });
+  router.add({.method = Method::get, .pattern = "/api/v1/me", .handler = answering([&context](const Request& request) {
+                                                                return who_is_signed_in(context, request.user(),
+                                                                                        request.principal->role);
+                                                              })});
   add(Method::patch, "/api/v1/me", [&context](const Request& request) { return change_me(context, request); });
   add(Method::post, "/api/v1/me/password",
       [&context, gate](const Request& request) { return change_password(context, *gate, request); });

@@ -10,8 +10,6 @@ namespace {
 using store::Person;
 using store::TokenKind;
 
-constexpr std::chrono::hours kInvitationLifetime{24 * 7};
-
 nlohmann::json to_json(const Person& person) {
   nlohmann::json json{{"id", person.id},
                       {"user", person.name},
@@ -47,13 +45,12 @@ Result<Role> usable_role(const Request& request, std::optional<protocol::Role> a
 }
 
 Result<Response> with_invitation(const RouteContext& context, const Person& person, int status) {
-  auto old = context.store.revoke_tokens(person.name, TokenKind::invitation);
-  if (!old) return tl::unexpected(old.error());
-  const auto expires = std::chrono::system_clock::now() + kInvitationLifetime;
-  auto secret = context.store.create_token(TokenKind::invitation, person.name, person.role, kInvitationLifetime);
-  if (!secret) return tl::unexpected(secret.error());
+  const auto link = context.store.create_link(TokenKind::invitation, person.name, store::kInvitationLifetime);
+  if (!link) return tl::unexpected(link.error());
   // Behind a #, so that it is in no log: browsers keep that to themselves.
-  return json_response({{"path", "/join#" + *secret}, {"expires", utc_text(expires)}, {"user", to_json(person)}},
+  return json_response({{"path", "/join#" + link->secret},
+                        {"expires", utc_text(link->token.expires.value_or(link->token.created))},
+                        {"user", to_json(person)}},
                        status)
       .with("Cache-Control", "no-store");
 }
@@ -83,18 +80,17 @@ Result<Person> somebody_else(const RouteContext& context, const Request& request
 Result<Response> change_person(const RouteContext& context, const Request& request) {
   const auto asked = body_of<protocol::PersonPatch>(request);
   if (!asked) return tl::unexpected(asked.error());
-  auto person = somebody_else(context, request);
+  const auto person = somebody_else(context, request);
   if (!person) return tl::unexpected(person.error());
   const auto role = usable_role(request, asked->role, person->role);
   if (!role) return tl::unexpected(role.error());
-  const bool may_do_else = *role != person->role || asked->disabled.value_or(person->disabled) != person->disabled;
-  person->role = *role;
-  if (asked->full_name) person->full_name = *asked->full_name;
-  if (asked->disabled) person->disabled = *asked->disabled;
-  const auto changed = context.store.update_person(*person);
+  const store::PersonChange change{asked->full_name, asked->role ? std::optional(*role) : std::nullopt,
+                                   asked->disabled};
+  const auto changed = context.store.change_person(person->id, change);
   if (!changed) return tl::unexpected(changed.error());
   context.auth.forget();
-  if (may_do_else) context.live_sockets.close_user(changed->name, kClosePolicy, "your account was changed");
+  if (changed->role != person->role || changed->disabled != person->disabled)
+    context.live_sockets.close_user(changed->name, kClosePolicy, "your account was changed");
   return json_response(to_json(*changed));
 }
 
@@ -102,9 +98,8 @@ Result<Response> delete_person(const RouteContext& context, const Request& reque
   const auto person = somebody_else(context, request);
   if (!person) return tl::unexpected(person.error());
   // Out first, so that nothing more is written under the name.
-  Person out = *person;
-  out.disabled = true;
-  if (auto done = context.store.update_person(out); !done) return tl::unexpected(done.error());
+  const auto out = context.store.change_person(person->id, {.full_name = {}, .role = {}, .disabled = true});
+  if (!out) return tl::unexpected(out.error());
   context.auth.forget();
   context.live_sockets.close_user(person->name, kClosePolicy, "your account was deleted");
   if (auto done = context.store.delete_person(person->name); !done) return tl::unexpected(done.error());
@@ -136,11 +131,14 @@ Result<Response> accept_invitation(const RouteContext& context, const Request& r
   if (!person) return tl::unexpected(person.error());
   if (auto good = store::check_password(asked->password, person->name, "password"); !good)
     return tl::unexpected(good.error());
-  const auto session = context.store.accept_invitation(asked->invitation, store::hash_password(asked->password),
-                                                       asked->full_name, kSessionLifetime, agent_of(request));
+  const auto hash = store::hash_password(asked->password);
+  if (!hash) return tl::unexpected(hash.error());
+  const auto session =
+      context.store.accept_invitation(asked->invitation, *hash, asked->full_name, kSessionLifetime, agent_of(request));
   if (!session) return tl::unexpected(session.error());
   if (!*session) return fail(401, "Link not valid", "This invitation was used meanwhile.", "invitation");
   context.auth.forget();
+  context.live_sockets.close_user(person->name, kClosePolicy, "the password was changed");
   return signed_in(context, request, **session);
 }
 
@@ -156,6 +154,7 @@ void add_people_routes(Router& router, const RouteContext& context) {
                 .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
                 .role = role,
                 .query = std::move(query),
+                .check = role && method != Method::get ? std::function(check_no_script) : nullptr,
                 .body = has_body ? BodyKind::memory : BodyKind::none,
                 .max_body = has_body ? context.options.max_json_bytes : 0});
   };

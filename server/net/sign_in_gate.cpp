@@ -1,45 +1,80 @@
 #include "net/sign_in_gate.h"
 
+#include <boost/asio/ip/address.hpp>
+
 namespace strata::net {
 namespace {
 
-constexpr std::size_t kMostKeys = 10'000;
+constexpr std::size_t kMostKeys = 100'000;
 
-bool is_loopback(std::string_view address) { return address.starts_with("127.") || address == "::1"; }
+std::string both(const std::string& address, const std::string& name) { return to_lower(name) + " " + address; }
 
 }  // namespace
 
 TokenBucket& SignInGate::bucket(Buckets& buckets, const std::string& key, Rate rate, Clock::time_point now) {
-  // Of so many at once, those who try anew are no better than those who did before: `all_` holds them.
-  if (buckets.size() >= kMostKeys && !buckets.contains(key)) buckets.clear();
+  if (buckets.size() >= kMostKeys && !buckets.contains(key)) {
+    for (auto at = buckets.begin(); at != buckets.end();)
+      at = at->second.is_full(now) ? buckets.erase(at) : std::next(at);
+    if (buckets.size() >= kMostKeys) buckets.erase(buckets.begin());
+  }
   return buckets.try_emplace(key, rate.per_second, rate.burst, now).first->second;
 }
 
 Result<void> SignInGate::pass(const std::string& address, const std::string& name, Clock::time_point now) {
+  const auto refused = [] {
+    return fail(429, "Too many sign-ins", "There were too many tries. Wait ten seconds and try again.");
+  };
   std::lock_guard lock(mutex_);
-  // An address first: whoever is too fast takes nothing from others.
-  if (bucket(by_address_, address, {1, 20}, now).take(now) &&
-      (name.empty() || bucket(by_name_, to_lower(name), {0.1, 10}, now).take(now)) && all_.take(now))
-    return {};
-  return fail(429, "Too many sign-ins", "There were too many tries. Wait ten seconds and try again.");
+  TokenBucket& of_address = bucket(by_address_, address, {2, 60}, now);
+  if (!of_address.has_one(now)) return refused();
+  if (!name.empty()) {
+    const std::string key = both(address, name);
+    TokenBucket& of_both = bucket(by_both_, key, {0.1, 10}, now);
+    TokenBucket& of_name = bucket(by_name_, to_lower(name), {0.5, 60}, now);
+    if (!of_both.has_one(now) || (!known_.contains(key) && !of_name.has_one(now))) return refused();
+    of_both.take(now);
+    of_name.take(now);
+  }
+  of_address.take(now);
+  return {};
 }
 
 void SignInGate::was_right(const std::string& address, const std::string& name) {
+  if (name.empty()) return;
   std::lock_guard lock(mutex_);
-  if (const auto found = by_address_.find(address); found != by_address_.end()) found->second.give_back();
+  const std::string key = both(address, name);
+  // The address keeps what it cost: signing in again and again costs the server as much as guessing.
+  if (const auto found = by_both_.find(key); found != by_both_.end()) found->second.give_back();
   if (const auto found = by_name_.find(to_lower(name)); found != by_name_.end()) found->second.give_back();
-  all_.give_back();
+  if (known_.size() >= kMostKeys) known_.erase(known_.begin());
+  known_.insert(key);
 }
 
 std::string address_of(const Request& request) {
-  if (!is_loopback(request.peer)) return request.peer;
-  const std::string_view speaks_for = request.header("x-forwarded-for");
-  if (speaks_for.empty()) return request.peer;
-  // The last is what the proxy itself saw; what is before it anybody may have written.
-  const auto comma = speaks_for.rfind(',');
-  std::string_view last = comma == std::string_view::npos ? speaks_for : speaks_for.substr(comma + 1);
-  while (!last.empty() && last.front() == ' ') last.remove_prefix(1);
-  return std::string(last.substr(0, 64));
+  using boost::asio::ip::make_address;
+  boost::system::error_code bad;
+  auto address = make_address(request.peer, bad);
+  if (bad) return request.peer;
+  const auto plain = [](const boost::asio::ip::address& given) {
+    return given.is_v6() && given.to_v6().is_v4_mapped()
+               ? boost::asio::ip::address(boost::asio::ip::make_address_v4(boost::asio::ip::v4_mapped, given.to_v6()))
+               : given;
+  };
+  address = plain(address);
+  if (address.is_loopback()) {
+    // The last of the last header is what the proxy itself saw; what stands before it anybody may have written.
+    std::string_view speaks_for;
+    for (const auto& [key, value] : request.headers)
+      if (key == "x-forwarded-for") speaks_for = value;
+    speaks_for = speaks_for.substr(speaks_for.rfind(',') + 1);
+    while (!speaks_for.empty() && speaks_for.front() == ' ') speaks_for.remove_prefix(1);
+    while (!speaks_for.empty() && speaks_for.back() == ' ') speaks_for.remove_suffix(1);
+    if (const auto told = make_address(std::string(speaks_for), bad); !bad) address = plain(told);
+  }
+  if (!address.is_v6()) return address.to_string();
+  auto bytes = address.to_v6().to_bytes();
+  std::fill(bytes.begin() + 8, bytes.end(), 0);
+  return boost::asio::ip::address_v6(bytes).to_string() + "/64";
 }
 
 }  // namespace strata::net

@@ -14,18 +14,31 @@ class TokenBucket {
 
   // False: too fast.
   bool take(Clock::time_point now = Clock::now()) {
-    const double elapsed_s = std::chrono::duration<double>(now - filled_at_).count();
-    tokens_ = std::min(burst_, tokens_ + std::max(0.0, elapsed_s) * per_second_);
-    filled_at_ = std::max(filled_at_, now);
-    if (tokens_ < 1) return false;
+    if (!has_one(now)) return false;
     tokens_ -= 1;
     return true;
+  }
+  // Whether `take` would let it pass.
+  bool has_one(Clock::time_point now) {
+    fill(now);
+    return tokens_ >= 1;
+  }
+  // As if nothing had ever been taken.
+  bool is_full(Clock::time_point now) {
+    fill(now);
+    return tokens_ >= burst_;
   }
 
   // What was taken last cost nothing.
   void give_back() { tokens_ = std::min(burst_, tokens_ + 1); }
 
  private:
+  void fill(Clock::time_point now) {
+    const double elapsed_s = std::chrono::duration<double>(now - filled_at_).count();
+    tokens_ = std::min(burst_, tokens_ + std::max(0.0, elapsed_s) * per_second_);
+    filled_at_ = std::max(filled_at_, now);
+  }
+
   double per_second_, burst_, tokens_;
   Clock::time_point filled_at_;
 };

@@ -126,15 +126,16 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
   // A session may be ended, or a token revoked, by another server or by its age.
   asio::awaitable<void> watch_sign_in(std::string secret, Role role) {
     auto self = shared_from_this();
+    // First at once: accounts may have changed while the model was opened.
     while (!over_ && !closing_) {
-      recheck_timer_.expires_after(kRecheck);
-      auto [error] = co_await recheck_timer_.async_wait(kUseResult);
-      if (error || over_ || closing_) co_return;
       const Work ask = [&app = connections_->app, secret, role](const Respond& respond) {
         respond(empty_response(app.is_still_welcome(secret, role) ? 200 : 401));
       };
       const Response answer = co_await on_worker(connections_, ws_.get_executor(), ask);
       if (answer.status == 401) start_close(kClosePolicy, "signed out");
+      recheck_timer_.expires_after(kRecheck);
+      auto [error] = co_await recheck_timer_.async_wait(kUseResult);
+      if (error) co_return;
     }
   }
 

@@ -3,9 +3,9 @@
 #include <sodium.h>
 
 #include <algorithm>
+#include <cctype>
+#include <semaphore>
 #include <stdexcept>
-
-#include "core/utf8.h"
 
 namespace strata::store {
 
@@ -27,7 +27,22 @@ Result<void> check_password(std::string_view password, std::string_view user, co
   return {};
 }
 
-std::string hash_password(std::string_view password) {
+namespace {
+
+std::counting_semaphore<2> free_slots{2};  // each takes 64 MiB and a core
+
+struct Slot {
+  const bool is_had = free_slots.try_acquire_for(std::chrono::seconds(2));
+  ~Slot() {
+    if (is_had) free_slots.release();
+  }
+};
+
+tl::unexpected<Problem> too_many() {
+  return fail(429, "Too many sign-ins", "Many sign in at this moment. Wait a little and try again.");
+}
+
+std::string hash_of(std::string_view password) {
   char hash[crypto_pwhash_STRBYTES];
   if (sodium_init() < 0 ||
       crypto_pwhash_str_alg(hash, password.data(), password.size(), crypto_pwhash_OPSLIMIT_INTERACTIVE,
@@ -36,11 +51,20 @@ std::string hash_password(std::string_view password) {
   return hash;
 }
 
-bool password_fits(const std::string& hash, std::string_view password) {
-  static const std::string nobodys = hash_password("a password that nobody has");
+}  // namespace
+
+Result<std::string> hash_password(std::string_view password) {
+  const Slot slot;
+  if (!slot.is_had) return too_many();
+  return hash_of(password);
+}
+
+Result<bool> password_fits(const std::string& hash, std::string_view password) {
+  const Slot slot;
+  if (!slot.is_had) return too_many();
+  static const std::string nobodys = hash_of("a password that nobody has");
   const std::string& against = hash.empty() ? nobodys : hash;
-  const bool fits = crypto_pwhash_str_verify(against.c_str(), password.data(), password.size()) == 0;
-  return fits && !hash.empty();
+  return crypto_pwhash_str_verify(against.c_str(), password.data(), password.size()) == 0 && !hash.empty();
 }
 
 }  // namespace strata::store

@@ -13,9 +13,10 @@ inline constexpr std::size_t kShortestPassword = 10, kLongestPassword = 1024;  /
 // 800-63B, 5.1.1.2).
 Result<void> check_password(std::string_view password, std::string_view user, const std::string& field);
 
-// Argon2id (RFC 9106) by libsodium, with 64 MiB and two passes: some 60 ms of a core. The text holds salt and costs.
-std::string hash_password(std::string_view password);
+// Argon2id (RFC 9106) by libsodium, with 64 MiB and two passes: some 60 ms of a core. The text holds salt and costs. Two at once are
+// worked on; 429: too many wait already.
+Result<std::string> hash_password(std::string_view password);
 // As slow as a look into a real hash, also where `hash` is empty: nobody learns from the time which names there are.
-bool password_fits(const std::string& hash, std::string_view password);
+Result<bool> password_fits(const std::string& hash, std::string_view password);
 
 }  // namespace strata::store

@@ -1,11 +1,16 @@
 #include "store/people.h"
 
+#include <algorithm>
+
 #include "store/hash.h"
 #include "store/store_impl.h"
+
+// Who is changed, or gets or loses a secret, is locked first (`lock_person`): what is said of them in that moment holds until it is written.
 
 namespace strata::store {
 namespace {
 
+constexpr std::string_view kFormer = "former-";
 constexpr std::pair<TokenKind, std::string_view> kKinds[] = {{TokenKind::session, "session"},
                                                              {TokenKind::script, "script"},
                                                              {TokenKind::owner_link, "owner_link"},
@@ -17,20 +22,15 @@ std::string_view name(TokenKind kind) {
   return {};
 }
 
-TokenKind parse_kind(const std::string& text) {
+std::optional<TokenKind> parse_kind(const std::string& text) {
   for (const auto& [kind, each] : kKinds)
     if (each == text) return kind;
-  return TokenKind::session;
+  return std::nullopt;
 }
 
-constexpr std::string_view kFormer = "former-";
-
-// `last_used` is right to this, so that most requests write nothing.
-#define STRATA_SOME_MINUTES "interval '5 minutes'"
-#define STRATA_GOOD_TOKEN "revoked IS NULL AND (expires IS NULL OR expires > now())"
-#define STRATA_PERSON_COLUMNS                                                        \
-  "id, name, full_name, role, password IS NOT NULL, disabled IS NOT NULL, created, " \
-  "(SELECT max(last_used) FROM tokens t WHERE t.user_name = users.name)"
+#define STRATA_PERSON_COLUMNS \
+  "id, name, full_name, role, password IS NOT NULL, disabled IS NOT NULL, created, last_seen"
+#define STRATA_GOOD_TOKEN "(revoked IS NULL AND (expires IS NULL OR expires > now()))"
 
 Person read_person(const PgResult& rows, int i) {
   Person person{
@@ -40,45 +40,28 @@ Person read_person(const PgResult& rows, int i) {
   return person;
 }
 
-Result<Person> load_person(PgConnection& connection, const std::string& name) {
-  if (!check_text(name, "user")) return not_found("person", name);
-  auto rows =
-      connection.query("SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL",
-                       Params().text(name));
+bool is_ascii(const std::string& text) {
+  return std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+}
+
+Result<Person> load_person(PgConnection& connection, const std::string& name, bool lock) {
+  // Names are ASCII. Other letters of which one has the same lower case must not lead to them.
+  if (!is_ascii(name) || !check_text(name, "user")) return not_found("person", name);
+  auto rows = connection.query(
+      lock ? "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL FOR UPDATE"
+           : "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL",
+      Params().text(name));
   if (!rows) return tl::unexpected(rows.error());
   if (rows->rows() == 0) return not_found("person", name);
   return read_person(*rows, 0);
+}
+Result<Person> lock_person(PgConnection& connection, const std::string& name) {
+  return load_person(connection, name, true);
 }
 
 Result<void> run(PgConnection& connection, const char* sql, const Params& params) {
   auto done = connection.query(sql, params);
   return done ? Result<void>() : tl::unexpected(done.error());
-}
-
-Result<std::string> insert_token(PgConnection& connection, TokenKind kind, const std::string& user, Role role,
-                                 std::optional<std::chrono::seconds> lifetime, const std::string& label) {
-  const std::string secret = random_token();
-  std::optional<Time> expires;
-  if (lifetime) expires = std::chrono::system_clock::now() + *lifetime;
-  auto made = run(
-      connection, "INSERT INTO tokens (hash, kind, user_name, role, expires, label) VALUES ($1, $2, $3, $4, $5, $6)",
-      Params().bytes(sha256(secret)).text(name(kind)).text(user).text(strata::name(role)).time(expires).text(label));
-  if (!made) return tl::unexpected(made.error());
-  return secret;
-}
-
-Result<std::optional<Principal>> principal(PgConnection& connection, const std::string& secret) {
-  auto row = connection.query(
-      "SELECT u.name, u.role, t.role, t.kind, t.id FROM tokens t JOIN users u ON u.name = t.user_name "
-      "WHERE t.hash = $1 AND t." STRATA_GOOD_TOKEN " AND u.disabled IS NULL AND u.deleted IS NULL",
-      Params().bytes(sha256(secret)));
-  if (!row) return tl::unexpected(row.error());
-  if (row->rows() == 0) return std::optional<Principal>();
-  const Role persons = parse_role(row->text(0, 1)).value_or(Role::viewer);
-  const Role own = parse_role(row->text(0, 2)).value_or(Role::viewer);
-  const TokenKind kind = parse_kind(row->text(0, 3));
-  return std::optional<Principal>(
-      {row->text(0, 0), kind == TokenKind::script ? std::min(persons, own) : persons, kind, row->integer(0, 4)});
 }
 
 Result<void> revoke_all(PgConnection& connection, const std::string& user, TokenKind kind,
@@ -89,13 +72,92 @@ Result<void> revoke_all(PgConnection& connection, const std::string& user, Token
              Params().text(user).text(name(kind)).optional_integer(kept));
 }
 
+Result<std::int64_t> count_good(PgConnection& connection, const std::string& user, TokenKind kind) {
+  auto rows = connection.query("SELECT count(*) FROM tokens WHERE user_name = $1 AND kind = $2 AND " STRATA_GOOD_TOKEN,
+                               Params().text(user).text(name(kind)));
+  return rows ? Result<std::int64_t>(rows->integer(0, 0)) : tl::unexpected(rows.error());
+}
+
+Token read_token(const PgResult& rows, TokenKind kind, int i) {
+  Token token{rows.integer(i, 0),
+              kind,
+              rows.text(i, 1),
+              parse_role(rows.text(i, 2)).value_or(Role::viewer),
+              rows.time(i, 3),
+              {},
+              {}};
+  if (!rows.null(i, 4)) token.expires = rows.time(i, 4);
+  if (!rows.null(i, 5)) token.last_used = rows.time(i, 5);
+  return token;
+}
+#define STRATA_TOKEN_COLUMNS "id, label, role, created, expires, last_used"
+
+// Of somebody who is locked.
+Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const std::string& user, Role role,
+                              std::optional<std::chrono::seconds> lifetime, const std::string& label) {
+  auto cleared = run(
+      connection, "DELETE FROM tokens WHERE user_name = $1 AND coalesce(revoked, expires) < now() - interval '30 days'",
+      Params().text(user));
+  if (!cleared) return tl::unexpected(cleared.error());
+  NewToken made;
+  made.secret = random_token();
+  std::optional<Time> expires;
+  if (lifetime) expires = std::chrono::system_clock::now() + *lifetime;
+  auto row = connection.query(
+      "INSERT INTO tokens (hash, kind, user_name, role, expires, label) VALUES ($1, $2, $3, $4, $5, $6) "
+      "RETURNING " STRATA_TOKEN_COLUMNS,
+      Params()
+          .bytes(sha256(made.secret))
+          .text(name(kind))
+          .text(user)
+          .text(strata::name(role))
+          .time(expires)
+          .text(label));
+  if (!row) return tl::unexpected(row.error());
+  made.token = read_token(*row, kind, 0);
+  return made;
+}
+
+Result<NewToken> open_session(PgConnection& connection, const Person& person,
+                              std::optional<std::chrono::seconds> lifetime, const std::string& label) {
+  auto made = insert_token(connection, TokenKind::session, person.name, person.role, lifetime, label);
+  if (!made) return made;
+  auto fewer = run(connection,
+                   "UPDATE tokens SET revoked = now() WHERE id IN (SELECT id FROM tokens WHERE user_name = $1 AND "
+                   "kind = 'session' AND " STRATA_GOOD_TOKEN " ORDER BY id DESC OFFSET $2)",
+                   Params().text(person.name).integer(kMostTokens));
+  if (!fewer) return tl::unexpected(fewer.error());
+  return made;
+}
+
+struct Found {
+  Principal principal;
+  bool is_fresh = false;  // it was used a moment ago, and that is written
+};
+Result<std::optional<Found>> find(PgConnection& connection, const std::string& secret) {
+  auto row = connection.query(
+      "SELECT u.name, u.role, t.role, t.kind, t.id, coalesce(t.last_used > now() - interval '5 minutes', false) "
+      "FROM (SELECT * FROM tokens WHERE hash = $1 AND " STRATA_GOOD_TOKEN
+      ") t JOIN users u ON u.name = t.user_name "
+      "WHERE u.disabled IS NULL AND u.deleted IS NULL",
+      Params().bytes(sha256(secret)));
+  if (!row) return tl::unexpected(row.error());
+  if (row->rows() == 0) return std::optional<Found>();
+  const auto persons = parse_role(row->text(0, 1)), own = parse_role(row->text(0, 2));
+  const auto kind = parse_kind(row->text(0, 3));
+  if (!persons || !own || !kind) return std::optional<Found>();  // of a later version
+  const Role role = *kind == TokenKind::script ? std::min(*persons, *own) : *persons;
+  return std::optional<Found>({{row->text(0, 0), role, *kind, row->integer(0, 4)}, row->boolean(0, 5)});
+}
+
 Result<void> put_password(PgConnection& connection, const std::string& user, const std::string& hash,
                           std::optional<std::int64_t> kept) {
-  if (auto set = run(connection, "UPDATE users SET password = $2 WHERE name = $1", Params().text(user).text(hash));
-      !set)
-    return set;
+  auto set = run(connection, "UPDATE users SET password = $2 WHERE name = $1", Params().text(user).text(hash));
+  if (!set) return set;
   if (auto ended = revoke_all(connection, user, TokenKind::session, kept); !ended) return ended;
-  return revoke_all(connection, user, TokenKind::invitation, {});
+  for (const TokenKind link : {TokenKind::invitation, TokenKind::owner_link})
+    if (auto ended = revoke_all(connection, user, link, {}); !ended) return ended;
+  return {};
 }
 
 }  // namespace
@@ -112,61 +174,88 @@ Result<std::vector<Person>> Store::people() {
 }
 
 Result<Person> Store::person(const std::string& name) {
-  return impl_->pool.read([&](PgConnection& connection) { return load_person(connection, name); });
+  return impl_->pool.read([&](PgConnection& connection) { return load_person(connection, name, false); });
 }
 
 Result<Person> Store::create_person(const std::string& name, const std::string& full_name, Role role) {
-  if (auto good = check_name(name); !good) return tl::unexpected(good.error());
-  if (auto good = check_texts({{&full_name, "full_name"}}); !good) return tl::unexpected(good.error());
-  if (name.starts_with(kFormer))
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  };
+  const auto may_stand = [&](char c) {
+    return is_plain(c) || std::string_view("._@-").find(c) != std::string_view::npos;
+  };
+  if (name.empty() || name.size() > 64 || !is_plain(name.front()) || !std::ranges::all_of(name, may_stand))
+    return fail(
+        422, "Bad name",
+        "A name has 1 to 64 letters (a to z), digits, `.`, `_`, `@` and `-`, and begins with a letter or digit.",
+        "user");
+  std::string lower = name;
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  if (lower.starts_with(kFormer))
     return fail(409, "Name taken", "Names that begin with `former-` are kept for who is deleted. Choose another name.",
                 "user");
+  if (auto good = check_texts({{&full_name, "full_name"}}); !good) return tl::unexpected(good.error());
   return impl_->pool.write([&](PgConnection& connection) -> Result<Person> {
     auto made = connection.query(
-        "INSERT INTO users (name, full_name, role) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING RETURNING id",
+        "INSERT INTO users (name, full_name, role) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING "
+        "RETURNING " STRATA_PERSON_COLUMNS,
         Params().text(name).text(full_name).text(strata::name(role)));
     if (!made) return tl::unexpected(made.error());
     if (made->rows() == 0)
       return fail(409, "Name taken", "There is somebody called `" + name + "`. Choose another name.", "user");
-    return load_person(connection, name);
+    return read_person(*made, 0);
   });
 }
 
-Result<Person> Store::update_person(const Person& person) {
-  if (auto good = check_texts({{&person.full_name, "full_name"}}); !good) return tl::unexpected(good.error());
+Result<Person> Store::change_person(std::int64_t id, const PersonChange& change) {
+  if (change.full_name)
+    if (auto good = check_texts({{&*change.full_name, "full_name"}}); !good) return tl::unexpected(good.error());
   return impl_->pool.write([&](PgConnection& connection) -> Result<Person> {
-    auto done = connection.query(
-        "UPDATE users SET full_name = $2, role = $3, disabled = CASE WHEN $4 THEN coalesce(disabled, now()) END "
-        "WHERE id = $1 AND deleted IS NULL RETURNING name",
-        Params().integer(person.id).text(person.full_name).text(strata::name(person.role)).boolean(person.disabled));
+    auto rows =
+        connection.query("SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE id = $1 AND deleted IS NULL FOR UPDATE",
+                         Params().integer(id));
+    if (!rows) return tl::unexpected(rows.error());
+    if (rows->rows() == 0) return not_found("person", std::to_string(id));
+    Person person = read_person(*rows, 0);
+    if (change.full_name) person.full_name = *change.full_name;
+    if (change.role) person.role = *change.role;
+    if (change.disabled) person.disabled = *change.disabled;
+    auto done =
+        run(connection,
+            "UPDATE users SET full_name = $2, role = $3, disabled = CASE WHEN $4 THEN coalesce(disabled, now()) END "
+            "WHERE id = $1",
+            Params().integer(id).text(person.full_name).text(strata::name(person.role)).boolean(person.disabled));
     if (!done) return tl::unexpected(done.error());
-    if (done->rows() == 0) return not_found("person", person.name);
     if (person.disabled)
-      if (auto ended = revoke_all(connection, done->text(0, 0), TokenKind::session, {}); !ended)
-        return tl::unexpected(ended.error());
-    return load_person(connection, done->text(0, 0));
+      for (const TokenKind kind : {TokenKind::session, TokenKind::invitation})
+        if (auto ended = revoke_all(connection, person.name, kind, {}); !ended) return tl::unexpected(ended.error());
+    return person;
   });
 }
 
 Result<void> Store::delete_person(const std::string& name) {
   return impl_->pool.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
-    auto person = load_person(connection, name);
+    auto person = lock_person(connection, name);
     if (!person) return tl::unexpected(person.error());
-    const std::string former = std::string(kFormer) + std::to_string(person->id);
     auto ended = run(connection, "DELETE FROM tokens WHERE user_name = $1", Params().text(person->name));
     if (!ended) return ended;
+    const std::string former = std::string(kFormer) + std::to_string(person->id);
     for (const char* sql :
          {"UPDATE users SET name = $2, full_name = '', password = NULL, deleted = now() WHERE name = $1",
           "UPDATE edits SET user_name = $2 WHERE user_name = $1",
           "UPDATE table_edits SET user_name = $2 WHERE user_name = $1",
           "UPDATE attachments SET user_name = $2 WHERE user_name = $1"})
       if (auto done = run(connection, sql, Params().text(person->name).text(former)); !done) return done;
-    return {};
+    // Answers that are kept for calls that come again may tell it; names hold nothing that JSON writes otherwise.
+    return run(connection,
+               "DELETE FROM answers WHERE position('\"' || $1 || '\"' IN replace(answer::text, '\\', '')) > 0",
+               Params().text(person->name));
   });
 }
 
 Result<std::string> Store::password_of(const std::string& name) {
-  if (!check_text(name, "user")) return std::string();
+  if (!is_ascii(name) || !check_text(name, "user")) return std::string();
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::string> {
     auto rows = connection.query(
         "SELECT password FROM users WHERE lower(name) = lower($1) AND disabled IS NULL AND deleted IS NULL AND "
@@ -179,55 +268,70 @@ Result<std::string> Store::password_of(const std::string& name) {
 
 Result<void> Store::set_password(const std::string& name, const std::string& hash, std::optional<std::int64_t> kept) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
-    auto person = load_person(connection, name);
+    auto person = lock_person(connection, name);
     if (!person) return tl::unexpected(person.error());
     return put_password(connection, person->name, hash, kept);
   });
 }
 
-Result<std::string> Store::create_token(TokenKind kind, const std::string& user, Role role,
-                                        std::optional<std::chrono::seconds> lifetime, const std::string& label) {
-  if (auto good = check_name(user); !good) return tl::unexpected(good.error());
+Result<NewToken> Store::create_token(TokenKind kind, const std::string& user, Role role,
+                                     std::optional<std::chrono::seconds> lifetime, const std::string& label,
+                                     const std::optional<std::string>& hash) {
   if (auto good = check_texts({{&label, "name"}}); !good) return tl::unexpected(good.error());
-  return impl_->pool.write([&](PgConnection& connection) -> Result<std::string> {
-    auto person = run(connection, "INSERT INTO users (name, role) VALUES ($1, $2) ON CONFLICT DO NOTHING",
-                      Params().text(user).text(strata::name(role)));
+  return impl_->pool.write([&](PgConnection& connection) -> Result<NewToken> {
+    auto person = lock_person(connection, user);
     if (!person) return tl::unexpected(person.error());
-    return insert_token(connection, kind, user, role, lifetime, label);
+    if (person->disabled) return not_found("person", user);
+    if (hash) {
+      auto same = connection.query("SELECT 1 FROM users WHERE id = $1 AND password = $2",
+                                   Params().integer(person->id).text(*hash));
+      if (!same) return tl::unexpected(same.error());
+      if (same->rows() == 0) return fail(401, "Not signed in", "The password was changed meanwhile.", "password");
+    }
+    if (kind == TokenKind::session) return open_session(connection, *person, lifetime, label);
+    const auto good = count_good(connection, person->name, kind);
+    if (!good) return tl::unexpected(good.error());
+    if (kind == TokenKind::script && *good >= static_cast<std::int64_t>(kMostTokens))
+      return fail(409, "Too many tokens", "There are " + std::to_string(kMostTokens) + " tokens. Revoke some first.");
+    return insert_token(connection, kind, person->name, role, lifetime, label);
+  });
+}
+
+Result<NewToken> Store::create_link(TokenKind kind, const std::string& user, std::chrono::seconds lifetime) {
+  return impl_->pool.write([&](PgConnection& connection) -> Result<NewToken> {
+    auto person = lock_person(connection, user);
+    if (!person) return tl::unexpected(person.error());
+    if (person->disabled) return not_found("person", user);
+    if (auto old = revoke_all(connection, person->name, kind, {}); !old) return tl::unexpected(old.error());
+    return insert_token(connection, kind, person->name, person->role, lifetime, {});
   });
 }
 
 Result<std::optional<Principal>> Store::find_token(const std::string& secret) {
-  auto found = impl_->pool.read([&](PgConnection& connection) { return principal(connection, secret); });
-  if (!found || !*found) return found;
+  auto found = impl_->pool.read([&](PgConnection& connection) { return find(connection, secret); });
+  if (!found) return tl::unexpected(found.error());
+  if (!*found) return std::optional<Principal>();
+  const Principal& principal = (*found)->principal;
   // That it was used is only remembered: whoever asks is let in also where nothing can be written.
-  (void)impl_->pool.write([&](PgConnection& connection) {
-    return run(connection,
-               "UPDATE tokens SET last_used = now() WHERE id = $1 AND "
-               "(last_used IS NULL OR last_used < now() - " STRATA_SOME_MINUTES ")",
-               Params().integer((*found)->token));
-  });
-  return found;
+  if (!(*found)->is_fresh && (principal.kind == TokenKind::session || principal.kind == TokenKind::script))
+    (void)impl_->pool.write([&](PgConnection& connection) {
+      return run(connection,
+                 "WITH used AS (UPDATE tokens SET last_used = now() WHERE id = $1 RETURNING user_name) "
+                 "UPDATE users SET last_seen = now() FROM used WHERE name = used.user_name",
+                 Params().integer(principal.token));
+    });
+  return principal;
 }
 
 Result<std::vector<Token>> Store::tokens(const std::string& user, TokenKind kind) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Token>> {
-    auto rows = connection.query(
-        "SELECT id, label, role, created, expires, last_used FROM tokens WHERE user_name = $1 AND kind = $2 "
-        "AND " STRATA_GOOD_TOKEN " ORDER BY id DESC",
-        Params().text(user).text(name(kind)));
+    auto rows = connection.query("SELECT " STRATA_TOKEN_COLUMNS
+                                 " FROM tokens WHERE user_name = $1 AND kind = $2 "
+                                 "AND " STRATA_GOOD_TOKEN " ORDER BY id DESC",
+                                 Params().text(user).text(name(kind)));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Token> tokens;
-    for (int i = 0; i < rows->rows(); ++i) {
-      Token& token = tokens.emplace_back();
-      token.id = rows->integer(i, 0);
-      token.kind = kind;
-      token.label = rows->text(i, 1);
-      token.role = parse_role(rows->text(i, 2)).value_or(Role::viewer);
-      token.created = rows->time(i, 3);
-      if (!rows->null(i, 4)) token.expires = rows->time(i, 4);
-      if (!rows->null(i, 5)) token.last_used = rows->time(i, 5);
-    }
+    for (int i = 0; i < rows->rows(); ++i) tokens.push_back(read_token(*rows, kind, i));
     return tokens;
   });
 }
@@ -235,12 +339,14 @@ Result<std::vector<Token>> Store::tokens(const std::string& user, TokenKind kind
 Result<std::optional<std::string>> Store::redeem_owner_link(const std::string& link, std::chrono::seconds lifetime,
                                                             const std::string& label) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<std::optional<std::string>> {
-    auto owner = principal(connection, link);
+    auto owner = find(connection, link);
     if (!owner) return tl::unexpected(owner.error());
-    if (!*owner || (*owner)->kind != TokenKind::owner_link) return std::optional<std::string>();
-    auto secret = insert_token(connection, TokenKind::session, (*owner)->user, (*owner)->role, lifetime, label);
-    if (!secret) return tl::unexpected(secret.error());
-    return std::optional<std::string>(std::move(*secret));
+    if (!*owner || (*owner)->principal.kind != TokenKind::owner_link) return std::optional<std::string>();
+    auto person = lock_person(connection, (*owner)->principal.user);
+    if (!person) return tl::unexpected(person.error());
+    auto session = open_session(connection, *person, lifetime, label);
+    if (!session) return tl::unexpected(session.error());
+    return std::optional<std::string>(std::move(session->secret));
   });
 }
 
@@ -250,23 +356,25 @@ Result<std::optional<std::string>> Store::accept_invitation(const std::string& i
   if (full_name)
     if (auto good = check_texts({{&*full_name, "full_name"}}); !good) return tl::unexpected(good.error());
   return impl_->pool.write([&](PgConnection& connection) -> Result<std::optional<std::string>> {
-    // Of two who use it at once, one comes first.
-    auto locked =
-        connection.query("SELECT 1 FROM tokens WHERE hash = $1 FOR UPDATE", Params().bytes(sha256(invitation)));
-    if (!locked) return tl::unexpected(locked.error());
-    auto invited = principal(connection, invitation);
+    const auto is_good = [](const auto& found) { return found && found->principal.kind == TokenKind::invitation; };
+    auto invited = find(connection, invitation);
     if (!invited) return tl::unexpected(invited.error());
-    if (!*invited || (*invited)->kind != TokenKind::invitation) return std::optional<std::string>();
-    const std::string& user = (*invited)->user;
-    if (auto set = put_password(connection, user, hash, {}); !set) return tl::unexpected(set.error());
+    if (!is_good(*invited)) return std::optional<std::string>();
+    auto person = lock_person(connection, (*invited)->principal.user);
+    if (!person) return tl::unexpected(person.error());
+    // Of two who use it at once, one came first; and the person may have been disabled before the lock was had.
+    auto still = find(connection, invitation);
+    if (!still) return tl::unexpected(still.error());
+    if (!is_good(*still)) return std::optional<std::string>();
+    if (auto set = put_password(connection, person->name, hash, {}); !set) return tl::unexpected(set.error());
     if (full_name) {
-      auto named =
-          run(connection, "UPDATE users SET full_name = $2 WHERE name = $1", Params().text(user).text(*full_name));
+      auto named = run(connection, "UPDATE users SET full_name = $2 WHERE name = $1",
+                       Params().text(person->name).text(*full_name));
       if (!named) return tl::unexpected(named.error());
     }
-    auto secret = insert_token(connection, TokenKind::session, user, (*invited)->role, lifetime, label);
-    if (!secret) return tl::unexpected(secret.error());
-    return std::optional<std::string>(std::move(*secret));
+    auto session = open_session(connection, *person, lifetime, label);
+    if (!session) return tl::unexpected(session.error());
+    return std::optional<std::string>(std::move(session->secret));
   });
 }
 

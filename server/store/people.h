@@ -10,6 +10,9 @@
 
 namespace strata::store {
 
+inline constexpr std::chrono::hours kInvitationLifetime{24 * 7};
+inline constexpr std::size_t kMostTokens = 100;  // good sessions of a person, and as many for scripts
+
 // Someone with an account. `name` is what they sign in with, in any case, and what journals say of them.
 struct Person {
   std::int64_t id = 0;
@@ -20,6 +23,13 @@ struct Person {
   bool disabled = false;
   std::chrono::system_clock::time_point created;
   std::optional<std::chrono::system_clock::time_point> last_seen;  // to some minutes
+};
+
+// What is to be changed of somebody; the rest stays as it is.
+struct PersonChange {
+  std::optional<std::string> full_name;
+  std::optional<Role> role;
+  std::optional<bool> disabled;
 };
 
 enum class TokenKind {
@@ -37,6 +47,11 @@ struct Token {
   Role role = Role::viewer;
   std::chrono::system_clock::time_point created;
   std::optional<std::chrono::system_clock::time_point> expires, last_used;
+};
+
+struct NewToken {
+  std::string secret;  // told this once
+  Token token;
 };
 
 // Who a secret speaks for, and as what.

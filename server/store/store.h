@@ -282,20 +282,25 @@ class Store {
   // --- people: accounts, sessions and tokens
   Result<std::vector<Person>> people();  // by name
   Result<Person> person(const std::string& name);
-  // 409: the name is taken, in whatever case, or of the form that is kept for who is deleted (`former-7`).
+  // 422: no name for signing in: 1 to 64 of letters, digits and `._@-`, a letter or digit first. 409: it is taken, in whatever case, or
+  // of the form that is kept for who is deleted (`former-7`).
   Result<Person> create_person(const std::string& name, const std::string& full_name, Role role);
-  // What `person` says of full_name, role and disabled. Who is disabled is signed out everywhere.
-  Result<Person> update_person(const Person& person);
-  // Their account ends, and what they did stays under a name that tells nothing, here and in all journals.
+  // Who is disabled is signed out everywhere, and their invitations are worthless.
+  Result<Person> change_person(std::int64_t id, const PersonChange& change);
+  // Their account ends, and what they did stays under a name that tells nothing, here and in all journals. Disable them first.
   Result<void> delete_person(const std::string& name);
   // The hash (store/password.h); empty where there is none, or nobody of the name who may sign in. In whatever case.
   Result<std::string> password_of(const std::string& name);
-  // Ends all sessions but `kept`, and all invitations.
+  // Ends all sessions but `kept`, and makes all links worthless.
   Result<void> set_password(const std::string& name, const std::string& hash, std::optional<std::int64_t> kept);
 
-  // The secret of a new one. `user` is made, with that role, where there is nobody of the name.
-  Result<std::string> create_token(TokenKind kind, const std::string& user, Role role,
-                                   std::optional<std::chrono::seconds> lifetime, const std::string& label = {});
+  // A new one of somebody who may sign in (404: there is no such person). The oldest session gives way where there are too many;
+  // tokens for scripts are refused then (409). With `hash`: only while that is the person's password (401).
+  Result<NewToken> create_token(TokenKind kind, const std::string& user, Role role,
+                                std::optional<std::chrono::seconds> lifetime, const std::string& label = {},
+                                const std::optional<std::string>& hash = {});
+  // The only good link of the kind that the person has: earlier ones become worthless.
+  Result<NewToken> create_link(TokenKind kind, const std::string& user, std::chrono::seconds lifetime);
   // Nothing: unknown, expired or revoked, or of somebody who may not sign in.
   Result<std::optional<Principal>> find_token(const std::string& secret);
   // Those that are good, the newest first.

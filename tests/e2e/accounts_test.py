@@ -2,6 +2,7 @@
 """Accounts over HTTP and from the command line: who comes in, what each role may do, what ends when, and that guessing is slow."""
 import os
 import re
+import socket
 import subprocess
 import sys
 
@@ -105,6 +106,10 @@ def roles(server, ada):
         for method, body in (("PATCH", {"role": "viewer"}), ("PATCH", {"disabled": True}), ("DELETE", None)):
             assert anne.request(method, path, body).status == 409, (method, path)
     assert anne.request("PATCH", "/users/ada", {"role": "owner"}).status == 422
+    server.ok("POST", "/users", {"user": "amos", "role": "administrator"})
+    for method, path, body in (("PATCH", "/users/amos", {"disabled": True}), ("DELETE", "/users/amos", None), ("POST", "/users/amos/invite", None)):
+        assert anne.request(method, path, body).status == 403, "one administrator does not let themselves in as another"
+    server.ok("DELETE", "/users/amos")
     assert anne.request("PATCH", "/users/nobody", {"role": "viewer"}).status == 404
     assert anne.request("PATCH", "/users/ada", {}).status == 422
     # A cookie is for this server's own page.
@@ -138,6 +143,20 @@ def closed(live):
             live.receive()
     except Closed:
         pass
+
+
+def slow_body(server):
+    """Who is shut out while their request is under way does nothing with it."""
+    boss = join(server, server.ok("POST", "/users", {"user": "boss", "role": "administrator"}).json())
+    body = b'{"user": "mole", "role": "administrator"}'
+    with socket.create_connection((server.host, server.port), timeout=LONG_S) as link:
+        link.sendall(f"POST /api/v1/users HTTP/1.1\r\nHost: {server.host}:{server.port}\r\nOrigin: {server.url}\r\nCookie: {boss.cookie}\r\nConnection: close\r\n"
+                     f"Content-Type: application/json\r\nExpect: 100-continue\r\nContent-Length: {len(body)}\r\n\r\n".encode())
+        assert link.recv(100).startswith(b"HTTP/1.1 100"), "it was let in"
+        server.ok("DELETE", "/users/boss")
+        link.sendall(body)
+        assert link.recv(1000).startswith(b"HTTP/1.1 401")
+    assert server.get("/users/mole").status == 404
 
 
 def sessions(server, ada):
@@ -178,7 +197,10 @@ def tokens(server, ada, anne):
     assert server.post("/me/tokens", {"name": "more", "role": "annotator"}, token=secret).status == 403, "a token makes no stronger one"
     refused = Browser(server).request("POST", "/login", {"token": secret})
     assert refused.status == 403 and "script" in refused.json()["detail"], refused
-    assert server.post("/me/password", {"current": PASSWORD, "password": OTHER}, token=secret).status == 403
+    for method, path, body in (("POST", "/me/password", {"current": PASSWORD, "password": OTHER}), ("GET", "/me/sessions", None), ("DELETE", "/me/sessions", None),
+                               ("GET", "/me/tokens", None), ("PATCH", "/me", {"full_name": "x"}), ("DELETE", f"/me/tokens/{made['token']['id']}", None)):
+        assert server.request(method, path, body, token=secret).status == 403, (method, path)
+    assert server.get("/me", token=secret).json()["role"] == "viewer"
     painting = ada.ok("POST", "/me/tokens", {"name": "painter"}).json()
     assert server.post(L + "/edits", FILL, token=painting["secret"]).status == 200
     anne.ok("PATCH", "/users/ada", {"role": "viewer"})
@@ -187,6 +209,8 @@ def tokens(server, ada, anne):
     listed = ada.ok("GET", "/me/tokens").json()
     assert [each["name"] for each in listed["tokens"]] == ["painter", "nightly"] and all("last_used" in each for each in listed["tokens"]), listed
     assert secret not in str(listed)
+    managing = anne.ok("POST", "/me/tokens", {"name": "manager"}).json()["secret"]
+    assert server.get("/users", token=managing).status == 200 and server.post("/users/ada/invite", token=managing).status == 403
     assert anne.request("DELETE", f"/me/tokens/{made['token']['id']}").status == 404, "somebody else's"
     ada.ok("DELETE", f"/me/tokens/{made['token']['id']}")
     assert server.get(M, token=secret).status == 401
@@ -241,10 +265,12 @@ def commands(server):
     number = re.search(r"(\d+) +viewer .*report", strata("token", "list", "--user", "max"))[1]
     strata("token", "revoke", number, "--user", "max")
     assert "report" not in strata("token", "list", "--user", "max")
-    for words in (("user", "role", "owner", "viewer"), ("user", "remove", "owner"), ("user", "remove", "nobody"), ("user", "add", "max"), ("user", "add", "a b"),
+    for words in (("user", "role", "owner", "viewer"), ("user", "disable", "owner"), ("user", "remove", "owner"), ("user", "remove", "nobody"), ("user", "add", "max"), ("user", "add", "a b"),
                   ("token", "add", "x", "--user", "max", "--role", "administrator"), ("token", "revoke", number, "--user", "max")):
         assert "strata: " in strata(*words, code=1), words
     strata("user", "role", "max", "king", code=2)
+    strata("user", "add", "nobody", "--password-stdin", entered="short", code=1)
+    assert server.get("/users/nobody").status == 404, "without a password that will do there is no account"
     strata("user", "remove", "max")
     assert server.get("/users/max").status == 404
 
@@ -273,6 +299,7 @@ def main():
         server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
         ada = invitations(server)
         vera, anne = roles(server, ada)
+        slow_body(server)
         sessions(server, ada)
         tokens(server, ada, anne)
         deletion(server, anne)

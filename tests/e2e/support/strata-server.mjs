@@ -42,7 +42,7 @@ export class StrataServer {
     const started = new Promise((resolve) => {
       createInterface({ input: this.process.stdout }).on("line", (line) => {
         if (line.startsWith("listening on ")) this.url = line.split(" ").at(-1);
-        if (line.startsWith("owner link: ")) resolve((this.link = line.split(" ").at(-1)));
+        if (/^(owner link|sign in at): /.test(line)) resolve((this.link = line.split(" ").at(-1)));
       });
     });
     const early = await Promise.race([started, this.ended]);

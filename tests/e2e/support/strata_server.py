@@ -102,7 +102,7 @@ class StrataServer:
         for line in self.process.stdout:
             if line.startswith("listening on "):
                 port = urllib.parse.urlsplit(line.split()[-1]).port
-            if line.startswith("owner link: "):
+            if line.startswith(("owner link: ", "sign in at: ")):
                 link = line.split()[-1]
                 break
         if not port or not link:
