@@ -1,120 +1,148 @@
-// <strata-sign-in>: for who opens the page without a session. Takes a token, or the whole link that the server printed.
+// <strata-sign-in>: for who opens the page without a session: name and password, or a token or the link that the server printed.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
-import { customElement, property, state } from "lit/decorators.js";
+import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError, type Api } from "../core/api";
-import { logo } from "./icons";
+import { login_path_of, sign_in_problem } from "./entry";
+import { entry_styles } from "./entry-styles";
+import { icon, logo } from "./icons";
+import { password_field, password_styles } from "./password-field";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
-
-/** The path to open for a pasted owner link; null when it is not one. */
-export function login_path_of(pasted: string): string | null {
-  const found = /\/login\?link=[A-Za-z0-9._~%-]+/.exec(pasted);
-  return found ? found[0] : null;
-}
 
 @customElement("strata-sign-in")
 export class StrataSignIn extends LitElement {
   @property({ attribute: false }) api!: Api;
-  @state() private error_ = "";
+  @state() private problem_ = "";
+  @state() private token_problem_ = "";
   @state() private busy_ = false;
+  @query("input[name=user]") private user_!: HTMLInputElement;
+  @query("input[name=password]") private password_!: HTMLInputElement;
+  @query("input[name=token]") private token_!: HTMLInputElement;
 
   static override styles = [
     shared_styles,
+    entry_styles,
+    password_styles,
     css`
-      :host {
-        display: grid;
-        place-items: center;
-        min-height: 100dvh;
-        padding: 20px;
+      details {
+        padding-top: 16px;
+        border-top: 1px solid var(--line);
       }
-      main {
-        width: min(420px, 100%);
-      }
-      form {
-        display: grid;
-        gap: 18px;
-        padding: 36px 34px 32px;
-        border: 1px solid var(--line);
-        border-radius: 16px;
-        background: var(--surface);
-        box-shadow: var(--shadow);
-      }
-      .logo {
-        width: 44px;
-        height: 44px;
-      }
-      .brand {
+      summary {
         display: flex;
         align-items: center;
-        gap: 14px;
-      }
-      .brand b {
-        font: 600 1.5rem/1.1 var(--serif);
-      }
-      .brand span {
-        display: block;
-        font-size: 0.85rem;
+        gap: 6px;
         color: var(--ink-soft);
+        cursor: pointer;
+        list-style: none;
       }
-      h1 {
-        font-size: 1.2rem;
+      summary::-webkit-details-marker {
+        display: none;
       }
-      code {
-        font: 0.8rem var(--mono);
-        overflow-wrap: anywhere;
+      summary svg.glyph {
+        width: 16px;
+        height: 16px;
+      }
+      details[open] summary svg.glyph {
+        transform: rotate(90deg);
+      }
+      details form {
+        margin-top: 14px;
+        gap: 14px;
       }
     `,
   ];
 
+  override firstUpdated(): void {
+    this.user_.focus();
+  }
+
   override render(): TemplateResult {
     const words = texts.sign_in;
-    return html`<main><form @submit=${this.on_submit} novalidate>
+    return html`<main class="card">
       <div class="brand">
         ${logo()}
         <div><b>${texts.product}</b><span>${texts.tagline}</span></div>
       </div>
-      <div>
-        <h1>${words.title}</h1>
-        <p>${words.lead}</p>
-      </div>
-      <label class="field">
-        <span>${words.token}</span>
-        <input
-          type="password"
-          name="token"
-          autocomplete="current-password"
-          autofocus
-          aria-invalid=${this.error_ ? "true" : "false"}
-          aria-describedby="error"
-        />
-      </label>
-      <p class="error" id="error" role="alert" ?hidden=${!this.error_}>${this.error_}</p>
-      <button class="primary" ?disabled=${this.busy_}>${words.button}</button>
-      <p class="hint">${words.hint} <code>${location.origin}/login?link=…</code></p>
-    </form></main>`;
+      <h1>${words.title}</h1>
+      <form @submit=${this.on_submit} novalidate>
+        <label class="field">
+          <span>${words.user}</span>
+          <input
+            type="text"
+            name="user"
+            maxlength="200"
+            autocomplete="username"
+            autocapitalize="off"
+            spellcheck="false"
+            aria-invalid=${this.problem_ ? "true" : "false"}
+            aria-describedby="problem"
+          />
+        </label>
+        ${password_field({ name: "password", label: words.password, autocomplete: "current-password", wrong_by: this.problem_ ? "problem" : "" })}
+        <p class="error" id="problem" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
+        <button class="primary" ?disabled=${this.busy_}>${words.button}</button>
+        <p class="hint">${words.forgotten}</p>
+      </form>
+      <details>
+        <summary>${icon("chevron")}${words.otherwise}</summary>
+        <form @submit=${this.on_token} novalidate>
+          <p class="hint">${words.otherwise_lead}</p>
+          <label class="field">
+            <span>${words.token}</span>
+            <input
+              type="password"
+              name="token"
+              autocomplete="off"
+              aria-invalid=${this.token_problem_ ? "true" : "false"}
+              aria-describedby="token_problem"
+            />
+          </label>
+          <p class="error" id="token_problem" role="alert" ?hidden=${!this.token_problem_}>${this.token_problem_}</p>
+          <button ?disabled=${this.busy_}>${words.button}</button>
+          <p class="hint">${words.token_hint} <code>${location.origin}/login?link=…</code></p>
+        </form>
+      </details>
+    </main>`;
   }
 
   private async on_submit(event: Event): Promise<void> {
     event.preventDefault();
-    const token = String(new FormData(event.target as HTMLFormElement).get("token") ?? "").trim();
-    if (!token) {
-      this.error_ = texts.sign_in.empty;
+    if (this.busy_) return;
+    const user = this.user_.value.trim();
+    const password = this.password_.value; // spaces count
+    this.problem_ = this.token_problem_ = "";
+    if (user === "" || password === "") {
+      this.problem_ = texts.sign_in.empty;
+      (user === "" ? this.user_ : this.password_).focus();
       return;
     }
+    this.problem_ = await this.try_to("password", () => this.api.login({ user, password }));
+    if (this.problem_) this.password_.select();
+  }
+
+  private async on_token(event: Event): Promise<void> {
+    event.preventDefault();
+    if (this.busy_) return;
+    const token = this.token_.value.trim();
     const path = login_path_of(token);
-    if (path) {
-      location.assign(path);
-      return;
-    }
+    this.problem_ = this.token_problem_ = "";
+    if (path) location.assign(path);
+    else if (token === "") this.token_problem_ = texts.sign_in.token_empty;
+    else this.token_problem_ = await this.try_to("token", () => this.api.login({ token }));
+  }
+
+  /** What is wrong, or nothing. */
+  private async try_to(by: "password" | "token", login: () => Promise<unknown>): Promise<string> {
     this.busy_ = true;
-    this.error_ = "";
     try {
-      await this.api.login(token);
+      await login();
       this.dispatchEvent(new CustomEvent("signed-in"));
+      return "";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      this.error_ = error.status === 401 || error.status === 403 || error.status === 400 ? texts.sign_in.wrong : error.message;
+      return sign_in_problem(error, by);
     } finally {
       this.busy_ = false;
     }

@@ -25,12 +25,23 @@ export const texts = {
 
   sign_in: {
     title: "Sign in",
-    lead: "Open the link that the server printed when it started, or paste a token here.",
-    token: "Token",
+    user: "Name",
+    password: "Password",
     button: "Sign in",
-    wrong: "This token is not known here. Copy it whole, without spaces, and try again.",
-    empty: "Paste a token first.",
-    hint: "The link looks like",
+    empty: "Give your name and your password.",
+    wrong: "Name or password does not fit. In the password capital letters count.",
+    forgotten: "Password forgotten? An administrator of this site can send you a new link.",
+    otherwise: "With a link or token",
+    otherwise_lead: "Paste the link that the server printed when it started, or a token.",
+    token: "Link or token",
+    token_hint: "The link looks like",
+    token_empty: "Paste a link or a token first.",
+    token_wrong: "This link or token is not known here. Copy it whole, without spaces, and try again.",
+  },
+
+  password: {
+    show: "Show the password",
+    hide: "Hide the password",
   },
 
   home: {

@@ -89,8 +89,8 @@ export class Api {
   async me(): Promise<Me> {
     return this.json("GET", "/me");
   }
-  async login(token: string): Promise<void> {
-    await this.request("POST", "/login", { token });
+  async login(who: { user: string; password: string } | { token: string }): Promise<Me> {
+    return this.json("POST", "/login", who);
   }
   async logout(): Promise<void> {
     await this.request("POST", "/logout");
@@ -446,7 +446,7 @@ export class Api {
     headers: Record<string, string> = {},
   ): Promise<Response> {
     const all: Record<string, string> = { Accept: "application/json", ...headers };
-    if (method === "POST" && path !== "/login") all["Idempotency-Key"] = new_id();
+    if (method === "POST" && !kWithSecrets.test(path)) all["Idempotency-Key"] = new_id();
     let response: Response;
     try {
       response = await this.fetch_(kBase + path, {
@@ -462,6 +462,9 @@ export class Api {
     return response;
   }
 }
+
+/** What is sent or answered there is not for the server to keep, as it does for an `Idempotency-Key`. */
+const kWithSecrets = /^\/(login|invitations\/.+|me\/.+|users|users\/.+)$/;
 
 const kFile = { "Content-Type": "application/octet-stream" };
 
