@@ -1,9 +1,13 @@
 import { describe, expect, it } from "vitest";
 
-import { login_path_of, sign_in_problem } from "../src/app/entry";
+import { login_path_of, password_words, sign_in_problem } from "../src/app/entry";
 import { texts } from "../src/app/texts";
+import { told_date, told_time } from "../src/app/times";
 import { Api, ApiError } from "../src/core/api";
+import { browser_of, called, initials, password_mistake, roles_of_tokens } from "../src/core/people";
+import type { Person } from "../src/core/protocol.gen";
 
+const person = (user: string, full_name = ""): Pick<Person, "user" | "full_name"> => ({ user, full_name });
 const refusal = (status: number, more: { field?: string; detail?: string } = {}): ApiError => new ApiError({ status, title: "Refused", ...more });
 
 /** An interface whose server gives these answers in turn, and what it was asked. */
@@ -17,6 +21,78 @@ function api_of(...answers: [status: number, body: unknown][]): { api: Api; aske
   });
   return { api, asked };
 }
+
+describe("what people are called", () => {
+  it("one or two letters stand for a person", () => {
+    const of = (user: string, full_name = ""): string => initials({ user, full_name });
+    expect(of("ada", "Ada Lovelace")).toBe("AL");
+    expect(of("x", "  maría de los Ángeles  Ochoa ")).toBe("MO");
+    expect(of("ada")).toBe("A");
+    expect(of("ada.lovelace@museum")).toBe("AM");
+    expect(of("x", "李小龙")).toBe("李");
+    expect(of("...")).toBe("?");
+  });
+  it("the full name where there is one", () => {
+    expect(called(person("ada", "Ada Lovelace"))).toBe("Ada Lovelace");
+    expect(called(person("ada", "  "))).toBe("ada");
+  });
+});
+
+describe("passwords", () => {
+  it("are told what is wrong with them before they are sent", () => {
+    expect(password_mistake("ada", "123456789", "123456789")).toEqual({ field: "password", kind: "too_short" });
+    expect(password_mistake("Ada.Lovelace", "ada.lovelace", "ada.lovelace")).toEqual({ field: "password", kind: "is_the_name" });
+    expect(password_mistake("ada", "1234567890", "123456789O")).toEqual({ field: "repeat", kind: "differs" });
+    expect(password_mistake("ada", "1234567890", "1234567890")).toBeNull();
+  });
+  it("a character is one, however many bytes it takes", () => {
+    expect(password_mistake("ada", "𓂀".repeat(9), "𓂀".repeat(9))?.kind).toBe("too_short");
+    expect(password_mistake("ada", "𓂀".repeat(10), "𓂀".repeat(10))).toBeNull();
+  });
+  it("each mistake has its words", () => {
+    expect(password_words({ field: "password", kind: "too_short" })).toContain("10");
+    expect(password_words({ field: "repeat", kind: "differs" })).toBe(texts.password.differs);
+  });
+});
+
+describe("roles", () => {
+  it("a token may have what its person has", () => {
+    expect(roles_of_tokens("viewer")).toEqual(["viewer"]);
+    expect(roles_of_tokens("owner").at(-1)).toBe("owner");
+  });
+});
+
+describe("browsers", () => {
+  const told = (agent: string): string => {
+    const { browser, system } = browser_of(agent);
+    return texts.account.browser(browser, system);
+  };
+  it.each([
+    ["Mozilla/5.0 (X11; Linux x86_64; rv:128.0) Gecko/20100101 Firefox/128.0", "Firefox on Linux"],
+    ["Mozilla/5.0 (Windows NT 10.0; Win64; x64) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/126.0.0.0 Safari/537.36", "Chrome on Windows"],
+    ["Mozilla/5.0 (Windows NT 10.0; Win64; x64) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/126.0.0.0 Safari/537.36 Edg/126.0.0.0", "Edge on Windows"],
+    ["Mozilla/5.0 (Windows NT 10.0) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/126.0.0.0 Safari/537.36 OPR/112.0.0.0", "Opera on Windows"],
+    ["Mozilla/5.0 (Macintosh; Intel Mac OS X 10_15_7) AppleWebKit/605.1.15 (KHTML, like Gecko) Version/17.5 Safari/605.1.15", "Safari on macOS"],
+    ["Mozilla/5.0 (iPhone; CPU iPhone OS 17_5 like Mac OS X) AppleWebKit/605.1.15 (KHTML, like Gecko) Version/17.5 Mobile/15E148 Safari/604.1", "Safari on iPhone"],
+    ["Mozilla/5.0 (iPad; CPU OS 17_5 like Mac OS X) AppleWebKit/605.1.15 (KHTML, like Gecko) CriOS/126.0 Mobile/15E148 Safari/604.1", "Chrome on iPad"],
+    ["Mozilla/5.0 (Linux; Android 14; SM-S921B) AppleWebKit/537.36 (KHTML, like Gecko) SamsungBrowser/25.0 Chrome/121.0.0.0 Mobile Safari/537.36", "Samsung Internet on Android"],
+    ["Mozilla/5.0 (X11; CrOS x86_64 14541.0.0) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/126.0.0.0 Safari/537.36", "Chrome on ChromeOS"],
+    ["curl/7.88.1", "curl"],
+    ["Mozilla/5.0", texts.account.browser("", "")],
+    ["", texts.account.browser("", "")],
+  ])("%s", (agent, name) => expect(told(agent)).toBe(name));
+});
+
+describe("moments", () => {
+  const now = new Date(2026, 4, 4, 12, 0);
+  const at = (...parts: [number, number, number, number, number]): string => told_time(new Date(...parts).toISOString(), now);
+  it("are told by their day, those of late by its name", () => {
+    expect(at(2026, 4, 4, 9, 5)).toBe("today, 09:05");
+    expect(at(2026, 4, 3, 23, 59)).toBe("yesterday, 23:59");
+    expect(at(2026, 4, 2, 9, 5)).toBe("2 May 2026, 09:05");
+    expect(told_date(new Date(2027, 0, 31, 5).toISOString())).toBe("31 Jan 2027");
+  });
+});
 
 describe("coming in", () => {
   it("a pasted link of the server is opened, whatever stands around it", () => {
@@ -36,11 +112,15 @@ describe("coming in", () => {
 
 describe("the interface", () => {
   it("has the server keep no answer with a secret for a repeated call", async () => {
-    const { api, asked } = api_of(...Array.from({ length: 2 }, (): [number, unknown] => [200, {}]));
+    const { api, asked } = api_of(...Array.from({ length: 4 }, (): [number, unknown] => [200, {}]));
     await api.login({ user: "ada", password: "x" });
+    await api.change_password({ password: "x" });
+    await api.create_token({ name: "n" });
     await api.create_layer(1, { name: "L" } as never).catch(() => {});
     expect(asked.map(({ what, headers }) => [what, "Idempotency-Key" in headers])).toEqual([
       ["POST /api/v1/login", false],
+      ["POST /api/v1/me/password", false],
+      ["POST /api/v1/me/tokens", false],
       ["POST /api/v1/models/1/layers", true],
     ]);
   });

@@ -6,6 +6,7 @@ import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../core/api";
 import { format_area, format_size, metres_per } from "../core/measure";
 import { may_curate, type Me, type Model } from "../core/types";
+import { ask_account } from "./account-menu";
 import "./blank";
 import { ask } from "./dialog";
 import { icon, logo } from "./icons";
@@ -13,7 +14,6 @@ import type { ImportEntry, Imports } from "./imports";
 import "./menu";
 import { notices } from "./notices";
 import { follow, path_of_model } from "./routes";
-import { discard_unsaved, unsaved_changes } from "./sessions";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
 import { home_styles } from "./home-styles";
@@ -72,10 +72,15 @@ export class StrataHomePage extends LitElement {
     return html`<header>
         <a class="brand" href="/" @click=${follow}>${logo()}<b>${texts.product}</b></a>
         <span class="grow tagline">${texts.tagline}</span>
-        ${this.me.user ? html`<span class="who ellipsis">${this.me.user}</span>` : nothing}
-        <button class="quiet" @click=${this.sign_out}>${texts.home.sign_out}</button>
+        <strata-account-menu .me=${this.me}></strata-account-menu>
       </header>
       <main>
+        ${this.me.has_password
+          ? nothing
+          : html`<p class="no-password">
+              <button class="link" @click=${() => ask_account(this, "account")}>${texts.account.no_password}</button>
+              ${texts.account.no_password_why}
+            </p>`}
         <div class="title">
           <h1>${texts.home.title}</h1>
           <span class="hint grow">${this.models_ ? texts.home.count(this.models_.length) : ""}</span>
@@ -205,14 +210,5 @@ export class StrataHomePage extends LitElement {
       notices.error(error);
     }
     await this.load();
-  }
-
-  private async sign_out(): Promise<void> {
-    const lost = unsaved_changes();
-    const question = { heading: texts.home.sign_out_title, lead: texts.home.sign_out_lead(lost), yes: texts.home.sign_out };
-    if (lost > 0 && !(await ask({ ...question, danger: true }))) return;
-    discard_unsaved();
-    await this.api.logout().catch((error: unknown) => notices.error(error));
-    this.dispatchEvent(new CustomEvent("signed-out"));
   }
 }

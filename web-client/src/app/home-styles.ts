@@ -29,14 +29,23 @@ export const home_styles = css`
     color: var(--ink-soft);
     font-size: 0.9rem;
   }
-  .who {
-    max-width: 200px;
-    color: var(--ink-soft);
-  }
   main {
     max-width: 1720px;
     margin: 0 auto;
     padding: clamp(20px, 4vw, 44px) clamp(16px, 4vw, 56px) 64px;
+  }
+  .no-password {
+    margin-bottom: 22px;
+    padding: 10px 16px;
+    border-radius: 12px;
+    background: var(--calm-soft);
+    color: var(--calm);
+  }
+  .no-password button.link {
+    display: inline;
+    padding: 0;
+    color: inherit;
+    font-weight: 600;
   }
   .title {
     display: flex;
@@ -172,8 +181,7 @@ export const home_styles = css`
     transition: width 200ms;
   }
   @media (max-width: 620px) {
-    .tagline,
-    .who {
+    .tagline {
       display: none;
     }
     header {

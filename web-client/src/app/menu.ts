@@ -1,4 +1,5 @@
-// <strata-menu>: a button that opens a list of commands, given as slotted buttons.
+// <strata-menu>: a button that opens a list of commands, given as slotted buttons. What is slotted as "face" stands on the button
+// in place of the glyph.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -46,6 +47,9 @@ export class StrataMenu extends LitElement {
         width: 100%;
         justify-content: flex-start !important;
       }
+      ::slotted([slot="face"]) {
+        pointer-events: none; /* the button's own */
+      }
       ::slotted(hr) {
         margin: 5px 0;
         border: 0;
@@ -62,7 +66,7 @@ export class StrataMenu extends LitElement {
         title=${this.label}
         @click=${this.open}
       >
-        ${icon(this.glyph)}
+        <slot name="face">${icon(this.glyph)}</slot>
       </button>
       <div class="list" popover="auto" role="menu" @click=${this.close} @keydown=${this.on_key} @toggle=${this.on_toggle}>
         <slot></slot>

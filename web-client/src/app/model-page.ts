@@ -6,8 +6,9 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { ApiError, type Api } from "../core/api";
 import { label_of } from "../core/cells";
-import type { Column, Layer } from "../core/types";
+import type { Column, Layer, Me } from "../core/types";
 import { kPaintingTools } from "../tools/tool";
+import "./account-menu";
 import "./blank";
 import type { WhereRequest } from "./brush-panel";
 import "./brush-panel";
@@ -61,6 +62,7 @@ const kNotFound = { heading: texts.model.not_found_title, lead: texts.model.not_
 @customElement("strata-model-page")
 export class StrataModelPage extends LitElement {
   @property({ attribute: false }) api!: Api;
+  @property({ attribute: false }) me!: Me;
   @property() model_id = "";
   @state() private dialog_: OpenDialog = null;
   @state() private missing_: { heading: string; lead: string } | null = null;
@@ -205,6 +207,7 @@ export class StrataModelPage extends LitElement {
       >
         ${icon("panel")}
       </button>
+      <strata-account-menu .me=${this.me}></strata-account-menu>
     </header>`;
   }
 

@@ -232,8 +232,15 @@ export const model_styles = css`
     .scale-chip {
       display: none;
     }
+    .people span:first-child,
+    .people span:nth-child(n + 4) {
+      display: none; /* one's own initials stand at the end; for more than two others there is no room */
+    }
     .saving.not-saved span {
       display: inline;
+    }
+    .people {
+      padding: 0 2px 0 9px;
     }
     .saving {
       padding: 4px 6px;

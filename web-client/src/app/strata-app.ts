@@ -6,6 +6,9 @@ import { customElement, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { Api, ApiError, name_of_file } from "../core/api";
 import { may_curate, type Me } from "../core/types";
+import "./account-dialog";
+import type { AccountRequest } from "./account-menu";
+import { ask } from "./dialog";
 import "./home-page";
 import { icon } from "./icons";
 import { dropped_files, without_folders, type DroppedFile } from "./drop";
@@ -27,6 +30,7 @@ export class StrataApp extends LitElement {
   @state() private me_: Me | null = null;
   @state() private session_: "unknown" | "signed-in" | "signed-out" | "unreachable" = "unknown";
   @state() private problem_ = "";
+  @state() private dialog_: "account" | null = null;
   @state() private dropping_ = false;
   @state() private imported_ = 0;
   private drag_depth_ = 0;
@@ -82,10 +86,7 @@ export class StrataApp extends LitElement {
 
   private async check_session(): Promise<void> {
     try {
-      const me = await this.api_.me();
-      const lost = this.me_ && this.me_.user !== me.user ? discard_unsaved() : 0;
-      if (lost > 0) notices.show("problem", texts.saving.discarded(lost));
-      this.me_ = me;
+      this.take_me(await this.api_.me());
       this.session_ = "signed-in";
       check_connections();
     } catch (error) {
@@ -99,8 +100,41 @@ export class StrataApp extends LitElement {
     }
   }
 
+  private take_me(me: Me): void {
+    const lost = this.me_ && this.me_.user !== me.user ? discard_unsaved() : 0;
+    if (lost > 0) notices.show("problem", texts.saving.discarded(lost));
+    this.me_ = me;
+  }
+
+  private readonly signed_out = (): void => {
+    this.session_ = "signed-out";
+    this.dialog_ = null;
+  };
+
+  private async on_account({ detail }: CustomEvent<AccountRequest>): Promise<void> {
+    if (detail === "sign-out") await this.sign_out();
+    else this.dialog_ = detail;
+  }
+
+  private async sign_out(): Promise<void> {
+    const lost = unsaved_changes();
+    const words = texts.account;
+    const question = { heading: words.sign_out_title, lead: words.sign_out_lead(lost), yes: words.sign_out };
+    if (lost > 0 && !(await ask({ ...question, danger: true }))) return;
+    try {
+      await this.api_.logout();
+    } catch (error) {
+      if (!(error instanceof ApiError) || error.status !== 401) {
+        notices.error(error); // nobody must think that they are signed out while they are not
+        return;
+      }
+    }
+    discard_unsaved();
+    this.signed_out();
+  }
+
   override render(): TemplateResult {
-    return html`${this.page()}
+    return html`${this.page()} ${this.session_ === "signed-in" && this.me_ ? this.dialog(this.me_) : nothing}
       ${this.dropping_
         ? html`<div class="drop-target">
             <div>${icon("upload")}<b>${texts.home.drop_title}</b><span>${texts.home.drop_lead}</span></div>
@@ -110,31 +144,48 @@ export class StrataApp extends LitElement {
   }
 
   private page(): unknown {
-    const signed_out = (): void => {
-      this.session_ = "signed-out";
-    };
-    switch (this.session_) {
-      case "unknown":
-        return nothing;
-      case "signed-out":
-        return html`<strata-sign-in .api=${this.api_} @signed-in=${() => void this.check_session()}></strata-sign-in>`;
-      case "unreachable":
-        return html`<strata-blank heading=${texts.connection.lost} lead=${this.problem_}></strata-blank>`;
-      case "signed-in":
-        return this.route_.page === "model"
-          ? keyed(
-              this.route_.model, // everything of a model page belongs to its one model
-              html`<strata-model-page .api=${this.api_} .model_id=${this.route_.model} @signed-out=${signed_out}></strata-model-page>`,
-            )
-          : html`<strata-home-page
-              .api=${this.api_}
-              .me=${this.me_}
-              .imports=${this.imports_}
-              .imported=${this.imported_}
-              @signed-out=${signed_out}
-              @import-files=${(event: CustomEvent<File[]>) => void this.import_files(without_folders(event.detail))}
-            ></strata-home-page>`;
+    const { session_: session, me_: me } = this;
+    if (session === "unknown") return nothing;
+    if (session === "unreachable") return html`<strata-blank heading=${texts.connection.lost} lead=${this.problem_}></strata-blank>`;
+    if (session === "signed-out" || !me) {
+      return html`<strata-sign-in .api=${this.api_} @signed-in=${() => void this.check_session()}></strata-sign-in>`;
     }
+    return this.route_.page === "model"
+      ? keyed(
+          this.route_.model, // everything of a model page belongs to its one model
+          html`<strata-model-page
+            .api=${this.api_}
+            .me=${me}
+            .model_id=${this.route_.model}
+            @account=${this.on_account}
+            @signed-out=${this.signed_out}
+          ></strata-model-page>`,
+        )
+      : html`<strata-home-page
+          .api=${this.api_}
+          .me=${me}
+          .imports=${this.imports_}
+          .imported=${this.imported_}
+          @account=${this.on_account}
+          @signed-out=${this.signed_out}
+          @import-files=${(event: CustomEvent<File[]>) => void this.import_files(without_folders(event.detail))}
+        ></strata-home-page>`;
+  }
+
+  private dialog(me: Me): unknown {
+    const closed = (): void => {
+      this.dialog_ = null;
+    };
+    if (this.dialog_ === "account") {
+      return html`<strata-account-dialog
+        .api=${this.api_}
+        .me=${me}
+        @changed=${(event: CustomEvent<Me>) => (this.take_me(event.detail))}
+        @closed=${closed}
+        @signed-out=${this.signed_out}
+      ></strata-account-dialog>`;
+    }
+    return nothing;
   }
 
   private get import_refusal(): string | null {

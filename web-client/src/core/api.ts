@@ -95,6 +95,32 @@ export class Api {
   async logout(): Promise<void> {
     await this.request("POST", "/logout");
   }
+  async change_me(change: wire.MePatch): Promise<Me> {
+    return this.json("PATCH", "/me", change);
+  }
+  /** Ends all other sessions. */
+  async change_password(change: wire.PasswordChange): Promise<void> {
+    await this.request("POST", "/me/password", change);
+  }
+  /** Where this person is signed in, the newest first. */
+  async sign_in_sessions(): Promise<wire.SignInSession[]> {
+    return (await this.json<wire.SignInSessionList>("GET", "/me/sessions")).sessions;
+  }
+  async end_session(id: number): Promise<void> {
+    await this.request("DELETE", `/me/sessions/${id}`);
+  }
+  async end_other_sessions(): Promise<void> {
+    await this.request("DELETE", "/me/sessions");
+  }
+  async script_tokens(): Promise<wire.ScriptToken[]> {
+    return (await this.json<wire.ScriptTokenList>("GET", "/me/tokens")).tokens;
+  }
+  async create_token(token: wire.ScriptTokenCreate): Promise<wire.ScriptTokenMade> {
+    return this.json("POST", "/me/tokens", token);
+  }
+  async revoke_token(id: number): Promise<void> {
+    await this.request("DELETE", `/me/tokens/${id}`);
+  }
 
   async models(): Promise<Model[]> {
     return (await this.json<wire.ModelList>("GET", "/models?limit=1000")).models;

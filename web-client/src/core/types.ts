@@ -67,7 +67,8 @@ export function complete_palette(palette: wire.Palette): Palette {
 
 export const complete_layer = (layer: wire.Layer): Layer => ({ ...layer, palette: complete_palette(layer.palette) });
 
-const kRoles: readonly wire.Role[] = ["viewer", "annotator", "curator", "administrator", "owner"];
+/** Each may do what the ones before may. */
+export const kRoles: readonly wire.Role[] = ["viewer", "annotator", "curator", "administrator", "owner"];
 
 /** Who may change what layers hold. */
 export const may_paint = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("annotator");

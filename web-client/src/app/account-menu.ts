@@ -1,0 +1,67 @@
+// <strata-account-menu>: the initials of who is signed in, and what they can ask for. Others hear of it by the event "account".
+
+import { css, html, LitElement, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { called, initials } from "../core/people";
+import { type Me } from "../core/types";
+import { icon } from "./icons";
+import "./menu";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+export type AccountRequest = "account" | "sign-out";
+
+/** To whatever element of the page takes it. */
+export const ask_account = (from: EventTarget, detail: AccountRequest): boolean =>
+  from.dispatchEvent(new CustomEvent<AccountRequest>("account", { detail, bubbles: true, composed: true }));
+
+@customElement("strata-account-menu")
+export class StrataAccountMenu extends LitElement {
+  @property({ attribute: false }) me!: Me;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: inline-flex;
+        flex: none;
+      }
+      .face {
+        display: grid;
+        place-items: center;
+        width: 30px;
+        height: 30px;
+        border-radius: 50%;
+        background: var(--calm);
+        color: var(--surface);
+        font-size: 0.76rem;
+        font-weight: 700;
+        letter-spacing: 0.02em;
+      }
+      .who {
+        display: grid;
+        max-width: 260px;
+        padding: 8px 14px 10px;
+        overflow-wrap: anywhere;
+      }
+      .who span {
+        color: var(--ink-soft);
+        font-size: 0.86rem;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { me } = this;
+    const words = texts.account;
+    const role = texts.roles[me.role];
+    return html`<strata-menu label=${words.menu(called(me))}>
+      <span class="face" slot="face">${initials(me)}</span>
+      <div class="who"><b>${called(me)}</b><span>${me.full_name.trim() ? `${me.user} · ${role}` : role}</span></div>
+      <hr />
+      <button class="quiet" role="menuitem" @click=${() => ask_account(this, "account")}>${icon("person")}${words.open}</button>
+      <hr />
+      <button class="quiet" role="menuitem" @click=${() => ask_account(this, "sign-out")}>${icon("leave")}${words.sign_out}</button>
+    </strata-menu>`;
+  }
+}

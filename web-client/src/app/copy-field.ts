@@ -1,0 +1,53 @@
+// <strata-copy-field>: a text to be taken along, with a button that copies it.
+
+import { css, html, LitElement, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { icon } from "./icons";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+@customElement("strata-copy-field")
+export class StrataCopyField extends LitElement {
+  @property() label = "";
+  @property() text = "";
+  @state() private told_ = "";
+  @query("input") private input_!: HTMLInputElement;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        position: relative; /* of what is hidden for eyes */
+        display: flex;
+        gap: 8px;
+      }
+      input[type="text"] {
+        flex: 1;
+        min-width: 0;
+        font: 0.84rem var(--mono);
+      }
+      button {
+        min-height: 38px;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    return html`<input type="text" readonly aria-label=${this.label} .value=${this.text} @focus=${() => this.input_.select()} />
+      <button type="button" @click=${() => void this.copy()}>
+        ${icon(this.told_ === texts.copy.copied ? "check" : "copy")}${this.told_ || texts.copy.button}
+      </button>
+      <span class="visually-hidden" role="status">${this.told_}</span>`;
+  }
+
+  private async copy(): Promise<void> {
+    this.input_.select(); // for who copies by hand, and for the way that also works where the page came by plain HTTP
+    const copied = navigator.clipboard
+      ? await navigator.clipboard.writeText(this.text).then(
+          () => true,
+          () => document.execCommand("copy"),
+        )
+      : document.execCommand("copy");
+    this.told_ = copied ? texts.copy.copied : texts.copy.by_hand;
+  }
+}

@@ -1,0 +1,56 @@
+// What can be said of accounts without asking the server.
+
+import type { Me, Role } from "./protocol.gen";
+import { kRoles } from "./types";
+
+export const kLeastPasswordLength = 10; // characters, as the server counts them
+
+/** One or two letters that stand for a person. */
+export function initials({ user, full_name }: Pick<Me, "user" | "full_name">): string {
+  const words = full_name.trim() !== "" ? full_name.trim().split(/\s+/) : user.split(/[^\p{L}\p{N}]+/u).filter((word) => word !== "");
+  const [first = "?", ...rest] = words;
+  const last = rest[rest.length - 1] ?? "";
+  return [first, last].map((word) => [...word][0] ?? "").join("").toUpperCase();
+}
+
+/** What a person is called where others read it. */
+export const called = ({ user, full_name }: Pick<Me, "user" | "full_name">): string => full_name.trim() || user;
+
+/** Those that a token of somebody may have, the least first. */
+export const roles_of_tokens = (own: Role): Role[] => kRoles.slice(0, kRoles.indexOf(own) + 1);
+
+export type PasswordMistake = { field: "password" | "repeat"; kind: "too_short" | "is_the_name" | "differs" };
+
+/** What the server would refuse, and a slip of the hand. */
+export function password_mistake(user: string, password: string, repeat: string): PasswordMistake | null {
+  if ([...password].length < kLeastPasswordLength) return { field: "password", kind: "too_short" };
+  if (password.toLowerCase() === user.toLowerCase()) return { field: "password", kind: "is_the_name" };
+  return password === repeat ? null : { field: "repeat", kind: "differs" };
+}
+
+// The first that fits: browsers also name those that they descend from.
+const kBrowsers: [RegExp, string][] = [
+  [/\bEdg(?:e|A|iOS)?\//, "Edge"],
+  [/\b(?:OPR|Opera)\//, "Opera"],
+  [/\bSamsungBrowser\//, "Samsung Internet"],
+  [/\b(?:Firefox|FxiOS)\//, "Firefox"],
+  [/\bChromium\//, "Chromium"],
+  [/\b(?:Headless)?Chrome\/|\bCriOS\//, "Chrome"],
+  [/\bVersion\/[\d.]+.*\bSafari\//, "Safari"],
+];
+const kSystems: [RegExp, string][] = [
+  [/\bAndroid\b/, "Android"],
+  [/\b(?:iPhone|iPod)\b/, "iPhone"],
+  [/\biPad\b/, "iPad"],
+  [/\bWindows\b/, "Windows"],
+  [/\bMacintosh\b/, "macOS"],
+  [/\bCrOS\b/, "ChromeOS"],
+  [/\bLinux\b|\bX11\b/, "Linux"],
+];
+
+/** Of what a browser calls itself: a name that people know, and the system that it runs on; each is empty where nothing is known. */
+export function browser_of(agent: string): { browser: string; system: string } {
+  const named = (list: [RegExp, string][]): string => list.find(([pattern]) => pattern.test(agent))?.[1] ?? "";
+  const program = /^([A-Za-z][\w.-]*)\//.exec(agent)?.[1] ?? ""; // of what is no browser, such as curl
+  return { browser: named(kBrowsers) || (program === "Mozilla" ? "" : program), system: named(kSystems) };
+}
