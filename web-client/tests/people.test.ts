@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 
-import { login_path_of, password_words, sign_in_problem } from "../src/app/entry";
+import { invitation_of, is_useless_link, login_path_of, password_words, sign_in_problem } from "../src/app/entry";
+import { route_of } from "../src/app/routes";
 import { texts } from "../src/app/texts";
 import { told_date, told_time } from "../src/app/times";
 import { Api, ApiError } from "../src/core/api";
@@ -95,6 +96,13 @@ describe("moments", () => {
 });
 
 describe("coming in", () => {
+  it("an invitation has an address of its own, and its secret is in the fragment", () => {
+    expect(route_of("/join")).toEqual({ page: "join" });
+    expect(route_of("/join/")).toEqual({ page: "join" });
+    expect(route_of("/joiner")).toEqual({ page: "home" });
+    expect(invitation_of("#3q2-7wAAqrs_")).toBe("3q2-7wAAqrs_");
+    expect(["", "#", "#a b", "#<x>"].map(invitation_of)).toEqual(["", "", "", ""]);
+  });
   it("a pasted link of the server is opened, whatever stands around it", () => {
     expect(login_path_of("see http://127.0.0.1:8080/login?link=3q2-7wAA, please")).toBe("/login?link=3q2-7wAA");
     expect(login_path_of("3q2-7wAAqrs")).toBeNull();
@@ -108,17 +116,23 @@ describe("coming in", () => {
     expect(sign_in_problem(refusal(0, { detail: "Away." }), "password")).toBe("Away.");
     expect(sign_in_problem(refusal(503, { detail: "It starts." }), "token")).toBe("It starts.");
   });
+  it("a link is useless when the server does not know it, but not when the password is bad", () => {
+    expect([refusal(401), refusal(404), refusal(422, { field: "invitation" })].every(is_useless_link)).toBe(true);
+    expect([refusal(422, { field: "password" }), refusal(429), refusal(0), refusal(503)].some(is_useless_link)).toBe(false);
+  });
 });
 
 describe("the interface", () => {
   it("has the server keep no answer with a secret for a repeated call", async () => {
-    const { api, asked } = api_of(...Array.from({ length: 4 }, (): [number, unknown] => [200, {}]));
+    const { api, asked } = api_of(...Array.from({ length: 5 }, (): [number, unknown] => [200, {}]));
     await api.login({ user: "ada", password: "x" });
+    await api.accept_invitation({ invitation: "i", password: "x" });
     await api.change_password({ password: "x" });
     await api.create_token({ name: "n" });
     await api.create_layer(1, { name: "L" } as never).catch(() => {});
     expect(asked.map(({ what, headers }) => [what, "Idempotency-Key" in headers])).toEqual([
       ["POST /api/v1/login", false],
+      ["POST /api/v1/invitations/accept", false],
       ["POST /api/v1/me/password", false],
       ["POST /api/v1/me/tokens", false],
       ["POST /api/v1/models/1/layers", true],

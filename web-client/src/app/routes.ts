@@ -1,8 +1,9 @@
-// The page's addresses: / and /models/{id}.
+// The page's addresses: /, /models/{id}, and /join#SECRET for who is invited.
 
-export type Route = { page: "home" } | { page: "model"; model: string };
+export type Route = { page: "home" } | { page: "join" } | { page: "model"; model: string };
 
 export function route_of(path: string): Route {
+  if (/^\/join\/?$/.test(path)) return { page: "join" };
   const found = /^\/models\/([^/?#]+)\/?$/.exec(path);
   if (!found) return { page: "home" };
   try {
@@ -24,6 +25,12 @@ export function on_navigate(listener: () => void): void {
 
 export function navigate(path: string): void {
   history.pushState(null, "", path);
+  listeners.forEach((listener) => listener());
+}
+
+/** Goes there, and nothing leads back to the address before. */
+export function replace_address(path: string): void {
+  history.replaceState(null, "", path);
   listeners.forEach((listener) => listener());
 }
 

@@ -9,14 +9,16 @@ import { may_curate, type Me } from "../core/types";
 import "./account-dialog";
 import type { AccountRequest } from "./account-menu";
 import { ask } from "./dialog";
+import { invitation_of } from "./entry";
 import "./home-page";
 import { icon } from "./icons";
 import { dropped_files, without_folders, type DroppedFile } from "./drop";
 import { choose_scans, Imports, type Scan } from "./imports";
+import "./join-page";
 import "./model-page";
 import { notices } from "./notices";
 import "./notices-view";
-import { navigate, on_navigate, path_now, path_of_model, route_of, type Route } from "./routes";
+import { navigate, on_navigate, path_now, path_of_model, replace_address, route_of, type Route } from "./routes";
 import { check_connections, discard_unsaved, unsaved_changes } from "./sessions";
 import { shared_styles } from "./styles";
 import "./sign-in";
@@ -147,6 +149,7 @@ export class StrataApp extends LitElement {
     const { session_: session, me_: me } = this;
     if (session === "unknown") return nothing;
     if (session === "unreachable") return html`<strata-blank heading=${texts.connection.lost} lead=${this.problem_}></strata-blank>`;
+    if (this.route_.page === "join") return this.join_page(session === "signed-in" ? me : null);
     if (session === "signed-out" || !me) {
       return html`<strata-sign-in .api=${this.api_} @signed-in=${() => void this.check_session()}></strata-sign-in>`;
     }
@@ -170,6 +173,23 @@ export class StrataApp extends LitElement {
           @signed-out=${this.signed_out}
           @import-files=${(event: CustomEvent<File[]>) => void this.import_files(without_folders(event.detail))}
         ></strata-home-page>`;
+  }
+
+  private join_page(me: Me | null): unknown {
+    const invitation = invitation_of(location.hash);
+    return keyed(
+      invitation,
+      html`<strata-join-page
+        .api=${this.api_}
+        .invitation=${invitation}
+        .me=${me}
+        @sign-out=${this.sign_out}
+        @joined=${() => {
+          replace_address("/"); // the secret is used up, and none of the history's business
+          void this.check_session();
+        }}
+      ></strata-join-page>`,
+    );
   }
 
   private dialog(me: Me): unknown {

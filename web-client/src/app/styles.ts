@@ -46,6 +46,7 @@ export const shared_styles = css`
     border: 1px solid var(--line);
     border-radius: var(--radius-small);
     background: var(--raised);
+    color: inherit;
     cursor: pointer;
     text-decoration: none;
     white-space: nowrap;

@@ -48,6 +48,26 @@ export const texts = {
     differs: "The two are not the same. Write it once more.",
   },
 
+  join: {
+    greeting: (name: string) => `Welcome, ${name}`,
+    lead: (role: string) => `You are invited to this site as ${role}. Choose a password: from then on you sign in with it and your name.`,
+    lead_again: "Choose a new password: from then on you sign in with it and your name. The old one is good until then.",
+    user: "Name for signing in",
+    full_name: "Full name",
+    password: "Password",
+    repeat: "Password, once more",
+    button: "Choose password and sign in",
+    looking: "Looking at the invitation…",
+    useless_title: "This link is of no use any more",
+    useless_lead: "It was used already, is too old, or a newer one has taken its place. Ask whoever invited you for a new link.",
+    incomplete_title: "This link is not whole",
+    incomplete_lead: "Copy it as a whole, up to its end, into the address of the browser.",
+    to_sign_in: "To the sign-in",
+    other_person: (signed_in: string, invited: string) =>
+      `Somebody else is signed in at this browser: ${signed_in}. The link is for ${invited}. Sign out here first, then go on.`,
+    sign_out: (name: string) => `Sign ${name} out`,
+  },
+
   roles: {
     viewer: "Viewer",
     annotator: "Annotator",

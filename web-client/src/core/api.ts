@@ -122,6 +122,15 @@ export class Api {
     await this.request("DELETE", `/me/tokens/${id}`);
   }
 
+  /** Whose invitation it is. */
+  async show_invitation(invitation: string): Promise<wire.Person> {
+    return this.json("POST", "/invitations/show", { invitation });
+  }
+  /** Opens a session. */
+  async accept_invitation(accept: wire.InvitationAccept): Promise<Me> {
+    return this.json("POST", "/invitations/accept", accept);
+  }
+
   async models(): Promise<Model[]> {
     return (await this.json<wire.ModelList>("GET", "/models?limit=1000")).models;
   }
