@@ -5,10 +5,13 @@ import { route_of } from "../src/app/routes";
 import { texts } from "../src/app/texts";
 import { told_date, told_time } from "../src/app/times";
 import { Api, ApiError } from "../src/core/api";
-import { browser_of, called, initials, password_mistake, roles_of_tokens } from "../src/core/people";
+import { browser_of, called, find_people, initials, is_user_name, may_change, password_mistake, roles_of_tokens, roles_to_give } from "../src/core/people";
 import type { Person } from "../src/core/protocol.gen";
+import { may_administer } from "../src/core/types";
 
-const person = (user: string, full_name = ""): Pick<Person, "user" | "full_name"> => ({ user, full_name });
+const person = (user: string, full_name = "", more: Partial<Person> = {}): Person => ({
+  id: 2, user, full_name, role: "annotator", state: "active", created: "2026-05-04T12:00:00.000Z", ...more,
+}); // prettier-ignore
 const refusal = (status: number, more: { field?: string; detail?: string } = {}): ApiError => new ApiError({ status, title: "Refused", ...more });
 
 /** An interface whose server gives these answers in turn, and what it was asked. */
@@ -37,6 +40,10 @@ describe("what people are called", () => {
     expect(called(person("ada", "Ada Lovelace"))).toBe("Ada Lovelace");
     expect(called(person("ada", "  "))).toBe("ada");
   });
+  it("names for signing in are the server's", () => {
+    expect(["a", "Ada", "ada.l@x-y_z", "4da", "a".repeat(64)].filter((name) => !is_user_name(name))).toEqual([]);
+    expect(["", ".ada", "-a", "ada l", "ädä", "a/b", "a".repeat(65)].filter(is_user_name)).toEqual([]);
+  });
 });
 
 describe("passwords", () => {
@@ -57,9 +64,39 @@ describe("passwords", () => {
 });
 
 describe("roles", () => {
+  it("nobody makes another owner, nor gives more than they have", () => {
+    expect(roles_to_give("owner")).toEqual(["viewer", "annotator", "curator", "administrator"]);
+    expect(roles_to_give("administrator")).toEqual(["viewer", "annotator", "curator", "administrator"]);
+    expect(roles_to_give("curator")).toEqual(["viewer", "annotator", "curator"]);
+  });
   it("a token may have what its person has", () => {
     expect(roles_of_tokens("viewer")).toEqual(["viewer"]);
     expect(roles_of_tokens("owner").at(-1)).toBe("owner");
+  });
+  it("administrators and the owner look after people", () => {
+    expect((["viewer", "annotator", "curator", "administrator", "owner"] as const).filter(may_administer)).toEqual(["administrator", "owner"]);
+  });
+  it("nobody changes themselves, the owner, or whoever may do more", () => {
+    const administrator = { user: "bea", role: "administrator" } as const;
+    expect(may_change(administrator, person("ada"))).toBe(true);
+    expect(may_change(administrator, person("bea", "", { role: "administrator" }))).toBe(false);
+    expect(may_change(administrator, person("carl", "", { role: "administrator" }))).toBe(true);
+    expect(may_change(administrator, person("owner", "", { role: "owner" }))).toBe(false);
+    expect(may_change({ user: "carl", role: "curator" }, administrator)).toBe(false);
+  });
+});
+
+describe("finding people", () => {
+  const people = [person("ada", "Ada Lovelace"), person("grace.h", "Grace Hopper", { role: "curator" }), person("o.a@dig", "Olga Adler", { state: "disabled" })];
+  const found = (text: string): string[] => find_people(people, text, ({ role, state }) => `${role} ${state}`).map(({ user }) => user);
+  it("by the beginnings of their names, in any case, and by what they may do", () => {
+    expect(found("")).toEqual(["ada", "grace.h", "o.a@dig"]);
+    expect(found("AD")).toEqual(["ada", "o.a@dig"]);
+    expect(found("love ada")).toEqual(["ada"]);
+    expect(found("cur")).toEqual(["grace.h"]);
+    expect(found("disabled")).toEqual(["o.a@dig"]);
+    expect(found("grace.h")).toEqual(["grace.h"]);
+    expect(found("race")).toEqual([]);
   });
 });
 
@@ -124,18 +161,32 @@ describe("coming in", () => {
 
 describe("the interface", () => {
   it("has the server keep no answer with a secret for a repeated call", async () => {
-    const { api, asked } = api_of(...Array.from({ length: 5 }, (): [number, unknown] => [200, {}]));
+    const { api, asked } = api_of(...Array.from({ length: 7 }, (): [number, unknown] => [200, {}]));
     await api.login({ user: "ada", password: "x" });
     await api.accept_invitation({ invitation: "i", password: "x" });
     await api.change_password({ password: "x" });
     await api.create_token({ name: "n" });
+    await api.invite({ user: "ada" });
+    await api.invite_again("a@b");
     await api.create_layer(1, { name: "L" } as never).catch(() => {});
     expect(asked.map(({ what, headers }) => [what, "Idempotency-Key" in headers])).toEqual([
       ["POST /api/v1/login", false],
       ["POST /api/v1/invitations/accept", false],
       ["POST /api/v1/me/password", false],
       ["POST /api/v1/me/tokens", false],
+      ["POST /api/v1/users", false],
+      ["POST /api/v1/users/a%40b/invite", false],
       ["POST /api/v1/models/1/layers", true],
     ]);
+  });
+  it("brings all people, page by page", async () => {
+    const page = (from: number, to: number): Person[] => Array.from({ length: to - from }, (_, n) => person(`p${from + n}`));
+    const { api, asked } = api_of([200, { users: page(0, 1000), total: 1200 }], [200, { users: page(1000, 1200), total: 1200 }]);
+    expect((await api.people()).length).toBe(1200);
+    expect(asked.map(({ what }) => what)).toEqual(["GET /api/v1/users?limit=1000&offset=0", "GET /api/v1/users?limit=1000&offset=1000"]);
+  });
+  it("ends although people went away between two pages", async () => {
+    const { api } = api_of([200, { users: [person("a")], total: 3 }], [200, { users: [], total: 1 }]);
+    expect((await api.people()).map(({ user }) => user)).toEqual(["a"]);
   });
 });

@@ -1,15 +1,15 @@
 // <strata-account-menu>: the initials of who is signed in, and what they can ask for. Others hear of it by the event "account".
 
-import { css, html, LitElement, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { called, initials } from "../core/people";
-import { type Me } from "../core/types";
+import { may_administer, type Me } from "../core/types";
 import { icon } from "./icons";
 import "./menu";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
-export type AccountRequest = "account" | "sign-out";
+export type AccountRequest = "account" | "people" | "sign-out";
 
 /** To whatever element of the page takes it. */
 export const ask_account = (from: EventTarget, detail: AccountRequest): boolean =>
@@ -60,6 +60,9 @@ export class StrataAccountMenu extends LitElement {
       <div class="who"><b>${called(me)}</b><span>${me.full_name.trim() ? `${me.user} · ${role}` : role}</span></div>
       <hr />
       <button class="quiet" role="menuitem" @click=${() => ask_account(this, "account")}>${icon("person")}${words.open}</button>
+      ${may_administer(me.role)
+        ? html`<button class="quiet" role="menuitem" @click=${() => ask_account(this, "people")}>${icon("people")}${words.people}</button>`
+        : nothing}
       <hr />
       <button class="quiet" role="menuitem" @click=${() => ask_account(this, "sign-out")}>${icon("leave")}${words.sign_out}</button>
     </strata-menu>`;

@@ -15,6 +15,8 @@ export const modal_is_open = (): boolean => open_dialogs.size > 0;
 export class StrataDialog extends LitElement {
   @property() heading = "";
   @property({ type: Boolean, reflect: true }) wide = false;
+  /** For tables. */
+  @property({ type: Boolean, reflect: true }) broad = false;
   /** Leaves the picture behind it visible: for questions about what is seen. */
   @property({ type: Boolean, reflect: true }) aside = false;
 
@@ -40,6 +42,9 @@ export class StrataDialog extends LitElement {
       }
       :host([wide]) dialog {
         width: min(640px, calc(100vw - 24px));
+      }
+      :host([broad]) dialog {
+        width: min(820px, calc(100vw - 24px));
       }
       dialog::backdrop {
         background: rgb(20 24 24 / 0.42);
@@ -86,7 +91,8 @@ export class StrataDialog extends LitElement {
           margin: auto 0 0;
           border-radius: 16px 16px 0 0;
         }
-        :host([wide]) dialog {
+        :host([wide]) dialog,
+        :host([broad]) dialog {
           width: 100vw;
         }
         :host([aside]) dialog {

@@ -18,6 +18,7 @@ import "./join-page";
 import "./model-page";
 import { notices } from "./notices";
 import "./notices-view";
+import "./people-dialog";
 import { navigate, on_navigate, path_now, path_of_model, replace_address, route_of, type Route } from "./routes";
 import { check_connections, discard_unsaved, unsaved_changes } from "./sessions";
 import { shared_styles } from "./styles";
@@ -32,7 +33,7 @@ export class StrataApp extends LitElement {
   @state() private me_: Me | null = null;
   @state() private session_: "unknown" | "signed-in" | "signed-out" | "unreachable" = "unknown";
   @state() private problem_ = "";
-  @state() private dialog_: "account" | null = null;
+  @state() private dialog_: "account" | "people" | null = null;
   @state() private dropping_ = false;
   @state() private imported_ = 0;
   private drag_depth_ = 0;
@@ -204,6 +205,9 @@ export class StrataApp extends LitElement {
         @closed=${closed}
         @signed-out=${this.signed_out}
       ></strata-account-dialog>`;
+    }
+    if (this.dialog_ === "people") {
+      return html`<strata-people-dialog .api=${this.api_} .me=${me} @closed=${closed} @signed-out=${this.signed_out}></strata-people-dialog>`;
     }
     return nothing;
   }

@@ -131,6 +131,29 @@ export class Api {
     return this.json("POST", "/invitations/accept", accept);
   }
 
+  /** By name. */
+  async people(): Promise<wire.Person[]> {
+    const people: wire.Person[] = [];
+    for (;;) {
+      const page = await this.json<wire.PersonList>("GET", `/users?limit=1000&offset=${people.length}`);
+      people.push(...page.users);
+      if (people.length >= page.total || page.users.length === 0) return people;
+    }
+  }
+  async invite(person: wire.PersonCreate): Promise<wire.Invitation> {
+    return this.json("POST", "/users", person);
+  }
+  /** Earlier links become worthless. */
+  async invite_again(user: string): Promise<wire.Invitation> {
+    return this.json("POST", `${person_path(user)}/invite`);
+  }
+  async change_person(user: string, change: wire.PersonPatch): Promise<wire.Person> {
+    return this.json("PATCH", person_path(user), change);
+  }
+  async delete_person(user: string): Promise<void> {
+    await this.request("DELETE", person_path(user));
+  }
+
   async models(): Promise<Model[]> {
     return (await this.json<wire.ModelList>("GET", "/models?limit=1000")).models;
   }
@@ -505,6 +528,8 @@ const kFile = { "Content-Type": "application/octet-stream" };
 
 const layer_path = (model: Id, layer: Id): string =>
   `/models/${encodeURIComponent(model)}/layers/${encodeURIComponent(layer)}`;
+
+const person_path = (user: string): string => `/users/${encodeURIComponent(user)}`;
 
 const project_path = (project: Id): string => `/projects/${encodeURIComponent(project)}`;
 

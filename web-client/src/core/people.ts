@@ -1,6 +1,6 @@
 // What can be said of accounts without asking the server.
 
-import type { Me, Role } from "./protocol.gen";
+import type { Me, Person, Role } from "./protocol.gen";
 import { kRoles } from "./types";
 
 export const kLeastPasswordLength = 10; // characters, as the server counts them
@@ -16,6 +16,8 @@ export function initials({ user, full_name }: Pick<Me, "user" | "full_name">): s
 /** What a person is called where others read it. */
 export const called = ({ user, full_name }: Pick<Me, "user" | "full_name">): string => full_name.trim() || user;
 
+/** Those that somebody may give away, the least first: nobody makes another owner. */
+export const roles_to_give = (own: Role): Role[] => kRoles.slice(0, Math.min(kRoles.indexOf(own), kRoles.indexOf("administrator")) + 1);
 /** Those that a token of somebody may have, the least first. */
 export const roles_of_tokens = (own: Role): Role[] => kRoles.slice(0, kRoles.indexOf(own) + 1);
 
@@ -54,3 +56,20 @@ export function browser_of(agent: string): { browser: string; system: string } {
   const program = /^([A-Za-z][\w.-]*)\//.exec(agent)?.[1] ?? ""; // of what is no browser, such as curl
   return { browser: named(kBrowsers) || (program === "Mozilla" ? "" : program), system: named(kSystems) };
 }
+
+/** Nobody changes themselves there, nor whoever may do more than they; the owner is changed by nobody. */
+export const may_change = (me: Pick<Me, "user" | "role">, person: Pick<Person, "user" | "role">): boolean =>
+  person.user !== me.user && person.role !== "owner" && kRoles.indexOf(person.role) <= kRoles.indexOf(me.role);
+
+/** Those in whose names, or in what `also_of` says of them, every word of the text begins one, in any case. */
+export function find_people(people: readonly Person[], text: string, also_of: (person: Person) => string): Person[] {
+  const wanted = text.toLowerCase().split(/\s+/).filter((word) => word !== "");
+  return people.filter((person) => {
+    const words = `${person.user} ${person.full_name} ${also_of(person)}`.toLowerCase().split(/[\s._@-]+/);
+    const whole = person.user.toLowerCase();
+    return wanted.every((part) => whole.startsWith(part) || words.some((word) => word.startsWith(part)));
+  });
+}
+
+/** As the server takes it for a new account. */
+export const is_user_name = (name: string): boolean => /^[A-Za-z0-9][A-Za-z0-9._@-]{0,63}$/.test(name);

@@ -74,6 +74,8 @@ export const kRoles: readonly wire.Role[] = ["viewer", "annotator", "curator", "
 export const may_paint = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("annotator");
 /** Who may change what layers and models there are, and what they are called. */
 export const may_curate = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("curator");
+/** Who may invite people, and say what they may do. */
+export const may_administer = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("administrator");
 
 const kRanges: Record<wire.ValueType, [number, number]> = {
   u8: [0, 255],
