@@ -261,6 +261,39 @@ describe("roles", () => {
     await open(role);
     expect([session.can_paint, session.can_curate]).toEqual([paints, curates]);
   });
+
+  it("who may only look chooses no tool that changes anything, takes nothing back, and is told why", async () => {
+    await open("viewer");
+    for (const name of ["brush", "eraser", "polygon", "lasso", "bucket", "line", "point"] as const) session.choose_tool(name);
+    expect(session.tools.active).toBe("orbit");
+    session.undo();
+    session.redo();
+    expect(socket().sent_ops().filter((op) => op === "undo" || op === "redo")).toEqual([]);
+    expect(told).toEqual([texts.brush.viewer_only]);
+    session.choose_tool("pick");
+    expect(session.tools.active).toBe("pick");
+  });
+
+  it("before the server has said who this is, tools that change anything wait, and nothing is said", async () => {
+    await session.open();
+    session.choose_tool("brush");
+    expect([session.tools.active, told.length]).toEqual(["orbit", 0]);
+  });
+
+  it("that changes while a model is open is told, and puts the brush away where it may no longer be used", async () => {
+    await open("annotator");
+    session.choose_tool("brush");
+    socket().lose();
+    await vi.advanceTimersByTimeAsync(1000);
+    join("viewer");
+    expect([session.can_paint, session.tools.active]).toEqual([false, "orbit"]);
+    expect(told).toEqual([texts.people.role_now("viewer")]);
+    socket().lose();
+    await vi.advanceTimersByTimeAsync(10_000);
+    join("curator");
+    expect(session.can_curate).toBe(true);
+    expect(told.at(-1)).toBe(texts.people.role_now("curator"));
+  });
 });
 
 describe("moving a layer", () => {

@@ -6,7 +6,7 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { ApiError, type Api } from "../core/api";
 import { label_of } from "../core/cells";
-import type { Column, Layer, Me } from "../core/types";
+import type { Column, Layer, Me, Role } from "../core/types";
 import { kPaintingTools } from "../tools/tool";
 import "./account-menu";
 import "./blank";
@@ -72,6 +72,7 @@ export class StrataModelPage extends LitElement {
   @query("strata-stage") private stage_!: StrataStage | null;
   private session_: ModelSession | null = null;
   private asked_scale_ = false;
+  private role_: Role | null = null; // of the newest welcome
 
   static override styles = [shared_styles, model_styles];
 
@@ -128,6 +129,10 @@ export class StrataModelPage extends LitElement {
     if (session !== this.session_) return;
     if (session.deleted) this.missing_ = kNotFound;
     if (session.signed_out) this.dispatchEvent(new CustomEvent("signed-out"));
+    if (session.session !== "" && session.role !== this.role_) {
+      this.role_ = session.role;
+      if (session.role !== this.me.role) this.dispatchEvent(new CustomEvent("role-changed"));
+    }
     if (session.model) document.title = `${session.model.name} – ${texts.product}`;
     const asks_scale = session.model && !session.model.scale_verified && session.can_curate;
     if (asks_scale && session.view.frames_drawn > 0 && !this.asked_scale_) {

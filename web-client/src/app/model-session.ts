@@ -15,7 +15,7 @@ import { OrbitTool, PanTool } from "../tools/navigate";
 import { LassoTool, PolygonTool } from "../tools/outline";
 import { PickTool } from "../tools/pick";
 import { PointTool } from "../tools/point";
-import { kMarkingTools, type ToolName } from "../tools/tool";
+import { kMarkingTools, kPaintingTools, type ToolName } from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
 import { Appearance } from "./appearance";
 import { LayerJobs } from "./layer-jobs";
@@ -325,7 +325,14 @@ export class ModelSession {
   // ── what elements ask for ─────────────────────────────────────────────────────────────────────────────────────────
 
   choose_tool(name: ToolName): void {
+    if (kPaintingTools.includes(name) && this.refuses_changes()) return;
     this.tools.choose(name);
+  }
+
+  /** Who may only look was told so, once they could look. */
+  private refuses_changes(): boolean {
+    if (!this.can_paint && this.was_open_) notices.show("problem", texts.brush.viewer_only);
+    return !this.can_paint;
   }
 
   /** What is drawn next goes into this column of the record. */
@@ -339,10 +346,12 @@ export class ModelSession {
 
   /** Strokes; with tools that add to records, changes of the table. */
   undo(): void {
+    if (this.refuses_changes()) return;
     if (kMarkingTools.includes(this.tools.active)) this.marks.undo();
     else this.painting.undo();
   }
   redo(): void {
+    if (this.refuses_changes()) return;
     if (kMarkingTools.includes(this.tools.active)) this.marks.redo();
     else this.painting.redo();
   }
@@ -446,10 +455,14 @@ export class ModelSession {
   }
 
   private on_welcome(message: Welcome): void {
-    if (this.was_open_ && !this.closed_) notices.show("success", texts.connection.back);
+    if (this.was_open_ && !this.closed_) {
+      if (message.role === this.role) notices.show("success", texts.connection.back);
+      else notices.show("info", texts.people.role_now(texts.roles[message.role].toLowerCase()), texts.role_hints[message.role]);
+    }
     this.was_open_ = true;
     this.signed_out = false;
     this.role = message.role;
+    if (!this.can_paint && kPaintingTools.includes(this.tools.active)) this.tools.choose("orbit");
     this.session = message.session;
     this.put_model(message.model);
     this.layers.take_all(message.layers.map(complete_layer));

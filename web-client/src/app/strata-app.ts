@@ -75,7 +75,9 @@ export class StrataApp extends LitElement {
     addEventListener("unhandledrejection", (event) => notices.error(event.reason));
     addEventListener("online", check_connections);
     document.addEventListener("visibilitychange", () => {
-      if (document.visibilityState === "visible") check_connections();
+      if (document.visibilityState !== "visible") return;
+      check_connections();
+      void this.refresh_me();
     });
     addEventListener("beforeunload", (event) => {
       if (unsaved_changes() > 0) event.preventDefault();
@@ -108,6 +110,17 @@ export class StrataApp extends LitElement {
     if (lost > 0) notices.show("problem", texts.saving.discarded(lost));
     this.me_ = me;
   }
+
+  /** Others may have changed what this person may do, or signed them out. */
+  private readonly refresh_me = async (): Promise<void> => {
+    if (this.session_ !== "signed-in") return;
+    try {
+      this.take_me(await this.api_.me());
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (error.status === 401) this.signed_out(); // anything else is told where it matters
+    }
+  };
 
   private readonly signed_out = (): void => {
     this.session_ = "signed-out";
@@ -162,6 +175,7 @@ export class StrataApp extends LitElement {
             .me=${me}
             .model_id=${this.route_.model}
             @account=${this.on_account}
+            @role-changed=${this.refresh_me}
             @signed-out=${this.signed_out}
           ></strata-model-page>`,
         )

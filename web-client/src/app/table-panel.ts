@@ -620,8 +620,9 @@ export class StrataTablePanel extends LitElement {
     const page = Math.max(1, Math.floor(((this.scroller_?.clientHeight ?? 0) - kHead_px) / kRow_px) - 1);
     if (event.ctrlKey || event.metaKey) {
       if (event.altKey) return false;
-      if (key.toLowerCase() === "z") void (event.shiftKey ? this.view.redo() : this.view.undo());
-      else if (key === "Home") this.move_to(0, 0);
+      if (key.toLowerCase() === "z") {
+        if (this.can_write) void (event.shiftKey ? this.view.redo() : this.view.undo());
+      } else if (key === "Home") this.move_to(0, 0);
       else if (key === "End") this.move_to(total - 1, last);
       else return false;
       return true;

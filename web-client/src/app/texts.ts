@@ -316,6 +316,7 @@ export const texts = {
 
   people: {
     you: "you",
+    role_now: (role: string) => `Your role is ${role} now.`,
     here: (n: number) => (n === 1 ? "Only you are here" : `${n} people are here`),
   },
 
