@@ -1,0 +1,246 @@
+// Accounts on the page: a password for the owner, somebody invited by a link, what each role is offered, and how people go.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser, kOfLostServer } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kOwnersPassword = "four words of mine";
+const kAdasPassword = "engines weave algebra";
+const kAdasNext = "as the loom weaves flowers";
+// What the browser says of answers that the test wants, and of sockets that the server ends.
+const kExpected = ["status of 401", "status of 403", "status of 409", "status of 422", ...kOfLostServer];
+
+const [owner, ada, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ viewport: { width: 390, height: 844 } })];
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const at_home = ({ page }) => page.getByRole("heading", { name: "Models", exact: true }).waitFor();
+const at_sign_in = ({ page }) => page.getByRole("heading", { name: "Sign in", exact: true }).waitFor();
+const alert_of = ({ page }, text) => page.getByRole("alert").getByText(text).waitFor();
+const close_dialog = ({ page }) => page.getByRole("button", { name: "Close", exact: true }).click();
+
+async function sign_in({ page }, user, password) {
+  await page.getByLabel("Name", { exact: true }).fill(user);
+  await page.getByLabel("Password", { exact: true }).fill(password);
+  await page.keyboard.press("Enter");
+}
+async function choose_in_menu({ page }, name) {
+  await page.getByRole("button", { name: /^Account of/ }).click();
+  await page.getByRole("menuitem", { name }).click();
+}
+async function choose_for({ page }, name, command) {
+  await page.getByRole("button", { name: `Options for ${name}` }).click();
+  await page.getByRole("menuitem", { name: command }).click();
+}
+const call = async (token, path, more = {}) =>
+  (await fetch(`${server.url}/api/v1${path}`, { ...more, headers: { Authorization: `Bearer ${token}`, "Content-Type": "application/json" } })).status;
+
+try {
+  await server.start();
+
+  say("the owner, who came by the printed link, is asked for a password, and told what is wrong with one");
+  await owner.page.goto(server.link);
+  await at_home(owner);
+  await owner.page.getByRole("button", { name: "Choose a password" }).click();
+  await owner.page.getByText("this browser").waitFor();
+  await owner.page.getByLabel("New password", { exact: true }).fill("short");
+  await owner.page.getByRole("button", { name: "Choose password" }).click();
+  await alert_of(owner, "at least 10 characters");
+  await owner.page.getByLabel("New password", { exact: true }).fill(kOwnersPassword);
+  await owner.page.getByLabel("New password, once more").fill("four words of his");
+  await owner.page.keyboard.press("Enter");
+  await alert_of(owner, "not the same");
+  await owner.page.getByLabel("New password, once more").fill(kOwnersPassword);
+  await owner.page.keyboard.press("Enter");
+  await owner.page.getByText("Your password is set.").waitFor();
+  await owner.page.getByLabel("Password until now").waitFor();
+  await close_dialog(owner);
+  assert.equal(await owner.page.getByRole("button", { name: "Choose a password" }).count(), 0);
+
+  say("they sign out, and in again by name and password");
+  await choose_in_menu(owner, "Sign out");
+  await at_sign_in(owner);
+  await sign_in(owner, "owner", "four words of hers");
+  await alert_of(owner, "Name or password does not fit");
+  await sign_in(owner, "nobody", kOwnersPassword);
+  await alert_of(owner, "Name or password does not fit");
+  await sign_in(owner, "Owner", kOwnersPassword); // in any case
+  await at_home(owner);
+
+  say("a token or link still opens the page");
+  await phone.page.goto(server.url);
+  await phone.page.getByText("With a link or token").click();
+  await phone.page.getByLabel("Link or token").fill("no such token");
+  await phone.page.keyboard.press("Enter");
+  await alert_of(phone, "is not known here");
+  await phone.page.getByLabel("Link or token").fill(server.token);
+  await phone.page.keyboard.press("Enter");
+  await at_home(phone);
+  await choose_in_menu(phone, "Sign out");
+  await at_sign_in(phone);
+
+  say("Ada is invited; a name that cannot be is told at its field");
+  await choose_in_menu(owner, "People…");
+  await owner.page.getByRole("button", { name: "Invite somebody" }).click();
+  await owner.page.getByLabel("Name for signing in").fill("owner");
+  await owner.page.getByRole("button", { name: "Make link" }).click();
+  await owner.page.locator("strata-people-dialog form small[role=alert]:not([hidden])").waitFor();
+  assert.equal(await owner.page.getByLabel("Name for signing in").getAttribute("aria-invalid"), "true");
+  await owner.page.getByLabel("Name for signing in").fill("ada");
+  await owner.page.getByLabel("Full name").fill("Ada Lovelace");
+  await owner.page.getByRole("combobox", { name: "Role", exact: true }).selectOption("annotator");
+  await owner.page.getByRole("button", { name: "Make link" }).click();
+  const link_field = owner.page.getByRole("textbox", { name: "Link for Ada Lovelace", exact: true });
+  const link = await link_field.inputValue();
+  assert.ok(link.startsWith(`${server.url}/join#`), link);
+  await owner.page.getByRole("row", { name: /Ada Lovelace/ }).getByText("invited").waitFor();
+  assert.equal(await owner.page.getByLabel("Role of owner").count(), 0, "the owner's row can be changed");
+
+  say("at a browser where somebody else is signed in the link says so");
+  const beside = await owner.context.newPage();
+  await beside.goto(link);
+  await beside.getByText(/Somebody else is signed in at this browser: owner/).waitFor();
+  assert.equal(await beside.getByLabel("Password", { exact: true }).count(), 0);
+  await beside.close();
+
+  say("Ada opens her link, chooses a password, and is in; the secret is gone from the address");
+  await ada.page.goto(link);
+  await ada.page.getByRole("heading", { name: "Welcome, Ada Lovelace" }).waitFor();
+  await ada.page.getByLabel("Password", { exact: true }).fill(kAdasPassword);
+  await ada.page.getByLabel("Password, once more").fill(kAdasPassword);
+  await ada.page.keyboard.press("Enter");
+  await at_home(ada);
+  assert.equal(ada.page.url(), `${server.url}/`);
+  await ada.page.getByRole("button", { name: "Account of Ada Lovelace" }).click();
+  await ada.page.getByRole("menuitem", { name: "Account…" }).waitFor();
+  assert.equal(await ada.page.getByRole("menuitem", { name: "People…" }).count(), 0, "an annotator is offered the people");
+  await ada.page.keyboard.press("Escape");
+  assert.equal(await ada.page.getByRole("button", { name: "Import a scan" }).count(), 0, "an annotator is offered to import");
+
+  say("the link was good for one use");
+  await phone.page.goto(link);
+  await phone.page.getByText("This link is of no use any more").waitFor();
+  await phone.page.goto(`${server.url}/join`);
+  await phone.page.getByText("This link is not whole").waitFor();
+
+  say("she sees the model, and paints");
+  await ada.page.getByRole("link", { name: /Demo pot/ }).click();
+  await ada.drawn();
+  const path = new URL(ada.page.url()).pathname;
+  await ada.page.getByRole("button", { name: "Paint on cracks" }).click();
+  await ada.page.keyboard.press("b");
+  const edits = async () => (await server.json("GET", `${path}/layers/cracks/edits?limit=1`)).total;
+  const before = await edits();
+  await ada.drag([[0.46, 0.5], [0.56, 0.52]]);
+  await ada.saved();
+  await wait_for(async () => (await edits()) > before, "her stroke to be in the history");
+
+  say("the owner makes her a viewer: her page, which is open, offers no painting any more");
+  await owner.page.getByLabel("Role of Ada Lovelace").selectOption("viewer");
+  await owner.page.getByText("Is viewer now.").waitFor();
+  await ada.page.getByText("Your role is viewer now.").waitFor();
+  await ada.page.getByRole("button", { name: "Brush", exact: true }).waitFor({ state: "detached" });
+  assert.equal(await ada.page.getByRole("button", { name: "Undo", exact: true }).count(), 0);
+  const painted = await edits();
+  await ada.page.keyboard.press("b");
+  await ada.page.getByText("You may look at this model but not change it.").waitFor();
+  await ada.page.getByRole("button", { name: /^Account of/ }).click();
+  await ada.page.getByText("ada · Viewer").waitFor();
+  await ada.page.keyboard.press("Escape");
+  assert.equal(await edits(), painted);
+
+  say("the owner disables her: she is out, and cannot come back");
+  await choose_for(owner, "Ada Lovelace", "Disable…");
+  await owner.page.getByText("They are signed out everywhere").waitFor();
+  await owner.page.getByRole("button", { name: "Disable", exact: true }).click();
+  await owner.page.getByRole("row", { name: /Ada Lovelace/ }).getByText("disabled").waitFor();
+  await at_sign_in(ada);
+  await sign_in(ada, "ada", kAdasPassword);
+  await ada.page.getByRole("alert").waitFor();
+  await at_sign_in(ada);
+
+  say("enabled again she comes back to where she was");
+  await choose_for(owner, "Ada Lovelace", "Enable");
+  await owner.page.getByText("Can sign in again.").waitFor();
+  await sign_in(ada, "ada", kAdasPassword);
+  await ada.drawn();
+
+  say("who forgot a password gets a new link; the old password is good for nothing then");
+  await choose_for(owner, "Ada Lovelace", "New link…");
+  await owner.page.getByRole("button", { name: "Make link" }).click();
+  const next_link = await wait_for(async () => {
+    const shown = await link_field.inputValue();
+    return shown !== link && shown;
+  }, "the new link");
+  await phone.page.goto(next_link);
+  await phone.page.getByLabel("Password", { exact: true }).fill(kAdasNext);
+  await phone.page.getByLabel("Password, once more").fill(kAdasNext);
+  await phone.page.keyboard.press("Enter");
+  await at_home(phone);
+  await at_sign_in(ada); // the new password has ended her other sessions
+  await sign_in(ada, "ada", kAdasPassword);
+  await alert_of(ada, "Name or password does not fit");
+  await sign_in(ada, "ada", kAdasNext);
+  await ada.drawn();
+
+  say("she sees where she is signed in, and signs out there");
+  await choose_in_menu(phone, "Account…");
+  await phone.page.getByText("this browser").waitFor();
+  await phone.page.getByRole("button", { name: "Sign out everywhere else" }).click();
+  await phone.page.getByText("You are signed out everywhere else.").waitFor();
+  await at_sign_in(ada);
+  await phone.page.getByLabel("Full name").fill("Countess of Lovelace");
+  await phone.page.keyboard.press("Enter");
+  await phone.page.getByRole("button", { name: "Account of Countess of Lovelace", includeHidden: true }).waitFor();
+  await close_dialog(phone);
+
+  say("a token made on the page works for a script, as its role allows, until it is revoked");
+  await close_dialog(owner);
+  await choose_in_menu(owner, "Account…");
+  await owner.page.getByRole("button", { name: "New token" }).click();
+  await owner.page.getByRole("button", { name: "Make token" }).click();
+  await alert_of(owner, "Say what it is for");
+  await owner.page.getByLabel("What it is for").fill("Nightly report");
+  await owner.page.getByRole("combobox", { name: "Role", exact: true }).selectOption("viewer");
+  await owner.page.getByRole("button", { name: "Make token" }).click();
+  const token = await owner.page.getByLabel(/Copy it now/).inputValue();
+  await owner.page.getByText(`Authorization: Bearer ${token}`).waitFor();
+  assert.equal(await call(token, "/models"), 200);
+  assert.equal(await call(token, `${path}/layers`, { method: "POST", body: JSON.stringify({ name: "No" }) }), 403);
+  await owner.page.getByRole("button", { name: "Revoke Nightly report" }).click();
+  await owner.page.getByRole("button", { name: "Revoke", exact: true }).last().click();
+  await owner.page.getByText("You have none.").waitFor();
+  assert.equal(await call(token, "/models"), 401);
+  await close_dialog(owner);
+
+  say("deleted she is out; what she did stays, under a name that nobody can tell");
+  await choose_in_menu(owner, "People…");
+  await owner.page.getByLabel("Find people").fill("countess");
+  await owner.page.getByText("1 of 2 people").waitFor();
+  await choose_for(owner, "Countess of Lovelace", "Delete…");
+  await owner.page.getByText("stays in the history").waitFor();
+  await owner.page.getByRole("button", { name: "Delete", exact: true }).click();
+  await owner.page.getByText("Nobody is called that.").waitFor();
+  await phone.page.reload();
+  await at_sign_in(phone);
+  const { edits: history } = await server.json("GET", `${path}/layers/cracks/edits?limit=1000`);
+  assert.ok(history.some(({ user }) => user.startsWith("former-")), "what she did is not in the history");
+  assert.ok(!history.some(({ user }) => user === "ada"), "her name is still in the history");
+
+  say("the end");
+  for (const who of [owner, ada, phone]) who.assert_no_complaints(kExpected);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
+  if (process.env.STRATA_TEST_OUTPUT) {
+    for (const [name, who] of Object.entries({ owner, ada, phone })) {
+      await who.page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `people_${name}.png`) }).catch(() => {});
+    }
+  }
+  throw error;
+} finally {
+  for (const who of [owner, ada, phone]) await who.close();
+  await server.remove();
+}
