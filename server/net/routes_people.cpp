@@ -74,6 +74,9 @@ Result<Person> somebody_else(const RouteContext& context, const Request& request
   if (person->name == request.user())
     return fail(409, "That is you", "Nobody changes their own account here. Ask another administrator.");
   if (person->role == Role::owner) return fail(409, "The owner", "The owner's account is changed by nobody else.");
+  // Otherwise they could let themselves in as one another.
+  if (person->role == Role::administrator && request.principal->role < Role::owner)
+    return fail(403, "Not allowed", "Only the owner changes accounts of administrators.");
   return person;
 }
 

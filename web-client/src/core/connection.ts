@@ -29,9 +29,12 @@ import {
   type Welcome,
 } from "./protocol.gen";
 
+const kOpenSocket = 1; // WebSocket.OPEN
+
 export interface SocketLike {
   binaryType: BinaryType;
   readonly bufferedAmount: number;
+  readonly readyState?: number; // as a WebSocket has it; absent: open
   onopen: ((event: never) => void) | null;
   onmessage: ((event: { data: unknown }) => void) | null;
   onclose: ((event: { code: number; reason: string }) => void) | null;
@@ -273,6 +276,8 @@ export class Connection {
   }
 
   private send(message: ClientMessage): void {
+    // The other side may have begun to close it. What must not be lost is sent again over the next one.
+    if ((this.socket_?.readyState ?? kOpenSocket) > kOpenSocket) return;
     this.socket_?.send(JSON.stringify(message));
   }
 
