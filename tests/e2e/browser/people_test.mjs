@@ -157,7 +157,7 @@ try {
   await owner.page.getByRole("row", { name: /Ada Lovelace/ }).getByText("disabled").waitFor();
   await at_sign_in(ada);
   await sign_in(ada, "ada", kAdasPassword);
-  await ada.page.getByRole("alert").waitFor();
+  await alert_of(ada, "Name or password does not fit"); // before the next try, which must not come while this one is under way
   await at_sign_in(ada);
 
   say("enabled again she comes back to where she was");
