@@ -76,11 +76,12 @@ describe("roles", () => {
   it("administrators and the owner look after people", () => {
     expect((["viewer", "annotator", "curator", "administrator", "owner"] as const).filter(may_administer)).toEqual(["administrator", "owner"]);
   });
-  it("nobody changes themselves, the owner, or whoever may do more", () => {
+  it("nobody changes themselves, the owner, or whoever may do as much", () => {
     const administrator = { user: "bea", role: "administrator" } as const;
     expect(may_change(administrator, person("ada"))).toBe(true);
     expect(may_change(administrator, person("bea", "", { role: "administrator" }))).toBe(false);
-    expect(may_change(administrator, person("carl", "", { role: "administrator" }))).toBe(true);
+    expect(may_change(administrator, person("carl", "", { role: "administrator" }))).toBe(false);
+    expect(may_change({ user: "owner", role: "owner" }, person("carl", "", { role: "administrator" }))).toBe(true);
     expect(may_change(administrator, person("owner", "", { role: "owner" }))).toBe(false);
     expect(may_change({ user: "carl", role: "curator" }, administrator)).toBe(false);
   });

@@ -57,9 +57,9 @@ export function browser_of(agent: string): { browser: string; system: string } {
   return { browser: named(kBrowsers) || (program === "Mozilla" ? "" : program), system: named(kSystems) };
 }
 
-/** Nobody changes themselves there, nor whoever may do more than they; the owner is changed by nobody. */
+/** Nobody changes themselves there, nor whoever may do as much as they; the owner is changed by nobody. */
 export const may_change = (me: Pick<Me, "user" | "role">, person: Pick<Person, "user" | "role">): boolean =>
-  person.user !== me.user && person.role !== "owner" && kRoles.indexOf(person.role) <= kRoles.indexOf(me.role);
+  person.user !== me.user && person.role !== "owner" && kRoles.indexOf(person.role) < kRoles.indexOf(me.role);
 
 /** Those in whose names, or in what `also_of` says of them, every word of the text begins one, in any case. */
 export function find_people(people: readonly Person[], text: string, also_of: (person: Person) => string): Person[] {
