@@ -118,8 +118,10 @@ export class Site {
   async make() {
     const { server } = this;
     await server.json("POST", "/projects", { name: "Site" });
+    await server.json("POST", "/users", { user: "guest" });
+    // Of people whom no call changes: who is disabled, say, has no invitation any more.
     this.invitations = [];
-    for (const user of ["guest", "newcomer"]) this.invitations.push((await server.json("POST", "/users", { user })).path.split("#")[1]);
+    for (const user of ["newcomer", "other-newcomer"]) this.invitations.push((await server.json("POST", "/users", { user })).path.split("#")[1]);
     for (const name of ["Wall", "Wall 2"]) await this.#import(name, "site");
     await this.#post("/projects/site/terms?name=Damage", "terms.csv", "text/csv");
     await server.json("POST", "/projects/site/tables", { name: "Units", columns: kColumns.filter(({ target }) => target !== "units") });
