@@ -15,7 +15,7 @@
 namespace strata::mesh {
 namespace {
 
-constexpr std::size_t kLeafTriangles = 4;
+constexpr std::size_t kLeafTriangles = 2;
 constexpr std::size_t kWidth = 8;
 constexpr std::size_t kMaxLevels = 12;  // 8^12 leaves
 
@@ -214,8 +214,15 @@ struct SearchTree::Impl {
       const std::size_t below = entry.level == 1 ? leaves : levels[entry.level - 2].size();
       const std::size_t first_child = std::size_t{entry.index} * kWidth;
       const std::size_t first = depth, children = std::min(kWidth, below - first_child);
+      // Which of them are near is not to be foretold: a branch for each would take longer than the boxes.
+      std::array<std::uint8_t, kWidth> near{};
+      std::size_t count = 0;
       for (std::size_t child = 0; child < children; ++child) {
-        if (!(keys[child] <= most)) continue;
+        near[count] = static_cast<std::uint8_t>(child);
+        count += keys[child] <= most ? 1 : 0;
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t child = near[i];
         // The nearest is on top of the stack.
         std::size_t place = depth++;
         for (; place > first && stack[place - 1].key < keys[child]; --place) stack[place] = stack[place - 1];

@@ -1,6 +1,7 @@
 #include "net/wire.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -378,12 +379,25 @@ std::string point_header(const std::vector<std::string>& layers) {
   return csv_line(cells, ',');
 }
 
-// Of a float no more digits than it has.
-template <class Number>
-void append_number(Number value, std::string& text) {
-  char digits[40];
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
-}
+// A row is written beside the text and then put there: hundreds of thousands of rows have ten numbers each.
+class RowWriter {
+ public:
+  // Of a float no more digits than it has.
+  template <class Number>
+  void number(Number value) {
+    end_ = std::to_chars(end_, digits_.data() + digits_.size(), value).ptr;
+  }
+  void comma() { *end_++ = ','; }
+  // Before more than a number and a comma are written again.
+  void move_to(std::string& text) {
+    text.append(digits_.data(), end_);
+    end_ = digits_.data();
+  }
+
+ private:
+  std::array<char, 512> digits_;
+  char* end_ = digits_.data();
+};
 
 void append_point(const query::SurfacePoint& point, const std::vector<std::string>& layers, std::string& text) {
   if (!point.hit) {
@@ -391,19 +405,22 @@ void append_point(const query::SurfacePoint& point, const std::vector<std::strin
     return;
   }
   text += "true";
+  RowWriter row;
   const auto add = [&](auto value) {
-    text += ',';
-    append_number(value, text);
+    row.comma();
+    row.number(value);
   };
   for (int axis = 0; axis < 3; ++axis) add(point.position[axis]);
   for (int axis = 0; axis < 3; ++axis) add(point.normal[axis]);
   add(static_cast<float>(point.distance));
   add(point.uv.x);
   add(point.uv.y);
+  row.move_to(text);
   for (const auto& layer : layers) {
-    text += ',';
+    row.comma();
     for (const auto& value : point.values)
-      if (value.layer == layer && value.valid) append_number(value.value, text);
+      if (value.layer == layer && value.valid) row.number(value.value);
+    row.move_to(text);
   }
   text += "\r\n";
 }

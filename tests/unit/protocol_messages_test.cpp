@@ -150,6 +150,49 @@ TEST(ProtocolMessages, a_refused_message_still_tells_its_id) {
   EXPECT_EQ(problem["ref"], "abc");
 }
 
+TEST(ProtocolMessages, a_long_list_of_numbers_is_looked_through_to_its_end) {
+  const auto with = [](std::size_t place, const json& item) {
+    json request{{"points", json::array()}, {"layers", {"moisture"}}};
+    for (std::size_t i = 0; i < 300; ++i) request["points"].push_back({0.5, i, -1e15});
+    request["points"][place] = item;
+    return request;
+  };
+  for (const std::size_t place : {0, 1, 255, 299}) {
+    const std::string field = "points[" + std::to_string(place) + "]";
+    const auto good = from_json<PositionsRequest>(with(place, {1, 2, 3}));
+    ASSERT_TRUE(good) << good.error().detail;
+    EXPECT_EQ(good->points.size(), 300u);
+    EXPECT_EQ(good->points[place], glm::dvec3(1, 2, 3));
+    for (const auto& [item, wrong] : std::map<json, std::string>{{json{1, 2}, field},
+                                                                 {json{1, 2, 3, 4}, field},
+                                                                 {json{1, "2", 3}, field + "[1]"},
+                                                                 {json{1, 2, 1.1e15}, field + "[2]"},
+                                                                 {json{1, nullptr, 3}, field + "[1]"},
+                                                                 {json{1, json::array(), 3}, field + "[1]"},
+                                                                 {json(7), field}}) {
+      const auto refused = from_json<PositionsRequest>(with(place, item));
+      ASSERT_FALSE(refused) << item;
+      EXPECT_EQ(refused.error().status, 422);
+      EXPECT_EQ(refused.error().field, wrong) << item;
+    }
+  }
+}
+
+TEST(ProtocolMessages, beside_a_long_list_all_else_is_held_to_the_schema) {
+  json request{{"points", json(300, {1, 2, 3})}, {"layers", json(300, "moisture")}};
+  EXPECT_TRUE(from_json<PositionsRequest>(request));
+  const auto field_of = [](const json& wrong) { return from_json<PositionsRequest>(wrong).error().field; };
+  json more = request, text = request, number = request;
+  more["extra"] = json(300, 1);
+  EXPECT_EQ(field_of(more), "extra");
+  text["layers"][280] = json::array();
+  EXPECT_TRUE(field_of(text).starts_with("layers[280]")) << field_of(text);
+  number["at"] = json(300, 1);
+  EXPECT_EQ(field_of(number), "at");
+  request["points"] = json(100'001, {1, 2, 3});
+  EXPECT_EQ(field_of(request), "points");
+}
+
 TEST(ProtocolMessages, a_stroke_arrives_as_it_was_sent) {
   const auto message = parse_client_message(R"({"op":"stroke.begin","id":")" + std::string(kId) + R"(","stroke":")" +
                                             kId + R"(","layer":"cracks","value":7,"radius_mm":2.5,"shape":"square",

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
@@ -65,6 +67,67 @@ std::string listed(const json& values) {
 }
 
 std::string number(const json& value) { return value.dump(); }
+
+// What a schema says of numbers, and of lists that hold nothing else.
+struct NumberRule {
+  bool is_list = false;
+  double least = 0, most = 0;         // numbers; of a list how many items
+  std::shared_ptr<NumberRule> items;  // of a list
+};
+
+// Null where the schema says more, or is of something else.
+std::shared_ptr<NumberRule> number_rule(const json& schema) {
+  const json& node = resolve(schema);
+  const std::string type = node.value("type", std::string());
+  const bool is_list = type == "array";
+  if (!is_list && type != "number") return nullptr;
+  const std::vector<std::string_view> known =
+      is_list ? std::vector<std::string_view>{"type", "minItems", "maxItems", "items"}
+              : std::vector<std::string_view>{"type", "minimum", "maximum"};
+  auto rule = std::make_shared<NumberRule>();
+  for (const auto& [key, said] : node.items())
+    if (key != "title" && key != "description" && !key.starts_with("x-") &&
+        std::ranges::find(known, key) == known.end())
+      return nullptr;
+  for (const auto& key : known)
+    if (!node.contains(key)) return nullptr;
+  rule->is_list = is_list;
+  rule->least = node[is_list ? "minItems" : "minimum"].get<double>();
+  rule->most = node[is_list ? "maxItems" : "maximum"].get<double>();
+  if (is_list) rule->items = number_rule(node["items"]);
+  return is_list && !rule->items ? nullptr : rule;
+}
+
+bool holds(const NumberRule& rule, const json& value) {
+  if (rule.is_list ? !value.is_array() : !value.is_number()) return false;
+  const double number = rule.is_list ? static_cast<double>(value.size()) : value.get<double>();
+  if (!(number >= rule.least && number <= rule.most)) return false;
+  return !rule.is_list || std::ranges::all_of(value, [&](const json& item) { return holds(*rule.items, item); });
+}
+
+// A hundred thousand points take valijson longer than all else that is done with them. Those members of a message that are long
+// lists of numbers, and right, are cut to their first items in the copy that comes back; nothing where there are none.
+std::optional<json> without_long_lists(Schema schema, const json& value) {
+  constexpr std::size_t kLong = 256;
+  if (!value.is_object()) return std::nullopt;
+  std::map<std::string, std::size_t> kept;
+  for (const auto& [name, member] : value.items()) {
+    if (!member.is_array() || member.size() < kLong) continue;
+    const json* said = child_schema(definitions().at(std::string(protocol::name(schema))), value, name);
+    const auto rule = said == nullptr ? nullptr : number_rule(*said);
+    if (rule && rule->least < kLong && holds(*rule, member)) kept[name] = static_cast<std::size_t>(rule->least);
+  }
+  if (kept.empty()) return std::nullopt;
+  json shorter = json::object();
+  for (const auto& [name, member] : value.items()) {
+    const auto count = kept.find(name);
+    if (count == kept.end())
+      shorter[name] = member;
+    else
+      shorter[name] = json(member.begin(), member.begin() + static_cast<std::ptrdiff_t>(count->second));
+  }
+  return shorter;
+}
 
 // In words, what a schema lets through.
 std::string expectation(const json& schema) {
@@ -221,10 +284,11 @@ tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::str
 
 Result<void> validate(Schema schema, const json& json, const std::string& field) {
   thread_local valijson::Validator validator;  // keeps the compiled patterns
-  const valijson::adapters::NlohmannJsonAdapter target(json);
-  if (validator.validate(built(schema), target, nullptr)) return {};
+  const auto shorter = without_long_lists(schema, json);
+  if (validator.validate(built(schema), valijson::adapters::NlohmannJsonAdapter(shorter ? *shorter : json), nullptr))
+    return {};
   valijson::ValidationResults results;
-  validator.validate(built(schema), target, &results);
+  validator.validate(built(schema), valijson::adapters::NlohmannJsonAdapter(json), &results);
   valijson::ValidationResults::Error first;
   results.popError(first);
   return explain(schema, json, field, first);
