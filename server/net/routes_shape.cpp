@@ -70,6 +70,7 @@ Layer copy_of(const Layer& from, int resolution, int order, const jobs::Transfer
   layer.id = 0;
   layer.resolution = resolution;
   layer.order = order;
+  layer.formula.reset();  // its values are brought over, as they are
   layer.description += (layer.description.empty() ? "" : "\n\n") + std::string("Brought over from ") +
                        request.source.name + ", within " + number_text(request.tolerance_mm) + " mm.";
   return layer;

@@ -140,6 +140,18 @@ def check_automatic(server):
     assert server.get(M + "/layers/twice").json()["stale"] is True
 
 
+def check_transfer(server):
+    """Its values come over to another scan; what they were computed from need not be there."""
+    server.import_model(folded_grid(fold=0.001), "again.ply", name="Again", unit="mm")
+    job = server.wait_for_job(server.ok("POST", "/models/again/transfer", {"from": "sheet", "layers": ["risk"], "tolerance_mm": 1}).json()["id"])
+    assert job["state"] == "done", job
+    path = f"/models/again/layers/{job['layers'][0]}"
+    assert "expression" not in server.get(path).json()
+    there, here = (server.get(each + "/statistics").json() for each in (M + "/layers/risk", path))
+    near(here["area_m2"], there["area_m2"], 0.02)
+    assert here["max"] == there["max"], (here, there)
+
+
 def main():
     with StrataServer() as server:
         server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
@@ -163,6 +175,7 @@ def main():
         server.ok("POST", M + "/layers/wet/edits", {"op": "fill", "mode": "where", "where": "valid(wet)", "value": 0.75})
         check_computing(server)
         check_automatic(server)
+        check_transfer(server)
         assert server.stop() == 0
         server.assert_clean_log()
 
