@@ -97,6 +97,7 @@ CREATE TABLE public.layers (
     automatic boolean DEFAULT false NOT NULL,
     computed_sequence bigint DEFAULT 0 NOT NULL,
     summed boolean DEFAULT true NOT NULL,
+    locked boolean DEFAULT false NOT NULL,
     CONSTRAINT layers_check CHECK (((kind = 'database'::text) = (table_id IS NOT NULL))),
     CONSTRAINT layers_check1 CHECK (((expression IS NOT NULL) OR (NOT automatic))),
     CONSTRAINT layers_expression_check CHECK ((expression <> ''::text)),

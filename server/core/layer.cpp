@@ -17,6 +17,7 @@ nlohmann::json to_json(const Layer& layer) {
                       {"palette", to_json(layer.palette)},
                       {"opacity", layer.opacity},
                       {"visible", layer.visible},
+                      {"locked", layer.locked},
                       {"order", layer.order},
                       {"sequence", layer.sequence}};
   if (layer.table) json["table"] = *layer.table;

@@ -42,7 +42,8 @@ struct Layer {
   bool palette_of_terms = false;  // it follows the colours of the terms of its table, and is not kept
   double opacity = 1;
   bool visible = true;
-  int order = 0;                      // drawn ascending: higher is on top
+  bool locked = false;  // against everybody below curator: neither its texels nor what it is may be changed
+  int order = 0;        // drawn ascending: higher is on top
   std::optional<std::int64_t> table;  // database: the project's table whose keys the texels hold
   std::optional<LayerFormula> formula;
   std::int64_t sequence = 0;  // of the last edit in it

@@ -102,7 +102,7 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
 }
 
 Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<room::Room>& room, const Layer& layer,
-                            const std::string& user, Progress& progress) {
+                            const Author& author, Progress& progress) {
   if (!layer.formula)
     return fail(409, "No expression", "This layer has no expression that it could be computed from.", "layer");
   for (const auto& input : layer.formula->inputs)
@@ -118,10 +118,7 @@ Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<r
   // Before the records are read: what changes meanwhile makes the layer stale.
   const auto tables = context.store.table_sequences_of(layer.id);
   if (!tables) return tl::unexpected(tables.error());
-  room::EditRequest edit;
-  edit.id = random_uuid();
-  edit.user = user;
-  edit.layer_id = layer.id;
+  room::EditRequest edit{random_uuid(), author, layer.id};
   edit.record = {{"op", "compute"}, {"expression", layer.formula->expression}};
   edit.edit = room::ComputeEdit{*expression, std::move(*shapes)};
   auto done = room::await<room::EditAnswer>([&](auto saved) {
@@ -141,8 +138,8 @@ Result<Response> create_formula_layer(const RouteContext& context, JobBook& book
                                       const std::function<Response(const Layer&)>& answer) {
   const auto expression = parse(layer.formula->expression);
   if (!expression) return tl::unexpected(expression.error());
-  const auto compute = [&context, room, user = request.user(), has_palette](const Layer& made, Progress& progress) {
-    auto computed = compute_layer(context, room, made, user, progress);
+  const auto compute = [&context, room, author = request.author(), has_palette](const Layer& made, Progress& progress) {
+    auto computed = compute_layer(context, room, made, author, progress);
     return computed && !has_palette ? with_colors(*room, std::move(*computed)) : computed;
   };
   if (!room::shapes_read(*expression, views_of(room->layers())).empty())
@@ -153,7 +150,7 @@ Result<Response> create_formula_layer(const RouteContext& context, JobBook& book
           if (!made) return tl::unexpected(made.error());
           return nlohmann::json();
         });
-  NewLayers layers(room, context.metrics, request.user());
+  NewLayers layers(room, context.metrics, request.author());
   Progress progress;
   Result<void> shown;
   if (auto made = layers.add(std::move(layer), [&](const Layer& empty) { return compute(empty, progress); }); !made)

@@ -51,7 +51,8 @@ struct Request {
   std::string_view header(std::string_view lower_case_name) const;  // empty when absent
   const std::string& param(const std::string& name) const { return params.at(name); }
   std::string query_or(const std::string& name, std::string fallback) const;
-  const std::string& user() const { return principal->user; }  // routes that need a principal have one
+  const std::string& user() const { return principal->user; }           // routes that need a principal have one
+  Author author() const { return {principal->user, principal->role}; }  // the same
 };
 
 struct Response {

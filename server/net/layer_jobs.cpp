@@ -31,10 +31,10 @@ Result<Response> start_layer_job(const RouteContext& context, JobBook& book, con
   auto known = book.find(request);
   if (!known) return tl::unexpected(known.error());
   if (*known) return std::move(job_response(context, **known).with("Idempotency-Replayed", "true"));
-  auto job = context.jobs.add([&metrics = context.metrics, room, make = std::move(make), user = request.user(),
+  auto job = context.jobs.add([&metrics = context.metrics, room, make = std::move(make), author = request.author(),
                                key = scoped_key(request),
                                print = fingerprint(request)](Progress& progress) -> Result<jobs::JobResult> {
-    NewLayers layers(room, metrics, user);
+    NewLayers layers(room, metrics, author);
     auto done = run(*room, layers, make, key, print, progress);
     if (!done) layers.take_back();
     return done;

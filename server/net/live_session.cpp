@@ -200,7 +200,7 @@ void LiveSession::on(const protocol::EditRequest& message) {
 void LiveSession::edit(const protocol::EditRequest& message) {
   auto layer = layer_of(message.layer);
   if (!layer) return refuse(layer.error(), message.id);
-  auto request = edit_request(message.edit, *layer, room_->model(), message.id, principal_.user, shared_->find_tool);
+  auto request = edit_request(message.edit, *layer, room_->model(), message.id, author(), shared_->find_tool);
   if (!request) return refuse(request.error(), message.id);
   if (layer->table)
     if (auto known = check_keys(*shared_->store, *layer, room::painted_by(*layer, *request)); !known)
@@ -219,10 +219,7 @@ void LiveSession::step_through_history(const Message& message) {
   if (!may_edit(message.id)) return;
   auto layer = layer_of(message.layer);
   if (!layer) return refuse(layer.error(), message.id);
-  room::EditRequest request;
-  request.id = message.id;
-  request.user = principal_.user;
-  request.layer_id = layer->id;
+  room::EditRequest request{message.id, author(), layer->id};
   if constexpr (std::is_same_v<Message, protocol::Undo>)
     request.edit = room::UndoEdit{};
   else
@@ -282,7 +279,7 @@ void LiveSession::paint(const protocol::StrokeExtend& message) {
   const std::vector<glm::dvec2> path(message.path.begin(), message.path.end());
   auto batch = shared_->strokes->extend(owner_, message.stroke, message.id, message.n, path);
   if (!batch) return refuse(batch.error(), message.id);
-  submit(batch_request(std::move(*batch), message.stroke, message.id, message.n, principal_.user),
+  submit(batch_request(std::move(*batch), message.stroke, message.id, message.n, author()),
          BatchName{message.stroke, message.n});
 }
 

@@ -110,6 +110,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void submit(room::EditRequest request, std::optional<BatchName> batch);
   void on_applied(const Uuid& id, const std::optional<BatchName>& batch, const room::EditAnswer& answer);
   void on_saved(const Uuid& id, const std::optional<BatchName>& batch, const Result<room::EditAnswer>& answer);
+  Author author() const { return {principal_.user, principal_.role}; }
   bool may_edit(const Uuid& id);
   bool has_view(int view_id, const std::string& ref);
   Result<Layer> layer_of(const protocol::LayerRef& ref) const;

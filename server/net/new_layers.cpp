@@ -25,10 +25,7 @@ Result<Layer> NewLayers::add(Layer layer, TileMap tiles, nlohmann::json recipe) 
 }
 
 Result<Layer> NewLayers::paint(const Layer& created, TileMap tiles, nlohmann::json recipe) {
-  room::EditRequest edit;
-  edit.id = random_uuid();
-  edit.user = user_;
-  edit.layer_id = created.id;
+  room::EditRequest edit{random_uuid(), author_, created.id};
   edit.record = {{"op", "import"}, {"recipe", std::move(recipe)}};
   edit.edit = room::ImportEdit{std::move(tiles)};
   auto painted = room::await<room::EditAnswer>([&](auto saved) {

@@ -8,10 +8,10 @@ namespace strata::net {
 // away again where that fails. Used on the job's thread; blocks.
 class NewLayers {
  public:
-  NewLayers(std::shared_ptr<room::Room> room, Metrics& metrics, std::string user)
-      : room_(std::move(room)), metrics_(metrics), user_(std::move(user)) {}
+  NewLayers(std::shared_ptr<room::Room> room, Metrics& metrics, Author author)
+      : room_(std::move(room)), metrics_(metrics), author_(std::move(author)) {}
 
-  // Makes the layer and paints it as one edit of the user. `recipe`: for its history.
+  // Makes the layer and paints it as one edit of the author. `recipe`: for its history.
   Result<Layer> add(Layer layer, TileMap tiles, nlohmann::json recipe);
   // Makes the layer and has it filled.
   Result<Layer> add(Layer layer, const std::function<Result<Layer>(const Layer&)>& fill);
@@ -30,7 +30,7 @@ class NewLayers {
   };
   std::shared_ptr<room::Room> room_;
   Metrics& metrics_;
-  const std::string user_;
+  const Author author_;
   std::vector<Made> made_;
 };
 

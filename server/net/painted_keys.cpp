@@ -58,9 +58,10 @@ std::string where_painted(const std::vector<PaintedLayer>& layers, const std::ve
 }
 
 Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedLayer>& layers, std::int64_t key,
-                         std::optional<std::int64_t> to, const std::string& user) {
+                         std::optional<std::int64_t> to, const Author& author) {
   for (const PaintedLayer& painted : layers) {
     if (!painted.areas.contains(key)) continue;
+    if (auto may = room::check_not_locked(painted.layer, author.role); !may) return may;
     if (to && static_cast<double>(*to) > highest_value(painted.layer.type))
       return fail(422, "Key too large",
                   painted.layer.name + " of " + painted.room->model().name + " holds keys up to " +
@@ -80,10 +81,7 @@ Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedL
     fill.erase = !to;
     fill.value_bits = static_cast<std::uint32_t>(to.value_or(0));
     fill.region = room::FillEdit::Where{std::move(equal)};
-    room::EditRequest edit;
-    edit.id = random_uuid();
-    edit.user = user;
-    edit.layer_id = painted.layer.id;
+    room::EditRequest edit{random_uuid(), author, painted.layer.id};
     edit.record = {{"op", "fill"},
                    {"mode", "where"},
                    {"where", "\"" + painted.layer.slug + "\" = " + std::to_string(key)},
@@ -104,7 +102,7 @@ Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedL
 }
 
 Result<void> records_from_legend(const RouteContext& context, const Layer& layer, const std::vector<std::int64_t>& keys,
-                                 const std::string& user) {
+                                 const Author& author) {
   if (keys.empty() || !layer.table || !lists_values(layer.palette)) return {};
   const auto missing = context.store.missing_records(*layer.table, keys);
   if (!missing) return tl::unexpected(missing.error());
@@ -123,10 +121,11 @@ Result<void> records_from_legend(const RouteContext& context, const Layer& layer
     if (text != table->columns.end()) write.records.back().values[text->id] = point.label;
   }
   if (write.records.empty()) return {};
-  auto change = context.store.write_records(table->id, write, user);
+  if (auto may = room::check_not_locked(layer, author.role); !may) return may;
+  auto change = context.store.write_records(table->id, write, author.user);
   if (!change) return tl::unexpected(change.error());
   if (!change->problems.empty()) return tl::unexpected(change->problems.front().problem);
-  tell_change(context, *change, user);
+  tell_change(context, *change, author.user);
   return {};
 }
 

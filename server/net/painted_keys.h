@@ -20,15 +20,15 @@ Result<std::vector<PaintedLayer>> painted_layers(const RouteContext& context, st
 // Those where one of the keys is painted, as they are named to a person: "12.5 cm² on Units of Trench 1"; empty where there are none.
 std::string where_painted(const std::vector<PaintedLayer>& layers, const std::vector<std::int64_t>& keys);
 
-// Clears the key's texels on these layers, or gives them to another key: one edit of the user on each layer where it is painted,
-// journalled and undone like a fill.
+// Clears the key's texels on these layers, or gives them to another key: one edit of the author on each layer where it is painted,
+// journalled and undone like a fill. None of them where one of the layers is locked for the author (403).
 Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedLayer>& layers, std::int64_t key,
-                         std::optional<std::int64_t> to, const std::string& user);
+                         std::optional<std::int64_t> to, const Author& author);
 
 // Makes records of those keys of a database layer that have none but are named in its legend, which a map may just have brought: the
-// name goes into the table's first text column. As the user's entry in the table's journal, told to who looks.
+// name goes into the table's first text column. As the user's entry in the table's journal, told to who looks. None for a layer that is locked for them (403).
 Result<void> records_from_legend(const RouteContext& context, const Layer& layer, const std::vector<std::int64_t>& keys,
-                                 const std::string& user);
+                                 const Author& author);
 // Refuses (422, `value`) keys of a database layer that have no record.
 Result<void> check_keys(store::Store& store, const Layer& layer, const std::vector<std::int64_t>& keys);
 

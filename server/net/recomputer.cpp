@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::chrono::seconds kBetweenLooks{1}, kFirstPause{5}, kLongestPause{600};
 constexpr int kMostLooks = 10;
-constexpr const char* kUser = "Strata";  // who computes, in the layer's history
+// Who computes, in the layer's history: the server itself, which no lock stops.
+const Author kAuthor("Strata", Role::owner);
 
 }  // namespace
 
@@ -88,7 +89,7 @@ void Recomputer::attempt(const Layer& layer, const char* what,
 
 void Recomputer::recompute(const Layer& layer) {
   attempt(layer, "computed", [&](const std::shared_ptr<room::Room>& room) -> Result<void> {
-    auto done = compute_layer(context_, room, layer, kUser, progress_);
+    auto done = compute_layer(context_, room, layer, kAuthor, progress_);
     if (!done) return tl::unexpected(done.error());
     return {};
   });

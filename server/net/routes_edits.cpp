@@ -46,10 +46,7 @@ Handler editing(const RouteContext& context, Make make) {
 }
 
 room::EditRequest bare_edit(const Request& request, const Target& target, std::string op) {
-  room::EditRequest edit;
-  edit.id = edit_id(request, target.layer, op);
-  edit.user = request.user();
-  edit.layer_id = target.layer.id;
+  room::EditRequest edit{edit_id(request, target.layer, op), request.author(), target.layer.id};
   edit.record = {{"op", std::move(op)}};
   return edit;
 }
@@ -83,7 +80,7 @@ void add_edit_routes(Router& router, const RouteContext& context) {
            auto asked = body_of<protocol::Edit>(request);
            if (!asked) return tl::unexpected(asked.error());
            return edit_request(*asked, target.layer, target.room->model(), edit_id(request, target.layer, "edit"),
-                               request.user(), [&](const std::string& ref) { return context.tools.find(ref); });
+                               request.author(), [&](const std::string& ref) { return context.tools.find(ref); });
          }));
   change(layer + "/undo",
          editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {

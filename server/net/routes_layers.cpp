@@ -75,6 +75,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
   layer.palette = std::move(*palette);
   layer.opacity = asked.opacity;
   layer.visible = asked.visible;
+  layer.locked = asked.locked;
   layer.order = asked.order.value_or(order_on_top(others));
   return layer;
 }
@@ -141,7 +142,7 @@ Result<Response> compute(const RouteContext& context, const Request& request) {
   auto layer = context.store.layer((*room)->model().id, request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
   Progress progress;
-  auto computed = compute_layer(context, *room, *layer, request.user(), progress);
+  auto computed = compute_layer(context, *room, *layer, request.author(), progress);
   if (!computed) return tl::unexpected(computed.error());
   return json_response(to_json(*computed)).with("ETag", etag_of(computed->version));
 }
@@ -175,6 +176,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   }
   if (asked->opacity) layer->opacity = *asked->opacity;
   if (asked->visible) layer->visible = *asked->visible;
+  if (asked->locked) layer->locked = *asked->locked;
   if (asked->order) layer->order = *asked->order;
   if (auto set = set_formula(**room, *asked, *layer); !set) return tl::unexpected(set.error());
   auto changed = (*room)->update_layer(std::move(*layer), first_answer<Layer>(request, answer));

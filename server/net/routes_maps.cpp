@@ -37,10 +37,7 @@ Handler painting(const RouteContext& context, std::string op, Paint paint) {
     if (!layer) return respond(layer.error());
     Result<Painted> painted = paint(request, Target{*room, *layer});
     if (!painted) return respond(painted.error());
-    room::EditRequest edit;
-    edit.id = edit_id(request, *layer, op);
-    edit.user = request.user();
-    edit.layer_id = layer->id;
+    room::EditRequest edit{edit_id(request, *layer, op), request.author(), layer->id};
     edit.record = {{"op", "import"}, {"kind", op}};
     edit.record.update(painted->record);
     for (const auto& [name, value] : request.query) edit.record[name] = value;
@@ -48,7 +45,7 @@ Handler painting(const RouteContext& context, std::string op, Paint paint) {
     // With the names that the map brought.
     const auto named = (*room)->layer(std::to_string(layer->id));
     if (!named) return respond(named.error());
-    if (auto made = records_from_legend(context, *named, room::painted_by(*named, edit), request.user()); !made)
+    if (auto made = records_from_legend(context, *named, room::painted_by(*named, edit), request.author()); !made)
       return respond(made.error());
     apply_edit(context, request, *room, std::move(edit), respond);
   };

@@ -324,7 +324,7 @@ Result<Response> delete_retired(const RouteContext& context, const Request& requ
                 "Record " + std::to_string(key) + " covers " + where +
                     ". Say what becomes of it: texels=clear, or texels=reassign&to=KEY.",
                 "texels");
-  if (auto done = repaint_key(context, *painted, key, to, request.user()); !done) return tl::unexpected(done.error());
+  if (auto done = repaint_key(context, *painted, key, to, request.author()); !done) return tl::unexpected(done.error());
   const auto answer = [](const TableChange&) { return empty_response(204); };
   auto change = context.store.delete_record(table.id, key, version, request.user(), false,
                                             first_answer<TableChange>(request, answer));

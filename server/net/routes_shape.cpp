@@ -70,6 +70,7 @@ Layer copy_of(const Layer& from, int resolution, int order, const jobs::Transfer
   layer.id = 0;
   layer.resolution = resolution;
   layer.order = order;
+  layer.locked = false;   // work goes on here
   layer.formula.reset();  // its values are brought over, as they are
   layer.description += (layer.description.empty() ? "" : "\n\n") + std::string("Brought over from ") +
                        request.source.name + ", within " + number_text(request.tolerance_mm) + " mm.";
@@ -185,10 +186,7 @@ void write_vertices(const RouteContext& context, const Request& request, const R
       problem.field = "body";  // the layer is there already: it is the values that do not fit
     return respond(problem);
   }
-  room::EditRequest edit;
-  edit.id = edit_id(request, *layer, "import");
-  edit.user = request.user();
-  edit.layer_id = layer->id;
+  room::EditRequest edit{edit_id(request, *layer, "import"), request.author(), layer->id};
   edit.record = {{"op", "import"},
                  {"format", "vertices.csv"},
                  {"source", *source},

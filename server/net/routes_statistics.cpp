@@ -79,7 +79,7 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
   fill.where = asked.where;
   fill.value = asked.into->value;
   fill.erase = asked.into->erase;
-  return edit_request(fill, *layer, room.model(), edit_id(request, *layer, "select"), request.user());
+  return edit_request(fill, *layer, room.model(), edit_id(request, *layer, "select"), request.author());
 }
 
 void select(const RouteContext& context, const Request& request, const Respond& respond) {

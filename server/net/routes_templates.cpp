@@ -81,7 +81,7 @@ void take_back(const RouteContext& context, const std::vector<Table>& tables) {
 Result<std::vector<Layer>> make_layers(const RouteContext& context, const Request& request,
                                        const std::shared_ptr<room::Room>& room, std::vector<WishedLayer> wished,
                                        const std::vector<Table>& tables) {
-  NewLayers layers(room, context.metrics, request.user());
+  NewLayers layers(room, context.metrics, request.author());
   std::vector<Layer> made;
   const auto refuse = [&](const Problem& problem) {
     layers.take_back();

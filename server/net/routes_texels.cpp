@@ -97,10 +97,7 @@ void write_texels(const RouteContext& context, ByteBudget& budget, const Request
     return respond(Problem{400, "Empty body", "Send the raster file as the body.", "body"});
   auto tiles = (*format)->decode(*layer, file->bytes());
   if (!tiles) return respond(tiles.error());
-  room::EditRequest edit;
-  edit.id = edit_id(request, *layer, "import");
-  edit.user = request.user();
-  edit.layer_id = layer->id;
+  room::EditRequest edit{edit_id(request, *layer, "import"), request.author(), layer->id};
   edit.record = {{"op", "import"},
                  {"format", (*format)->extension},
                  {"bytes", request.body_bytes},

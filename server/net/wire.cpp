@@ -119,11 +119,8 @@ double in_model_units(double millimetres, Unit unit) { return millimetres * 0.00
 double in_millimetres(double length, Unit unit) { return length * metres_per(unit) * 1000; }
 
 Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer, const Model& model,
-                                       const Uuid& id, const std::string& user, const FindTool& find_tool) {
-  room::EditRequest request;
-  request.id = id;
-  request.user = user;
-  request.layer_id = layer.id;
+                                       const Uuid& id, Author author, const FindTool& find_tool) {
+  room::EditRequest request{id, std::move(author), layer.id};
   request.record = protocol::to_json(edit);
   if (const auto* stroke = std::get_if<protocol::EditStroke>(&edit)) {
     auto tool = tool_of(stroke->shape, find_tool);
@@ -163,12 +160,8 @@ Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& 
   return tool;
 }
 
-room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n,
-                                const std::string& user) {
-  room::EditRequest request;
-  request.id = id;
-  request.user = user;
-  request.layer_id = batch.tool.layer_id;
+room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n, Author author) {
+  room::EditRequest request{id, std::move(author), batch.tool.layer_id};
   request.record = std::move(batch.tool.record);
   request.record["n"] = n;
   nlohmann::json path = nlohmann::json::array();

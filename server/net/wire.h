@@ -36,11 +36,10 @@ bool names_tool(const protocol::StrokeBegin& begin);
 // `edit` for the layer; its `record` is the edit as asked, with a tool's id in place of its slug. A tool that is not there is
 // refused (422, `shape`); without `find_tool`, any.
 Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer, const Model& model,
-                                       const Uuid& id, const std::string& user, const FindTool& find_tool = {});
+                                       const Uuid& id, Author author, const FindTool& find_tool = {});
 Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer, const Model& model,
                                const FindTool& find_tool = {});
-room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n,
-                                const std::string& user);
+room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n, Author author);
 
 room::Place place_of(const protocol::SurfacePlace& place);
 

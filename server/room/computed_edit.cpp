@@ -40,7 +40,7 @@ Result<TileChange> undo_in_tile(const store::Store::WrittenTiles& written, const
 
 Result<ComputedEdit> compute_undo(const EditRequest& request, const Layer& layer, const TileMap& tiles,
                                   store::Store& store, bool redo) {
-  auto sequences = redo ? store.redoable(layer.id, request.user) : store.undoable(layer.id, request.user);
+  auto sequences = redo ? store.redoable(layer.id, request.author.user) : store.undoable(layer.id, request.author.user);
   if (!sequences) return tl::unexpected(sequences.error());
   if (sequences->empty())
     return redo ? fail(409, "Nothing to redo", "You have no undone stroke on this layer that could come back.")

@@ -39,6 +39,11 @@ std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit
   return {};
 }
 
+Result<void> check_not_locked(const Layer& layer, Role role) {
+  if (!layer.locked || role >= Role::curator) return {};
+  return fail(403, "Layer locked", "The layer " + layer.name + " is locked: a curator can unlock it.", "layer");
+}
+
 nlohmann::json to_json(const EditAnswer& answer) {
   return {{"sequence", answer.sequence}, {"texels_changed", answer.texels_changed}, {"area_m2", answer.area_m2}};
 }

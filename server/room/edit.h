@@ -8,6 +8,8 @@
 
 #include "core/expression.h"
 #include "core/layer.h"
+#include "core/problem.h"
+#include "core/role.h"
 #include "core/stroke.h"
 #include "core/tile_mirror.h"
 #include "core/uuid.h"
@@ -68,14 +70,18 @@ struct RestoreEdit {  // the whole layer as it was after a sequence
 
 struct EditRequest {
   Uuid id;  // of the message: a repeat gets the first answer and paints nothing
-  std::string user;
+  Author author;
   std::int64_t layer_id = 0;
-  std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit, RestoreEdit> edit;
-  nlohmann::json record;  // the edit as asked, for the journal
+  std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit, RestoreEdit> edit{};
+  nlohmann::json record{};  // the edit as asked, for the journal
 };
 
 // The keys that an edit of the layer paints: none where it erases, undoes or brings back what was.
 std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit);
+
+// Refused (403, `layer`): a locked layer, to who is no curator. The pipeline asks before it begins an edit; others only where they
+// would change something else before that.
+Result<void> check_not_locked(const Layer& layer, Role role);
 
 struct EditAnswer {
   std::int64_t sequence = 0;

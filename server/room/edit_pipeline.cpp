@@ -93,7 +93,7 @@ void EditPipeline::edit(EditRequest request, Room::Applied applied, Room::Saved 
 
 void EditPipeline::when_idle(Work work) {
   if (closed_) return work(tl::unexpected(*closed_));
-  waiting_.push_back({{}, {}, {}, std::move(work)});
+  waiting_.push_back({EditRequest{{}, {{}, Role::viewer}}, {}, {}, std::move(work)});
   step();
 }
 
@@ -207,6 +207,11 @@ bool EditPipeline::start_front() {
   if (!layer) {
     Waiting item = take();
     refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
+    return true;
+  }
+  if (auto may = check_not_locked(layer->layer, front.request.author.role); !may) {
+    Waiting item = take();
+    refuse(item, may.error());
     return true;
   }
   if (layer->layer.formula.has_value() != std::holds_alternative<ComputeEdit>(front.request.edit)) {
@@ -379,7 +384,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   entry.layer_id = layer.layer.id;
   entry.sequence = sequence;
   entry.id = item.request.id;
-  entry.user = item.request.user;
+  entry.user = item.request.author.user;
   entry.stroke = stroke ? stroke->stroke : item.request.id;
   entry.op = op_name(item.request);
   entry.record = std::move(item.request.record);
@@ -388,8 +393,9 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   entry.disable = std::move(computed.disable);
   entry.enable = std::move(computed.enable);
 
-  const Listener::Edit event{layer.layer.id,         layer.layer.slug,  sequence,          entry.id, entry.stroke,
-                             stroke ? stroke->n : 0, stroke != nullptr, item.request.user, entry.op, answer};
+  const Listener::Edit event{
+      layer.layer.id,    layer.layer.slug,         sequence, entry.id, entry.stroke, stroke ? stroke->n : 0,
+      stroke != nullptr, item.request.author.user, entry.op, answer};
   if (!tiles.empty()) host_->content_changed(layer, box, sequence);
   host_->edit_applied(event);
   if (item.applied) item.applied(answer);

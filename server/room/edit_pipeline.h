@@ -49,6 +49,9 @@ class PipelineHost {
 // The mirrors are right at every moment: they hold what the journal has and what is on its way there. The GPU may fall
 // behind them (`stale_`); it is brought up to date before anything else starts.
 //
+// A locked layer is left alone here, and only here: whatever way an edit came, and whenever the lock fell, the layer is looked at once
+// more when the edit would begin. What the journal knows keeps its first answer, and what has begun is brought to its end.
+//
 // Lives on the room's strand: every method is called there, and nothing there waits. What blocks (journal, history) is done by
 // `readers` and `workers`, whose answers are posted to the strand.
 class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
@@ -89,7 +92,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
 
  private:
   struct Waiting {
-    EditRequest request;
+    EditRequest request;  // nobody's where there is `work`
     Room::Applied applied;
     Room::Saved saved;
     Work work;                                                        // of `when_idle`, instead of an edit

@@ -211,7 +211,18 @@ Result<Layer> OpenRoom::update_layer(Layer layer, const store::FirstAnswer<Layer
   if (auto ok = check_layer(layer, model()); !ok) return tl::unexpected(ok.error());
   auto updated = parts_.store.update_layer(std::move(layer), answer);
   if (!updated) return updated;
-  return on_strand([&] { return replace_layer(*updated); });
+  bool lock_falls = false;
+  const Layer now = on_strand([&] {
+    const LayerState* before = find_layer(updated->id);
+    lock_falls = updated->locked && before && !before->layer.locked;
+    return replace_layer(*updated);
+  });
+  // Who locks a layer hears so when what was being painted on it is there: from then on nothing comes. A database that is away
+  // keeps the edits under way from being saved, which does not take the lock back.
+  if (lock_falls)
+    if (const auto still = settle(); !still)
+      log::warning("a layer was locked while its edits could not be saved: " + still.error().detail);
+  return now;
 }
 
 Layer OpenRoom::replace_layer(const Layer& stored) {

@@ -162,6 +162,7 @@ class Room {
   // A database layer that names no table gets one of its own name with `columns`.
   virtual Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer = {},
                                      std::vector<Column> columns = {}) = 0;
+  // Of a layer that it locks every edit that had begun is durable, or refused, when it returns.
   virtual Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer = {}) = 0;
   // The layer with room for larger keys or values, its history too; `layer` as it was read. Refused (422, `type`): a type that
   // it does not widen to, and a computed layer.

@@ -145,7 +145,7 @@ room::EditRequest stroke_request(const Layer& layer, const Camera& camera, std::
   stroke.batch.radius_px = radius_px;
   stroke.batch.value_bits = must(encode_value(layer.type, value));
   stroke.stroke = random_uuid();
-  return {random_uuid(), "bench", layer.id, stroke, {{"op", "stroke"}}};
+  return {random_uuid(), {"bench", Role::owner}, layer.id, stroke, {{"op", "stroke"}}};
 }
 
 }  // namespace strata::bench

@@ -85,7 +85,7 @@ class RoomRecovery : public RoomTest {
     entry.layer_id = layer.id;
     entry.sequence = sequence;
     entry.id = entry.stroke = edit.id;
-    entry.user = edit.user;
+    entry.user = edit.author.user;
     entry.op = "stroke";
     entry.record = edit.record;
     entry.answer = {{"sequence", sequence}, {"texels_changed", 1}, {"area_m2", 0.5}};

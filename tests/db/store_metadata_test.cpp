@@ -246,5 +246,23 @@ TEST(Layers, changes_need_the_version_and_keep_to_the_rules) {
   EXPECT_EQ(store->update_layer(changed).error().status, 404);
 }
 
+TEST(Layers, a_lock_is_kept_until_it_is_taken_away) {
+  auto store = test::fresh_store();
+  const auto model = create(*store, "pot");
+  auto layer = store->create_layer(new_layer(model.id, "salt")).value();
+  EXPECT_FALSE(layer.locked);
+  layer.locked = true;
+  layer = store->update_layer(layer).value();
+  EXPECT_TRUE(layer.locked);
+  EXPECT_TRUE(store->widen_layer(layer, ValueType::u16)->locked);
+  layer = store->layers(model.id)->front();
+  EXPECT_TRUE(layer.locked);
+  layer.locked = false;
+  EXPECT_FALSE(store->update_layer(layer)->locked);
+  auto made_so = new_layer(model.id, "finished");
+  made_so.locked = true;
+  EXPECT_TRUE(store->create_layer(made_so)->locked);
+}
+
 }  // namespace
 }  // namespace strata::store

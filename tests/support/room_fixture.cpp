@@ -119,7 +119,7 @@ Camera RoomTest::camera(glm::dvec3 from, bool orthographic) const {
 
 room::EditRequest RoomTest::request(const Layer& layer, decltype(room::EditRequest::edit) edit,
                                     const std::string& user) const {
-  return {random_uuid(), user, layer.id, std::move(edit), {{"op", "test"}}};
+  return {random_uuid(), {user, Role::annotator}, layer.id, std::move(edit), {{"op", "test"}}};
 }
 
 room::EditRequest RoomTest::stroke(const Layer& layer, double value, std::vector<glm::dvec2> path, double radius_px,

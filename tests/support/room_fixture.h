@@ -28,6 +28,7 @@ class RoomTest : public ::testing::Test {
 
   // Looks at the model from +z (or `from`), 640 × 480, orthographic or perspective.
   Camera camera(glm::dvec3 from = {0, 0, 1}, bool orthographic = false) const;
+  // Of an annotator.
   room::EditRequest stroke(const Layer& layer, double value, std::vector<glm::dvec2> path, double radius_px,
                            const std::string& user = "anna") const;
   room::EditRequest request(const Layer& layer, decltype(room::EditRequest::edit) edit,

@@ -295,6 +295,21 @@ TEST_F(Live, hello_comes_first_and_once) {
   EXPECT_EQ(socket->of("problem").size(), 2u);
 }
 
+TEST_F(Live, the_room_hears_who_edits_and_what_they_may) {
+  connect(Role::annotator);
+  hello();
+  say(begin(stroke));
+  say(extend(stroke, 0, {{1, 1}}));
+  for (const char* op : {"undo", "redo"}) say({{"op", op}, {"id", to_string(random_uuid())}, {"layer", "cracks"}});
+  const json fill = {{"op", "fill"}, {"value", 1}, {"mode", "where"}, {"where", "true"}};
+  say({{"op", "edit"}, {"id", to_string(random_uuid())}, {"layer", "cracks"}, {"edit", fill}});
+  ASSERT_EQ(room->edits.size(), 4u);
+  for (const auto& edit : room->edits) {
+    EXPECT_EQ(edit.request.author.user, "anna");
+    EXPECT_EQ(edit.request.author.role, Role::annotator);
+  }
+}
+
 TEST_F(Live, a_stroke_is_applied_then_saved_under_its_number) {
   hello();
   say(begin(stroke));

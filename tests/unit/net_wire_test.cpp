@@ -7,6 +7,8 @@
 namespace strata::net {
 namespace {
 
+const Author kAnna("anna", Role::annotator);
+
 Layer layer_of(ValueType type) {
   Layer layer;
   layer.id = 5;
@@ -40,10 +42,11 @@ protocol::Edit stroke(double value) {
 
 TEST(Wire, a_stroke_becomes_an_edit_of_the_layer) {
   const Uuid id = random_uuid();
-  const auto request = edit_request(stroke(7), layer_of(ValueType::u8), model_in(Unit::m), id, "anna");
+  const auto request = edit_request(stroke(7), layer_of(ValueType::u8), model_in(Unit::m), id, kAnna);
   ASSERT_TRUE(request);
   EXPECT_EQ(request->id, id);
-  EXPECT_EQ(request->user, "anna");
+  EXPECT_EQ(request->author.user, "anna");
+  EXPECT_EQ(request->author.role, Role::annotator);
   EXPECT_EQ(request->layer_id, 5);
   const auto& edit = std::get<room::StrokeEdit>(request->edit);
   EXPECT_EQ(edit.stroke, id);
@@ -57,17 +60,17 @@ TEST(Wire, a_stroke_becomes_an_edit_of_the_layer) {
 
 TEST(Wire, a_value_outside_the_type_is_refused_not_clamped) {
   for (double value : {256.0, -1.0, 1.5}) {
-    const auto request = edit_request(stroke(value), layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), "anna");
+    const auto request = edit_request(stroke(value), layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), kAnna);
     ASSERT_FALSE(request) << value;
     EXPECT_EQ(request.error().field, "value");
   }
-  EXPECT_TRUE(edit_request(stroke(1.5), layer_of(ValueType::f16), model_in(Unit::m), random_uuid(), "anna"));
+  EXPECT_TRUE(edit_request(stroke(1.5), layer_of(ValueType::f16), model_in(Unit::m), random_uuid(), kAnna));
 }
 
 TEST(Wire, erasing_needs_no_value_of_the_type) {
   protocol::EditStroke edit = std::get<protocol::EditStroke>(stroke(-400));
   edit.erase = true;
-  const auto request = edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), "anna");
+  const auto request = edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), kAnna);
   ASSERT_TRUE(request);
   EXPECT_TRUE(std::get<room::StrokeEdit>(request->edit).batch.erase);
 }
@@ -79,7 +82,7 @@ TEST(Wire, millimetres_become_the_models_unit) {
   protocol::EditStroke edit = std::get<protocol::EditStroke>(stroke(1));
   edit.radius_px.reset();
   edit.radius_mm = 10.0;
-  const auto request = edit_request(edit, layer_of(ValueType::u8), model_in(Unit::cm), random_uuid(), "anna");
+  const auto request = edit_request(edit, layer_of(ValueType::u8), model_in(Unit::cm), random_uuid(), kAnna);
   ASSERT_TRUE(request);
   EXPECT_EQ(std::get<room::StrokeEdit>(request->edit).batch.radius_px, 0);
   EXPECT_DOUBLE_EQ(std::get<room::StrokeEdit>(request->edit).batch.radius_world, 1);
@@ -89,14 +92,14 @@ TEST(Wire, a_fill_carries_the_bits_of_its_value) {
   protocol::EditFill fill;
   fill.value = -1;
   fill.where = "true";
-  const auto request = edit_request(fill, layer_of(ValueType::i8), model_in(Unit::m), random_uuid(), "anna");
+  const auto request = edit_request(fill, layer_of(ValueType::i8), model_in(Unit::m), random_uuid(), kAnna);
   ASSERT_TRUE(request);
   EXPECT_EQ(std::get<room::FillEdit>(request->edit).value_bits, 0xffu);
   EXPECT_EQ(request->record["op"], "fill");
 }
 
 Result<room::EditRequest> request_of(const protocol::Edit& edit) {
-  return edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), "anna");
+  return edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), kAnna);
 }
 
 TEST(Wire, a_fill_is_of_the_region_that_its_mode_tells) {
@@ -169,7 +172,7 @@ TEST(Wire, a_batch_keeps_in_the_journal_all_that_made_it) {
   auto tool = stroke_tool(begin, layer_of(ValueType::u8), model_in(Unit::m));
   ASSERT_TRUE(tool);
   const Uuid id = random_uuid();
-  const auto request = batch_request({*tool, {{1, 1}, {2, 3}}}, begin.stroke, id, 4, "anna");
+  const auto request = batch_request({*tool, {{1, 1}, {2, 3}}}, begin.stroke, id, 4, kAnna);
   const auto& edit = std::get<room::StrokeEdit>(request.edit);
   EXPECT_EQ(edit.stroke, begin.stroke);
   EXPECT_EQ(edit.n, 4);
@@ -194,7 +197,7 @@ TEST(Wire, a_tool_of_the_site_gives_its_shape_and_its_id_to_the_record) {
   auto edit = stroke(1);
   const auto with_shape = [&](const protocol::ToolShape& of) {
     std::get<protocol::EditStroke>(edit).shape = of;
-    return edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), "anna", find);
+    return edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), kAnna, find);
   };
   for (const protocol::ToolShape& of : {protocol::ToolShape("flag"), protocol::ToolShape(std::int64_t{12})}) {
     const auto request = with_shape(of);
@@ -229,7 +232,7 @@ TEST(Wire, a_tool_of_the_site_gives_its_shape_and_its_id_to_the_record) {
 TEST(Wire, bias_and_angle_of_a_stroke_are_optional) {
   auto edit = stroke(1);
   const auto batch = [&] {
-    auto request = edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), "anna");
+    auto request = edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), kAnna);
     return std::pair(std::get<room::StrokeEdit>(request->edit).batch, request->record);
   };
   EXPECT_FALSE(batch().first.fixed_depth_bias || batch().first.max_angle_deg);

@@ -249,6 +249,8 @@ export interface Layer {
   palette: Palette;
   opacity: number;
   visible: boolean;
+  /** Nobody below curator changes its texels: 403. */
+  locked: boolean;
   /** Drawn ascending: higher is on top. */
   order: number;
   /** Database layers: id of the project's table whose keys the texels hold. */
@@ -1538,6 +1540,8 @@ export interface LayerCreate {
   opacity?: number;
   /** Default: true. */
   visible?: boolean;
+  /** Nobody below curator changes its texels. Default: false. */
+  locked?: boolean;
   /** Absent: on top. */
   order?: number;
   /** Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own name. */
@@ -1612,6 +1616,8 @@ export interface LayerPatch {
   palette?: Palette;
   opacity?: number;
   visible?: boolean;
+  /** true: from the answer on nobody below curator changes its texels, until it is unlocked. */
+  locked?: boolean;
   order?: number;
   /** Alone: a layer of u8 or u16 gets room for larger keys or values (u16, u32), its history too. */
   type?: ValueType;

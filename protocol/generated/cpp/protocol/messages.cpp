@@ -1789,6 +1789,7 @@ void read(const nlohmann::json& json, LayerCreate& value) {
   read_optional_member(json, "palette", value.palette);
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "visible", value.visible);
+  read_optional_member(json, "locked", value.locked);
   read_optional_member(json, "order", value.order);
   read_optional_member(json, "table", value.table);
   read_optional_member(json, "columns", value.columns);
@@ -1809,6 +1810,7 @@ nlohmann::json to_json(const LayerCreate& value) {
   write_optional_member(json, "palette", value.palette);
   write_member(json, "opacity", value.opacity);
   write_member(json, "visible", value.visible);
+  write_member(json, "locked", value.locked);
   write_optional_member(json, "order", value.order);
   write_optional_member(json, "table", value.table);
   write_optional_member(json, "columns", value.columns);
@@ -1877,6 +1879,7 @@ void read(const nlohmann::json& json, LayerPatch& value) {
   read_optional_member(json, "palette", value.palette);
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "visible", value.visible);
+  read_optional_member(json, "locked", value.locked);
   read_optional_member(json, "order", value.order);
   read_optional_member(json, "type", value.type);
   read_optional_member(json, "expression", value.expression);
@@ -1891,6 +1894,7 @@ nlohmann::json to_json(const LayerPatch& value) {
   write_optional_member(json, "palette", value.palette);
   write_optional_member(json, "opacity", value.opacity);
   write_optional_member(json, "visible", value.visible);
+  write_optional_member(json, "locked", value.locked);
   write_optional_member(json, "order", value.order);
   write_optional_member(json, "type", value.type);
   write_optional_member(json, "expression", value.expression);

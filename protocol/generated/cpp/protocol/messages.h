@@ -1408,6 +1408,7 @@ struct LayerCreate {
   std::optional<nlohmann::json> palette;
   double opacity = 1;
   bool visible = true;
+  bool locked = false;  // Nobody below curator changes its texels.
   std::optional<int> order;  // Absent: on top.
   std::optional<TableRef> table;  // Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own name.
   std::optional<std::vector<ColumnCreate>> columns;  // Database layers without `table`: those of its own one. Absent: one text, Name.
@@ -1475,6 +1476,7 @@ struct LayerPatch {
   std::optional<nlohmann::json> palette;
   std::optional<double> opacity;
   std::optional<bool> visible;
+  std::optional<bool> locked;  // true: from the answer on nobody below curator changes its texels, until it is unlocked.
   std::optional<int> order;
   std::optional<strata::ValueType> type;  // Alone: a layer of u8 or u16 gets room for larger keys or values (u16, u32), its history too.
   std::optional<std::string> expression;  // Of a computed layer, which it has to be computed by anew; empty: the layer keeps its values and is edited by hand from now on.
