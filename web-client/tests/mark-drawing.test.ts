@@ -48,7 +48,7 @@ beforeEach(() => {
   host = {
     view: { camera: { message: () => ({}), pixel_size: () => () => 1 } },
     layers: { selected: layer },
-    painting: { stroking: false, layer_to_paint: () => layer, brush: { value_of: () => 7 } },
+    painting: { stroking: false, chosen_layer: () => layer, brush: { value_of: () => 7 } },
     tables: { find: () => table, lacks: (_: number, key: number) => key !== 7, label: () => "North", view: null, undo: async (id: number) => void undone.push(id) },
     model: () => ({ id: 9, unit: "cm" }),
     changed: () => {},

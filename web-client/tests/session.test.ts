@@ -15,7 +15,7 @@ const model = {
 } as unknown as Welcome["model"]; // prettier-ignore
 const layer = (id: number, order: number): Layer => ({
   id, model: 1, name: `L${id}`, slug: `l${id}`, kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "",
-  palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, order, sequence: 0,
+  palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, locked: false, order, sequence: 0,
 }); // prettier-ignore
 
 let sockets: FakeSocket[];
@@ -260,6 +260,53 @@ describe("roles", () => {
   ])("%s", async (role, paints, curates) => {
     await open(role);
     expect([session.can_paint, session.can_curate]).toEqual([paints, curates]);
+  });
+
+  it("who paints on a layer that is locked sends nothing more, is told once, and goes on when it is unlocked", async () => {
+    const lock = (id: number, locked: boolean): void =>
+      socket().receive({ op: "layer", event: "changed", layer_id: id, layer: { ...layer(id, id - 7), locked } });
+    await open("annotator");
+    session.choose_tool("brush");
+    session.gestures.tool_down({ x: 5, y: 5 });
+    expect(session.painting.stroking).toBe(true);
+    lock(8, true);
+    expect(told).toEqual([texts.layers.locked]);
+    expect(session.locked_target?.id).toBe(8);
+    expect(session.painting.stroking).toBe(false);
+    const changes = (): string[] => socket().sent_ops().filter((op) => /^(stroke|edit|undo|redo)/.test(op));
+    const until_now = changes();
+    session.gestures.tool_move([{ x: 90, y: 5 }]);
+    session.gestures.tool_up();
+    for (const name of ["brush", "eraser", "polygon", "lasso", "bucket"] as const) {
+      session.choose_tool(name);
+      session.gestures.tool_down({ x: 5, y: 5 });
+      session.gestures.tool_up();
+      expect(session.tools.outline).toBe(null);
+    }
+    session.undo();
+    session.redo();
+    session.painting.fill(session.layers.find(8)!);
+    expect(changes()).toEqual(until_now);
+    expect(until_now.at(-1)).toBe("stroke.end");
+    expect(told).toEqual([texts.layers.locked]);
+
+    session.layers.select(session.layers.find(7)!);
+    expect(session.locked_target).toBe(null);
+    session.layers.select(session.layers.find(8)!);
+    session.choose_tool("orbit"); // who only looks is not in the way of a lock
+    expect(session.locked_target).toBe(null);
+    lock(8, false);
+    paint()();
+    expect(changes().length).toBe(until_now.length + 3);
+  });
+
+  it("a curator paints on a locked layer", async () => {
+    await session.open();
+    join("curator", [{ ...layer(7, 0), locked: true }]);
+    session.view.set_viewport(800, 600, 1);
+    paint()();
+    expect(session.locked_target).toBe(null);
+    expect(told).toEqual([]);
   });
 
   it("who may only look chooses no tool that changes anything, takes nothing back, and is told why", async () => {

@@ -57,6 +57,19 @@ export class StrataBrushPanel extends LitElement {
       .slant input:disabled + span {
         opacity: 0.5;
       }
+      .locked {
+        display: flex;
+        gap: 9px;
+        align-items: start;
+        padding: 10px 12px;
+        border-radius: var(--radius-small);
+        background: var(--calm-soft);
+        font-size: 0.88rem;
+        overflow-wrap: anywhere;
+      }
+      .locked .glyph {
+        flex: none;
+      }
       .pair {
         display: flex;
         flex-wrap: wrap;
@@ -73,9 +86,15 @@ export class StrataBrushPanel extends LitElement {
     const layer = session.layers.selected;
     if (!layer) return html`<p class="hint">${texts.brush.no_layer}</p>`;
     const tool = session.tools.active;
+    if (session.locked_target) return this.locked(session.locked_target);
     if (tool === "brush" || tool === "eraser") return this.strokes(layer, tool === "eraser");
     if (tool === "line" || tool === "point") return this.marks(layer, tool);
     return this.areas(layer, tool === "bucket" ? "bucket" : tool === "lasso" ? "lasso" : "polygon");
+  }
+
+  private locked(layer: Layer): TemplateResult {
+    return html`<h2>${texts.tools[this.session.tools.active]}</h2>
+      <p class="locked" role="status">${icon("lock")}<span>${texts.layers.locked_detail(layer.name)}</span></p>`;
   }
 
   private strokes(layer: Layer, erases: boolean): TemplateResult {

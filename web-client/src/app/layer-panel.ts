@@ -110,6 +110,25 @@ export class StrataLayerPanel extends LitElement {
       .selected .name {
         font-weight: 600;
       }
+      .lock {
+        display: grid;
+        place-items: center;
+        width: 22px;
+        color: var(--ink-soft);
+      }
+      .locked {
+        display: flex;
+        align-items: start;
+        gap: 8px;
+        color: var(--ink-soft);
+        font-size: 0.88rem;
+      }
+      .locked .glyph {
+        flex: none;
+      }
+      .locked span {
+        flex: 1;
+      }
       .more {
         display: grid;
         gap: 12px;
@@ -269,11 +288,15 @@ export class StrataLayerPanel extends LitElement {
         >
           ${layer_chip(session.layers.palette(layer))}<span class="ellipsis">${layer.name}</span>
         </button>
+        ${layer.locked ? html`<span class="lock" role="img" aria-label=${this.who_is_locked(layer)} title=${this.who_is_locked(layer)}>${icon("lock")}</span>` : nothing}
         <strata-menu label=${words.options(layer.name)}>
           ${session.can_curate
             ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "edit", layer })}>
-                ${icon("edit")}${words.edit}
-              </button>`
+                  ${icon("edit")}${words.edit}
+                </button>
+                <button class="quiet" role="menuitem" @click=${() => void this.set_locked(layer, !layer.locked)}>
+                  ${icon(layer.locked ? "unlock" : "lock")}${layer.locked ? words.unlock : words.lock}
+                </button>`
             : nothing}
           ${can_be_colored(layer)
             ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "colors", layer })}>${icon("palette")}${texts.colors.open}</button>`
@@ -294,7 +317,7 @@ export class StrataLayerPanel extends LitElement {
                 ${icon("import")}${texts.rasters.save[format]}
               </button>`,
           )}
-          ${session.can_paint
+          ${session.can_paint && !session.is_locked(layer)
             ? html`<button class="quiet" role="menuitem" @click=${() => choose_raster(session, layer)}>
                   ${icon("upload")}${texts.rasters.import}
                 </button>
@@ -335,6 +358,7 @@ export class StrataLayerPanel extends LitElement {
     const { session } = this;
     const opacity = session.layers.opacity(layer);
     return html`<div class="more">
+      ${layer.locked ? this.lock_told(layer) : nothing}
       ${layer.description ? html`<p class="description">${layer.description}</p>` : nothing} ${legend(layer, session.layers.palette(layer), session.tables)}
       ${layer.expression === undefined ? nothing : this.formula(layer)}
       ${layer.table === undefined
@@ -357,6 +381,22 @@ export class StrataLayerPanel extends LitElement {
     </div>`;
   }
 
+  private who_is_locked(layer: Layer): string {
+    return this.session.is_locked(layer) ? texts.layers.locked_to_you : texts.layers.locked_to_others;
+  }
+
+  private lock_told(layer: Layer): TemplateResult {
+    const unlock = (): void => void this.set_locked(layer, false);
+    return html`<p class="locked">
+      ${icon("lock")}<span>${this.who_is_locked(layer)}</span>
+      ${this.session.can_curate ? html`<button class="link" @click=${unlock}>${texts.layers.unlock}</button>` : nothing}
+    </p>`;
+  }
+
+  private async set_locked(layer: Layer, locked: boolean): Promise<void> {
+    await this.session.layers.change(layer, { locked }).catch((error: unknown) => notices.error(error));
+  }
+
   private formula(layer: Layer): TemplateResult {
     const { session } = this;
     return html`<div class="formula">
@@ -364,7 +404,7 @@ export class StrataLayerPanel extends LitElement {
       ${layer.stale === true
         ? html`<span class="hint" role="status">${layer.recompute === "automatic" ? texts.layers.stale_automatic : texts.layers.stale}</span>`
         : nothing}
-      ${session.can_paint && layer.recompute !== "automatic"
+      ${session.can_paint && !session.is_locked(layer) && layer.recompute !== "automatic"
         ? html`<button ?disabled=${this.computing_ === layer.id} @click=${() => void this.recompute(layer)}>${icon("redo")}${texts.layers.recompute}</button>`
         : nothing}
     </div>`;

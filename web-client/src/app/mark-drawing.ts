@@ -124,7 +124,7 @@ export class MarkDrawing {
   private target(kind: MarkKind): Target | null {
     const { painting, tables } = this.host_;
     const model = this.host_.model();
-    const layer = painting.layer_to_paint();
+    const layer = painting.chosen_layer();
     if (!model || !layer) return null;
     const column = this.column(kind);
     const key = painting.brush.value_of(layer);

@@ -62,6 +62,7 @@ export class ModelSession {
   private was_open_ = false;
   private closed_ = false; // its page is gone
   private told_left_ = false;
+  private told_locked_: number | null = null; // the layer of which the person knows that it is locked
 
   constructor(
     readonly api: Api,
@@ -82,7 +83,7 @@ export class ModelSession {
     });
     this.layers = new LayerList(api, model_id, {
       send_overrides: (overrides) => this.connection_.set_layer_overrides(overrides),
-      changed,
+      changed: () => this.target_changed(),
     });
     this.jobs = new LayerJobs(api, model_id, changed);
     this.appearance = new Appearance(api, model_id, {
@@ -112,6 +113,7 @@ export class ModelSession {
       model: () => this.model,
       records: { label: (table, key) => this.tables.label(table, key), term: (table, key) => this.tables.term(table, key) },
       may_paint: () => this.can_paint,
+      is_locked: (layer) => this.is_locked(layer),
       changed,
     });
     this.shapes = new ToolShapes(api, {
@@ -232,7 +234,7 @@ export class ModelSession {
         new PointTool((sample) => this.marks.set_point(sample)),
       ],
       "orbit",
-      () => this.changed(),
+      () => this.target_changed(),
     );
   }
 
@@ -286,6 +288,32 @@ export class ModelSession {
   }
   get can_curate(): boolean {
     return may_curate(this.role);
+  }
+
+  /** To this person: curators change locked layers, too. */
+  is_locked(layer: Layer): boolean {
+    return layer.locked && !this.can_curate;
+  }
+
+  /** The chosen layer, where a tool is in hand that would change its texels but may not. */
+  get locked_target(): Layer | null {
+    const { selected } = this.layers;
+    const { active } = this.tools;
+    const paints = kPaintingTools.includes(active) && !kMarkingTools.includes(active);
+    return paints && selected && this.is_locked(selected) ? selected : null;
+  }
+
+  /** Another tool, another layer, or another lock: who cannot paint any more is told so once, before they try. */
+  private target_changed(): void {
+    const locked = this.locked_target;
+    const told = this.told_locked_;
+    this.told_locked_ = locked?.id ?? null;
+    if (locked && locked.id !== told) {
+      this.painting.break_off();
+      this.tools.stop();
+      notices.show("problem", texts.layers.locked, texts.layers.locked_detail(locked.name));
+    }
+    this.changed();
   }
 
   private changed(): void {

@@ -21,6 +21,7 @@ export interface PaintingHost {
   model(): Model | null;
   records: RecordLabels;
   may_paint(): boolean;
+  is_locked(layer: Layer): boolean; // to this person
   changed(): void;
 }
 
@@ -28,6 +29,7 @@ export class Painting {
   readonly brush = new BrushSettings();
   stroking = false; // or an outline is being drawn
 
+  private stroke_: StrokeHandle | null = null;
   private after_stroke_: (() => void)[] = [];
   private readonly whole_edits_ = new Set<string>(); // sent and not answered
 
@@ -81,12 +83,19 @@ export class Painting {
       return null;
     }
     this.stroking = true;
+    this.stroke_ = stroke;
     this.host_.changed();
     return stroke;
   }
 
+  /** Nothing more of the stroke is sent, whatever is still drawn. What was painted stays. */
+  break_off(): void {
+    this.stroke_?.end();
+  }
+
   stroke_ended(): void {
     this.stroking = false;
+    this.stroke_ = null;
     for (const action of this.after_stroke_.splice(0)) action();
     this.host_.changed();
   }
@@ -106,6 +115,7 @@ export class Painting {
   }
 
   fill(layer: Layer): void {
+    if (this.refuses(layer)) return;
     this.send_edit(layer, { op: "fill", value: this.brush.value_of(layer), mode: "where", where: "true" });
   }
 
@@ -166,7 +176,7 @@ export class Painting {
 
   private send_history(op: "undo" | "redo"): void {
     const layer = this.host_.layers.selected;
-    if (!layer || this.stroking) return;
+    if (!layer || this.stroking || this.refuses(layer)) return;
     this.report_unsent(this.host_.connection.send_change({ op, id: new_id(), layer: layer.id }));
   }
 
@@ -182,8 +192,20 @@ export class Painting {
     return wrong ? null : value;
   }
 
-  /** The chosen layer, which is made visible; null: there is none to change, and the person was told why. */
-  layer_to_paint(): Layer | null {
+  /** The chosen layer, whose texels may be changed; otherwise as `chosen_layer`. */
+  private layer_to_paint(): Layer | null {
+    const layer = this.chosen_layer();
+    return layer && this.refuses(layer) ? null : layer;
+  }
+
+  private refuses(layer: Layer): boolean {
+    const locked = this.host_.is_locked(layer);
+    if (locked) notices.show("problem", texts.layers.locked, texts.layers.locked_detail(layer.name));
+    return locked;
+  }
+
+  /** It is made visible; null: there is none to add to, and the person was told why. */
+  chosen_layer(): Layer | null {
     const { layers } = this.host_;
     if (!this.host_.may_paint()) {
       notices.show("problem", texts.brush.viewer_only);

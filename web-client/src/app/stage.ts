@@ -56,6 +56,9 @@ export class StrataStage extends LitElement {
       .surface.paint {
         cursor: none;
       }
+      .surface.locked {
+        cursor: not-allowed;
+      }
       .surface.orbit {
         cursor: grab;
       }
@@ -210,10 +213,11 @@ export class StrataStage extends LitElement {
   override render(): TemplateResult {
     const { session } = this;
     const tool = session.tools.active;
-    const paints = tool === "brush" || tool === "eraser";
+    const locked = session.locked_target !== null;
+    const paints = !locked && (tool === "brush" || tool === "eraser");
     const aims = tool === "polygon" || tool === "lasso" || tool === "bucket" || tool === "pick" || tool === "line" || tool === "point";
     return html`<div
-        class="surface ${paints ? "paint" : aims ? "aim" : tool}"
+        class="surface ${locked ? "locked" : paints ? "paint" : aims ? "aim" : tool}"
         tabindex="0"
         role="application"
         aria-label=${texts.model.stage}

@@ -584,6 +584,12 @@ export const texts = {
     statistics: "Areas…",
     save_default: "Save as default for everyone",
     reset_default: "Back to the default",
+    lock: "Lock",
+    unlock: "Unlock",
+    locked: "Layer locked", // this and the next as the server says it, so that one notice stands for both
+    locked_detail: (name: string) => `The layer ${name} is locked: a curator can unlock it.`,
+    locked_to_you: "Locked: a curator can unlock it.",
+    locked_to_others: "Locked for annotators. You may still change it.",
     widen: "Room for more records…",
     widen_title: (layer: string) => `Room for more records in “${layer}”?`,
     widen_lead: (highest: number) => `It holds keys up to ${highest.toLocaleString("en-GB")}. Afterwards it holds all keys and takes more memory; what is painted and its history stay.`,

@@ -45,7 +45,7 @@ export class ToolManager {
     return this.active_.key?.(key) ?? false;
   }
 
-  /** Nobody uses the tools any more. */
+  /** Ends what is under way. */
   stop(): void {
     this.cancel();
     this.active_.deactivate();
