@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -7,8 +9,8 @@
 
 namespace strata {
 
-// Ascending: each may do what the ones before may.
-enum class Role { viewer, annotator, curator, administrator, owner };
+// Ascending: each may do what the ones before may. A guest sees nothing of any project.
+enum class Role { guest, viewer, annotator, curator, administrator, owner };
 std::optional<Role> parse_role(std::string_view name);
 std::string_view name(Role role);
 
@@ -17,6 +19,17 @@ struct Author {
   Author(std::string name, Role may) : user(std::move(name)), role(may) {}
   std::string user;
   Role role;
+};
+
+// What somebody may do.
+struct Roles {
+  Role everywhere = Role::guest;
+  std::map<std::int64_t, Role> in_projects{};  // by the project's id
+
+  Role in(std::int64_t project) const;  // the higher one
+  Role highest() const;
+  Roles at_most(Role role) const;
+  bool operator==(const Roles&) const = default;
 };
 
 }  // namespace strata

@@ -72,7 +72,7 @@ struct JobQueue::Impl {
   void end(Job& job, Result<JobResult> result) {
     job.work = nullptr;
     if (result) {
-      job.status = {job.status.id, JobState::done, 1.0, "Done", std::nullopt, std::move(*result)};
+      job.status = {job.status.id, job.status.project, JobState::done, 1.0, "Done", std::nullopt, std::move(*result)};
       return;
     }
     job.status.progress = job.progress->fraction();
@@ -123,7 +123,7 @@ JobQueue::~JobQueue() {
   impl_->thread.join();
 }
 
-Result<std::int64_t> JobQueue::add(Work work) {
+Result<std::int64_t> JobQueue::add(std::int64_t project, Work work) {
   std::lock_guard lock(impl_->mutex);
   if (impl_->stopping) return fail(503, "Server stops", "The server is stopping and takes no new work.");
   if (impl_->waiting.size() >= kMaxWaiting)
@@ -133,6 +133,7 @@ Result<std::int64_t> JobQueue::add(Work work) {
   Job& job = impl_->jobs[id];
   job.work = std::move(work);
   job.status.id = id;
+  job.status.project = project;
   job.status.message = "Waiting";
   impl_->waiting.push_back(id);
   impl_->changed.notify_all();

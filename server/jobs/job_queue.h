@@ -24,6 +24,7 @@ struct JobResult {
 
 struct JobStatus {
   std::int64_t id = 0;
+  std::int64_t project = 0;  // whose members may know of it
   JobState state = JobState::queued;
   double progress = 0;
   std::string message;
@@ -38,7 +39,7 @@ class JobQueue {
   JobQueue();
   ~JobQueue();  // cancels what runs, joins
   using Work = std::function<Result<JobResult>(Progress&)>;
-  Result<std::int64_t> add(Work work);  // refused (503) when 64 wait
+  Result<std::int64_t> add(std::int64_t project, Work work);  // refused (503) when 64 wait
   std::optional<JobStatus> status(std::int64_t id) const;
   std::vector<JobStatus> all() const;  // newest first
   bool cancel(std::int64_t id);

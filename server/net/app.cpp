@@ -4,6 +4,7 @@
 
 #include "core/log.h"
 #include "net/origin.h"
+#include "net/project_gate.h"
 
 namespace strata::net {
 namespace {
@@ -59,6 +60,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_auth_routes(router_, context_);
   add_people_routes(router_, context_);
   add_project_routes(router_, context_);
+  add_member_routes(router_, context_);
   add_model_routes(router_, context_);
   add_import_routes(router_, context_);
   add_job_routes(router_, context_);
@@ -129,15 +131,15 @@ const Route* App::find_route(Request& request, Response& refusal) const {
   return nullptr;
 }
 
-Result<void> App::identify(Request& request, std::optional<Role> least) {
+Result<void> App::identify(Request& request, Role least, bool project_in_query) {
   auto principal = auth_.identify(request);
   if (!principal) return tl::unexpected(principal.error());
   request.principal = std::move(*principal);
-  if (!least) return {};
   if (!request.principal) return fail(401, "Not signed in", "Sign in, or send `Authorization: Bearer TOKEN`.");
-  if (request.principal->role < *least)
+  if (auto inside = enter_project(context_, request, project_in_query); !inside) return inside;
+  if (request.principal->role < least)
     return fail(403, "Not allowed",
-                "This takes the role " + std::string(name(*least)) + "; yours is " +
+                "This takes the role " + std::string(name(least)) + "; yours is " +
                     std::string(name(request.principal->role)) + ".");
   return {};
 }
@@ -145,7 +147,8 @@ Result<void> App::identify(Request& request, std::optional<Role> least) {
 std::optional<Response> App::admit(Request& request, const Route& route) {
   // What is open to everyone must work with a stale cookie, too: the page itself, signing in, health.
   if (route.role)
-    if (auto known = identify(request, route.role); !known) return problem_response(known.error());
+    if (auto known = identify(request, *route.role, route.project_in_query); !known)
+      return problem_response(known.error());
   if (changes(request.method))
     if (auto own = check_same_origin(request, options_.allowed_origins); !own) return problem_response(own.error());
   if (auto known = check_query(route, request); !known) return problem_response(known.error());
@@ -159,7 +162,8 @@ std::optional<Response> App::admit(Request& request, const Route& route) {
 std::optional<Response> App::admit_again(Request& request, const Route& route) {
   if (!route.role) return std::nullopt;
   const std::string user = request.user();
-  if (auto known = identify(request, route.role); !known) return problem_response(known.error());
+  if (auto known = identify(request, *route.role, route.project_in_query); !known)
+    return problem_response(known.error());
   if (request.user() != user) return problem_response({401, "Not signed in", "Somebody else is signed in now.", {}});
   return std::nullopt;
 }
@@ -195,6 +199,7 @@ bool App::is_live_address(const Request& request) {
 }
 
 Result<App::LiveEntry> App::admit_live(Request& request) {
+  request.params["model"] = request.segments[3];
   if (auto known = identify(request, Role::viewer); !known) return tl::unexpected(known.error());
   if (auto own = check_upgrade_origin(request, options_.allowed_origins); !own) return tl::unexpected(own.error());
   auto room = rooms_.open(request.segments[3]);
@@ -204,9 +209,9 @@ Result<App::LiveEntry> App::admit_live(Request& request) {
   return LiveEntry{std::move(*room), project->slug, *request.principal, Authenticator::secret_of(request)};
 }
 
-bool App::is_still_welcome(const std::string& secret, Role role) {
+bool App::is_still_welcome(const std::string& secret, std::int64_t project_id, Role role) {
   auto principal = auth_.identify_token(secret);
-  return !principal || (*principal && (*principal)->role == role);
+  return !principal || (*principal && (*principal)->roles.in(project_id) == role);
 }
 
 std::shared_ptr<LiveSession> App::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) {

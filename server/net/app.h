@@ -51,14 +51,15 @@ class App {
   };
   Result<LiveEntry> admit_live(Request& request);
   std::shared_ptr<LiveSession> make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket);
-  // Whether who came in with this may stay as who it was (blocks). While the database is away nobody is sent out.
-  bool is_still_welcome(const std::string& secret, Role role);
+  // Whether who came in with this may stay in the project as who it was (blocks). While the database is away nobody is sent out.
+  bool is_still_welcome(const std::string& secret, std::int64_t project_id, Role role);
   LiveSockets& live_sockets() { return live_sockets_; }
 
   void stop_workers();
 
  private:
-  Result<void> identify(Request& request, std::optional<Role> least);
+  // Who asks, and that they may do there what takes the role.
+  Result<void> identify(Request& request, Role least, bool project_in_query = false);
 
   const ServerOptions options_;
   store::Store& store_;

@@ -24,7 +24,8 @@ Authenticator::Authenticator(store::Store& store, std::string owner_token)
 
 Result<std::optional<Principal>> Authenticator::identify_token(const std::string& token) {
   if (token.empty() || token.size() > kMaxTokenLength) return std::nullopt;
-  if (!owner_token_.empty() && equal_in_constant_time(token, owner_token_)) return Principal{"owner", Role::owner};
+  if (!owner_token_.empty() && equal_in_constant_time(token, owner_token_))
+    return Principal{.user = "owner", .role = Role::owner, .roles = {Role::owner, {}}};
   const auto now = std::chrono::steady_clock::now();
   const std::string key = sha256_hex(token);
   std::uint64_t changes = 0;
@@ -41,7 +42,9 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
   // Links are traded for sessions; they are no tokens of their own.
   using store::TokenKind;
   if (!*stored || ((*stored)->kind != TokenKind::session && (*stored)->kind != TokenKind::script)) return std::nullopt;
-  Principal principal{(*stored)->user, (*stored)->role, false, (*stored)->kind == TokenKind::script, (*stored)->token};
+  const Roles& roles = (*stored)->roles;
+  Principal principal{
+      (*stored)->user, roles.everywhere, false, (*stored)->kind == TokenKind::script, (*stored)->token, roles};
   std::lock_guard lock(mutex_);
   if (changes != changes_) return principal;  // what was read may be of before
   if (remembered_.size() >= kMaxRemembered) remembered_.clear();

@@ -23,13 +23,17 @@ namespace strata::net {
 enum class Method { get, head, post, put, patch, remove, options, unknown };
 std::string_view name(Method method);
 
-// Who asks. `by_cookie`: the browser sent the secret by itself, so changing calls must prove where they come from.
+// Who asks. `role`: what they may do where the address leads. `by_cookie`: the browser sent the secret by itself, so changing calls
+// must prove where they come from.
 struct Principal {
   std::string user;
   Role role = Role::viewer;
   bool by_cookie = false;
   bool is_script = false;   // it came with a token for scripts
   std::int64_t secret = 0;  // id of the session or token; 0: the owner's token of the environment
+  Roles roles{};
+
+  bool sees(std::int64_t project) const { return roles.in(project) >= Role::viewer; }
 };
 
 using Headers = std::vector<std::pair<std::string, std::string>>;

@@ -22,8 +22,8 @@ void JobBook::started(const Request& request, std::int64_t job) {
   started_[key] = {job, fingerprint(request)};
 }
 
-Result<std::int64_t> JobBook::finished(const Request& request, jobs::JobResult result) {
-  auto job = jobs_.add([result = std::move(result)](Progress&) -> Result<jobs::JobResult> { return result; });
+Result<std::int64_t> JobBook::finished(const Request& request, std::int64_t project, jobs::JobResult result) {
+  auto job = jobs_.add(project, [result = std::move(result)](Progress&) -> Result<jobs::JobResult> { return result; });
   if (job) started(request, *job);
   return job;
 }

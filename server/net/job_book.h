@@ -18,7 +18,7 @@ class JobBook {
   Result<std::optional<std::int64_t>> find(const Request& request);
   void started(const Request& request, std::int64_t job);
   // The job that an earlier server finished.
-  Result<std::int64_t> finished(const Request& request, jobs::JobResult result);
+  Result<std::int64_t> finished(const Request& request, std::int64_t project, jobs::JobResult result);
 
  private:
   struct Started {

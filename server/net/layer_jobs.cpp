@@ -31,14 +31,15 @@ Result<Response> start_layer_job(const RouteContext& context, JobBook& book, con
   auto known = book.find(request);
   if (!known) return tl::unexpected(known.error());
   if (*known) return std::move(job_response(context, **known).with("Idempotency-Replayed", "true"));
-  auto job = context.jobs.add([&metrics = context.metrics, room, make = std::move(make), author = request.author(),
-                               key = scoped_key(request),
-                               print = fingerprint(request)](Progress& progress) -> Result<jobs::JobResult> {
-    NewLayers layers(room, metrics, author);
-    auto done = run(*room, layers, make, key, print, progress);
-    if (!done) layers.take_back();
-    return done;
-  });
+  auto job = context.jobs.add(
+      room->model().project_id,
+      [&metrics = context.metrics, room, make = std::move(make), author = request.author(), key = scoped_key(request),
+       print = fingerprint(request)](Progress& progress) -> Result<jobs::JobResult> {
+        NewLayers layers(room, metrics, author);
+        auto done = run(*room, layers, make, key, print, progress);
+        if (!done) layers.take_back();
+        return done;
+      });
   if (!job) return tl::unexpected(job.error());
   book.started(request, *job);
   return job_response(context, *job);
@@ -52,7 +53,9 @@ Result<Response> repeat_layer_job(const RouteContext& context, JobBook& book, co
   jobs::JobResult result(kept.at("model").get<std::int64_t>());
   result.layers = kept.at("layers").get<std::vector<std::int64_t>>();
   result.report = kept.at("report");
-  auto job = book.finished(request, std::move(result));
+  const auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  auto job = book.finished(request, model->project_id, std::move(result));
   if (!job) return tl::unexpected(job.error());
   return job_response(context, *job);
 }

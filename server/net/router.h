@@ -20,9 +20,11 @@ struct Route {
   Method method = Method::get;
   std::string pattern;  // "/api/v1/models/{model}/texels.{format}": one {name} per segment
   Handler handler;
-  std::optional<Role> role = Role::viewer;  // least role that may call it; empty: open to everyone
-  std::vector<std::string> query{};         // parameters it knows; others are refused
+  // Least role that may call it: in the project that it leads into, or everywhere. Empty: open to everyone.
+  std::optional<Role> role = Role::viewer;
+  std::vector<std::string> query{};  // parameters it knows; others are refused
   bool any_query = false;
+  bool project_in_query = false;  // leads into the project that the query names
   // Refuses by what stands in the address, before the body is read.
   std::function<Result<void>(const Request& request)> check{};
   BodyKind body = BodyKind::none;

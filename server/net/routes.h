@@ -40,6 +40,7 @@ void add_system_routes(Router& router, const RouteContext& context);
 void add_auth_routes(Router& router, const RouteContext& context);
 void add_people_routes(Router& router, const RouteContext& context);
 void add_project_routes(Router& router, const RouteContext& context);
+void add_member_routes(Router& router, const RouteContext& context);
 void add_model_routes(Router& router, const RouteContext& context);
 void add_import_routes(Router& router, const RouteContext& context);
 void add_job_routes(Router& router, const RouteContext& context);

@@ -157,11 +157,11 @@ Result<Response> end_others(const RouteContext& context, const Request& request)
 Result<Response> create_token(const RouteContext& context, const Request& request) {
   const auto asked = body_of<protocol::ScriptTokenCreate>(request);
   if (!asked) return tl::unexpected(asked.error());
-  const Role own = request.principal->role;
+  const Role own = request.principal->roles.highest();
   const Role role = asked->role ? static_cast<Role>(static_cast<int>(*asked->role)) : own;
   if (role > own)
-    return fail(403, "Not allowed", "Your role is " + std::string(name(own)) + ": a token of yours can do no more.",
-                "role");
+    return fail(403, "Not allowed",
+                "Your highest role is " + std::string(name(own)) + ": a token of yours can do no more.", "role");
   const auto made = context.store.create_token(TokenKind::script, request.user(), role,
                                                std::chrono::hours(24 * asked->days), asked->name);
   if (!made) return tl::unexpected(made.error());
@@ -179,6 +179,7 @@ void add_auth_routes(Router& router, const RouteContext& context) {
     router.add({.method = method,
                 .pattern = std::move(pattern),
                 .handler = answering(answer),
+                .role = Role::guest,
                 .check = check_no_script,
                 .body = has_body ? BodyKind::memory : BodyKind::none,
                 .max_body = has_body ? context.options.max_json_bytes : 0});
@@ -207,11 +208,14 @@ void add_auth_routes(Router& router, const RouteContext& context) {
        .max_body = context.options.max_json_bytes});
   router.add({.method = Method::post,
               .pattern = "/api/v1/logout",
-              .handler = answering([&context](const Request& request) { return sign_out(context, request); })});
-  router.add({.method = Method::get, .pattern = "/api/v1/me", .handler = answering([&context](const Request& request) {
-                                                                return who_is_signed_in(context, request.user(),
-                                                                                        request.principal->role);
-                                                              })});
+              .handler = answering([&context](const Request& request) { return sign_out(context, request); }),
+              .role = Role::guest});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/me",
+              .handler = answering([&context](const Request& request) {
+                return who_is_signed_in(context, request.user(), request.principal->role);
+              }),
+              .role = Role::guest});
   add(Method::patch, "/api/v1/me", [&context](const Request& request) { return change_me(context, request); });
   add(Method::post, "/api/v1/me/password",
       [&context, gate](const Request& request) { return change_password(context, *gate, request); });

@@ -110,12 +110,15 @@ Result<Response> start_import(const RouteContext& context, JobBook& book, const 
   const store::FirstAnswer<Model> answer{scoped_key(request), [print = fingerprint(request)](const Model& model) {
                                            return nlohmann::json{{"request", print}, {"model", model.id}};
                                          }};
-  auto job = context.jobs.add([&store = context.store, asked = *asked, kept = std::move(kept),
+  const auto project = context.store.project(asked->project);
+  if (!project) return tl::unexpected(project.error());
+  auto job = context.jobs.add(project->id,
+                              [&store = context.store, asked = *asked, kept = std::move(kept),
                                answer](Progress& progress) -> Result<jobs::JobResult> {
-    auto model = jobs::import_model(store, asked, progress, answer);
-    if (!model) return tl::unexpected(model.error());
-    return model->id;
-  });
+                                auto model = jobs::import_model(store, asked, progress, answer);
+                                if (!model) return tl::unexpected(model.error());
+                                return model->id;
+                              });
   if (!job) return tl::unexpected(job.error());
   book.started(request, *job);
   return job_response(context, *job);
@@ -126,7 +129,10 @@ Result<Response> repeat_import(const RouteContext& context, JobBook& book, const
                                const nlohmann::json& kept) {
   auto known = book.find(request);
   if (!known) return tl::unexpected(known.error());
-  auto job = *known ? Result<std::int64_t>(**known) : book.finished(request, kept.at("model").get<std::int64_t>());
+  if (*known) return job_response(context, **known);
+  const auto project = context.store.project(request.query_or("project", "default"));
+  if (!project) return tl::unexpected(project.error());
+  auto job = book.finished(request, project->id, kept.at("model").get<std::int64_t>());
   if (!job) return tl::unexpected(job.error());
   return job_response(context, *job);
 }
@@ -141,6 +147,7 @@ void add_import_routes(Router& router, const RouteContext& context) {
        .handler = answering([&context, book](const Request& request) { return start_import(context, *book, request); }),
        .role = Role::curator,
        .query = {"name", "project", "unit", "up", "crs", "resolution", "filename", "weld", "strict"},
+       .project_in_query = true,
        .check = [&context](const Request& request) { return check_import(context, request); },
        .body = BodyKind::file,
        .max_body = context.options.max_upload_bytes,

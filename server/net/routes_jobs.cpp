@@ -23,7 +23,8 @@ void add_job_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context](const Request& request) -> Result<Response> {
                 auto page = page_of(request);
                 if (!page) return tl::unexpected(page.error());
-                const auto all = context.jobs.all();
+                auto all = context.jobs.all();
+                std::erase_if(all, [&](const auto& job) { return !request.principal->sees(job.project); });
                 nlohmann::json list = nlohmann::json::array();
                 const int total = static_cast<int>(all.size());
                 for (int i = page->offset; i < total && i < page->offset + page->limit; ++i)
@@ -32,6 +33,7 @@ void add_job_routes(Router& router, const RouteContext& context) {
                 add_page_links(response, request, *page, total);
                 return response;
               }),
+              .role = Role::guest,
               .query = {"limit", "offset"}});
   router.add({.method = Method::get,
               .pattern = "/api/v1/jobs/{job}",

@@ -1,7 +1,7 @@
 #include <map>
 
 #include "net/answer_book.h"
-#include "net/routes.h"
+#include "net/project_gate.h"
 
 namespace strata::net {
 namespace {
@@ -27,12 +27,14 @@ Result<Response> list_models(const RouteContext& context, const Request& request
   for (const auto& project : *projects) slugs[project.id] = project.slug;
   std::optional<std::int64_t> only;
   if (auto wanted = request.query.find("project"); wanted != request.query.end()) {
+    if (auto seen = check_seen(context, request, wanted->second, "project"); !seen) return tl::unexpected(seen.error());
     auto project = context.store.project(wanted->second);
     if (!project) return tl::unexpected(project.error());
     only = project->id;
   }
   auto models = context.store.models(only);
   if (!models) return tl::unexpected(models.error());
+  std::erase_if(*models, [&](const Model& model) { return !request.principal->sees(model.project_id); });
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(models->size());
   for (int i = page->offset; i < total && i < page->offset + page->limit; ++i)
@@ -120,6 +122,7 @@ void add_model_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models",
               .handler = answering([&context](const Request& request) { return list_models(context, request); }),
+              .role = Role::guest,
               .query = {"project", "limit", "offset"}});
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}",

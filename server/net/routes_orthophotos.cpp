@@ -101,6 +101,7 @@ Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, By
         return nlohmann::json{{"request", print}, {"model", model}, {"look", look.id}};
       }};
   auto job = context.jobs.add(
+      model.project_id,
       [room = *room, wish = std::move(*wish), answer,
        map = std::make_shared<const MapPicture>(std::move(*map))](Progress& progress) -> Result<jobs::JobResult> {
         auto look = bake(*room, wish, *map, answer, progress);
@@ -121,7 +122,9 @@ Result<Response> repeat_orthophoto(const RouteContext& context, JobBook& book, c
   if (*known) return job_response(context, **known);
   jobs::JobResult result(kept.at("model").get<std::int64_t>());
   result.look = kept.at("look").get<std::int64_t>();
-  auto job = book.finished(request, std::move(result));
+  const auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  auto job = book.finished(request, model->project_id, std::move(result));
   if (!job) return tl::unexpected(job.error());
   return job_response(context, *job);
 }

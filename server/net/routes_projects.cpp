@@ -9,9 +9,14 @@ Result<Response> list_projects(const RouteContext& context, const Request& reque
   if (!page) return tl::unexpected(page.error());
   auto projects = context.store.projects();
   if (!projects) return tl::unexpected(projects.error());
+  std::erase_if(*projects, [&](const Project& project) { return !request.principal->sees(project.id); });
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(projects->size());
-  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json((*projects)[i]));
+  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) {
+    const Project& project = (*projects)[i];
+    list.push_back(to_json(project));
+    list.back()["role"] = std::string(name(request.principal->roles.in(project.id)));
+  }
   Response response = json_response({{"projects", list}, {"total", total}});
   add_page_links(response, request, *page, total);
   return response;
@@ -56,6 +61,7 @@ void add_project_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/projects",
               .handler = answering([&context](const Request& request) { return list_projects(context, request); }),
+              .role = Role::guest,
               .query = {"limit", "offset"}});
   router.add({.method = Method::post,
               .pattern = "/api/v1/projects",

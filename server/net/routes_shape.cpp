@@ -41,9 +41,9 @@ Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& sourc
 }
 
 Result<jobs::TransferRequest> transfer_request(store::Store& store, const protocol::Transfer& asked,
-                                               const Model& target) {
+                                               const Model& target, const Principal& who) {
   auto source = store.model(asked.from);
-  if (!source && source.error().status == 404)
+  if (source ? !who.sees(source->project_id) : source.error().status == 404)
     return fail(422, "No such model", "There is no model \"" + asked.from + "\".", "from");
   if (!source) return tl::unexpected(source.error());
   if (source->id == target.id)
@@ -117,7 +117,7 @@ Result<Response> start_transfer(const RouteContext& context, JobBook& book, cons
   if (!asked) return tl::unexpected(asked.error());
   auto room = context.rooms.open(request.param("model"));
   if (!room) return tl::unexpected(room.error());
-  auto wish = transfer_request(context.store, *asked, (*room)->model());
+  auto wish = transfer_request(context.store, *asked, (*room)->model(), *request.principal);
   if (!wish) return tl::unexpected(wish.error());
   return start_layer_job(
       context, book, request, *room,

@@ -164,6 +164,7 @@ void add_template_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/templates",
               .handler = answering([&context](const Request& request) { return list_templates(context, request); }),
+              .role = Role::guest,
               .query = {"limit", "offset"}});
   router.add({.method = Method::post,
               .pattern = "/api/v1/projects/{project}/templates/{template}",

@@ -117,9 +117,10 @@ Result<Response> tool_picture(const RouteContext& context, const Request& reques
 
 void add_tool_routes(Router& router, const RouteContext& context) {
   const std::string tools = "/api/v1/tools";
-  router.add({.method = Method::get, .pattern = tools, .handler = answering([&context](const Request&) {
-                                                         return list_tools(context);
-                                                       })});
+  router.add({.method = Method::get,
+              .pattern = tools,
+              .handler = answering([&context](const Request&) { return list_tools(context); }),
+              .role = Role::guest});
   router.add({.method = Method::post,
               .pattern = tools,
               .handler = answering([&context](const Request& request) { return create_tool(context, request); }),
@@ -139,7 +140,8 @@ void add_tool_routes(Router& router, const RouteContext& context) {
                 auto tool = context.store.tool(request.param("tool"));
                 if (!tool) return tl::unexpected(tool.error());
                 return with_etag(json_response(to_json(*tool)), request, tool->version);
-              })});
+              }),
+              .role = Role::guest});
   router.add({.method = Method::patch,
               .pattern = tools + "/{tool}",
               .handler = answering([&context](const Request& request) { return rename_tool(context, request); }),
@@ -154,7 +156,8 @@ void add_tool_routes(Router& router, const RouteContext& context) {
               .keeps_answer = true});
   router.add({.method = Method::get,
               .pattern = tools + "/{tool}/picture",
-              .handler = answering([&context](const Request& request) { return tool_picture(context, request); })});
+              .handler = answering([&context](const Request& request) { return tool_picture(context, request); }),
+              .role = Role::guest});
 }
 
 }  // namespace strata::net

@@ -50,9 +50,8 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
     prepare();
     auto [accept_error] = co_await ws_.async_accept(request, kUseResult);
     if (!accept_error) {
-      const auto watch = [self, secret = entry.secret, role = entry.principal.role] {
-        return self->watch_sign_in(secret, role);
-      };
+      const auto watch = [self, secret = entry.secret, project_id = entry.room->model().project_id,
+                          role = entry.principal.role] { return self->watch_sign_in(secret, project_id, role); };
       live_ = connections_->app.make_session(std::move(entry), weak_from_this());
       asio::co_spawn(ws_.get_executor(), watch, asio::detached);
       co_await read();
@@ -124,12 +123,12 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
   }
 
   // A session may be ended, or a token revoked, by another server or by its age.
-  asio::awaitable<void> watch_sign_in(std::string secret, Role role) {
+  asio::awaitable<void> watch_sign_in(std::string secret, std::int64_t project_id, Role role) {
     auto self = shared_from_this();
     // First at once: accounts may have changed while the model was opened.
     while (!over_ && !closing_) {
-      const Work ask = [&app = connections_->app, secret, role](const Respond& respond) {
-        respond(empty_response(app.is_still_welcome(secret, role) ? 200 : 401));
+      const Work ask = [&app = connections_->app, secret, project_id, role](const Respond& respond) {
+        respond(empty_response(app.is_still_welcome(secret, project_id, role) ? 200 : 401));
       };
       const Response answer = co_await on_worker(connections_, ws_.get_executor(), ask);
       if (answer.status == 401) start_close(kClosePolicy, "signed out");

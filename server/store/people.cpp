@@ -136,7 +136,7 @@ struct Found {
 };
 Result<std::optional<Found>> find(PgConnection& connection, const std::string& secret) {
   auto row = connection.query(
-      "SELECT u.name, u.role, t.role, t.kind, t.id, coalesce(t.last_used > now() - interval '5 minutes', false) "
+      "SELECT u.name, u.role, t.role, t.kind, t.id, u.id, coalesce(t.last_used > now() - interval '5 minutes', false) "
       "FROM (SELECT * FROM tokens WHERE hash = $1 AND " STRATA_GOOD_TOKEN
       ") t JOIN users u ON u.name = t.user_name "
       "WHERE u.disabled IS NULL AND u.deleted IS NULL",
@@ -146,8 +146,14 @@ Result<std::optional<Found>> find(PgConnection& connection, const std::string& s
   const auto persons = parse_role(row->text(0, 1)), own = parse_role(row->text(0, 2));
   const auto kind = parse_kind(row->text(0, 3));
   if (!persons || !own || !kind) return std::optional<Found>();  // of a later version
-  const Role role = *kind == TokenKind::script ? std::min(*persons, *own) : *persons;
-  return std::optional<Found>({{row->text(0, 0), role, *kind, row->integer(0, 4)}, row->boolean(0, 5)});
+  Roles roles{*persons, {}};
+  auto members = connection.query("SELECT project_id, role FROM project_members WHERE user_id = $1",
+                                  Params().integer(row->integer(0, 5)));
+  if (!members) return tl::unexpected(members.error());
+  for (int i = 0; i < members->rows(); ++i)
+    if (const auto role = parse_role(members->text(i, 1))) roles.in_projects[members->integer(i, 0)] = *role;
+  if (*kind == TokenKind::script) roles = roles.at_most(*own);
+  return std::optional<Found>({{row->text(0, 0), std::move(roles), *kind, row->integer(0, 4)}, row->boolean(0, 6)});
 }
 
 Result<void> put_password(PgConnection& connection, const std::string& user, const std::string& hash,
@@ -240,6 +246,8 @@ Result<void> Store::delete_person(const std::string& name) {
     if (!person) return tl::unexpected(person.error());
     auto ended = run(connection, "DELETE FROM tokens WHERE user_name = $1", Params().text(person->name));
     if (!ended) return ended;
+    auto left = run(connection, "DELETE FROM project_members WHERE user_id = $1", Params().integer(person->id));
+    if (!left) return left;
     const std::string former = std::string(kFormer) + std::to_string(person->id);
     for (const char* sql :
          {"UPDATE users SET name = $2, full_name = '', password = NULL, deleted = now() WHERE name = $1",
@@ -251,6 +259,51 @@ Result<void> Store::delete_person(const std::string& name) {
     return run(connection,
                "DELETE FROM answers WHERE position('\"' || $1 || '\"' IN replace(answer::text, '\\', '')) > 0",
                Params().text(person->name));
+  });
+}
+
+Result<std::vector<Membership>> Store::members(std::int64_t project_id) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Membership>> {
+    auto rows = connection.query("SELECT " STRATA_PERSON_COLUMNS
+                                 ", in_project FROM users JOIN "
+                                 "(SELECT user_id, role AS in_project FROM project_members WHERE project_id = $1) m "
+                                 "ON user_id = id ORDER BY lower(name)",
+                                 Params().integer(project_id));
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<Membership> members;
+    for (int i = 0; i < rows->rows(); ++i)
+      members.push_back({read_person(*rows, i), parse_role(rows->text(i, 8)).value_or(Role::viewer)});
+    return members;
+  });
+}
+
+Result<Membership> Store::put_member(std::int64_t project_id, const std::string& user, Role role) {
+  if (role < Role::viewer || role > Role::curator)
+    return fail(422, "No role in a project", "In a project people are viewer, annotator or curator.", "role");
+  return impl_->pool.write([&](PgConnection& connection) -> Result<Membership> {
+    auto person = lock_person(connection, user);
+    if (!person) return tl::unexpected(person.error());
+    auto project = connection.query("SELECT 1 FROM projects WHERE id = $1 FOR KEY SHARE", Params().integer(project_id));
+    if (!project) return tl::unexpected(project.error());
+    if (project->rows() == 0) return not_found("project", std::to_string(project_id));
+    auto put = run(connection,
+                   "INSERT INTO project_members (project_id, user_id, role) VALUES ($1, $2, $3) "
+                   "ON CONFLICT (project_id, user_id) DO UPDATE SET role = excluded.role",
+                   Params().integer(project_id).integer(person->id).text(strata::name(role)));
+    if (!put) return tl::unexpected(put.error());
+    return Membership{std::move(*person), role};
+  });
+}
+
+Result<void> Store::remove_member(std::int64_t project_id, const std::string& user) {
+  return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
+    auto person = lock_person(connection, user);
+    if (!person) return tl::unexpected(person.error());
+    auto gone = connection.query("DELETE FROM project_members WHERE project_id = $1 AND user_id = $2 RETURNING 1",
+                                 Params().integer(project_id).integer(person->id));
+    if (!gone) return tl::unexpected(gone.error());
+    if (gone->rows() == 0) return not_found("member", user);
+    return {};
   });
 }
 

@@ -54,10 +54,16 @@ struct NewToken {
   Token token;
 };
 
+// Somebody's role in one project: viewer, annotator or curator.
+struct Membership {
+  Person person;
+  Role role = Role::viewer;
+};
+
 // Who a secret speaks for, and as what.
 struct Principal {
   std::string user;
-  Role role = Role::viewer;
+  Roles roles;
   TokenKind kind = TokenKind::session;
   std::int64_t token = 0;  // its id
 };

@@ -289,6 +289,12 @@ class Store {
   Result<Person> change_person(std::int64_t id, const PersonChange& change);
   // Their account ends, and what they did stays under a name that tells nothing, here and in all journals. Disable them first.
   Result<void> delete_person(const std::string& name);
+  // Who has a role in the project beside the one they have everywhere, by name.
+  Result<std::vector<Membership>> members(std::int64_t project_id);
+  // Gives the role (viewer, annotator or curator) in place of the one they had there. 404: the project or the person is not there.
+  Result<Membership> put_member(std::int64_t project_id, const std::string& user, Role role);
+  // 404: the person has no role of their own there.
+  Result<void> remove_member(std::int64_t project_id, const std::string& user);
   // The hash (store/password.h); empty where there is none, or nobody of the name who may sign in. In whatever case.
   Result<std::string> password_of(const std::string& name);
   // Ends all sessions but `kept`, and makes all links worthless.

@@ -23,7 +23,7 @@ TEST(Tokens, a_token_is_found_until_it_is_revoked_or_expires) {
   const auto found = store->find_token(token).value();
   ASSERT_TRUE(found);
   EXPECT_EQ(found->user, "Ada");
-  EXPECT_EQ(found->role, Role::owner);
+  EXPECT_EQ(found->roles.everywhere, Role::owner);
   EXPECT_EQ(found->kind, TokenKind::script);
   ASSERT_TRUE(store->revoke_token(token));
   EXPECT_FALSE(store->find_token(token).value());
@@ -64,7 +64,7 @@ TEST(Tokens, an_owner_link_opens_sessions_until_it_is_revoked) {
   ASSERT_TRUE(first && second);
   EXPECT_NE(*first, *second);
   EXPECT_EQ(store->find_token(*first).value()->kind, TokenKind::session);
-  EXPECT_EQ(store->find_token(*first).value()->role, Role::owner);
+  EXPECT_EQ(store->find_token(*first).value()->roles.everywhere, Role::owner);
   EXPECT_FALSE(store->redeem_owner_link(*first, seconds(60)).value());  // a session is no link
   EXPECT_FALSE(store->redeem_owner_link("guess", seconds(60)).value());
   ASSERT_TRUE(store->revoke_token(link));
@@ -112,7 +112,7 @@ TEST(People, a_session_is_opened_only_by_the_password_that_holds) {
   };
   EXPECT_EQ(open("old").error().status, 401);
   const auto first = open("new").value().secret;
-  EXPECT_EQ(store->find_token(first).value()->role, Role::annotator);
+  EXPECT_EQ(store->find_token(first).value()->roles.everywhere, Role::annotator);
   for (std::size_t i = 0; i < kMostTokens; ++i) ASSERT_TRUE(open("new"));
   EXPECT_EQ(store->tokens("Ada", TokenKind::session)->size(), kMostTokens);
   EXPECT_FALSE(store->find_token(first).value()) << "the oldest gives way";
@@ -134,7 +134,7 @@ TEST(People, a_token_does_no_more_than_its_person_and_a_session_the_same) {
   const auto session = store->create_token(TokenKind::session, "Ada", Role::curator, seconds(60)).value().secret;
   const auto weak = store->create_token(TokenKind::script, "Ada", Role::viewer, {}).value().secret;
   const auto strong = store->create_token(TokenKind::script, "Ada", Role::owner, {}).value().secret;
-  const auto role_of = [&](const std::string& secret) { return store->find_token(secret).value()->role; };
+  const auto role_of = [&](const std::string& secret) { return store->find_token(secret).value()->roles.everywhere; };
   EXPECT_EQ(role_of(session), Role::curator);
   EXPECT_EQ(role_of(weak), Role::viewer);
   EXPECT_EQ(role_of(strong), Role::curator);
@@ -170,6 +170,42 @@ TEST(People, an_invitation_is_good_for_one_of_many_who_use_it_at_once) {
   EXPECT_EQ(in, 1);
   EXPECT_EQ(store->person("Ada").value().full_name, "Ada L.");
   EXPECT_FALSE(store->accept_invitation("guess", "hash", {}, seconds(60), "").value());
+}
+
+TEST(People, in_a_project_somebody_may_do_more) {
+  auto store = test::fresh_store();
+  Project villa;
+  villa.name = "Villa";
+  const auto project = store->create_project(villa).value().id;
+  ASSERT_TRUE(store->create_person("Gus", "Gustav G.", Role::guest));
+  const auto session = store->create_token(TokenKind::session, "Gus", Role::guest, seconds(60)).value().secret;
+  const auto weak = store->create_token(TokenKind::script, "Gus", Role::viewer, {}).value().secret;
+  const auto roles_of = [&](const std::string& secret) { return store->find_token(secret).value()->roles; };
+  EXPECT_EQ(roles_of(session), Roles{});
+  EXPECT_EQ(store->put_member(project, "gus", Role::annotator).value().person.full_name, "Gustav G.");
+  ASSERT_TRUE(store->put_member(project, "Gus", Role::curator)) << "in place of the other";
+  EXPECT_EQ(roles_of(session), (Roles{Role::guest, {{project, Role::curator}}}));
+  EXPECT_EQ(roles_of(weak), (Roles{Role::guest, {{project, Role::viewer}}}));
+  const auto members = store->members(project).value();
+  ASSERT_EQ(members.size(), 1u);
+  EXPECT_EQ(members[0].person.name, "Gus");
+  EXPECT_EQ(members[0].role, Role::curator);
+  for (const Role role : {Role::guest, Role::administrator, Role::owner})
+    EXPECT_EQ(store->put_member(project, "Gus", role).error().status, 422);
+  EXPECT_EQ(store->put_member(project, "nobody", Role::viewer).error().status, 404);
+  EXPECT_EQ(store->put_member(project + 1, "Gus", Role::viewer).error().status, 404);
+  EXPECT_EQ(store->remove_member(project + 1, "Gus").error().status, 404);
+  ASSERT_TRUE(store->remove_member(project, "GUS"));
+  EXPECT_EQ(store->remove_member(project, "Gus").error().status, 404);
+  EXPECT_EQ(roles_of(session), Roles{});
+  // With the project, and with the person, it is gone.
+  ASSERT_TRUE(store->put_member(project, "Gus", Role::viewer));
+  ASSERT_TRUE(store->delete_project(project));
+  EXPECT_EQ(roles_of(session), Roles{});
+  const auto other = store->create_project(villa).value().id;
+  ASSERT_TRUE(store->put_member(other, "Gus", Role::viewer));
+  ASSERT_TRUE(store->delete_person("Gus"));
+  EXPECT_TRUE(store->members(other).value().empty());
 }
 
 TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {

@@ -43,7 +43,7 @@ struct Gate {
 
 TEST(JobsQueue, a_job_that_ends_names_its_model) {
   JobQueue queue;
-  const auto id = queue.add([](Progress&) -> Result<JobResult> { return 42; });
+  const auto id = queue.add(1, [](Progress&) -> Result<JobResult> { return 42; });
   ASSERT_TRUE(id);
   const auto status = wait_until_over(queue, *id);
   EXPECT_EQ(status.state, JobState::done);
@@ -55,8 +55,8 @@ TEST(JobsQueue, a_job_that_ends_names_its_model) {
 
 TEST(JobsQueue, a_job_that_fails_keeps_its_problem) {
   JobQueue queue;
-  const auto id =
-      queue.add([](Progress&) -> Result<JobResult> { return fail(422, "Mesh file refused", "No triangle.", "file"); });
+  const auto id = queue.add(
+      1, [](Progress&) -> Result<JobResult> { return fail(422, "Mesh file refused", "No triangle.", "file"); });
   const auto status = wait_until_over(queue, *id);
   EXPECT_EQ(status.state, JobState::failed);
   ASSERT_TRUE(status.problem);
@@ -66,9 +66,9 @@ TEST(JobsQueue, a_job_that_fails_keeps_its_problem) {
 
 TEST(JobsQueue, a_job_that_throws_fails_and_the_next_one_runs) {
   JobQueue queue;
-  const auto bad = queue.add([](Progress&) -> Result<JobResult> { throw std::runtime_error("planted"); });
-  const auto huge = queue.add([](Progress&) -> Result<JobResult> { throw std::bad_alloc(); });
-  const auto good = queue.add([](Progress&) -> Result<JobResult> { return 7; });
+  const auto bad = queue.add(1, [](Progress&) -> Result<JobResult> { throw std::runtime_error("planted"); });
+  const auto huge = queue.add(1, [](Progress&) -> Result<JobResult> { throw std::bad_alloc(); });
+  const auto good = queue.add(1, [](Progress&) -> Result<JobResult> { return 7; });
   EXPECT_EQ(wait_until_over(queue, *bad).problem->status, 500);
   EXPECT_EQ(wait_until_over(queue, *huge).problem->status, 507);
   EXPECT_EQ(wait_until_over(queue, *good).state, JobState::done);
@@ -80,7 +80,7 @@ TEST(JobsQueue, jobs_run_one_at_a_time_in_the_order_of_asking) {
   std::atomic<int> running{0};
   std::int64_t last = 0;
   for (int i = 0; i < 20; ++i)
-    last = *queue.add([&, i](Progress&) -> Result<JobResult> {
+    last = *queue.add(1, [&, i](Progress&) -> Result<JobResult> {
       EXPECT_EQ(++running, 1);
       order.push_back(i);
       --running;
@@ -96,7 +96,7 @@ TEST(JobsQueue, jobs_run_one_at_a_time_in_the_order_of_asking) {
 TEST(JobsQueue, progress_shows_while_a_job_runs) {
   Gate gate;
   JobQueue queue;
-  const auto id = queue.add(gate.work());
+  const auto id = queue.add(1, gate.work());
   gate.entered.get_future().wait();
   const auto status = queue.status(*id);
   ASSERT_TRUE(status);
@@ -109,10 +109,10 @@ TEST(JobsQueue, progress_shows_while_a_job_runs) {
 TEST(JobsQueue, more_than_64_waiting_jobs_are_refused) {
   Gate gate;
   JobQueue queue;
-  ASSERT_TRUE(queue.add(gate.work()));
+  ASSERT_TRUE(queue.add(1, gate.work()));
   gate.entered.get_future().wait();
-  for (int i = 0; i < 64; ++i) EXPECT_TRUE(queue.add([](Progress&) -> Result<JobResult> { return 1; }));
-  const auto refused = queue.add([](Progress&) -> Result<JobResult> { return 1; });
+  for (int i = 0; i < 64; ++i) EXPECT_TRUE(queue.add(1, [](Progress&) -> Result<JobResult> { return 1; }));
+  const auto refused = queue.add(1, [](Progress&) -> Result<JobResult> { return 1; });
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, 503);
   gate.opened.set_value();
@@ -121,10 +121,10 @@ TEST(JobsQueue, more_than_64_waiting_jobs_are_refused) {
 TEST(JobsQueue, a_waiting_job_that_is_cancelled_never_runs) {
   Gate gate;
   JobQueue queue;
-  queue.add(gate.work());
+  queue.add(1, gate.work());
   gate.entered.get_future().wait();
   std::atomic<bool> ran{false};
-  const auto id = queue.add([&](Progress&) -> Result<JobResult> {
+  const auto id = queue.add(1, [&](Progress&) -> Result<JobResult> {
     ran = true;
     return 1;
   });
@@ -132,7 +132,7 @@ TEST(JobsQueue, a_waiting_job_that_is_cancelled_never_runs) {
   EXPECT_EQ(queue.status(*id)->state, JobState::cancelled);
   EXPECT_FALSE(queue.cancel(*id)) << "it is over";
   gate.opened.set_value();
-  const auto after = queue.add([](Progress&) -> Result<JobResult> { return 1; });
+  const auto after = queue.add(1, [](Progress&) -> Result<JobResult> { return 1; });
   wait_until_over(queue, *after);
   EXPECT_FALSE(ran);
 }
@@ -140,7 +140,7 @@ TEST(JobsQueue, a_waiting_job_that_is_cancelled_never_runs) {
 TEST(JobsQueue, a_running_job_that_is_cancelled_stops) {
   JobQueue queue;
   std::promise<void> entered;
-  const auto id = queue.add([&](Progress& progress) -> Result<JobResult> {
+  const auto id = queue.add(1, [&](Progress& progress) -> Result<JobResult> {
     entered.set_value();
     while (!progress.cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return cancelled_problem();
@@ -155,7 +155,7 @@ TEST(JobsQueue, ending_the_queue_cancels_what_runs) {
   bool stopped = false;
   {
     JobQueue queue;
-    queue.add([&](Progress& progress) -> Result<JobResult> {
+    queue.add(1, [&](Progress& progress) -> Result<JobResult> {
       entered.set_value();
       while (!progress.cancelled()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       stopped = true;
@@ -170,7 +170,7 @@ TEST(JobsQueue, the_newest_thousand_are_remembered) {
   JobQueue queue;
   std::int64_t last = 0;
   for (int i = 0; i < 1200; ++i) {
-    const auto id = queue.add([](Progress&) -> Result<JobResult> { return 1; });
+    const auto id = queue.add(1, [](Progress&) -> Result<JobResult> { return 1; });
     if (id) last = *id;
     if (!id || i % 50 == 0) wait_until_over(queue, last);
   }
@@ -199,7 +199,7 @@ TEST(JobsQueue, what_a_job_freed_in_small_pieces_is_given_back_to_the_system) {
   const auto last = std::make_shared<Pieces>();  // lies above all others: what is below it is not given back by itself
   double most = 0;
   JobQueue queue;
-  const auto id = queue.add([&](Progress&) -> Result<JobResult> {
+  const auto id = queue.add(1, [&](Progress&) -> Result<JobResult> {
     Pieces pieces;
     for (int i = 0; i < 100'000; ++i) {
       pieces.push_back(std::make_unique<std::array<char, 4000>>());

@@ -65,9 +65,9 @@ describe("passwords", () => {
 
 describe("roles", () => {
   it("nobody makes another owner, nor gives more than they have", () => {
-    expect(roles_to_give("owner")).toEqual(["viewer", "annotator", "curator", "administrator"]);
-    expect(roles_to_give("administrator")).toEqual(["viewer", "annotator", "curator", "administrator"]);
-    expect(roles_to_give("curator")).toEqual(["viewer", "annotator", "curator"]);
+    expect(roles_to_give("owner")).toEqual(["guest", "viewer", "annotator", "curator", "administrator"]);
+    expect(roles_to_give("administrator")).toEqual(["guest", "viewer", "annotator", "curator", "administrator"]);
+    expect(roles_to_give("curator")).toEqual(["guest", "viewer", "annotator", "curator"]);
   });
   it("a token may have what its person has", () => {
     expect(roles_of_tokens("viewer")).toEqual(["viewer"]);

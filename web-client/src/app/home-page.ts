@@ -5,7 +5,8 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../core/api";
 import { format_area, format_size, metres_per } from "../core/measure";
-import { may_curate, type Me, type Model } from "../core/types";
+import type { Project } from "../core/protocol.gen";
+import type { Me, Model } from "../core/types";
 import { ask_account } from "./account-menu";
 import "./blank";
 import { ask } from "./dialog";
@@ -29,6 +30,10 @@ export class StrataHomePage extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
   @property({ attribute: false }) imports!: Imports;
+  /** Where this person may import scans, and delete models. */
+  @property({ attribute: false }) curated: readonly Project[] = [];
+  /** The one of them that scans are imported into. */
+  @property({ attribute: false }) into: Project | null = null;
   /** Counts imports that ended: the list is read again. */
   @property({ attribute: false }) imported = 0;
   @state() private models_: Model[] | null = null;
@@ -54,7 +59,7 @@ export class StrataHomePage extends LitElement {
   }
 
   private get can_curate(): boolean {
-    return may_curate(this.me.role);
+    return this.into !== null;
   }
 
   private async load(): Promise<void> {
@@ -84,6 +89,7 @@ export class StrataHomePage extends LitElement {
         <div class="title">
           <h1>${texts.home.title}</h1>
           <span class="hint grow">${this.models_ ? texts.home.count(this.models_.length) : ""}</span>
+          ${this.curated.length > 1 ? this.project_choice(this.curated) : nothing}
           ${this.can_curate
             ? html`<button class="primary" @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
                 <input type="file" accept=".ply,.obj,.stl,.gltf,.glb,.zip,.mtl,.bin,.png,.jpg,.jpeg" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
@@ -100,6 +106,16 @@ export class StrataHomePage extends LitElement {
           : nothing}
         ${this.content()}
       </main>`;
+  }
+
+  private project_choice(projects: readonly Project[]): TemplateResult {
+    return html`<select
+      aria-label=${texts.home.into}
+      title=${texts.home.into}
+      @change=${(event: Event) => this.dispatchEvent(new CustomEvent<string>("choose-project", { detail: (event.target as HTMLSelectElement).value }))}
+    >
+      ${projects.map(({ slug, name }) => html`<option value=${slug} ?selected=${slug === this.into?.slug}>${name}</option>`)}
+    </select>`;
   }
 
   private content(): TemplateResult {
@@ -142,7 +158,7 @@ export class StrataHomePage extends LitElement {
           ${model.scale_verified ? nothing : html`<span class="chip">${texts.home.scale_open}</span>`}
         </div>
       </a>
-      ${this.can_curate
+      ${this.curated.some(({ slug }) => slug === model.project)
         ? html`<strata-menu class="options" label=${texts.home.options(model.name)} .quiet=${false}>
             <button class="quiet" role="menuitem" @click=${() => void this.delete_model(model)}>
               ${icon("trash")}${texts.layers.delete}

@@ -68,7 +68,8 @@ export class Imports {
     return () => this.listeners_.delete(listener);
   }
 
-  async start(scan: Scan): Promise<ImportResult> {
+  /** Into the project of that slug. */
+  async start(scan: Scan, project: string): Promise<ImportResult> {
     const [{ file }] = scan;
     const refusal = !kScans.test(file.name)
       ? texts.import.wrong_kind(file.name)
@@ -92,7 +93,7 @@ export class Imports {
     this.entries = [...this.entries, entry];
     this.tell();
     try {
-      const upload = this.api_.upload_model(scan, (progress) => this.change(key, { progress }));
+      const upload = this.api_.upload_model(scan, project, (progress) => this.change(key, { progress }));
       this.uploads_.set(key, upload);
       const job = await upload.done;
       this.uploads_.delete(key);

@@ -11,6 +11,7 @@ import "./copy-field";
 import { ask } from "./dialog";
 import { icon } from "./icons";
 import "./menu";
+import "./project-roles-dialog";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 import { told_time } from "./times";
@@ -33,6 +34,7 @@ export class StrataPeopleDialog extends LitElement {
   @state() private row_note_: { id: number; kind: "error" | "done"; text: string } | null = null;
   @state() private problem_ = "";
   @state() private busy_ = false;
+  @state() private in_projects_: Person | null = null; // whose roles in projects are shown
 
   static override styles = [
     shared_styles,
@@ -205,6 +207,9 @@ export class StrataPeopleDialog extends LitElement {
         ? html`<p class="error" role="alert">${this.problem_}</p>
             <button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button>`
         : nothing}
+      ${this.in_projects_
+        ? html`<strata-project-roles-dialog .api=${this.api} .person=${this.in_projects_} @closed=${() => (this.in_projects_ = null)}></strata-project-roles-dialog>`
+        : nothing}
     </strata-dialog>`;
   }
 
@@ -278,6 +283,7 @@ export class StrataPeopleDialog extends LitElement {
   private options(person: Person, name: string): TemplateResult {
     const disabled = person.state === "disabled";
     return html`<strata-menu label=${words.options(name)}>
+      <button class="quiet" role="menuitem" @click=${() => (this.in_projects_ = person)}>${icon("layers")}${words.projects}</button>
       ${disabled
         ? nothing
         : html`<button class="quiet" role="menuitem" @click=${() => void this.make_link(person)}>${icon("link")}${words.new_link}</button>`}

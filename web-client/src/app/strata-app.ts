@@ -5,6 +5,7 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { Api, ApiError, name_of_file } from "../core/api";
+import type { Project } from "../core/protocol.gen";
 import { may_curate, type Me } from "../core/types";
 import "./account-dialog";
 import type { AccountRequest } from "./account-menu";
@@ -25,12 +26,16 @@ import { shared_styles } from "./styles";
 import "./sign-in";
 import { texts } from "./texts";
 
+const kDefaultProject = "default"; // every site has it
+
 @customElement("strata-app")
 export class StrataApp extends LitElement {
   private readonly api_ = new Api();
   private readonly imports_ = new Imports(this.api_);
   @state() private route_: Route = route_of(path_now());
   @state() private me_: Me | null = null;
+  @state() private projects_: readonly Project[] = [];
+  @state() private chosen_project_ = ""; // for imports
   @state() private session_: "unknown" | "signed-in" | "signed-out" | "unreachable" = "unknown";
   @state() private problem_ = "";
   @state() private dialog_: "account" | "people" | null = null;
@@ -91,7 +96,7 @@ export class StrataApp extends LitElement {
 
   private async check_session(): Promise<void> {
     try {
-      this.take_me(await this.api_.me());
+      await this.take_me(await this.api_.me());
       this.session_ = "signed-in";
       check_connections();
     } catch (error) {
@@ -105,9 +110,10 @@ export class StrataApp extends LitElement {
     }
   }
 
-  private take_me(me: Me): void {
+  private async take_me(me: Me): Promise<void> {
     const lost = this.me_ && this.me_.user !== me.user ? discard_unsaved() : 0;
     if (lost > 0) notices.show("problem", texts.saving.discarded(lost));
+    this.projects_ = await this.api_.projects();
     this.me_ = me;
   }
 
@@ -115,7 +121,7 @@ export class StrataApp extends LitElement {
   private readonly refresh_me = async (): Promise<void> => {
     if (this.session_ !== "signed-in") return;
     try {
-      this.take_me(await this.api_.me());
+      await this.take_me(await this.api_.me());
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status === 401) this.signed_out(); // anything else is told where it matters
@@ -182,10 +188,13 @@ export class StrataApp extends LitElement {
       : html`<strata-home-page
           .api=${this.api_}
           .me=${me}
+          .curated=${this.curated}
+          .into=${this.into}
           .imports=${this.imports_}
           .imported=${this.imported_}
           @account=${this.on_account}
           @signed-out=${this.signed_out}
+          @choose-project=${({ detail }: CustomEvent<string>) => (this.chosen_project_ = detail)}
           @import-files=${(event: CustomEvent<File[]>) => void this.import_files(without_folders(event.detail))}
         ></strata-home-page>`;
   }
@@ -215,7 +224,7 @@ export class StrataApp extends LitElement {
       return html`<strata-account-dialog
         .api=${this.api_}
         .me=${me}
-        @changed=${(event: CustomEvent<Me>) => (this.take_me(event.detail))}
+        @changed=${(event: CustomEvent<Me>) => void this.take_me(event.detail)}
         @closed=${closed}
         @signed-out=${this.signed_out}
       ></strata-account-dialog>`;
@@ -228,7 +237,17 @@ export class StrataApp extends LitElement {
 
   private get import_refusal(): string | null {
     if (this.session_ !== "signed-in" || !this.me_) return texts.import.sign_in_first;
-    return may_curate(this.me_.role) ? null : texts.import.not_allowed;
+    return this.into ? null : texts.import.not_allowed;
+  }
+
+  /** Where they may import scans. */
+  private get curated(): readonly Project[] {
+    return this.projects_.filter(({ role }) => role !== undefined && may_curate(role));
+  }
+  /** The project that scans are imported into; null: they may import nowhere. */
+  private get into(): Project | null {
+    const by_slug = (slug: string): Project | undefined => this.curated.find((project) => project.slug === slug);
+    return by_slug(this.chosen_project_) ?? by_slug(kDefaultProject) ?? this.curated[0] ?? null;
   }
 
   private async import_files(dropped: readonly DroppedFile[]): Promise<void> {
@@ -240,7 +259,9 @@ export class StrataApp extends LitElement {
   }
 
   private async import_scan(scan: Scan, alone: boolean): Promise<void> {
-    const { model, problem } = await this.imports_.start(scan);
+    const { into } = this;
+    if (!into) return;
+    const { model, problem } = await this.imports_.start(scan, into.slug);
     this.imported_ += 1;
     if (problem && this.route_.page !== "home") notices.problem(problem); // the home page lists it
     if (model === null) return;

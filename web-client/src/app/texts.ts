@@ -69,6 +69,7 @@ export const texts = {
   },
 
   roles: {
+    guest: "Guest",
     viewer: "Viewer",
     annotator: "Annotator",
     curator: "Curator",
@@ -76,6 +77,7 @@ export const texts = {
     owner: "Owner",
   },
   role_hints: {
+    guest: "sees only the projects that they have a role in",
     viewer: "looks, measures and saves files",
     annotator: "looks, paints and writes into tables",
     curator: "paints, imports scans, makes layers and tables",
@@ -187,6 +189,7 @@ export const texts = {
     disable_lead: "They are signed out everywhere, their tokens stop working, and they cannot sign in until you enable the account again.",
     disable_button: "Disable",
     enable: "Enable",
+    projects: "Roles in projects…",
     delete: "Delete…",
     delete_title: (name: string) => `Delete the account of ${name}?`,
     delete_lead: "They are signed out and cannot come back. What they painted and wrote stays in the history, under a name that nobody can tell. This cannot be undone.",
@@ -195,9 +198,18 @@ export const texts = {
     enabled: "Can sign in again.",
   },
 
+  project_roles: {
+    title: (name: string) => `${name} in projects`,
+    lead: (role: string) => `Everywhere: ${role}. In a project the higher role counts.`,
+    role_in: (project: string) => `Role in ${project}`,
+    none: "No role of their own",
+    removed: "Has no role of their own there any more.",
+  },
+
   home: {
     title: "Models",
     import: "Import a scan",
+    into: "Project",
     drop_title: "Drop to import",
     drop_lead: "A PLY, OBJ, STL, glTF or zip, with its pictures or as a folder",
     empty_title: "No models yet",

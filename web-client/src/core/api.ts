@@ -154,6 +154,19 @@ export class Api {
     await this.request("DELETE", person_path(user));
   }
 
+  async projects(): Promise<wire.Project[]> {
+    return (await this.json<wire.ProjectList>("GET", "/projects?limit=1000")).projects;
+  }
+  async members(project: string): Promise<wire.Member[]> {
+    return (await this.json<wire.MemberList>("GET", `/projects/${encodeURIComponent(project)}/members?limit=1000`)).members;
+  }
+  async put_member(project: string, user: string, role: wire.ProjectRole): Promise<wire.Member> {
+    return this.json("PUT", member_path(project, user), { role });
+  }
+  async remove_member(project: string, user: string): Promise<void> {
+    await this.request("DELETE", member_path(project, user));
+  }
+
   async models(): Promise<Model[]> {
     return (await this.json<wire.ModelList>("GET", "/models?limit=1000")).models;
   }
@@ -168,10 +181,10 @@ export class Api {
     await this.request("DELETE", `/models/${encodeURIComponent(id)}`, undefined, { "If-Match": etag });
   }
 
-  /** A mesh as the raw body, or with its companions as a form; with progress (0…1 of the bytes sent). */
-  upload_model(files: readonly UploadFile[], progress: (share: number) => void): Upload<Job> {
+  /** A mesh as the raw body, or with its companions as a form; with progress (0…1 of the bytes sent). `project`: id or slug. */
+  upload_model(files: readonly UploadFile[], project: string, progress: (share: number) => void): Upload<Job> {
     const { file } = files[0]!;
-    const query = new URLSearchParams({ name: name_of_file(file.name), filename: file.name });
+    const query = new URLSearchParams({ name: name_of_file(file.name), filename: file.name, project });
     return this.upload("POST", `/models?${query}`, files, progress);
   }
 
@@ -530,6 +543,7 @@ const layer_path = (model: Id, layer: Id): string =>
   `/models/${encodeURIComponent(model)}/layers/${encodeURIComponent(layer)}`;
 
 const person_path = (user: string): string => `/users/${encodeURIComponent(user)}`;
+const member_path = (project: string, user: string): string => `/projects/${encodeURIComponent(project)}/members/${encodeURIComponent(user)}`;
 
 const project_path = (project: Id): string => `/projects/${encodeURIComponent(project)}`;
 

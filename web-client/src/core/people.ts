@@ -1,7 +1,7 @@
 // What can be said of accounts without asking the server.
 
 import type { Me, Person, Role } from "./protocol.gen";
-import { kRoles } from "./types";
+import { kProjectRoles, kRoles } from "./types";
 
 export const kLeastPasswordLength = 10; // characters, as the server counts them
 
@@ -18,8 +18,8 @@ export const called = ({ user, full_name }: Pick<Me, "user" | "full_name">): str
 
 /** Those that somebody may give away, the least first: nobody makes another owner. */
 export const roles_to_give = (own: Role): Role[] => kRoles.slice(0, Math.min(kRoles.indexOf(own), kRoles.indexOf("administrator")) + 1);
-/** Those that a token of somebody may have, the least first. */
-export const roles_of_tokens = (own: Role): Role[] => kRoles.slice(0, kRoles.indexOf(own) + 1);
+/** Those that a token of somebody may have, the least first. What a guest may do in projects the server knows. */
+export const roles_of_tokens = (own: Role): Role[] => (own === "guest" ? [...kProjectRoles] : kRoles.slice(1, kRoles.indexOf(own) + 1));
 
 export type PasswordMistake = { field: "password" | "repeat"; kind: "too_short" | "is_the_name" | "differs" };
 

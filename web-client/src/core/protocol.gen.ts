@@ -409,8 +409,8 @@ export interface SurfaceValue {
 /** Values by the layers' slugs. */
 export type SurfaceValues = Record<string, SurfaceValue>;
 
-/** Role. */
-export type Role = "viewer" | "annotator" | "curator" | "administrator" | "owner";
+/** Role. Ascending. A guest sees only the projects that they have a role in. */
+export type Role = "guest" | "viewer" | "annotator" | "curator" | "administrator" | "owner";
 
 /** First message. */
 export interface Hello {
@@ -908,6 +908,29 @@ export interface Project {
   name: string;
   slug: string;
   description: string;
+  /** Of who asks, there; in lists. */
+  role?: Role;
+}
+
+/** Role in one project. Beside the one that a person has everywhere; the higher one counts. */
+export type ProjectRole = "viewer" | "annotator" | "curator";
+
+/** Somebody with a role in a project. */
+export interface Member {
+  user: string;
+  full_name: string;
+  role: ProjectRole;
+}
+
+/** Who has a role in the project. */
+export interface MemberList {
+  members: Member[];
+  total: number;
+}
+
+/** A role in the project. */
+export interface MemberPut {
+  role: ProjectRole;
 }
 
 /** Projects. */

@@ -68,7 +68,9 @@ export function complete_palette(palette: wire.Palette): Palette {
 export const complete_layer = (layer: wire.Layer): Layer => ({ ...layer, palette: complete_palette(layer.palette) });
 
 /** Each may do what the ones before may. */
-export const kRoles: readonly wire.Role[] = ["viewer", "annotator", "curator", "administrator", "owner"];
+export const kRoles: readonly wire.Role[] = ["guest", "viewer", "annotator", "curator", "administrator", "owner"];
+/** What people may be in one project, ascending. */
+export const kProjectRoles: readonly wire.ProjectRole[] = ["viewer", "annotator", "curator"];
 
 /** Who may change what layers hold. */
 export const may_paint = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("annotator");

@@ -137,6 +137,7 @@ nlohmann::json to_json(const AtlasSource& value) { return name(value); }
 
 std::string_view name(Role value) {
   switch (value) {
+    case Role::guest: return "guest";
     case Role::viewer: return "viewer";
     case Role::annotator: return "annotator";
     case Role::curator: return "curator";
@@ -148,6 +149,7 @@ std::string_view name(Role value) {
 
 void read(const nlohmann::json& json, Role& value) {
   const auto& text = json.get_ref<const std::string&>();
+  if (text == "guest") value = Role::guest;
   if (text == "viewer") value = Role::viewer;
   if (text == "annotator") value = Role::annotator;
   if (text == "curator") value = Role::curator;
@@ -282,6 +284,24 @@ void read(const nlohmann::json& json, PersonState& value) {
 }
 
 nlohmann::json to_json(const PersonState& value) { return name(value); }
+
+std::string_view name(ProjectRole value) {
+  switch (value) {
+    case ProjectRole::viewer: return "viewer";
+    case ProjectRole::annotator: return "annotator";
+    case ProjectRole::curator: return "curator";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ProjectRole& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "viewer") value = ProjectRole::viewer;
+  if (text == "annotator") value = ProjectRole::annotator;
+  if (text == "curator") value = ProjectRole::curator;
+}
+
+nlohmann::json to_json(const ProjectRole& value) { return name(value); }
 
 std::string_view name(JobState value) {
   switch (value) {
@@ -1347,6 +1367,16 @@ nlohmann::json to_json(const InvitationAccept& value) {
   write_member(json, "invitation", value.invitation);
   write_member(json, "password", value.password);
   write_optional_member(json, "full_name", value.full_name);
+  return json;
+}
+
+void read(const nlohmann::json& json, MemberPut& value) {
+  read_member(json, "role", value.role);
+}
+
+nlohmann::json to_json(const MemberPut& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "role", value.role);
   return json;
 }
 

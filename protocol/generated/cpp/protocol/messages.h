@@ -127,6 +127,10 @@ enum class Schema {
   InvitationShow,
   InvitationAccept,
   Project,
+  ProjectRole,
+  Member,
+  MemberList,
+  MemberPut,
   ProjectList,
   ProjectCreate,
   ProjectPatch,
@@ -226,7 +230,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 200;
+constexpr int kSchemaCount = 204;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -492,8 +496,8 @@ inline constexpr Schema kSchemaOf<SurfaceValue> = Schema::SurfaceValue;
 // Values by the layers' slugs.
 using SurfaceValues = std::map<std::string, SurfaceValue>;
 
-// Role.
-enum class Role { viewer, annotator, curator, administrator, owner };
+// Role. Ascending. A guest sees only the projects that they have a role in.
+enum class Role { guest, viewer, annotator, curator, administrator, owner };
 std::string_view name(Role value);
 void read(const nlohmann::json& json, Role& value);
 nlohmann::json to_json(const Role& value);
@@ -1051,6 +1055,22 @@ void read(const nlohmann::json& json, InvitationAccept& value);
 nlohmann::json to_json(const InvitationAccept& value);
 template <>
 inline constexpr Schema kSchemaOf<InvitationAccept> = Schema::InvitationAccept;
+
+// Role in one project. Beside the one that a person has everywhere; the higher one counts.
+enum class ProjectRole { viewer, annotator, curator };
+std::string_view name(ProjectRole value);
+void read(const nlohmann::json& json, ProjectRole& value);
+nlohmann::json to_json(const ProjectRole& value);
+
+// A role in the project.
+struct MemberPut {
+  ProjectRole role{};
+  bool operator==(const MemberPut&) const = default;
+};
+void read(const nlohmann::json& json, MemberPut& value);
+nlohmann::json to_json(const MemberPut& value);
+template <>
+inline constexpr Schema kSchemaOf<MemberPut> = Schema::MemberPut;
 
 // New project.
 struct ProjectCreate {

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "net/routes.h"
+
+namespace strata::net {
+
+// What who asks may do where the address leads: sets the role of the request's principal to theirs in the project of the model, table,
+// job or attachment that the address names, or in that of the query's `project` (absent: `default`) where `in_query`.
+// 404, as if it was not there: they have none in it.
+Result<void> enter_project(const RouteContext& context, Request& request, bool in_query);
+
+// That who asks may see the project; otherwise 404 at `field`.
+Result<void> check_seen(const RouteContext& context, const Request& request, const std::string& project,
+                        const std::string& field);
+
+}  // namespace strata::net

@@ -1,0 +1,83 @@
+// Who may do more in a project than everywhere.
+#include "net/routes.h"
+#include "net/wire.h"
+
+namespace strata::net {
+namespace {
+
+nlohmann::json to_json(const store::Membership& member) {
+  return {
+      {"user", member.person.name}, {"full_name", member.person.full_name}, {"role", std::string(name(member.role))}};
+}
+
+Result<Project> project_of(const RouteContext& context, const Request& request) {
+  return context.store.project(request.param("project"));
+}
+
+Result<Response> list_members(const RouteContext& context, const Request& request) {
+  const auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  const auto project = project_of(context, request);
+  if (!project) return tl::unexpected(project.error());
+  const auto members = context.store.members(project->id);
+  if (!members) return tl::unexpected(members.error());
+  nlohmann::json list = nlohmann::json::array();
+  const int total = static_cast<int>(members->size());
+  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json((*members)[i]));
+  Response response = json_response({{"members", std::move(list)}, {"total", total}});
+  add_page_links(response, request, *page, total);
+  return response;
+}
+
+// Those of theirs that are open come back by themselves, with what they may do now.
+void roles_changed(const RouteContext& context, const std::string& user) {
+  context.auth.forget();
+  context.live_sockets.close_user(user, kClosePolicy, "your role was changed");
+}
+
+Result<Response> put_member(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::MemberPut>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto project = project_of(context, request);
+  if (!project) return tl::unexpected(project.error());
+  const Role role = parse_role(protocol::name(asked->role)).value_or(Role::viewer);
+  const auto member = context.store.put_member(project->id, request.param("user"), role);
+  if (!member) return tl::unexpected(member.error());
+  roles_changed(context, member->person.name);
+  return json_response(to_json(*member));
+}
+
+Result<Response> remove_member(const RouteContext& context, const Request& request) {
+  const auto project = project_of(context, request);
+  if (!project) return tl::unexpected(project.error());
+  const auto person = context.store.person(request.param("user"));
+  if (!person) return tl::unexpected(person.error());
+  if (auto gone = context.store.remove_member(project->id, person->name); !gone) return tl::unexpected(gone.error());
+  roles_changed(context, person->name);
+  return empty_response(204);
+}
+
+}  // namespace
+
+void add_member_routes(Router& router, const RouteContext& context) {
+  const std::string members = "/api/v1/projects/{project}/members";
+  router.add({.method = Method::get,
+              .pattern = members,
+              .handler = answering([&context](const Request& request) { return list_members(context, request); }),
+              .role = Role::curator,
+              .query = {"limit", "offset"}});
+  router.add({.method = Method::put,
+              .pattern = members + "/{user}",
+              .handler = answering([&context](const Request& request) { return put_member(context, request); }),
+              .role = Role::administrator,
+              .check = check_no_script,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes});
+  router.add({.method = Method::remove,
+              .pattern = members + "/{user}",
+              .handler = answering([&context](const Request& request) { return remove_member(context, request); }),
+              .role = Role::administrator,
+              .check = check_no_script});
+}
+
+}  // namespace strata::net
