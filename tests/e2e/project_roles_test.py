@@ -52,9 +52,9 @@ def make_sites(server):
         job = server.ok("POST", "/models?" + urllib.parse.urlencode({"filename": "x.ply", "name": name + " wall", "unit": "mm", "project": slug}), folded_grid(fold=0.001)).json()["id"]
         model = server.ok("GET", f"/models/{server.wait_for_job(job)['model']}").json()
         server.ok("POST", f"/models/{model['slug']}/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
-        table = server.ok("POST", f"/projects/{slug}/tables", {"name": name + " finds", "columns": [{"name": "photo", "type": "picture"}, {"name": "what", "type": "text"}]}).json()
-        server.ok("POST", f"/tables/{table['id']}/records", {"values": {"what": "a coin"}})
-        attachment = server.ok("POST", f"/projects/{slug}/tables/{table['slug']}/records/1/attachments?column=photo&filename=x.png", PNG).json()["attachments"][0]
+        table = server.ok("POST", f"/projects/{slug}/tables", {"name": name + " finds", "columns": [{"name": "Photo", "kind": "picture"}, {"name": "What"}]}).json()
+        server.ok("POST", f"/tables/{table['id']}/records", {"records": [{"values": {"what": "a coin"}}]})
+        attachment = server.ok("POST", f"/tables/{table['id']}/records/1/attachments?column=photo&name=x.png", PNG).json()["attachments"][0]
         sites[slug] = {"project": project, "model": model, "table": table, "attachment": attachment, "job": {"id": job}}
     return sites
 
