@@ -14,15 +14,33 @@ constexpr std::size_t kMaxWaitingQueries = 256;
 
 bool changes(Method method) { return method != Method::get && method != Method::head && method != Method::options; }
 
+Result<void> check_record(store::Store& store, std::int64_t project_id, const EditorBook::Record& record) {
+  const auto table = store.table(std::to_string(record.table));
+  if (!table && table.error().status != 404) return tl::unexpected(table.error());
+  if (!table || table->project_id != project_id)
+    return fail(404, "No such table", "The model's project has no table " + std::to_string(record.table) + ".",
+                "table");
+  const auto missing = store.missing_records(record.table, std::vector{record.key});
+  if (!missing) return tl::unexpected(missing.error());
+  if (!missing->empty())
+    return fail(404, "No such record", table->name + " has no record " + std::to_string(record.key) + ".", "key");
+  return {};
+}
+
 std::shared_ptr<LiveShared> make_shared_state(const ServerOptions& options, store::Store& store,
                                               const std::shared_ptr<ToolShelf>& tools) {
   auto shared = std::make_shared<LiveShared>();
   shared->metrics = std::make_shared<Metrics>();
   shared->strokes = std::make_shared<StrokeBook>();
   shared->queries = std::make_shared<WorkerPool>(options.query_threads, kMaxWaitingQueries);
+  shared->sockets = std::make_shared<LiveSockets>();
+  shared->editors = std::make_shared<EditorBook>();
   shared->store = &store;
   shared->limits = options.live;
   shared->find_tool = [tools](const std::string& ref) { return tools->find(ref); };
+  shared->check_record = [&store](std::int64_t project_id, const EditorBook::Record& record) {
+    return check_record(store, project_id, record);
+  };
   return shared;
 }
 
@@ -53,7 +71,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       templates_(std::move(templates)),
       shared_(make_shared_state(options_, store, tools_)),
       workers_(options_.worker_threads, options_.max_waiting_requests),
-      context_{options_,          store,    rooms,   jobs,      renderer, auth_, edit_book_, live_sockets_,
+      context_{options_,          store,    rooms,   jobs,      renderer, auth_, edit_book_, *shared_->sockets,
                *shared_->metrics, workers_, *tools_, templates_},
       recomputer_(context_) {
   add_system_routes(router_, context_);
@@ -217,7 +235,7 @@ bool App::is_still_welcome(const std::string& secret, std::int64_t project_id, R
 std::shared_ptr<LiveSession> App::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) {
   auto session = std::make_shared<LiveSession>(shared_, std::move(entry.room), std::move(entry.project_slug),
                                                std::move(entry.principal), socket);
-  live_sockets_.add(std::move(socket), session, std::move(entry.secret));
+  live_sockets().add(std::move(socket), session, std::move(entry.secret));
   return session;
 }
 

@@ -53,7 +53,7 @@ class App {
   std::shared_ptr<LiveSession> make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket);
   // Whether who came in with this may stay in the project as who it was (blocks). While the database is away nobody is sent out.
   bool is_still_welcome(const std::string& secret, std::int64_t project_id, Role role);
-  LiveSockets& live_sockets() { return live_sockets_; }
+  LiveSockets& live_sockets() { return *shared_->sockets; }
 
   void stop_workers();
 
@@ -68,7 +68,6 @@ class App {
   AnswerBook answers_;
   EditBook edit_book_;
   StaticFiles files_;
-  LiveSockets live_sockets_;
   const std::shared_ptr<ToolShelf> tools_;
   const TemplateShelf templates_;
   std::shared_ptr<LiveShared> shared_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "net/live_sockets.h"
 #include "net/painted_keys.h"
 #include "net/wire.h"
 
@@ -13,6 +14,22 @@ constexpr int kHistoryToSearch = 500;  // journal rows looked at for the end of 
 Problem need_hello() { return {409, "Say hello first", "The first message of a connection is `hello`.", "op"}; }
 
 std::string ref_of(const std::optional<std::string>& id) { return id.value_or(std::string()); }
+
+constexpr std::size_t kMostEditorsTold = 1000;  // in a message
+
+std::vector<protocol::RecordEditors> editor_messages(const std::vector<EditorBook::Entry>& entries) {
+  std::vector<protocol::RecordEditors> messages;
+  for (const auto& [record, editor] : entries) {
+    if (messages.empty() || messages.back().records.size() == kMostEditorsTold) messages.emplace_back();
+    protocol::RecordEditor& told = messages.back().records.emplace_back();
+    told.table = record.table;
+    told.key = record.key;
+    if (!editor) continue;
+    told.session = editor->session;
+    told.user = editor->user;
+  }
+  return messages;
+}
 
 }  // namespace
 
@@ -69,7 +86,8 @@ void LiveSession::on_closed() {
     leaving = std::move(member_);
     pointer_.reset();
   }
-  // Leaving waits for the room's listeners, which may wait for our mutex: so not under it.
+  // Not under our mutex, which those wait for who are told; leaving waits for the room's listeners, too.
+  if (leaving) shared_->editors->leave(leaving->session(), tell_project());
 }
 
 void LiveSession::tell(const protocol::ServerMessage& message) {
@@ -112,6 +130,9 @@ void LiveSession::on(const protocol::Hello& message) {
     std::lock_guard lock(mutex_);
     member_ = std::move(joined);
   }
+  shared_->editors->list(project_id(), [this](std::int64_t, const std::vector<EditorBook::Entry>& entries) {
+    for (const auto& message : editor_messages(entries)) send(message);
+  });
   presence_changed();
 }
 
@@ -230,6 +251,26 @@ void LiveSession::step_through_history(const Message& message) {
 
 void LiveSession::on(const protocol::Undo& message) { step_through_history(message); }
 void LiveSession::on(const protocol::Redo& message) { step_through_history(message); }
+
+// Somebody else may have the record: what all hear tells whose it is.
+void LiveSession::on(const protocol::RecordEdit& message) {
+  if (!may_edit(ref_of(message.id))) return;
+  if (message.editing)
+    work_ = [self = shared_from_this(), message] { self->edit_record(message); };  // to look for the record blocks
+  else
+    shared_->editors->end({message.table, message.key}, member()->session(), tell_project());
+}
+
+void LiveSession::edit_record(const protocol::RecordEdit& message) {
+  const auto here = member();
+  if (!here) return;
+  const EditorBook::Record record{message.table, message.key};
+  auto begun = shared_->check_record(project_id(), record);
+  if (begun)
+    begun = shared_->editors->begin(project_id(), record, {here->session(), principal_.user}, message.take_over,
+                                    tell_project());
+  if (!begun) refuse(begun.error(), ref_of(message.id));
+}
 
 void LiveSession::on(const protocol::Ack& message) {
   member()->ack(static_cast<std::uint32_t>(message.view_id), static_cast<std::uint64_t>(message.frame));
@@ -503,10 +544,17 @@ void LiveSession::resolve_pointer() {
 
 // --- helpers
 
-bool LiveSession::may_edit(const Uuid& id) {
+bool LiveSession::may_edit(const std::string& ref) {
   if (principal_.role >= Role::annotator) return true;
-  refuse({403, "Not allowed", "Your role is viewer: you may look, but not paint. Ask for the role annotator.", {}}, id);
+  refuse({403, "Not allowed", "Your role is viewer: you may look, but not paint. Ask for the role annotator.", {}},
+         ref);
   return false;
+}
+
+EditorBook::Tell LiveSession::tell_project() const {
+  return [sockets = shared_->sockets](std::int64_t project_id, const std::vector<EditorBook::Entry>& entries) {
+    for (const auto& message : editor_messages(entries)) sockets->tell_project(project_id, message);
+  };
 }
 
 bool LiveSession::has_view(int view_id, const std::string& ref) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "net/editor_book.h"
 #include "net/http_types.h"
 #include "net/metrics.h"
 #include "net/stroke_book.h"
@@ -40,13 +41,21 @@ struct LiveLimits {
   std::chrono::milliseconds presence_every{50};
 };
 
+class LiveSockets;
+
+// 404 (`table`, `key`) for a record that the project has not. May block.
+using CheckRecord = std::function<Result<void>(std::int64_t project_id, const EditorBook::Record& record)>;
+
 // What all sessions share; outlives the rooms' callbacks by being shared.
 struct LiveShared {
   std::shared_ptr<Metrics> metrics;
   std::shared_ptr<StrokeBook> strokes;
   std::shared_ptr<WorkerPool> queries;  // picks: they may be slow the first time
+  std::shared_ptr<LiveSockets> sockets;
+  std::shared_ptr<EditorBook> editors;
   store::Store* store = nullptr;
   FindTool find_tool;
+  CheckRecord check_record;
   LiveLimits limits;
 };
 
@@ -97,12 +106,14 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void on(const protocol::EditRequest& message);
   void on(const protocol::Undo& message);
   void on(const protocol::Redo& message);
+  void on(const protocol::RecordEdit& message);
   void on(const protocol::Ack& message);
   void on(const protocol::PresenceUpdate& message);
   void on(const protocol::Pick& message);
 
   void begin(const protocol::StrokeBegin& message);
   void edit(const protocol::EditRequest& message);
+  void edit_record(const protocol::RecordEdit& message);
   void paint(const protocol::StrokeExtend& message);
   void find_start(const protocol::StrokeExtend& message);
   template <class Message>
@@ -111,7 +122,9 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void on_applied(const Uuid& id, const std::optional<BatchName>& batch, const room::EditAnswer& answer);
   void on_saved(const Uuid& id, const std::optional<BatchName>& batch, const Result<room::EditAnswer>& answer);
   Author author() const { return {principal_.user, principal_.role}; }
-  bool may_edit(const Uuid& id);
+  EditorBook::Tell tell_project() const;
+  bool may_edit(const std::string& ref);
+  bool may_edit(const Uuid& id) { return may_edit(to_string(id)); }
   bool has_view(int view_id, const std::string& ref);
   Result<Layer> layer_of(const protocol::LayerRef& ref) const;
   bool has_records(const protocol::LayerRef& ref) const;

@@ -140,6 +140,58 @@ def delete_under_a_stroke(server, camera):
     server.ok("DELETE", T + "/records/500?texels=clear")
 
 
+def edit_together(server):
+    """Who has a record open is told on all models of the project, and gone with the connection."""
+    table = server.get(T).json()["id"]
+    viewer = server.ok("POST", "/me/tokens", {"name": "looks on", "role": "viewer"}).json()["secret"]
+
+    def edit(live, key, **more):
+        live.send({"op": "record.edit", "id": "it", "table": table, "key": key, "editing": True, **more})
+
+    def problem(live):
+        told = live.receive_until("problem")
+        assert told["ref"] == "it", told
+        return told["status"], told.get("field")
+
+    with LiveClient(server, "south") as south, LiveClient(server, "south", token=viewer) as looks_on:
+        own = south.hello()["session"]
+        looks_on.hello()
+        with LiveClient(server, "north") as north:
+            other = north.hello()["session"]
+            edit(north, 1)
+            for live in (north, south, looks_on):
+                assert live.receive_until("record.editors")["records"] == [{"table": table, "key": 1, "session": other, "user": "owner"}]
+            edit(north, 2)
+            assert [live.receive_until("record.editors")["records"][0]["key"] for live in (north, south, looks_on)] == [2, 2, 2]
+            with LiveClient(server, "south") as late:
+                late.hello()
+                assert [each["key"] for each in late.receive_until("record.editors")["records"]] == [1, 2]
+            edit(south, 1)  # somebody has it: nothing changes
+            edit(south, 1, take_over=True)
+            for live in (north, south, looks_on):
+                assert live.receive_until("record.editors")["records"][0]["session"] == own
+            edit(north, 1, editing=False)  # it is no longer theirs
+        # They are gone, and with them what was theirs still.
+        for live in (south, looks_on):
+            assert live.receive_until("record.editors")["records"] == [{"table": table, "key": 2}]
+        for message, refusal in (({"key": 987654}, (404, "key")), ({"key": 1, "table": 987654}, (404, "table")), ({"key": -1}, (422, "key")),
+                                 ({"key": 1, "editing": "yes"}, (422, "editing"))):
+            edit(south, **message)
+            assert problem(south) == refusal, message
+        edit(looks_on, 1)
+        assert problem(looks_on) == (403, None)
+        edit(south, 1, editing=False)
+        assert looks_on.receive_until("record.editors")["records"] == [{"table": table, "key": 1}]
+    server.ok("POST", "/projects", {"name": "Elsewhere"})
+    server.ok("POST", "/projects/elsewhere/tables", {"name": "Others", "columns": [{"name": "Name"}]})
+    others = server.get("/tables/others").json()["id"]
+    server.ok("POST", "/tables/others/records", {"values": {"name": "x"}})
+    with LiveClient(server, "south") as south:
+        south.hello()
+        edit(south, 1, table=others)
+        assert problem(south) == (404, "table")
+
+
 def delete_painted(server):
     refused = server.request("DELETE", T + "/records/2")
     assert refused.status == 409 and "cm² on Units of North" in refused.json()["detail"], refused
@@ -399,6 +451,7 @@ def main():
             write_records(server, live)
         paint(server, cameras)
         paint_live(server, cameras["north"])
+        edit_together(server)
         delete_painted(server)
         delete_under_a_stroke(server, cameras["north"])
         past_and_history(server)

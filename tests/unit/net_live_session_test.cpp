@@ -4,6 +4,7 @@
 
 #include <deque>
 
+#include "net/live_sockets.h"
 #include "support/shapes.h"
 
 namespace strata::net {
@@ -172,6 +173,12 @@ struct Live : testing::Test {
     shared->metrics = std::make_shared<Metrics>();
     shared->strokes = std::make_shared<StrokeBook>();
     shared->queries = std::make_shared<WorkerPool>(1, 16);
+    shared->sockets = std::make_shared<LiveSockets>();
+    shared->editors = std::make_shared<EditorBook>();
+    shared->check_record = [](std::int64_t project_id, const EditorBook::Record& record) -> Result<void> {
+      if (project_id == 1 && record.table == 4) return {};
+      return fail(404, "No such table", "There is none.", "table");
+    };
     room = std::make_shared<FakeRoom>();
     connect();
   }
@@ -179,6 +186,15 @@ struct Live : testing::Test {
     if (session) session->on_closed();
     socket = std::make_shared<FakeSocket>();
     session = std::make_shared<LiveSession>(shared, room, "default", Principal{"anna", role, true}, socket);
+    shared->sockets->add(socket, session, "secret");
+  }
+  // Looks for the record on a worker, where it begins.
+  void edit_record(LiveSession& of, std::int64_t key, bool editing, const json& more = json::object()) {
+    json message{{"op", "record.edit"}, {"table", 4}, {"key", key}, {"editing", editing}};
+    message.update(more);
+    const auto work = of.on_text(message.dump());
+    EXPECT_EQ(bool(work), editing);
+    if (work) work();
   }
   void say(const json& message) { EXPECT_FALSE(session->on_text(message.dump())); }
   void hello() { say({{"op", "hello"}}); }
@@ -308,6 +324,54 @@ TEST_F(Live, the_room_hears_who_edits_and_what_they_may) {
     EXPECT_EQ(edit.request.author.user, "anna");
     EXPECT_EQ(edit.request.author.role, Role::annotator);
   }
+}
+
+TEST_F(Live, who_writes_into_a_record_is_told_to_all_of_the_project) {
+  hello();
+  const auto others_socket = std::make_shared<FakeSocket>();
+  auto other = std::make_shared<LiveSession>(shared, room, "default", Principal{"bea", Role::annotator}, others_socket);
+  shared->sockets->add(others_socket, other, "other");
+  edit_record(*session, 7, true);
+  edit_record(*session, 8, true);
+  ASSERT_EQ(socket->of("record.editors").size(), 2u);
+  EXPECT_TRUE(others_socket->sent.empty()) << "not welcomed yet";
+  other->on_text(json{{"op", "hello"}}.dump());
+  const json own = socket->of("welcome")[0]["session"], others = others_socket->of("welcome")[0]["session"];
+  const json has_7{{"table", 4}, {"key", 7}, {"session", own}, {"user", "anna"}};
+  EXPECT_EQ(socket->of("record.editors")[0]["records"], json::array({has_7}));
+  ASSERT_EQ(others_socket->of("record.editors").size(), 1u);
+  EXPECT_EQ(others_socket->of("record.editors")[0]["records"].size(), 2u) << "all that there are";
+
+  edit_record(*other, 7, true);  // anna has it
+  EXPECT_EQ(others_socket->of("record.editors").size(), 1u);
+  edit_record(*other, 7, true, {{"take_over", true}});
+  const json taken{{"table", 4}, {"key", 7}, {"session", others}, {"user", "bea"}};
+  for (const auto& hears : {socket, others_socket})
+    EXPECT_EQ(hears->of("record.editors").back()["records"], json::array({taken}));
+  edit_record(*session, 7, false);  // hers no more
+  EXPECT_EQ(socket->of("record.editors").back()["records"], json::array({taken}));
+  edit_record(*session, 8, false);
+  EXPECT_EQ(others_socket->of("record.editors").back()["records"], json::parse(R"([{"table": 4, "key": 8}])"));
+  other->on_closed();
+  EXPECT_EQ(socket->of("record.editors").back()["records"], json::parse(R"([{"table": 4, "key": 7}])"));
+  for (const auto& message : socket->of("record.editors"))
+    EXPECT_TRUE(protocol::parse_server_message(message.dump())) << message;
+}
+
+TEST_F(Live, a_record_that_is_not_there_and_a_viewer_are_refused) {
+  hello();
+  edit_record(*session, 7, true, {{"table", 5}, {"id", "mine"}});
+  ASSERT_EQ(socket->of("problem").size(), 1u);
+  EXPECT_EQ(socket->of("problem")[0]["status"], 404);
+  EXPECT_EQ(socket->of("problem")[0]["ref"], "mine");
+  EXPECT_EQ(socket->of("problem")[0]["field"], "table");
+  connect(Role::viewer);
+  hello();
+  say({{"op", "record.edit"}, {"id", "mine"}, {"table", 4}, {"key", 7}, {"editing", true}});
+  ASSERT_EQ(socket->of("problem").size(), 1u);
+  EXPECT_EQ(socket->of("problem")[0]["status"], 403);
+  EXPECT_EQ(socket->of("problem")[0]["ref"], "mine");
+  EXPECT_TRUE(socket->of("record.editors").empty());
 }
 
 TEST_F(Live, a_stroke_is_applied_then_saved_under_its_number) {

@@ -47,6 +47,7 @@ beforeEach(() => {
     model: vi.fn(),
     record: vi.fn(),
     table: vi.fn(),
+    editors: vi.fn(),
     presence: vi.fn(),
     picked: vi.fn(),
     problem: vi.fn(),

@@ -29,6 +29,8 @@ export class StrataCellInput extends LitElement {
   /** What was typed to begin with: it takes the place of the value. */
   @property({ attribute: false }) typed: string | null = null;
   @property({ type: Boolean }) invalid = false;
+  /** What it holds can be read and copied, but not changed. */
+  @property({ type: Boolean, reflect: true }) fixed = false;
   /** Columns of files: the record that they are of, where it is there already. */
   @property({ attribute: false }) record: { table: number; key: number | null } | null = null;
   @query("strata-files-field") private files_!: StrataFilesField | null;
@@ -62,6 +64,10 @@ export class StrataCellInput extends LitElement {
         border: 1px solid var(--line-strong);
         border-radius: var(--radius-small);
         background: var(--raised);
+      }
+      :host([fixed]) :is(input, textarea, select) {
+        background: var(--surface);
+        color: var(--ink-soft);
       }
       :host(.in-cell) :is(input, select, textarea) {
         min-height: 28px;
@@ -130,6 +136,7 @@ export class StrataCellInput extends LitElement {
       case "term":
       case "relation":
         return html`<strata-record-chooser
+          ?inert=${this.fixed}
           class=${this.classList.contains("in-cell") ? "in-cell" : ""}
           .session=${this.session}
           .table=${column.target ?? 0}
@@ -141,6 +148,7 @@ export class StrataCellInput extends LitElement {
       case "picture":
       case "document":
         return html`<strata-files-field
+          ?inert=${this.fixed}
           .session=${this.session}
           .column=${column}
           .table=${this.record?.table ?? 0}
@@ -149,7 +157,7 @@ export class StrataCellInput extends LitElement {
         ></strata-files-field>`;
       case "line":
       case "point":
-        return html`<strata-marks-field .session=${this.session} .column=${column} .marks=${marks_of(value)}></strata-marks-field>`;
+        return html`<strata-marks-field ?inert=${this.fixed} .session=${this.session} .column=${column} .marks=${marks_of(value)}></strata-marks-field>`;
       case "boolean":
         return this.choice(label, value === null ? "" : String(value), [
           ["true", texts.tables.yes],
@@ -162,9 +170,9 @@ export class StrataCellInput extends LitElement {
           (column.choices ?? []).map((choice) => [choice, choice]),
         );
       case "text":
-        return html`<textarea rows="1" maxlength="100000" aria-label=${label} aria-invalid=${invalid} .value=${cell_text(value)}></textarea>`;
+        return html`<textarea rows="1" maxlength="100000" ?readonly=${this.fixed} aria-label=${label} aria-invalid=${invalid} .value=${cell_text(value)}></textarea>`;
       case "date":
-        return html`<input type="date" min="0001-01-01" max="9999-12-31" aria-label=${label} aria-invalid=${invalid} .value=${cell_text(value)} />`;
+        return html`<input type="date" min="0001-01-01" max="9999-12-31" ?readonly=${this.fixed} aria-label=${label} aria-invalid=${invalid} .value=${cell_text(value)} />`;
       default: {
         const unit = is_number(column) ? (column.unit ?? "") : "";
         const input = html`<input
@@ -172,6 +180,7 @@ export class StrataCellInput extends LitElement {
           inputmode=${is_number(column) ? "decimal" : column.kind === "url" ? "url" : "text"}
           spellcheck="false"
           autocapitalize="off"
+          ?readonly=${this.fixed}
           aria-label=${label}
           aria-invalid=${invalid}
           placeholder=${texts.tables.examples[column.kind] ?? ""}
@@ -183,7 +192,7 @@ export class StrataCellInput extends LitElement {
   }
 
   private choice(label: string, chosen: string, choices: [string, string][]): TemplateResult {
-    return html`<select aria-label=${label} aria-invalid=${this.invalid ? "true" : "false"}>
+    return html`<select ?disabled=${this.fixed} aria-label=${label} aria-invalid=${this.invalid ? "true" : "false"}>
       ${this.column.required && chosen !== "" ? nothing : html`<option value="" ?selected=${chosen === ""}></option>`}
       ${choices.map(([value, text]) => html`<option value=${value} ?selected=${value === chosen}>${text}</option>`)}
     </select>`;

@@ -24,6 +24,7 @@ import { MarkDrawing } from "./mark-drawing";
 import { notices } from "./notices";
 import { Painting } from "./painting";
 import { PointerWatch } from "./pointer-watch";
+import { RecordEditors } from "./record-editors";
 import { RecordHover, type RecordAt } from "./record-hover";
 import { forget, remember } from "./sessions";
 import { Tables } from "./tables";
@@ -49,6 +50,7 @@ export class ModelSession {
   readonly painting: Painting;
   readonly shapes: ToolShapes;
   readonly tables: Tables;
+  readonly editors: RecordEditors;
   readonly marks: MarkDrawing;
   readonly hovered: RecordHover;
   readonly tools: ToolManager;
@@ -128,6 +130,7 @@ export class ModelSession {
       fly_to: (bounds) => this.view.fly_to(bounds),
       changed,
     });
+    this.editors = new RecordEditors({ say: (what) => this.connection_.edit_record(what), changed });
     this.marks = new MarkDrawing(api, {
       view: this.view,
       layers: this.layers,
@@ -182,6 +185,7 @@ export class ModelSession {
         model: (event) => this.on_model(event),
         record: (event) => this.tables.on_record(event),
         table: (event) => this.tables.on_table(event),
+        editors: (message) => this.editors.on_message(message),
         presence: (message) => {
           this.users = message.users;
           this.changed();
@@ -432,6 +436,7 @@ export class ModelSession {
     this.connection_state = state;
     if (state !== "open") {
       this.users = [];
+      this.editors.left();
       this.pointer.reset();
       this.on_reset_frames();
     }
@@ -492,6 +497,7 @@ export class ModelSession {
     this.role = message.role;
     if (!this.can_paint && kPaintingTools.includes(this.tools.active)) this.tools.choose("orbit");
     this.session = message.session;
+    this.editors.joined(message.session, message.user);
     this.put_model(message.model);
     this.layers.take_all(message.layers.map(complete_layer));
     this.appearance.take_looks(message.looks);

@@ -9,11 +9,14 @@ import { css_color, record_color } from "../core/palette";
 import type { CellValues, Column, Table, TableRecord } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 import "./cell-input";
+import "./copy-field";
 import type { StrataCellInput } from "./cell-input";
 import "./dialog";
-import type { StrataDialog } from "./dialog";
+import { ask, type StrataDialog } from "./dialog";
 import { follow_session } from "./follow-session";
+import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
+import type { RecordClaim } from "./record-editors";
 import { shared_styles } from "./styles";
 import { styled } from "./styled";
 import { texts } from "./texts";
@@ -31,6 +34,9 @@ export class StrataRecordDialog extends LitElement {
   @state() private sending_ = "";
   @state() private field_problems_ = new Map<string, string>(); // by slug
   @state() private busy_ = false;
+  @state() private written_ = ""; // what was in the form when somebody took the record over
+  private claim_: RecordClaim | null = null;
+  private shut_ = false; // somebody else has the record, as far as was drawn
   @query("strata-dialog") private dialog_!: StrataDialog;
   @query("form") private form_!: HTMLFormElement | null;
 
@@ -51,6 +57,19 @@ export class StrataRecordDialog extends LitElement {
         align-items: center;
         gap: 10px;
       }
+      .other {
+        display: grid;
+        grid-template-columns: auto 1fr auto;
+        align-items: center;
+        gap: 8px 10px;
+        padding: 10px 12px;
+        border-radius: var(--radius-small);
+        background: var(--calm-soft);
+        font-size: 0.9rem;
+      }
+      .other strata-copy-field {
+        grid-column: 1 / -1;
+      }
       .field-row {
         display: grid;
         gap: 4px;
@@ -63,7 +82,25 @@ export class StrataRecordDialog extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    if (this.key !== null) void this.load(this.key);
+    if (this.key === null) return;
+    void this.load(this.key);
+    if (this.layer.table !== undefined) this.claim_ = this.session.editors.claim(this.layer.table, this.key);
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.claim_?.release();
+    this.claim_ = null;
+  }
+
+  /** What is in the form is kept when somebody takes the record over. Whoever waited for it begins with what was saved meanwhile. */
+  override willUpdate(): void {
+    const shut = this.claim_ !== null && this.claim_.other !== null;
+    if (shut === this.shut_) return;
+    this.shut_ = shut;
+    const { table } = this;
+    if (shut && this.claim_!.lost && table) this.written_ = this.in_words(table);
+    else if (!shut && this.written_ === "" && this.key !== null) void this.load(this.key);
   }
 
   private get table(): Table | null {
@@ -72,7 +109,12 @@ export class StrataRecordDialog extends LitElement {
 
   private async load(key: number): Promise<void> {
     try {
-      this.record_ = await this.session.api.record({ model: this.session.model_id, layer: this.layer.id }, key);
+      const record = await this.session.api.record({ model: this.session.model_id, layer: this.layer.id }, key);
+      const again = this.record_ !== null;
+      this.record_ = record;
+      if (!again) return;
+      await this.updateComplete;
+      for (const { slug } of this.table?.columns ?? []) this.input_of(slug)?.put(record.values[slug] ?? null);
     } catch (error) {
       this.problem_ = error instanceof ApiError ? error.message : texts.problems.unexpected;
     }
@@ -86,7 +128,7 @@ export class StrataRecordDialog extends LitElement {
       heading=${key === null ? words.new_record_of(table ? label_of(table) : "") : name}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
-      ${record ? this.facts(record) : nothing}
+      ${this.claim_?.other ? this.held(this.claim_, name) : nothing} ${record ? this.facts(record) : nothing}
       ${ready ? this.form(table) : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`}
       <p class="hint" role="status" ?hidden=${!this.sending_}>${this.sending_}</p>
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
@@ -94,8 +136,22 @@ export class StrataRecordDialog extends LitElement {
       ${key === null
         ? html`<button slot="actions" ?disabled=${this.busy_ || !ready} @click=${() => void this.save(true)}>${words.save_next}</button>`
         : nothing}
-      <button slot="actions" class="primary" ?disabled=${this.busy_ || !ready} @click=${() => this.form_?.requestSubmit()}>${texts.save}</button>
+      <button slot="actions" class="primary" ?disabled=${this.busy_ || !ready || this.shut_} @click=${() => this.form_?.requestSubmit()}>${texts.save}</button>
     </strata-dialog>`;
+  }
+
+  private held(claim: RecordClaim, name: string): TemplateResult {
+    const { user, is_me } = claim.other!;
+    const kept = claim.lost && this.written_ !== "";
+    const told = kept ? (is_me ? words.taken_elsewhere : words.taken_over(user)) : is_me ? words.edited_elsewhere : words.edited_by(user);
+    const take_over = async (): Promise<void> => {
+      const lead = is_me ? words.take_over_own : words.take_over_lead(user);
+      if (await ask({ heading: words.take_over_title(name), lead, yes: words.take_over })) claim.take_over();
+    };
+    return html`<div class="other" role="alert">
+      ${icon("edit")}<span>${told}</span><button @click=${() => void take_over()}>${words.take_over}</button>
+      ${kept ? html`<strata-copy-field .label=${words.written} .text=${this.written_}></strata-copy-field>` : nothing}
+    </div>`;
   }
 
   private facts(record: TableRecord): TemplateResult {
@@ -136,10 +192,22 @@ export class StrataRecordDialog extends LitElement {
         .value=${value}
         .record=${{ table: this.layer.table ?? 0, key: this.record_?.key ?? null }}
         .invalid=${problem !== ""}
+        .fixed=${this.shut_}
       ></strata-cell-input>
       ${column.comment ? html`<span class="hint">${column.comment}</span>` : nothing}
       ${problem ? html`<span class="error" role="alert">${problem}</span>` : nothing}
     </div>`;
+  }
+
+  /** What differs from the record, a line a column. */
+  private in_words(table: Table): string {
+    const lines: string[] = [];
+    for (const column of table.columns) {
+      const read = this.input_of(column.slug)?.read();
+      if (!read || !("value" in read) || same_value(read.value, this.record_?.values[column.slug])) continue;
+      lines.push(`${label_of(column)}: ${cell_text(read.value)}`);
+    }
+    return lines.join("\n");
   }
 
   private input_of(slug: string): StrataCellInput | null {
@@ -178,7 +246,7 @@ export class StrataRecordDialog extends LitElement {
   /** True: all of it is saved. */
   private async save(another: boolean): Promise<boolean> {
     const { table, session, record_: record } = this;
-    if (!table || this.busy_) return false;
+    if (!table || this.busy_ || this.shut_) return false;
     this.problem_ = "";
     const values = this.read(table);
     if (!values) return false;

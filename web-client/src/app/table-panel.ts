@@ -12,6 +12,7 @@ import type { Layer } from "../core/types";
 import type { CellEdit } from "./cell-edits";
 import "./cell-input";
 import { takes_typing, type StrataCellInput } from "./cell-input";
+import { ask } from "./dialog";
 import { dropped_files } from "./drop";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
@@ -19,6 +20,7 @@ import "./menu";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { measures_of, type RecordMeasure } from "./record-measures";
+import type { RecordClaim } from "./record-editors";
 import { save_from } from "./save-from";
 import { shown_value } from "./shown-value";
 import { shared_styles } from "./styles";
@@ -63,6 +65,7 @@ export class StrataTablePanel extends LitElement {
   @state() private active_ = { row: 0, column: 0 };
   @state() private editing_: Editing | null = null;
   @state() private editor_problem_ = "";
+  private claim_: RecordClaim | null = null; // of the record that is written into
   @state() private over_ = false; // a file is held over it
   @query(".scroller") private scroller_!: HTMLElement | null;
   @query(".editor strata-cell-input") private input_!: StrataCellInput | null;
@@ -85,9 +88,12 @@ export class StrataTablePanel extends LitElement {
     super.disconnectedCallback();
     this.observer_?.disconnect();
     this.observer_ = null;
+    this.claim_?.release();
+    this.claim_ = null;
   }
 
   override willUpdate(): void {
+    this.claim_edited();
     this.classList.toggle("over", this.over_);
     const { first, last } = this.in_sight();
     this.view.rows.want(first, last);
@@ -99,6 +105,14 @@ export class StrataTablePanel extends LitElement {
       this.observer_.observe(this.scroller_);
     }
     if (this.view.sought !== null) void this.seek();
+  }
+
+  /** Others see which record is written into. */
+  private claim_edited(): void {
+    const { editing_: editing, view } = this;
+    if (this.claim_?.key === editing?.key && (editing === null || this.claim_?.table === view.table_id)) return;
+    this.claim_?.release();
+    this.claim_ = editing ? this.session.editors.claim(view.table_id, editing.key) : null;
   }
 
   // ── what is in sight ──────────────────────────────────────────────────────────────────────────────────────────────
@@ -372,8 +386,10 @@ export class StrataTablePanel extends LitElement {
     const chosen = record !== null && this.view.selected.has(record.key);
     const is_active = (column: number): string => (this.active_.row === index && this.active_.column === column ? "active" : "");
     const color = record ? record_color(this.session.layers.palette(layer), record) : null;
+    const writer = record ? this.session.editors.other(table.id, record.key) : null;
+    const told = writer ? (writer.is_me ? texts.tables.edited_elsewhere : texts.tables.edited_by(writer.user)) : "";
     return html`<div
-      class="line ${chosen ? "chosen-row" : ""}"
+      class="line ${chosen ? "chosen-row" : ""} ${writer ? "held" : ""}"
       role="row"
       aria-rowindex=${index + 2}
       aria-selected=${chosen}
@@ -381,6 +397,7 @@ export class StrataTablePanel extends LitElement {
     >
       <div class="cell key numeric ${is_active(0)}" role="rowheader" id="cell-${index}-0" @click=${(event: MouseEvent) => this.on_key_cell(event, index)}>
         ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}${record?.key ?? "…"}
+        ${writer ? html`<span class="writer" role="img" aria-label=${told} title=${told}>${icon("edit")}</span>` : nothing}
       </div>
       ${table.columns.map((column, at) => this.cell(record, column, index, at + 1, is_active(at + 1)))}
       ${measures_of(table).map(({ text }, measure) => {
@@ -439,13 +456,54 @@ export class StrataTablePanel extends LitElement {
           .value=${editing.value}
           .typed=${editing.typed}
           .invalid=${this.editor_problem_ !== ""}
+          .fixed=${this.is_taken}
         ></strata-cell-input>
       </div>
+      ${this.is_taken ? this.taken(editing, edges[at]!) : nothing}
       ${this.editor_problem_
         ? html`<div class="bubble" role="alert" ${styled(this.beside(editing.row, edges[at]!))}>
             <span class="error">${this.editor_problem_}</span>
           </div>`
         : nothing}`;
+  }
+
+  /** Somebody else has the record that is written into here. */
+  private get is_taken(): boolean {
+    return this.claim_ !== null && this.claim_.other !== null;
+  }
+
+  private taken({ key, row }: Editing, left: number): TemplateResult {
+    const words = texts.tables;
+    const { user, is_me } = this.claim_!.other!;
+    return html`<div class="bubble" role="alert" ${styled(this.beside(row, left))}>
+      <span>${is_me ? words.taken_elsewhere : words.taken_over(user)}</span>
+      <div class="row">
+        <button @click=${() => void this.take_over(key)}>${words.take_over}</button>
+        <button class="quiet" @click=${() => this.leave_cell()}>${words.give_up}</button>
+      </div>
+    </div>`;
+  }
+
+  /** Asks whoever would write into a record that somebody else has; `work` is done if it is, or was, to be had. */
+  private async take_over(key: number, work: () => void = () => {}): Promise<void> {
+    const words = texts.tables;
+    const { session, view } = this;
+    const claim = session.editors.claim(view.table_id, key);
+    const { other } = claim;
+    const name = session.tables.label(view.table_id, key) ?? words.record(key);
+    const lead = other?.is_me ? words.take_over_own : words.take_over_lead(other?.user ?? "");
+    if (!other || (await ask({ heading: words.take_over_title(name), lead, yes: words.take_over }))) {
+      if (other) claim.take_over();
+      work();
+      await this.updateComplete; // what is written into from now on has a claim of its own
+    }
+    claim.release();
+  }
+
+  private leave_cell(): void {
+    this.editing_ = null;
+    this.editor_problem_ = "";
+    this.scroller_?.focus();
   }
 
   /** Below the row, or above it where there is more room. */
@@ -508,6 +566,24 @@ export class StrataTablePanel extends LitElement {
       this.request({ dialog: "record", layer: this.layer!, key: record.key });
       return;
     }
+    if (this.is_held(record.key)) void this.take_over(record.key, () => this.edit_now(row, at, typed));
+    else this.edit_now(row, at, typed);
+  }
+
+  private is_held(key: number): boolean {
+    return this.session.editors.other(this.view.table_id, key) !== null;
+  }
+
+  private clear_cell({ key, values }: TableRecord, { slug }: Column): void {
+    const clear = (): void => void this.view.write(key, slug, null, values[slug] ?? null);
+    if (this.is_held(key)) void this.take_over(key, clear);
+    else clear();
+  }
+
+  private edit_now(row: number, at: number, typed: string | null): void {
+    const record = this.view.rows.row(row);
+    const column = this.view.table?.columns[at - 1];
+    if (!record || !column) return;
     this.activate(row, at);
     this.scroll_to_active(this.view.table!);
     const edit = this.view.edits.of(record.key, column.slug);
@@ -521,11 +597,12 @@ export class StrataTablePanel extends LitElement {
     });
   }
 
-  /** False: what was typed is no value, and stays in the field. */
+  /** False: what was typed is no value, or somebody took the record over; it stays in the field. */
   private commit(): boolean {
     const editing = this.editing_;
     const read = this.input_?.read();
     if (!editing || !read) return true;
+    if (this.is_taken) return false;
     if ("problem" in read) {
       this.editor_problem_ = read.problem;
       return false;
@@ -539,9 +616,7 @@ export class StrataTablePanel extends LitElement {
   private readonly on_editor_key = (event: KeyboardEvent): void => {
     const { row, column } = this.active_;
     if (event.key === "Escape") {
-      this.editing_ = null;
-      this.editor_problem_ = "";
-      this.scroller_?.focus();
+      this.leave_cell();
     } else if (event.key === "Enter" && !event.shiftKey && !event.altKey) {
       if (this.commit()) this.move_to(row + 1, column);
     } else if (event.key === "Tab") {
@@ -647,7 +722,7 @@ export class StrataTablePanel extends LitElement {
     if (key === "Escape") this.scroller_?.blur();
     else if (key === " " && record) this.view.select(record.key, "toggle");
     else if (key === "Enter" || key === "F2") this.enter(record, row, column);
-    else if ((key === "Delete" || key === "Backspace") && record && cell && this.can_write) this.view.write(record.key, cell.slug, null, record.values[cell.slug] ?? null);
+    else if ((key === "Delete" || key === "Backspace") && record && cell && this.can_write) this.clear_cell(record, cell);
     else if (key.length === 1 && !event.altKey && cell) this.edit_at(row, column, takes_typing(cell) ? key : null);
     else return key.length === 1; // not a shortcut of the page
     return true;

@@ -178,6 +178,19 @@ export const table_styles = css`
     background: var(--surface);
     cursor: pointer;
   }
+  .cell.key .writer {
+    display: grid;
+    margin-left: auto;
+    color: var(--accent);
+  }
+  .cell.key .writer .glyph {
+    width: 15px;
+    height: 15px;
+  }
+  .line.held:not(.chosen-row),
+  .line.held:not(.chosen-row) .cell.key {
+    background: var(--calm-soft);
+  }
   .cell.key .swatch {
     width: 12px;
     height: 12px;

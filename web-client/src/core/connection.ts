@@ -19,6 +19,7 @@ import {
   type Picked,
   type Presence,
   type ProblemMessage,
+  type RecordEditors,
   type RecordEvent,
   type Saved,
   type ServerMessage,
@@ -64,6 +65,7 @@ export interface ConnectionCallbacks {
   model(message: ModelEvent): void;
   record(message: RecordEvent): void;
   table(message: TableEvent): void;
+  editors(message: RecordEditors): void;
   presence(message: Presence): void;
   picked(message: Picked): void;
   /** A refusal. What was refused for good is no longer waiting. */
@@ -99,6 +101,7 @@ const kQuiet_ms = 10_000; // an answer is due but nothing came: ask for a sign o
 const kSilence_ms = 10_000; // nor came one: the connection is dead
 const kOpening_ms = 30_000; // for the handshake and the welcome; the server may be reading the model
 const kBusySocket_bytes = 256 * 1024; // cameras wait while so much is unsent
+const kAdvice = "advice"; // of messages that may fail: what is wrong is told by what they are about
 const kMostWaiting = 5000; // changes; new strokes are refused above
 
 export class Connection {
@@ -239,6 +242,11 @@ export class Connection {
     if (this.state_ === "open") this.send({ op: "presence", pointer });
   }
 
+  /** That this person writes into a record, or no longer. */
+  edit_record(what: { table: number; key: number; editing: boolean; take_over?: boolean }): void {
+    if (this.state_ === "open") this.send({ op: "record.edit", id: kAdvice, ...what });
+  }
+
   /** Null while edits cannot be taken: not connected, or too much waits to be saved. */
   begin_stroke(options: StrokeOptions): StrokeHandle | null {
     if (this.state_ !== "open" || this.full) return null;
@@ -356,6 +364,8 @@ export class Connection {
         return this.callbacks_.record(message);
       case "table":
         return this.callbacks_.table(message);
+      case "record.editors":
+        return this.callbacks_.editors(message);
       case "presence":
         return this.callbacks_.presence(message);
       case "picked":
@@ -387,7 +397,7 @@ export class Connection {
 
   private on_problem(message: ProblemMessage): void {
     const { op: _, ...problem } = message;
-    if (message.ref !== undefined && this.silenced_.delete(message.ref)) return;
+    if (message.ref !== undefined && (message.ref === kAdvice || this.silenced_.delete(message.ref))) return;
     if (message.ref === undefined || !this.outbox_.has(message.ref)) {
       this.callbacks_.problem(problem);
       return;

@@ -521,6 +521,19 @@ export interface Redo {
   layer: LayerRef;
 }
 
+/** This person begins or ends to write into a record. So that others see it (`record.editors`), and are not surprised; what protects the data is the record's version. Ends by itself with the connection. Where somebody else has the record nothing changes, unless it is taken over. */
+export interface RecordEdit {
+  op: "record.edit";
+  /** Comes back as `ref` of a problem. */
+  id?: string;
+  /** Id of a table of the model's project. */
+  table: number;
+  key: number;
+  editing: boolean;
+  /** From whoever has it. Default: false. */
+  take_over?: boolean;
+}
+
 /** A frame was drawn. Sent after a frame's last rectangle is on the screen; gives the server credit for the next. */
 export interface Ack {
   op: "ack";
@@ -660,6 +673,21 @@ export interface RecordEvent {
   key: number;
   record?: TableRecord;
   user?: string;
+}
+
+/** Who writes into a record. `session` and `user` are both absent where nobody does any more. */
+export interface RecordEditor {
+  /** Id of the table. */
+  table: number;
+  key: number;
+  session?: string;
+  user?: string;
+}
+
+/** Who writes into which records. Of the project's tables: all that there are, to who joins, where there are any; then each that changes. Not stored. */
+export interface RecordEditors {
+  op: "record.editors";
+  records: RecordEditor[];
 }
 
 /** A table was created, changed or deleted. Of the model's project. Changed: its names or columns, or so many records at once that they should be read anew. `table` is there unless it was deleted. */
@@ -1945,6 +1973,7 @@ export type ClientMessage =
   | EditRequest
   | Undo
   | Redo
+  | RecordEdit
   | Ack
   | PresenceUpdate
   | Pick;
@@ -1959,6 +1988,7 @@ export type ServerMessage =
   | ToolEvent
   | ModelEvent
   | RecordEvent
+  | RecordEditors
   | TableEvent
   | Presence
   | Picked
@@ -1976,6 +2006,7 @@ const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([
   "tool",
   "model",
   "record",
+  "record.editors",
   "table",
   "presence",
   "picked",

@@ -923,6 +923,25 @@ nlohmann::json to_json(const Redo& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, RecordEdit& value) {
+  read_optional_member(json, "id", value.id);
+  read_member(json, "table", value.table);
+  read_member(json, "key", value.key);
+  read_member(json, "editing", value.editing);
+  read_optional_member(json, "take_over", value.take_over);
+}
+
+nlohmann::json to_json(const RecordEdit& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "record.edit";
+  write_optional_member(json, "id", value.id);
+  write_member(json, "table", value.table);
+  write_member(json, "key", value.key);
+  write_member(json, "editing", value.editing);
+  write_member(json, "take_over", value.take_over);
+  return json;
+}
+
 void read(const nlohmann::json& json, Ack& value) {
   read_optional_member(json, "view_id", value.view_id);
   read_member(json, "frame", value.frame);
@@ -1163,6 +1182,33 @@ nlohmann::json to_json(const RecordEvent& value) {
   write_member(json, "key", value.key);
   write_optional_member(json, "record", value.record);
   write_optional_member(json, "user", value.user);
+  return json;
+}
+
+void read(const nlohmann::json& json, RecordEditor& value) {
+  read_member(json, "table", value.table);
+  read_member(json, "key", value.key);
+  read_optional_member(json, "session", value.session);
+  read_optional_member(json, "user", value.user);
+}
+
+nlohmann::json to_json(const RecordEditor& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "table", value.table);
+  write_member(json, "key", value.key);
+  write_optional_member(json, "session", value.session);
+  write_optional_member(json, "user", value.user);
+  return json;
+}
+
+void read(const nlohmann::json& json, RecordEditors& value) {
+  read_member(json, "records", value.records);
+}
+
+nlohmann::json to_json(const RecordEditors& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "record.editors";
+  write_member(json, "records", value.records);
   return json;
 }
 
@@ -2451,6 +2497,7 @@ std::optional<Schema> client_message_schema(std::string_view op) {
   if (op == EditRequest::kOp) return Schema::EditRequest;
   if (op == Undo::kOp) return Schema::Undo;
   if (op == Redo::kOp) return Schema::Redo;
+  if (op == RecordEdit::kOp) return Schema::RecordEdit;
   if (op == Ack::kOp) return Schema::Ack;
   if (op == PresenceUpdate::kOp) return Schema::PresenceUpdate;
   if (op == Pick::kOp) return Schema::Pick;
@@ -2495,6 +2542,10 @@ void read(const nlohmann::json& json, ClientMessage& value) {
     read(json, value.emplace<Redo>());
     return;
   }
+  if (op == RecordEdit::kOp) {
+    read(json, value.emplace<RecordEdit>());
+    return;
+  }
   if (op == Ack::kOp) {
     read(json, value.emplace<Ack>());
     return;
@@ -2523,6 +2574,7 @@ std::optional<Schema> server_message_schema(std::string_view op) {
   if (op == ToolEvent::kOp) return Schema::ToolEvent;
   if (op == ModelEvent::kOp) return Schema::ModelEvent;
   if (op == RecordEvent::kOp) return Schema::RecordEvent;
+  if (op == RecordEditors::kOp) return Schema::RecordEditors;
   if (op == TableEvent::kOp) return Schema::TableEvent;
   if (op == Presence::kOp) return Schema::Presence;
   if (op == Picked::kOp) return Schema::Picked;
@@ -2566,6 +2618,10 @@ void read(const nlohmann::json& json, ServerMessage& value) {
   }
   if (op == RecordEvent::kOp) {
     read(json, value.emplace<RecordEvent>());
+    return;
+  }
+  if (op == RecordEditors::kOp) {
+    read(json, value.emplace<RecordEditors>());
     return;
   }
   if (op == TableEvent::kOp) {

@@ -87,6 +87,7 @@ enum class Schema {
   EditRequest,
   Undo,
   Redo,
+  RecordEdit,
   Ack,
   PresenceUpdate,
   Pick,
@@ -101,6 +102,8 @@ enum class Schema {
   ToolEvent,
   ModelEvent,
   RecordEvent,
+  RecordEditor,
+  RecordEditors,
   TableEvent,
   PresencePointer,
   PresenceUser,
@@ -230,7 +233,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 204;
+constexpr int kSchemaCount = 207;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -650,6 +653,21 @@ nlohmann::json to_json(const Redo& value);
 template <>
 inline constexpr Schema kSchemaOf<Redo> = Schema::Redo;
 
+// This person begins or ends to write into a record. So that others see it (`record.editors`), and are not surprised; what protects the data is the record's version. Ends by itself with the connection. Where somebody else has the record nothing changes, unless it is taken over.
+struct RecordEdit {
+  static constexpr std::string_view kOp = "record.edit";
+  std::optional<std::string> id;  // Comes back as `ref` of a problem.
+  std::int64_t table = 0;  // Id of a table of the model's project.
+  std::int64_t key = 0;
+  bool editing = false;
+  bool take_over = false;  // From whoever has it.
+  bool operator==(const RecordEdit&) const = default;
+};
+void read(const nlohmann::json& json, RecordEdit& value);
+nlohmann::json to_json(const RecordEdit& value);
+template <>
+inline constexpr Schema kSchemaOf<RecordEdit> = Schema::RecordEdit;
+
 // A frame was drawn. Sent after a frame's last rectangle is on the screen; gives the server credit for the next.
 struct Ack {
   static constexpr std::string_view kOp = "ack";
@@ -870,6 +888,30 @@ void read(const nlohmann::json& json, RecordEvent& value);
 nlohmann::json to_json(const RecordEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<RecordEvent> = Schema::RecordEvent;
+
+// Who writes into a record. `session` and `user` are both absent where nobody does any more.
+struct RecordEditor {
+  std::int64_t table = 0;  // Id of the table.
+  std::int64_t key = 0;
+  std::optional<Uuid> session;
+  std::optional<std::string> user;
+  bool operator==(const RecordEditor&) const = default;
+};
+void read(const nlohmann::json& json, RecordEditor& value);
+nlohmann::json to_json(const RecordEditor& value);
+template <>
+inline constexpr Schema kSchemaOf<RecordEditor> = Schema::RecordEditor;
+
+// Who writes into which records. Of the project's tables: all that there are, to who joins, where there are any; then each that changes. Not stored.
+struct RecordEditors {
+  static constexpr std::string_view kOp = "record.editors";
+  std::vector<RecordEditor> records;
+  bool operator==(const RecordEditors&) const = default;
+};
+void read(const nlohmann::json& json, RecordEditors& value);
+nlohmann::json to_json(const RecordEditors& value);
+template <>
+inline constexpr Schema kSchemaOf<RecordEditors> = Schema::RecordEditors;
 
 enum class TableEventEvent { created, changed, deleted };
 std::string_view name(TableEventEvent value);
@@ -1912,13 +1954,13 @@ nlohmann::json to_json(const Readiness& value);
 template <>
 inline constexpr Schema kSchemaOf<Readiness> = Schema::Readiness;
 
-using ClientMessage = std::variant<Hello, CameraUpdate, LayersUpdate, StrokeBegin, StrokeExtend, StrokeEnd, EditRequest, Undo, Redo, Ack, PresenceUpdate, Pick>;
+using ClientMessage = std::variant<Hello, CameraUpdate, LayersUpdate, StrokeBegin, StrokeExtend, StrokeEnd, EditRequest, Undo, Redo, RecordEdit, Ack, PresenceUpdate, Pick>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> client_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ClientMessage& value);
 nlohmann::json to_json(const ClientMessage& value);
 
-using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, TableEvent, Presence, Picked, ProblemMessage>;
+using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, Presence, Picked, ProblemMessage>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> server_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ServerMessage& value);

@@ -67,6 +67,7 @@ std::string_view name(Schema schema) {
     case Schema::EditRequest: return "EditRequest";
     case Schema::Undo: return "Undo";
     case Schema::Redo: return "Redo";
+    case Schema::RecordEdit: return "RecordEdit";
     case Schema::Ack: return "Ack";
     case Schema::PresenceUpdate: return "PresenceUpdate";
     case Schema::Pick: return "Pick";
@@ -81,6 +82,8 @@ std::string_view name(Schema schema) {
     case Schema::ToolEvent: return "ToolEvent";
     case Schema::ModelEvent: return "ModelEvent";
     case Schema::RecordEvent: return "RecordEvent";
+    case Schema::RecordEditor: return "RecordEditor";
+    case Schema::RecordEditors: return "RecordEditors";
     case Schema::TableEvent: return "TableEvent";
     case Schema::PresencePointer: return "PresencePointer";
     case Schema::PresenceUser: return "PresenceUser";
@@ -277,6 +280,7 @@ std::string_view schema_bundle() {
 "EditRequest":{"type":"object","additionalProperties":false,"required":["op","id","layer","edit"],"properties":{"op":{"const":"edit"},"id":{"$ref":"#/definitions/Uuid"},"layer":{"$ref":"#/definitions/LayerRef"},"edit":{"$ref":"#/definitions/Edit"}}},
 "Undo":{"type":"object","additionalProperties":false,"required":["op","id","layer"],"properties":{"op":{"const":"undo"},"id":{"$ref":"#/definitions/Uuid"},"layer":{"$ref":"#/definitions/LayerRef"}}},
 "Redo":{"type":"object","additionalProperties":false,"required":["op","id","layer"],"properties":{"op":{"const":"redo"},"id":{"$ref":"#/definitions/Uuid"},"layer":{"$ref":"#/definitions/LayerRef"}}},
+"RecordEdit":{"type":"object","additionalProperties":false,"required":["op","table","key","editing"],"properties":{"op":{"const":"record.edit"},"id":{"type":"string","minLength":1,"maxLength":64},"table":{"type":"integer","minimum":1,"maximum":9007199254740991},"key":{"type":"integer","minimum":0,"maximum":4294967295},"editing":{"type":"boolean"},"take_over":{"type":"boolean"}}},
 "Ack":{"type":"object","additionalProperties":false,"required":["op","frame"],"properties":{"op":{"const":"ack"},"view_id":{"type":"integer","minimum":0,"maximum":15},"frame":{"type":"integer","minimum":0,"maximum":4294967295}}},
 "PresenceUpdate":{"type":"object","additionalProperties":false,"required":["op"],"properties":{"op":{"const":"presence"},"view_id":{"type":"integer","minimum":0,"maximum":15},"pointer":{"oneOf":[{"$ref":"#/definitions/Point2"},{"type":"null"}]}}},
 "Pick":{"type":"object","additionalProperties":false,"required":["op","x","y"],"properties":{"op":{"const":"pick"},"id":{"type":"string","minLength":1,"maxLength":64},"view_id":{"type":"integer","minimum":0,"maximum":15},"camera":{"$ref":"#/definitions/Camera"},"x":{"type":"number","minimum":-1000000.0,"maximum":1000000.0},"y":{"type":"number","minimum":-1000000.0,"maximum":1000000.0}}},
@@ -291,6 +295,8 @@ std::string_view schema_bundle() {
 "ToolEvent":{"type":"object","additionalProperties":false,"required":["op","event","tool_id"],"properties":{"op":{"const":"tool"},"event":{"type":"string","enum":["created","changed","deleted"]},"tool_id":{"type":"integer","minimum":1,"maximum":9007199254740991},"tool":{"$ref":"#/definitions/Tool"}}},
 "ModelEvent":{"type":"object","additionalProperties":false,"required":["op","event"],"properties":{"op":{"const":"model"},"event":{"type":"string","enum":["changed","deleted"]},"model":{"$ref":"#/definitions/Model"}}},
 "RecordEvent":{"type":"object","additionalProperties":false,"required":["op","event","table","key"],"properties":{"op":{"const":"record"},"event":{"type":"string","enum":["created","changed","deleted"]},"table":{"type":"integer","minimum":1,"maximum":9007199254740991},"key":{"type":"integer","minimum":0,"maximum":4294967295},"record":{"$ref":"#/definitions/TableRecord"},"user":{"type":"string","maxLength":200}}},
+"RecordEditor":{"type":"object","additionalProperties":false,"required":["table","key"],"properties":{"table":{"type":"integer","minimum":1,"maximum":9007199254740991},"key":{"type":"integer","minimum":0,"maximum":4294967295},"session":{"$ref":"#/definitions/Uuid"},"user":{"type":"string","maxLength":200}}},
+"RecordEditors":{"type":"object","additionalProperties":false,"required":["op","records"],"properties":{"op":{"const":"record.editors"},"records":{"type":"array","minItems":1,"maxItems":1000,"items":{"$ref":"#/definitions/RecordEditor"}}}},
 "TableEvent":{"type":"object","additionalProperties":false,"required":["op","event","table_id"],"properties":{"op":{"const":"table"},"event":{"type":"string","enum":["created","changed","deleted"]},"table_id":{"type":"integer","minimum":1,"maximum":9007199254740991},"table":{"$ref":"#/definitions/Table"},"user":{"type":"string","maxLength":200}}},
 "PresencePointer":{"type":"object","additionalProperties":false,"required":["position"],"properties":{"position":{"$ref":"#/definitions/Point3"},"normal":{"$ref":"#/definitions/Point3"}}},
 "PresenceUser":{"type":"object","additionalProperties":false,"required":["session","name","color"],"properties":{"session":{"$ref":"#/definitions/Uuid"},"name":{"type":"string","minLength":1,"maxLength":200},"color":{"type":"string","minLength":7,"maxLength":7,"pattern":"^#[0-9a-f]{6}$"},"pointer":{"$ref":"#/definitions/PresencePointer"}}},

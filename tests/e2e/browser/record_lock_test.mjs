@@ -1,0 +1,174 @@
+// Two people at the same records: each sees what the other has open, takes it over after a question, and loses nothing that was written.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kExpected = ["status of 412"]; // what the browser says of a change that came too late
+
+const [ada, bea, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ viewport: { width: 390, height: 844 } })];
+const everybody = { ada, bea, phone };
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const base = "/models/demo-pot";
+const T = "/tables/units";
+const record = async (key) => (await server.json("GET", `${T}/records/${key}`)).values;
+async function stored(key, slug, value) {
+  await wait_for(async () => (await record(key))[slug] === value, `${slug} of ${key} to be ${value}`);
+}
+async function shoot({ page }, name) {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `record_lock_${name}.png`) });
+}
+const columns = ["Key", "Code", "Note", "Soil"];
+const row = ({ page }, key) => page.locator("strata-table-panel .line", { has: page.getByRole("rowheader", { name: new RegExp(`^${key}\\b`) }) });
+const cell = (who, key, column) => row(who, key).locator(".cell").nth(columns.indexOf(column));
+const mark = (who, key, user) => row(who, key).getByRole("img", { name: `${user} is editing this.` });
+const form = ({ page }) => page.locator("strata-record-dialog");
+const note = (who) => form(who).getByRole("textbox", { name: "Note" });
+const save = (who) => form(who).getByRole("button", { name: "Save", exact: true });
+const button = ({ page }, name) => page.getByRole("button", { name, exact: true });
+const bubble = ({ page }) => page.locator("strata-table-panel .bubble");
+const editor = ({ page }) => page.locator("strata-table-panel .editor");
+async function open_form(who, key) {
+  await row(who, key).getByRole("rowheader").click();
+  await button(who, "Edit the record").click();
+  await note(who).waitFor();
+}
+/** The question's own button, not the one that asked it. */
+const agree = ({ page }, name) => page.locator("strata-question").getByRole("button", { name, exact: true }).click();
+async function type_into(who, key, column, text) {
+  await cell(who, key, column).click();
+  await who.page.keyboard.press("F2");
+  await editor(who).waitFor();
+  await who.page.keyboard.press("Control+a");
+  await who.page.keyboard.type(text);
+}
+
+try {
+  await server.start();
+  const { project } = await server.json("GET", base);
+  await server.json("POST", `/projects/${project}/tables`, {
+    name: "Units",
+    columns: [{ name: "Code", required: true }, { name: "Note" }, { name: "Soil", kind: "enumeration", choices: ["sand", "clay"] }],
+  });
+  for (let n = 1; n <= 6; ++n) await server.json("POST", `${T}/records`, { values: { code: `SU ${n}`, note: `found ${n}` } });
+  await server.json("POST", `${base}/layers`, { name: "Units", kind: "database", type: "u16", table: "units", resolution: 2048 });
+  for (const [name, who] of Object.entries({ ada, bea })) await who.sign_in(server, await server.add_person(name, "annotator"));
+  await phone.sign_in(server, await server.add_person("vera", "viewer"));
+  const id = (await server.json("GET", base)).id;
+  for (const who of Object.values(everybody)) {
+    await who.page.goto(`${server.url}/models/${id}`);
+    await who.drawn();
+    if (who === phone) await button(who, "Show the panel").click();
+    await button(who, "Paint on Units").click();
+    await who.page.keyboard.press("t");
+    await cell(who, 1, "Code").getByText("SU 1", { exact: true }).waitFor();
+  }
+
+  say("who has a record's form open is seen in its row, by viewers, too");
+  await open_form(ada, 1);
+  for (const who of [bea, phone]) await mark(who, 1, "ada").waitFor();
+  assert.equal(await mark(ada, 1, "ada").count(), 0, "one's own row");
+  await shoot(bea, "row");
+  await shoot(phone, "phone_row");
+
+  say("a second form of it can be read, but not changed");
+  await open_form(bea, 1);
+  await form(bea).getByText("ada is editing this.").waitFor();
+  assert.equal(await note(bea).getAttribute("readonly"), "");
+  assert.ok(await form(bea).getByRole("combobox", { name: "Soil" }).isDisabled());
+  assert.ok(await save(bea).isDisabled());
+  await shoot(bea, "waiting");
+
+  say("taken over after a question, the other form keeps what was written, to be copied");
+  await note(ada).fill("Mine, and not saved");
+  await button(bea, "Take over").click();
+  await bea.page.getByText("ada is editing it.").waitFor();
+  await shoot(bea, "question");
+  await agree(bea, "Cancel");
+  assert.equal(await note(ada).getAttribute("readonly"), null, "a question that was not answered took something");
+  await button(bea, "Take over").click();
+  await agree(bea, "Take over");
+  await form(ada).getByText("bea took this over.").waitFor();
+  assert.equal(await note(ada).getAttribute("readonly"), "");
+  assert.equal(await note(ada).inputValue(), "Mine, and not saved");
+  assert.equal(await form(ada).getByRole("textbox", { name: "What you wrote" }).inputValue(), "Note: Mine, and not saved");
+  assert.ok(await save(ada).isDisabled());
+  await note(ada).press("Control+Enter");
+  await shoot(ada, "taken");
+  assert.equal(await note(bea).getAttribute("readonly"), null);
+  await note(bea).fill("Bea's");
+  await save(bea).click();
+  await stored(1, "note", "Bea's");
+
+  say("left by the other it is one's own again: the text is still there, and what was saved meanwhile is told");
+  await form(ada).getByText("bea took this over.").waitFor({ state: "detached" });
+  assert.equal(await note(ada).inputValue(), "Mine, and not saved");
+  await save(ada).click();
+  await form(ada).getByText("bea changed this record meanwhile.").waitFor();
+  assert.equal((await record(1)).note, "Bea's");
+  await save(ada).click();
+  await stored(1, "note", "Mine, and not saved");
+  await form(ada).waitFor({ state: "detached" });
+
+  say("whoever waits without taking over begins with what was saved");
+  await open_form(ada, 2);
+  await open_form(bea, 2);
+  await form(bea).getByText("ada is editing this.").waitFor();
+  await note(ada).fill("Saved by ada");
+  await save(ada).click();
+  await wait_for(async () => (await note(bea).inputValue()) === "Saved by ada", "what ada saved");
+  assert.equal(await note(bea).getAttribute("readonly"), null);
+  await note(bea).fill("And by bea");
+  await save(bea).click();
+  await stored(2, "note", "And by bea");
+  await mark(phone, 2, "bea").waitFor({ state: "detached" });
+
+  say("a cell that is written into is seen, asked for and taken over; its text stays, too");
+  await type_into(ada, 3, "Note", "Half a sen");
+  await mark(bea, 3, "ada").waitFor();
+  await cell(bea, 3, "Note").click();
+  await bea.page.keyboard.press("F2");
+  await bea.page.getByText("Take over “SU 3”?").waitFor();
+  assert.equal(await editor(bea).count(), 0);
+  await agree(bea, "Cancel");
+  await cell(bea, 3, "Note").click();
+  await bea.page.getByText("Take over “SU 3”?").waitFor();
+  await agree(bea, "Take over");
+  await editor(bea).waitFor();
+  await bubble(ada).getByText("bea took this over.").waitFor();
+  assert.equal(await editor(ada).getByRole("textbox").inputValue(), "Half a sen");
+  await ada.page.keyboard.press("Enter");
+  await mark(ada, 3, "bea").waitFor();
+  await shoot(ada, "cell_taken");
+  assert.equal((await record(3)).note, "found 3");
+  await bea.page.keyboard.press("Control+a");
+  await bea.page.keyboard.type("A whole sentence");
+  await bea.page.keyboard.press("Enter");
+  await stored(3, "note", "A whole sentence");
+  await bubble(ada).getByText("bea took this over.").waitFor({ state: "detached" });
+  await ada.page.keyboard.press("Escape");
+  await editor(ada).waitFor({ state: "detached" });
+  await mark(bea, 3, "ada").waitFor({ state: "detached" });
+
+  say("an end of the connection is the end of it");
+  await open_form(ada, 4);
+  await mark(bea, 4, "ada").waitFor();
+  await ada.page.goto(server.url);
+  await mark(bea, 4, "ada").waitFor({ state: "detached" });
+  await open_form(bea, 4);
+  assert.equal(await note(bea).getAttribute("readonly"), null);
+
+  for (const who of Object.values(everybody)) who.assert_no_complaints(kExpected);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
+  for (const [name, who] of Object.entries(everybody)) await shoot(who, `failed_${name}`).catch(() => {});
+  throw error;
+} finally {
+  for (const who of Object.values(everybody)) await who.close();
+  await server.remove();
+}
