@@ -224,7 +224,11 @@ Result<App::LiveEntry> App::admit_live(Request& request) {
   if (!room) return tl::unexpected(room.error());
   auto project = store_.project(std::to_string((*room)->model().project_id));
   if (!project) return tl::unexpected(project.error());
-  return LiveEntry{std::move(*room), project->slug, *request.principal, Authenticator::secret_of(request)};
+  // What the others read of them. A person who is gone will be sent out anyway.
+  auto person = store_.person(request.user());
+  if (!person && person.error().status != 404) return tl::unexpected(person.error());
+  return LiveEntry{std::move(*room), project->slug, *request.principal, person ? person->full_name : std::string(),
+                   Authenticator::secret_of(request)};
 }
 
 bool App::is_still_welcome(const std::string& secret, std::int64_t project_id, Role role) {
@@ -234,7 +238,7 @@ bool App::is_still_welcome(const std::string& secret, std::int64_t project_id, R
 
 std::shared_ptr<LiveSession> App::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) {
   auto session = std::make_shared<LiveSession>(shared_, std::move(entry.room), std::move(entry.project_slug),
-                                               std::move(entry.principal), socket);
+                                               std::move(entry.principal), std::move(entry.full_name), socket);
   live_sockets().add(std::move(socket), session, std::move(entry.secret));
   return session;
 }

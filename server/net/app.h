@@ -47,6 +47,7 @@ class App {
     std::shared_ptr<room::Room> room;
     std::string project_slug;
     Principal principal;
+    std::string full_name;
     std::string secret;  // that the person showed
   };
   Result<LiveEntry> admit_live(Request& request);

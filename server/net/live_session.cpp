@@ -34,11 +34,13 @@ std::vector<protocol::RecordEditors> editor_messages(const std::vector<EditorBoo
 }  // namespace
 
 LiveSession::LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room,
-                         std::string project_slug, Principal principal, std::weak_ptr<LiveSocket> socket)
+                         std::string project_slug, Principal principal, std::string full_name,
+                         std::weak_ptr<LiveSocket> socket)
     : shared_(std::move(shared)),
       room_(std::move(room)),
       project_slug_(std::move(project_slug)),
       principal_(std::move(principal)),
+      full_name_(std::move(full_name)),
       owner_{room_->model().id, principal_.user},
       socket_(std::move(socket)),
       bucket_(shared_->limits.messages_per_second, shared_->limits.burst) {}
@@ -102,8 +104,8 @@ void LiveSession::on(const protocol::Hello& message) {
       std::none_of(message.accept->begin(), message.accept->end(), [](const auto& codec) { return codec == "jpeg"; }))
     return refuse({406, "No common picture format", "Pictures are sent as jpeg.", "accept"}, std::string());
 
-  std::shared_ptr<room::Member> joined =
-      room_->join(principal_.user, this, [socket = socket_, metrics = shared_->metrics](stream::FrameBytes frame) {
+  std::shared_ptr<room::Member> joined = room_->join(
+      principal_.user, full_name_, this, [socket = socket_, metrics = shared_->metrics](stream::FrameBytes frame) {
         ++metrics->frames_sent;
         metrics->frame_bytes_sent += frame->size();
         if (auto open = socket.lock()) open->send_frame(std::move(frame));
@@ -277,6 +279,8 @@ void LiveSession::on(const protocol::Ack& message) {
 }
 
 void LiveSession::on(const protocol::PresenceUpdate& message) {
+  if (auto done = member()->look_together(message.leading, message.follow); !done)
+    return refuse(done.error(), std::string());
   if (!message.pointer) {
     {
       std::lock_guard lock(mutex_);
@@ -288,7 +292,7 @@ void LiveSession::on(const protocol::PresenceUpdate& message) {
   if (camera == cameras_.end()) return;  // nothing is drawn yet, so the pointer is over nothing
   {
     std::lock_guard lock(mutex_);
-    pointer_ = Pointer{camera->second, {(*message.pointer)[0], (*message.pointer)[1]}};
+    pointer_ = Pointer{camera->second, {(*message.pointer)[0], (*message.pointer)[1]}, message.radius};
     if (std::exchange(pointer_busy_, true)) return;
   }
   if (!shared_->queries->post([self = shared_from_this()] { self->resolve_pointer(); })) {
@@ -487,7 +491,9 @@ void LiveSession::presence_changed() {
   {
     std::lock_guard lock(mutex_);
     if (std::exchange(presence_scheduled_, true)) return;
-    const auto due = presence_sent_ + shared_->limits.presence_every;
+    const LiveLimits& limits = shared_->limits;
+    const auto due = presence_sent_ +
+                     limits.presence_every * std::max(people_told_, limits.presence_people) / limits.presence_people;
     delay = std::max(delay, std::chrono::ceil<std::chrono::milliseconds>(due - std::chrono::steady_clock::now()));
   }
   socket->run_after(delay, [weak = weak_from_this()] {
@@ -502,24 +508,35 @@ void LiveSession::view_refused(std::uint32_t view_id, const Problem& why) {
 }
 
 void LiveSession::send_presence() {
+  Uuid own;
   {
     std::lock_guard lock(mutex_);
     presence_scheduled_ = false;
     presence_sent_ = std::chrono::steady_clock::now();
     if (!member_) return;
+    own = member_->session();
   }
   protocol::Presence presence;
-  for (const auto& person : room_->presence()) {
+  for (auto& person : room_->presence(own)) {
     protocol::PresenceUser user;
     user.session = person.session;
-    user.name = person.user;
-    user.color = person.color;
+    user.name = std::move(person.user);
+    if (!person.full_name.empty()) user.full_name = std::move(person.full_name);
+    user.color = std::move(person.color);
     if (person.pointer) {
       protocol::PresencePointer pointer;
-      pointer.position = *person.pointer;
+      pointer.position = person.pointer->position;
+      pointer.radius = person.pointer->radius;
       user.pointer = pointer;
     }
+    user.leading = person.leading;
+    user.following = person.following;
+    user.camera = std::move(person.camera);
     presence.users.push_back(std::move(user));
+  }
+  {
+    std::lock_guard lock(mutex_);
+    people_told_ = static_cast<int>(presence.users.size());
   }
   send(presence);
 }
@@ -538,7 +555,7 @@ void LiveSession::resolve_pointer() {
       here = member_;
     }
     auto point = room_->pick(asked.camera, asked.pixel.x, asked.pixel.y, {});  // where, not what is there
-    here->pointer(point && point->hit ? std::optional(point->position) : std::nullopt);
+    here->pointer(point && point->hit ? std::optional(room::Pointing{point->position, asked.radius}) : std::nullopt);
   }
 }
 

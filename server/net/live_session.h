@@ -39,6 +39,7 @@ struct LiveLimits {
   int max_refusals = 2000;  // more refused for speed than taken, then the connection is closed
   int views = room::Member::kMaxViews;
   std::chrono::milliseconds presence_every{50};
+  int presence_people = 8;  // more make it rarer: to one session goes the same in a second, however many are there
 };
 
 class LiveSockets;
@@ -68,8 +69,9 @@ constexpr int kCloseTryAgain = 1013;
 // strand; what the room tells arrives on the room's.
 class LiveSession final : public room::Listener, public std::enable_shared_from_this<LiveSession> {
  public:
+  // `full_name` of who it is may be empty.
   LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room, std::string project_slug,
-              Principal principal, std::weak_ptr<LiveSocket> socket);
+              Principal principal, std::string full_name, std::weak_ptr<LiveSocket> socket);
   ~LiveSession() override;
 
   // Work that is returned must run on a worker, and end, before the next message is given.
@@ -139,6 +141,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   const std::shared_ptr<room::Room> room_;
   const std::string project_slug_;
   const Principal principal_;
+  const std::string full_name_;
   const StrokeBook::Owner owner_;
   const std::weak_ptr<LiveSocket> socket_;
 
@@ -153,9 +156,11 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   std::unordered_map<Uuid, bool> own_edits_;  // on their way; true: applied
   bool presence_scheduled_ = false;
   std::chrono::steady_clock::time_point presence_sent_{};
+  int people_told_ = 0;  // by that one
   struct Pointer {
     Camera camera;
     glm::dvec2 pixel;
+    std::optional<double> radius;
   };
   std::optional<Pointer> pointer_;
   bool pointer_busy_ = false;

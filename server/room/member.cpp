@@ -4,10 +4,11 @@
 
 namespace strata::room {
 
-RoomMember::RoomMember(std::shared_ptr<OpenRoom> room, std::string user, std::string color, Listener* listener,
-                       stream::Viewer::Send send)
+RoomMember::RoomMember(std::shared_ptr<OpenRoom> room, std::string user, std::string full_name, std::string color,
+                       Listener* listener, stream::Viewer::Send send)
     : room_(std::move(room)),
       user_(std::move(user)),
+      full_name_(std::move(full_name)),
       color_(std::move(color)),
       listener_(listener),
       send_(std::move(send)) {}
@@ -79,8 +80,14 @@ std::shared_ptr<const Palette> RoomMember::palette(std::uint32_t view_id, View& 
 }
 
 void RoomMember::camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) {
-  std::lock_guard lock(mutex_);
-  if (View* v = view(view_id, true)) v->viewer->set_camera(seq, camera, moving);
+  {
+    std::lock_guard lock(mutex_);
+    if (View* v = view(view_id, true)) v->viewer->set_camera(seq, camera, moving);
+    if (view_id != 0) return;
+    camera_ = camera;
+    camera_->section.clear();
+  }
+  room_->camera_moved(session_);
 }
 
 Result<void> RoomMember::show(std::uint32_t view_id, ViewSettings settings) {
@@ -115,17 +122,27 @@ void RoomMember::ack(std::uint32_t view_id, std::uint64_t frame) {
   if (View* v = view(view_id, false)) v->viewer->ack(frame);
 }
 
-void RoomMember::pointer(std::optional<glm::dvec3> world) {
+void RoomMember::pointer(std::optional<Pointing> at) {
   {
     std::lock_guard lock(mutex_);
-    pointer_ = world;
+    pointer_ = at;
   }
   room_->announce_presence();
 }
 
+Result<void> RoomMember::look_together(bool leading, const std::optional<Uuid>& follow) {
+  if (auto done = room_->follow(session_, follow); !done) return done;
+  {
+    std::lock_guard lock(mutex_);
+    if (std::exchange(leading_, leading) == leading) return {};
+  }
+  room_->announce_presence();
+  return {};
+}
+
 Presence RoomMember::presence() const {
   std::lock_guard lock(mutex_);
-  return {session_, user_, color_, pointer_};
+  return {session_, user_, full_name_, color_, pointer_, leading_, std::nullopt, camera_};
 }
 
 void RoomMember::content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,

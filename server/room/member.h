@@ -17,18 +17,21 @@ struct LayerState;
 // A connection of one person: the views they look through and what they show in each.
 class RoomMember final : public Member {
  public:
-  RoomMember(std::shared_ptr<OpenRoom> room, std::string user, std::string color, Listener* listener,
-             stream::Viewer::Send send);
+  RoomMember(std::shared_ptr<OpenRoom> room, std::string user, std::string full_name, std::string color,
+             Listener* listener, stream::Viewer::Send send);
   ~RoomMember() override;
 
   Uuid session() const override { return session_; }
   void camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) override;
   Result<void> show(std::uint32_t view_id, ViewSettings settings) override;
   void ack(std::uint32_t view_id, std::uint64_t frame) override;
-  void pointer(std::optional<glm::dvec3> world) override;
+  void pointer(std::optional<Pointing> at) override;
+  Result<void> look_together(bool leading, const std::optional<Uuid>& follow) override;
 
   Listener* listener() const { return listener_; }
-  Presence presence() const;
+  const std::string& user() const { return user_; }
+  const std::string& color() const { return color_; }
+  Presence presence() const;  // whom they follow is the room's to say
   // Called by the room.
   void content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,
                        std::int64_t sequence);
@@ -56,12 +59,14 @@ class RoomMember final : public Member {
 
   const std::shared_ptr<OpenRoom> room_;
   const Uuid session_ = random_uuid();
-  const std::string user_, color_;
+  const std::string user_, full_name_, color_;
   Listener* const listener_;
   const stream::Viewer::Send send_;
   mutable std::mutex mutex_;
   std::map<std::uint32_t, View> views_;
-  std::optional<glm::dvec3> pointer_;
+  std::optional<Pointing> pointer_;
+  std::optional<Camera> camera_;  // of view 0, without its section
+  bool leading_ = false;
 };
 
 }  // namespace strata::room

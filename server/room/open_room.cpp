@@ -499,17 +499,28 @@ void OpenRoom::edits_unsaved(const std::vector<Listener::Edit>& edits, const Pro
 
 // ------------------------------------------------------------------------------------------------------ people
 
-std::unique_ptr<Member> OpenRoom::join(std::string user, Listener* listener, stream::Viewer::Send send) {
+std::unique_ptr<Member> OpenRoom::join(std::string user, std::string full_name, Listener* listener,
+                                       stream::Viewer::Send send) {
   std::unique_ptr<RoomMember> member;
   {
     std::lock_guard lock(members_mutex_);
-    member = std::make_unique<RoomMember>(shared_from_this(), std::move(user), kColors[joined_++ % kColors.size()],
+    std::string color = color_for(user);
+    member = std::make_unique<RoomMember>(shared_from_this(), std::move(user), std::move(full_name), std::move(color),
                                           listener, std::move(send));
     members_.push_back(member.get());
   }
   touch();
   announce_presence();
   return member;
+}
+
+std::string OpenRoom::color_for(const std::string& user) const {
+  std::array<int, kColors.size()> bearers{};
+  for (const RoomMember* member : members_) {
+    if (member->user() == user) return member->color();
+    for (std::size_t i = 0; i < kColors.size(); ++i) bearers[i] += member->color() == kColors[i];
+  }
+  return kColors[std::min_element(bearers.begin(), bearers.end()) - bearers.begin()];
 }
 
 void OpenRoom::tell(const std::function<void(Listener&)>& tell) {
@@ -522,6 +533,7 @@ void OpenRoom::leave(RoomMember* member) {
   {
     std::lock_guard lock(members_mutex_);
     std::erase(members_, member);
+    followers_.leave(member->session());
   }
   touch();
   announce_presence();
@@ -531,10 +543,50 @@ void OpenRoom::announce_presence() {
   boost::asio::post(strand_, [self = shared_from_this()] { self->tell([](Listener& l) { l.presence_changed(); }); });
 }
 
-std::vector<Presence> OpenRoom::presence() const {
+Result<void> OpenRoom::follow(const Uuid& follower, const std::optional<Uuid>& leader) {
+  bool other = false;
+  {
+    std::lock_guard lock(members_mutex_);
+    if (!leader) {
+      other = followers_.stop(follower);
+    } else {
+      const bool here = std::any_of(members_.begin(), members_.end(),
+                                    [&](const auto* member) { return member->session() == *leader; });
+      if (!here)
+        return fail(404, "Not here",
+                    "Who is to be followed has left, or was never at this model. `presence` lists who is here.",
+                    "follow");
+      auto followed = followers_.follow(follower, *leader);
+      if (!followed) return tl::unexpected(followed.error());
+      other = *followed;
+    }
+  }
+  if (other) announce_presence();
+  return {};
+}
+
+void OpenRoom::camera_moved(const Uuid& session) {
+  {
+    std::lock_guard lock(members_mutex_);
+    if (!followers_.has_followers(session)) return;
+  }
+  boost::asio::post(strand_, [self = shared_from_this(), session] {
+    std::lock_guard lock(self->members_mutex_);
+    for (RoomMember* member : self->members_)
+      if (member->listener() && self->followers_.leader_of(member->session()) == session)
+        member->listener()->presence_changed();
+  });
+}
+
+std::vector<Presence> OpenRoom::presence(const Uuid& receiver) const {
   std::lock_guard lock(members_mutex_);
+  const auto leader = followers_.leader_of(receiver);
   std::vector<Presence> people;
-  for (const RoomMember* member : members_) people.push_back(member->presence());
+  for (const RoomMember* member : members_) {
+    people.push_back(member->presence());
+    people.back().following = followers_.leader_of(member->session());
+    if (leader != member->session()) people.back().camera.reset();
+  }
   return people;
 }
 

@@ -8,6 +8,7 @@
 
 #include "room/contents.h"
 #include "room/edit_pipeline.h"
+#include "room/followers.h"
 #include "room/look_shelf.h"
 #include "room/member.h"
 #include "room/record_colors.h"
@@ -45,8 +46,9 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   std::int64_t sequence() const override;
   std::int64_t durable_sequence() const override;
   void edit(EditRequest request, Applied applied, Saved saved) override;
-  std::unique_ptr<Member> join(std::string user, Listener* listener, stream::Viewer::Send send) override;
-  std::vector<Presence> presence() const override;
+  std::unique_ptr<Member> join(std::string user, std::string full_name, Listener* listener,
+                               stream::Viewer::Send send) override;
+  std::vector<Presence> presence(const Uuid& receiver) const override;
   Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer,
                              std::vector<Column> columns) override;
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer) override;
@@ -112,6 +114,9 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   std::optional<LayerState> layer_state(std::int64_t id) const;
   void leave(RoomMember* member);
   void announce_presence();
+  // Instead of whom they followed before; nothing: they follow nobody. Refused (404): nobody here has that session; else as by Followers.
+  Result<void> follow(const Uuid& follower, const std::optional<Uuid>& leader);
+  void camera_moved(const Uuid& session);  // tells those who follow it
 
   // --- for Rooms
   void gpu_lost();
@@ -130,6 +135,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   template <class Work>
   auto on_strand(Work work) const;                        // runs there and waits for the result
   void tell(const std::function<void(Listener&)>& tell);  // every listener
+  std::string color_for(const std::string& user) const;   // their own, or the one that the fewest have
   // Runs `work` on a worker when every edit before it is durable. No edit starts meanwhile, and no recovery. Blocks.
   template <class T>
   Result<T> exclusively(std::function<Result<T>()> work);
@@ -192,7 +198,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
 
   mutable std::recursive_mutex members_mutex_;  // recursive: a listener may ask for presence while it is told
   std::vector<RoomMember*> members_;
-  int joined_ = 0;
+  Followers followers_;
 };
 
 }  // namespace strata::room

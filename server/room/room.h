@@ -76,10 +76,22 @@ struct ViewSettings {
   Light light;
 };
 
+// Where somebody points on the surface.
+struct Pointing {
+  glm::dvec3 position{0};        // world
+  std::optional<double> radius;  // world, of the brush in hand
+};
+
+// What is known of one connection to the others; never stored.
 struct Presence {
   Uuid session;
-  std::string user, color;
-  std::optional<glm::dvec3> pointer;  // world
+  std::string user;
+  std::string full_name;  // empty: none was given
+  std::string color;      // #rrggbb
+  std::optional<Pointing> pointer{};
+  bool leading = false;             // asks the others to look with them
+  std::optional<Uuid> following{};  // session of whom they look with
+  std::optional<Camera> camera{};   // newest of view 0 without its section, for who follows them
 };
 
 class Room;
@@ -94,7 +106,9 @@ class Member {
   // Replaces everything that was set before for this view.
   virtual Result<void> show(std::uint32_t view_id, ViewSettings settings) = 0;
   virtual void ack(std::uint32_t view_id, std::uint64_t frame) = 0;
-  virtual void pointer(std::optional<glm::dvec3> world) = 0;
+  virtual void pointer(std::optional<Pointing> at) = 0;
+  // Replaces what was said before. Refused as a whole, in `follow`: a session that is not here (404), one that follows this one (409).
+  virtual Result<void> look_together(bool leading, const std::optional<Uuid>& follow) = 0;
 };
 
 // A part of the surface, by what the layers held and where it lies.
@@ -155,8 +169,11 @@ class Room {
   using Saved = std::function<void(Result<EditAnswer>)>;
   virtual void edit(EditRequest request, Applied applied, Saved saved) = 0;
 
-  virtual std::unique_ptr<Member> join(std::string user, Listener* listener, stream::Viewer::Send send) = 0;
-  virtual std::vector<Presence> presence() const = 0;
+  // `full_name` may be empty.
+  virtual std::unique_ptr<Member> join(std::string user, std::string full_name, Listener* listener,
+                                       stream::Viewer::Send send) = 0;
+  // Everyone, as told to one of the sessions: of all cameras only that of whom it follows.
+  virtual std::vector<Presence> presence(const Uuid& receiver) const = 0;
 
   // Metadata; blocking (database), announced to the listeners.
   // A database layer that names no table gets one of its own name with `columns`.

@@ -142,7 +142,8 @@ class Queries {
   void light_up() {
     make_parts();
     FrameClient viewer;
-    auto member = room_->join("bench", nullptr, [&](stream::FrameBytes frame) { viewer.receive(std::move(frame)); });
+    auto member =
+        room_->join("bench", "", nullptr, [&](stream::FrameBytes frame) { viewer.receive(std::move(frame)); });
     const auto show = [&](const char* filter) {
       room::LayerView parts{layers_.at("parts").id, true, {}, {}, {}};
       if (filter)

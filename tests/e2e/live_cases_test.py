@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The live connection against bad clients, slow clients, and the server's orderly end."""
+"""The live connection: who is here, bad clients, slow clients, and the server's orderly end."""
 import glob
 import json
 import os
@@ -122,6 +122,59 @@ def check_bad_messages(server):
     assert server.get(L).json()["sequence"] == 0, "a refused message painted"
 
 
+def check_presence(server):
+    """Who is here: names, colours, pointers with the brush in hand; whom somebody follows, and of cameras only theirs."""
+    with LiveClient(server, "grid") as one, LiveClient(server, "grid") as two, LiveClient(server, "grid") as three:
+        sessions = [live.hello()["session"] for live in (one, two, three)]
+        model = server.get(M).json()
+        camera = camera_from(model, [0, 0, 1], up=(0, 1, 0))
+        plane = [0.0, 0.0, 1.0, 1000.0]
+        gone = {}
+
+        def heard(live, condition):
+            """What is told once it fulfils the condition; before, it may be of a time when not everybody was there."""
+            while True:
+                users = {user["session"]: user for user in live.receive_until("presence")["users"]}
+                if set(sessions) - {gone.get("session")} <= set(users) and condition(users):
+                    return users
+
+        def refused(live, follow, status):
+            live.send({"op": "presence", "follow": follow, "leading": True})
+            problem = live.receive_until("problem")
+            assert (problem["status"], problem["field"]) == (status, "follow"), problem
+
+        users = heard(one, lambda users: set(users) == set(sessions))
+        assert {user["name"] for user in users.values()} == {"owner"} and len({user["color"] for user in users.values()}) == 1, users
+
+        two.send({"op": "camera", "seq": 1, **camera, "section": [plane]})
+        two.send({"op": "presence", "pointer": [320, 240], "radius": 0.25, "leading": True})
+        users = heard(one, lambda users: "pointer" in users[sessions[1]] and users[sessions[1]]["leading"])
+        assert users[sessions[1]]["pointer"]["radius"] == 0.25, users
+        assert not any("camera" in user or "following" in user for user in users.values()), users
+
+        refused(one, new_id(), 404)
+        refused(one, sessions[0], 409)
+        one.send({"op": "presence", "follow": sessions[1]})
+        users = heard(one, lambda users: "camera" in users[sessions[1]])
+        assert users[sessions[1]]["camera"] == {name: camera[name] for name in ("view", "projection", "width", "height")}, users
+        assert [user["session"] for user in users.values() if "camera" in user] == [sessions[1]], users
+        assert not users[sessions[0]]["leading"], "what is refused changes nothing"
+        nearer = camera_from(model, [0.2, 0, 1], up=(0, 1, 0))
+        two.send({"op": "camera", "view_id": 1, "seq": 1, **camera})
+        two.send({"op": "camera", "seq": 2, **nearer})
+        heard(one, lambda users: users[sessions[1]]["camera"]["view"] == nearer["view"])
+
+        three.send({"op": "presence", "follow": sessions[0]})
+        users = heard(two, lambda users: "following" in users[sessions[2]])
+        assert users[sessions[0]]["following"] == sessions[1] and users[sessions[2]]["following"] == sessions[0], users
+        assert not any("camera" in user for user in users.values()), "who follows nobody gets no camera"
+        refused(two, sessions[2], 409)
+        two.socket.close()
+        gone["session"] = sessions[1]
+        users = heard(one, lambda users: sessions[1] not in users)
+        assert "following" not in users[sessions[0]] and users[sessions[2]]["following"] == sessions[0], users
+
+
 def wait_for_picture(live, seq):
     while True:
         frame = live.receive_until("frame")
@@ -213,6 +266,7 @@ def main():
         check_upgrade(server)
         check_sign_out(server)
         check_bad_messages(server)
+        check_presence(server)
         check_slow_client(server)
         answered = check_end(server)
         assert server.stop() == 0

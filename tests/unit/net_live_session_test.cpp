@@ -17,7 +17,10 @@ class FakeSocket final : public LiveSocket {
   void send_text(std::string text) override { sent.push_back(json::parse(text)); }
   void send_frame(stream::FrameBytes frame) override { frames.push_back(std::move(frame)); }
   void close(int code, std::string) override { close_code = code; }
-  void run_after(std::chrono::milliseconds, std::function<void()> work) override { later.push_back(std::move(work)); }
+  void run_after(std::chrono::milliseconds delay, std::function<void()> work) override {
+    later.push_back(std::move(work));
+    delays.push_back(delay);
+  }
 
   std::vector<json> of(const std::string& op) const {
     std::vector<json> found;
@@ -29,6 +32,7 @@ class FakeSocket final : public LiveSocket {
   std::vector<json> sent;
   std::vector<stream::FrameBytes> frames;
   std::deque<std::function<void()>> later;
+  std::vector<std::chrono::milliseconds> delays;
   int close_code = 0;
 };
 
@@ -41,8 +45,16 @@ class FakeMember final : public room::Member {
   }
   Result<void> show(std::uint32_t, room::ViewSettings) override { return {}; }
   void ack(std::uint32_t, std::uint64_t) override {}
-  void pointer(std::optional<glm::dvec3>) override {}
+  void pointer(std::optional<room::Pointing> at) override { pointers.push_back(at); }
+  Result<void> look_together(bool leading, const std::optional<Uuid>& follow) override {
+    if (follow == kGone) return fail(404, "Not here", "Who is to be followed has left.", "follow");
+    together.emplace_back(leading, follow);
+    return {};
+  }
+  static constexpr Uuid kGone{{1}};
   std::vector<std::pair<std::uint32_t, std::uint64_t>> cameras;
+  std::vector<std::optional<room::Pointing>> pointers;
+  std::vector<std::pair<bool, std::optional<Uuid>>> together;
 
  private:
   Uuid session_;
@@ -74,13 +86,18 @@ class FakeRoom final : public room::Room {
   void edit(room::EditRequest request, Applied applied, Saved saved) override {
     edits.push_back({std::move(request), std::move(applied), std::move(saved)});
   }
-  std::unique_ptr<room::Member> join(std::string, room::Listener* listener, stream::Viewer::Send send) override {
+  std::unique_ptr<room::Member> join(std::string, std::string full_name, room::Listener* listener,
+                                     stream::Viewer::Send send) override {
     listeners.push_back(listener);
     sends.push_back(std::move(send));
-    return std::make_unique<FakeMember>(random_uuid());
+    full_names.push_back(std::move(full_name));
+    auto joined = std::make_unique<FakeMember>(random_uuid());
+    member = joined.get();
+    return joined;
   }
-  std::vector<room::Presence> presence() const override {
-    return {{random_uuid(), "anna", "#112233", glm::dvec3(1, 2, 3)}};
+  std::vector<room::Presence> presence(const Uuid& receiver) const override {
+    EXPECT_EQ(receiver, member->session());
+    return people;
   }
   Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>&, std::vector<Column>) override {
     return layer;
@@ -105,7 +122,7 @@ class FakeRoom final : public room::Room {
     return std::vector<query::SurfacePoint>{};
   }
   Result<query::SurfacePoint> pick(const Camera&, double, double, const std::vector<std::string>&, At) override {
-    return query::SurfacePoint{};
+    return found;
   }
   Result<query::Statistics> statistics(const std::string&, const room::Selection&, room::StatisticsWanted) override {
     return query::Statistics{};
@@ -156,6 +173,10 @@ class FakeRoom final : public room::Room {
   std::vector<Held> edits;
   std::vector<room::Listener*> listeners;
   std::vector<stream::Viewer::Send> sends;
+  std::vector<std::string> full_names;
+  query::SurfacePoint found;
+  FakeMember* member = nullptr;  // the newest
+  std::vector<room::Presence> people{{random_uuid(), "anna", "", "#112233", room::Pointing{{1, 2, 3}, {}}}};
 
  private:
   Layer layer_;
@@ -185,7 +206,7 @@ struct Live : testing::Test {
   void connect(Role role = Role::owner) {
     if (session) session->on_closed();
     socket = std::make_shared<FakeSocket>();
-    session = std::make_shared<LiveSession>(shared, room, "default", Principal{"anna", role, true}, socket);
+    session = std::make_shared<LiveSession>(shared, room, "default", Principal{"anna", role, true}, "Anna Ost", socket);
     shared->sockets->add(socket, session, "secret");
   }
   // Looks for the record on a worker, where it begins.
@@ -545,6 +566,74 @@ TEST_F(Live, presence_is_told_once_for_many_changes) {
   EXPECT_EQ(socket->of("presence")[0]["users"][0]["pointer"]["position"], json({1.0, 2.0, 3.0}));
   session->presence_changed();
   EXPECT_EQ(socket->later.size(), 2u);
+}
+
+TEST_F(Live, presence_tells_of_each_what_the_room_knows_and_nothing_else) {
+  hello();
+  EXPECT_EQ(room->full_names, std::vector<std::string>{"Anna Ost"});
+  const Uuid leader = random_uuid(), follower = room->member->session();
+  Camera seen;
+  seen.width = 640;
+  seen.height = 480;
+  room->people = {{follower, "anna", "Anna Ost", "#112233", {}, false, leader, {}},
+                  {leader, "bea", "", "#445566", room::Pointing{{1, 2, 3}, 0.5}, true, {}, seen}};
+  socket->later.front()();
+  const json users = socket->of("presence").at(0)["users"];
+  EXPECT_EQ(users[0], (json{{"session", to_string(follower)},
+                            {"name", "anna"},
+                            {"full_name", "Anna Ost"},
+                            {"color", "#112233"},
+                            {"leading", false},
+                            {"following", to_string(leader)}}));
+  EXPECT_EQ(users[1]["pointer"], (json{{"position", {1.0, 2.0, 3.0}}, {"radius", 0.5}}));
+  EXPECT_EQ(users[1]["leading"], true);
+  EXPECT_EQ(users[1]["camera"]["width"], 640);
+  EXPECT_FALSE(users[1].contains("full_name"));
+  EXPECT_TRUE(protocol::parse_server_message(socket->of("presence")[0].dump()));
+}
+
+TEST_F(Live, presence_comes_the_less_often_the_more_people_are_here) {
+  shared->limits.presence_every = std::chrono::hours(1);
+  hello();
+  room->people.resize(40, room->people[0]);
+  socket->later.front()();
+  session->presence_changed();
+  ASSERT_EQ(socket->delays.size(), 2u);
+  EXPECT_EQ(socket->delays[0].count(), 0);
+  EXPECT_GT(socket->delays[1], std::chrono::hours(4)) << "five times eight people";
+  EXPECT_LE(socket->delays[1], std::chrono::hours(5));
+}
+
+TEST_F(Live, what_a_viewer_shows_of_themselves_is_refused_as_a_whole) {
+  hello();
+  const Uuid bea = random_uuid();
+  say({{"op", "presence"}, {"leading", true}, {"follow", to_string(bea)}});
+  say({{"op", "presence"}, {"leading", true}, {"follow", to_string(FakeMember::kGone)}});
+  say({{"op", "presence"}, {"radius", -1}});
+  say({{"op", "presence"}, {"follow", nullptr}});
+  ASSERT_EQ(socket->of("problem").size(), 2u);
+  EXPECT_EQ(socket->of("problem")[0]["status"], 404);
+  EXPECT_EQ(socket->of("problem")[0]["field"], "follow");
+  EXPECT_EQ(socket->of("problem")[1]["field"], "radius");
+  using Said = std::vector<std::pair<bool, std::optional<Uuid>>>;
+  EXPECT_EQ(room->member->together, (Said{{true, bea}, {false, std::nullopt}}));
+  EXPECT_EQ(room->member->pointers.size(), 2u);
+}
+
+TEST_F(Live, the_brush_in_hand_is_told_with_the_place_that_it_points_at) {
+  room->found.hit = true;
+  room->found.position = {4, 5, 6};
+  hello();
+  json camera = camera_json();
+  camera["op"] = "camera";
+  camera["seq"] = 1;
+  say(camera);
+  say({{"op", "presence"}, {"pointer", {10, 20}}, {"radius", 2.5}});
+  shared->queries.reset();  // what was asked is answered
+  ASSERT_EQ(room->member->pointers.size(), 1u);
+  ASSERT_TRUE(room->member->pointers[0]);
+  EXPECT_EQ(room->member->pointers[0]->position, glm::dvec3(4, 5, 6));
+  EXPECT_EQ(room->member->pointers[0]->radius, 2.5);
 }
 
 TEST_F(Live, a_client_that_draws_no_jpeg_is_told) {

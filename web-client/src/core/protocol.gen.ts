@@ -543,13 +543,19 @@ export interface Ack {
   frame: number;
 }
 
-/** Where this viewer's pointer is. */
+/** What this viewer shows of themselves. Replaces what was said before: what is absent is no longer so. Refused as a whole. */
 export interface PresenceUpdate {
   op: "presence";
   /** Default: 0. */
   view_id?: number;
   /** Pixel of the view's newest camera; null or absent: the pointer is elsewhere. */
   pointer?: Point2 | null;
+  /** Of the brush in hand where the pointer is, in world coordinates; absent: another tool. */
+  radius?: number;
+  /** Asks the others to look with this viewer. Default: false. */
+  leading?: boolean;
+  /** Session of whom this viewer looks with; its camera then comes with `presence`. 404: it is not here; 409: it follows this one, or somebody who does. */
+  follow?: string | null;
 }
 
 /** What is at a pixel. */
@@ -702,18 +708,27 @@ export interface TableEvent {
 /** Where a pointer touches the surface. World coordinates. */
 export interface PresencePointer {
   position: Point3;
-  normal?: Point3;
+  /** Of the brush in hand; absent: another tool. */
+  radius?: number;
 }
 
-/** One viewer. */
+/** One viewer. A person may be here several times, with the same color. */
 export interface PresenceUser {
   session: string;
   name: string;
+  /** As it was when they came; absent: they gave none. */
+  full_name?: string;
   color: string;
   pointer?: PresencePointer;
+  /** Asks the others to look with this viewer. Default: false. */
+  leading?: boolean;
+  /** Session of whom they look with. */
+  following?: string;
+  /** Newest of their view 0, without its section: only of whom the receiver follows. */
+  camera?: Camera;
 }
 
-/** Who is here. Everyone on the model, the receiver too; not stored. */
+/** Who is here. Everyone on the model, the receiver too; not stored. Comes the less often the more people are here. */
 export interface Presence {
   op: "presence";
   users: PresenceUser[];

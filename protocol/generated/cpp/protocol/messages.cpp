@@ -958,6 +958,9 @@ nlohmann::json to_json(const Ack& value) {
 void read(const nlohmann::json& json, PresenceUpdate& value) {
   read_optional_member(json, "view_id", value.view_id);
   read_optional_member(json, "pointer", value.pointer);
+  read_optional_member(json, "radius", value.radius);
+  read_optional_member(json, "leading", value.leading);
+  read_optional_member(json, "follow", value.follow);
 }
 
 nlohmann::json to_json(const PresenceUpdate& value) {
@@ -965,6 +968,9 @@ nlohmann::json to_json(const PresenceUpdate& value) {
   json["op"] = "presence";
   write_member(json, "view_id", value.view_id);
   write_optional_member(json, "pointer", value.pointer);
+  write_optional_member(json, "radius", value.radius);
+  write_member(json, "leading", value.leading);
+  write_optional_member(json, "follow", value.follow);
   return json;
 }
 
@@ -1231,30 +1237,43 @@ nlohmann::json to_json(const TableEvent& value) {
 
 void read(const nlohmann::json& json, PresencePointer& value) {
   read_member(json, "position", value.position);
-  read_optional_member(json, "normal", value.normal);
+  read_optional_member(json, "radius", value.radius);
 }
 
 nlohmann::json to_json(const PresencePointer& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "position", value.position);
-  write_optional_member(json, "normal", value.normal);
+  write_optional_member(json, "radius", value.radius);
   return json;
 }
 
 void read(const nlohmann::json& json, PresenceUser& value) {
   read_member(json, "session", value.session);
   read_member(json, "name", value.name);
+  read_optional_member(json, "full_name", value.full_name);
   read_member(json, "color", value.color);
   read_optional_member(json, "pointer", value.pointer);
+  read_optional_member(json, "leading", value.leading);
+  read_optional_member(json, "following", value.following);
+  read_optional_member(json, "camera", value.camera);
 }
 
 nlohmann::json to_json(const PresenceUser& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "session", value.session);
   write_member(json, "name", value.name);
+  write_optional_member(json, "full_name", value.full_name);
   write_member(json, "color", value.color);
   write_optional_member(json, "pointer", value.pointer);
+  write_member(json, "leading", value.leading);
+  write_optional_member(json, "following", value.following);
+  write_optional_member(json, "camera", value.camera);
   return json;
+}
+
+Result<void> check(const PresenceUser& value, const std::string& field) {
+  if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
+  return {};
 }
 
 void read(const nlohmann::json& json, Presence& value) {
@@ -1266,6 +1285,10 @@ nlohmann::json to_json(const Presence& value) {
   json["op"] = "presence";
   write_member(json, "users", value.users);
   return json;
+}
+
+Result<void> check([[maybe_unused]] const Presence& value, [[maybe_unused]] const std::string& field) {
+  return {};
 }
 
 void read(const nlohmann::json& json, Picked& value) {

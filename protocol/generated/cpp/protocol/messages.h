@@ -680,11 +680,14 @@ nlohmann::json to_json(const Ack& value);
 template <>
 inline constexpr Schema kSchemaOf<Ack> = Schema::Ack;
 
-// Where this viewer's pointer is.
+// What this viewer shows of themselves. Replaces what was said before: what is absent is no longer so. Refused as a whole.
 struct PresenceUpdate {
   static constexpr std::string_view kOp = "presence";
   int view_id = 0;
   std::optional<glm::dvec2> pointer;  // Pixel of the view's newest camera; null or absent: the pointer is elsewhere.
+  std::optional<double> radius;  // Of the brush in hand where the pointer is, in world coordinates; absent: another tool.
+  bool leading = false;  // Asks the others to look with this viewer.
+  std::optional<Uuid> follow;  // Session of whom this viewer looks with; its camera then comes with `presence`. 404: it is not here; 409: it follows this one, or somebody who does.
   bool operator==(const PresenceUpdate&) const = default;
 };
 void read(const nlohmann::json& json, PresenceUpdate& value);
@@ -935,7 +938,7 @@ inline constexpr Schema kSchemaOf<TableEvent> = Schema::TableEvent;
 // Where a pointer touches the surface. World coordinates.
 struct PresencePointer {
   glm::dvec3 position{0};
-  std::optional<glm::dvec3> normal;
+  std::optional<double> radius;  // Of the brush in hand; absent: another tool.
   bool operator==(const PresencePointer&) const = default;
 };
 void read(const nlohmann::json& json, PresencePointer& value);
@@ -943,20 +946,25 @@ nlohmann::json to_json(const PresencePointer& value);
 template <>
 inline constexpr Schema kSchemaOf<PresencePointer> = Schema::PresencePointer;
 
-// One viewer.
+// One viewer. A person may be here several times, with the same color.
 struct PresenceUser {
   Uuid session;
   std::string name;
+  std::optional<std::string> full_name;  // As it was when they came; absent: they gave none.
   std::string color;
   std::optional<PresencePointer> pointer;
+  bool leading = false;  // Asks the others to look with this viewer.
+  std::optional<Uuid> following;  // Session of whom they look with.
+  std::optional<strata::Camera> camera;  // Newest of their view 0, without its section: only of whom the receiver follows.
   bool operator==(const PresenceUser&) const = default;
 };
 void read(const nlohmann::json& json, PresenceUser& value);
 nlohmann::json to_json(const PresenceUser& value);
+Result<void> check(const PresenceUser& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<PresenceUser> = Schema::PresenceUser;
 
-// Who is here. Everyone on the model, the receiver too; not stored.
+// Who is here. Everyone on the model, the receiver too; not stored. Comes the less often the more people are here.
 struct Presence {
   static constexpr std::string_view kOp = "presence";
   std::vector<PresenceUser> users;
@@ -964,6 +972,7 @@ struct Presence {
 };
 void read(const nlohmann::json& json, Presence& value);
 nlohmann::json to_json(const Presence& value);
+Result<void> check(const Presence& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<Presence> = Schema::Presence;
 
