@@ -154,7 +154,7 @@ describe("the probe under the pointer", () => {
       ask: (id, { x }) => void asked.push({ id, x }),
       answered: (message, purpose) => void answered.push([message.position?.[0], purpose]),
     });
-    const answer = (id: string, x: number): void => probe.answer({ op: "picked", id, hit: true, position: [x, 0, 0] });
+    const answer = (id: string, x: number): boolean => probe.answer({ op: "picked", id, hit: true, position: [x, 0, 0] });
     return { asked, answered, probe, answer };
   };
 

@@ -61,6 +61,10 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
   }
   const { width, height } = session.view.camera;
   switch (key) {
+    case "Escape":
+      if (!session.together.followed) return false;
+      session.together.stop_following();
+      return true;
     case "+":
     case "=":
       session.gestures.zoom(1 / 1.15, width / 2, height / 2);

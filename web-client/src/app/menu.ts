@@ -12,6 +12,8 @@ export class StrataMenu extends LitElement {
   @property() glyph: IconName = "more";
   @property({ type: Boolean }) quiet = true;
   @property({ type: Boolean, reflect: true }) small = false;
+  /** As wide as its face. */
+  @property({ type: Boolean, reflect: true }) wide = false;
   @property() side: "below" | "right" = "below";
 
   @query("button") private button_!: HTMLButtonElement;
@@ -29,6 +31,8 @@ export class StrataMenu extends LitElement {
         margin: 0;
         padding: 5px;
         min-width: 180px;
+        max-height: calc(100dvh - 16px);
+        overflow-y: auto;
         border: 1px solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
@@ -41,6 +45,9 @@ export class StrataMenu extends LitElement {
       :host([small]) button.icon {
         width: 26px;
         min-height: 26px;
+      }
+      :host([wide]) button.icon {
+        width: auto;
       }
       ::slotted(button) {
         display: flex !important;

@@ -29,6 +29,7 @@ import { model_styles } from "./model-styles";
 import { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import "./record-card";
+import "./people-menu";
 import "./photos-dialog";
 import "./record-dialog";
 import { follow } from "./routes";
@@ -45,6 +46,7 @@ import type { TableView } from "./table-view";
 import "./template-dialog";
 import "./terms-dialog";
 import { texts } from "./texts";
+import "./together-bar";
 import "./tool-rail";
 import "./transfer-dialog";
 import "./value-readout";
@@ -159,6 +161,7 @@ export class StrataModelPage extends LitElement {
         <strata-tool-rail role="toolbar" aria-label=${texts.model.tools} .session=${session}></strata-tool-rail>
         <main>
           <strata-stage .session=${session}></strata-stage>
+          <strata-together-bar .session=${session}></strata-together-bar>
           ${this.banner(session)}
           <div class="readings">
             ${session.tables.card
@@ -194,7 +197,8 @@ export class StrataModelPage extends LitElement {
         ? html`<button class="scale-chip" @click=${() => (this.dialog_ = { dialog: "scale" })}>${texts.model.check_size}</button>`
         : nothing}
       <span class="grow"></span>
-      ${this.people(session)} ${this.saving(session)}
+      <strata-people-menu .session=${session}></strata-people-menu>
+      ${this.saving(session)}
       <button
         class="icon quiet"
         aria-label=${texts.model.help}
@@ -214,18 +218,6 @@ export class StrataModelPage extends LitElement {
       </button>
       <strata-account-menu .me=${this.me}></strata-account-menu>
     </header>`;
-  }
-
-  private people(session: ModelSession): TemplateResult {
-    const users = [...session.users].sort((a, b) => Number(b.session === session.session) - Number(a.session === session.session));
-    if (users.length === 0) return html``;
-    const names = users.map((user) => (user.session === session.session ? `${user.name} (${texts.people.you})` : user.name));
-    return html`<div class="people" role="img" aria-label="${texts.people.here(users.length)}: ${names.join(", ")}" title=${names.join("\n")}>
-      ${users
-        .slice(0, 5)
-        .map((user) => html`<span ${styled({ background: user.color })}>${user.name.slice(0, 1).toUpperCase()}</span>`)}
-      ${users.length > 5 ? html`<span class="rest">+${users.length - 5}</span>` : nothing}
-    </div>`;
   }
 
   private saving(session: ModelSession): TemplateResult {

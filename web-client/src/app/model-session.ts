@@ -1,12 +1,13 @@
 // One open model on this page: its life, and the messages between its parts. `view` is the camera, `layers` what is painted on,
-// `tables` the records that layers hold the keys of, `hovered` the one that the mouse rests on, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits. Elements
+// `tables` the records that layers hold the keys of, `hovered` the one that the mouse rests on, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits, `together` who else is
+// here and whose view this is, `cursors` where they point. Elements
 // subscribe and draw themselves from their state; they change it only through their methods.
 
 import { Api, ApiError, type Versioned } from "../core/api";
 import { Connection, type ConnectionState, type Point, type SavingState, type SocketLike } from "../core/connection";
 import type { FrameMessage } from "../core/frame-header";
 import type { GestureHandler, PointerSample } from "../core/input";
-import type { LayerEvent, ModelEvent, Picked, PresenceUser, ProblemMessage, Welcome } from "../core/protocol.gen";
+import type { LayerEvent, ModelEvent, Picked, ProblemMessage, Welcome } from "../core/protocol.gen";
 import { complete_layer, may_curate, may_paint, type Column, type Layer, type Model, type ModelPatch, type Role } from "../core/types";
 import { BrushTool } from "../tools/brush";
 import { BucketTool } from "../tools/bucket";
@@ -23,14 +24,16 @@ import { LayerList } from "./layer-list";
 import { MarkDrawing } from "./mark-drawing";
 import { notices } from "./notices";
 import { Painting } from "./painting";
+import { PeopleCursors } from "./people-cursors";
 import { PointerWatch } from "./pointer-watch";
 import { RecordEditors } from "./record-editors";
 import { RecordHover, type RecordAt } from "./record-hover";
 import { forget, remember } from "./sessions";
 import { Tables } from "./tables";
 import { texts } from "./texts";
+import { Together, type Shown } from "./together";
 import { ToolShapes } from "./tool-shapes";
-import { ViewControl } from "./view-control";
+import { ViewControl, wants_less_motion } from "./view-control";
 
 export class ModelSession {
   model: Model | null = null;
@@ -38,7 +41,6 @@ export class ModelSession {
   signed_out = false; // the server no longer knows who this is
   role: Role = "viewer";
   session = "";
-  users: PresenceUser[] = [];
   connection_state: ConnectionState = "connecting";
   saving: SavingState = { waiting: 0, failing: false };
 
@@ -53,6 +55,8 @@ export class ModelSession {
   readonly editors: RecordEditors;
   readonly marks: MarkDrawing;
   readonly hovered: RecordHover;
+  readonly together: Together;
+  readonly cursors: PeopleCursors;
   readonly tools: ToolManager;
   /** Set by the stage. */
   on_frame: (part: FrameMessage) => void = () => {};
@@ -80,7 +84,12 @@ export class ModelSession {
       },
       when_free: (action) => this.painting.when_free(action),
       is_painting: () => this.painting.stroking,
-      came_to_rest: () => this.pointer.ask_again(),
+      came_to_rest: () => {
+        this.pointer.ask_again();
+        this.cursors.look_again();
+        this.together.came_to_rest();
+      },
+      went_own_way: () => this.together.stop_following(),
       changed,
     });
     this.layers = new LayerList(api, model_id, {
@@ -98,7 +107,7 @@ export class ModelSession {
       camera: () => this.view.camera,
       ready: () => this.connection_state === "open",
       ask: (id, { x, y }) => this.connection_.pick(id, x, y),
-      tell_others: (pointer) => this.connection_.presence(pointer),
+      show_others: (pointer) => this.together.show(this.shown_at(pointer)),
       taken: (message) => {
         this.painting.take_picked(message);
         this.tables.show_card(this.layers.selected, message);
@@ -144,6 +153,21 @@ export class ModelSession {
       settled: () => this.pointer.settled,
       changed,
     });
+    this.together = new Together({
+      session: () => this.session,
+      ready: () => this.connection_state === "open",
+      send: (shown) => this.connection_.presence(shown),
+      view: this.view,
+      ask: (id, x, y) => this.connection_.pick(id, x, y),
+      changed,
+    });
+    this.cursors = new PeopleCursors({
+      camera: () => this.view.camera,
+      scale: () => this.view.scale,
+      ready: () => this.connection_state === "open",
+      ask: (id, x, y, camera) => this.connection_.pick(id, x, y, camera),
+      wants_less_motion,
+    });
     this.tools = this.make_tools();
   }
 
@@ -186,11 +210,14 @@ export class ModelSession {
         record: (event) => this.tables.on_record(event),
         table: (event) => this.tables.on_table(event),
         editors: (message) => this.editors.on_message(message),
-        presence: (message) => {
-          this.users = message.users;
-          this.changed();
+        presence: ({ users }) => {
+          if (this.closed_) return;
+          this.together.receive(users);
+          this.cursors.receive(users.filter(({ session }) => session !== this.session));
         },
-        picked: (message) => this.pointer.answer(message),
+        picked: (message) => {
+          if (!this.cursors.answer(message) && !this.together.answer(message)) this.pointer.answer(message);
+        },
         problem: (problem) => this.on_problem(problem),
       },
     );
@@ -263,6 +290,8 @@ export class ModelSession {
     this.tools.stop();
     this.view.stop();
     this.pointer.stop();
+    this.together.stop();
+    this.cursors.stop();
     this.hovered.end();
     this.tables.close();
     this.listeners_.clear();
@@ -271,7 +300,7 @@ export class ModelSession {
       this.discard();
       return;
     }
-    this.connection_.presence(null);
+    this.connection_.presence({});
     this.connection_.stop_viewing();
     this.tell_left_behind();
   }
@@ -435,8 +464,9 @@ export class ModelSession {
   private on_state(state: ConnectionState): void {
     this.connection_state = state;
     if (state !== "open") {
-      this.users = [];
       this.editors.left();
+      this.together.disconnected();
+      this.cursors.reset();
       this.pointer.reset();
       this.on_reset_frames();
     }
@@ -503,6 +533,17 @@ export class ModelSession {
     this.appearance.take_looks(message.looks);
     this.shapes.refresh();
     this.tables.refresh();
+    this.together.connected();
+  }
+
+  /** The brush is told as large as it is on the surface. */
+  private shown_at(pointer: PointerSample | null): Shown {
+    if (!pointer) return { pointer: null };
+    const { active } = this.tools;
+    const { view, painting } = this;
+    const radius = painting.radius_window_px() * view.camera.unit_per_pixel(this.pointer.surface_depth());
+    const in_hand = (active === "brush" || active === "eraser") && radius > 0;
+    return { pointer: [pointer.x, pointer.y], ...(in_hand ? { radius } : {}) };
   }
 
   private on_layer(event: LayerEvent): void {
@@ -525,6 +566,8 @@ export class ModelSession {
   }
 
   private on_problem(problem: Omit<ProblemMessage, "op">): void {
-    if (!this.pointer.refused(problem.ref)) notices.problem(problem);
+    const { ref } = problem;
+    if (this.pointer.refused(ref) || this.cursors.refused(ref) || this.together.refused(problem)) return;
+    notices.problem(problem);
   }
 }

@@ -78,25 +78,6 @@ export const model_styles = css`
     font-size: 0.84rem;
     font-weight: 600;
   }
-  .people {
-    display: flex;
-    padding: 0 6px;
-  }
-  .people span {
-    display: grid;
-    place-items: center;
-    width: 28px;
-    height: 28px;
-    margin-left: -7px;
-    border: 2px solid var(--surface);
-    border-radius: 50%;
-    color: #fff;
-    font-size: 0.8rem;
-    font-weight: 700;
-  }
-  .people span.rest {
-    background: var(--line-strong);
-  }
   .saving {
     display: flex;
     align-items: center;
@@ -231,10 +212,6 @@ export const model_styles = css`
     .saving span,
     .scale-chip {
       display: none;
-    }
-    .people span:first-child,
-    .people span:nth-child(n + 4) {
-      display: none; /* one's own initials stand at the end; for more than two others there is no room */
     }
     .saving.not-saved span {
       display: inline;

@@ -39,12 +39,14 @@ export class PickProbe {
     if (sample && !this.waiting_) this.ask(sample);
   }
 
-  answer(message: Picked): void {
+  /** True when it was the answer to this probe's question. */
+  answer(message: Picked): boolean {
     const asked = this.asked_;
-    if (!asked || message.id !== asked.id) return;
+    if (!asked || message.id !== asked.id) return false;
     this.asked_ = null;
     this.host_.answered(message, asked.purpose);
     this.send();
+    return true;
   }
 
   /** True when the refusal is of this probe's question; the next move of the pointer asks anew. */

@@ -11,7 +11,7 @@ export interface PointerHost {
   camera(): OrbitCamera;
   ready(): boolean;
   ask(id: string, sample: PointerSample): void;
-  tell_others(pointer: [number, number] | null): void;
+  show_others(pointer: PointerSample | null): void;
   /** Somebody pressed here to take the value, or tapped to look closer. */
   taken(message: Picked): void;
   looked(message: Picked): void;
@@ -97,7 +97,7 @@ export class PointerWatch {
     if (this.presence_timer_) return;
     this.presence_timer_ = setTimeout(() => {
       this.presence_timer_ = null;
-      this.host_.tell_others(this.at ? [this.at.x, this.at.y] : null);
+      this.host_.show_others(this.at);
     }, kPresenceEvery_ms);
   }
 }

@@ -12,6 +12,7 @@ import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { outline_overlay } from "./outline-overlay";
+import "./people-overlay";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -119,29 +120,6 @@ export class StrataStage extends LitElement {
         color: var(--ink-soft);
         pointer-events: none;
       }
-      .person {
-        position: absolute;
-        left: 0;
-        top: 0;
-        display: flex;
-        align-items: flex-start;
-        gap: 4px;
-        pointer-events: none;
-        transition: transform 90ms linear;
-      }
-      .person svg {
-        width: 18px;
-        height: 18px;
-        filter: drop-shadow(0 1px 1px rgb(0 0 0 / 0.4));
-      }
-      .person b {
-        margin-top: 12px;
-        padding: 1px 8px;
-        border-radius: 99px;
-        color: #fff;
-        font-size: 0.76rem;
-        font-weight: 600;
-      }
       .scale {
         position: absolute;
         left: 18px;
@@ -165,6 +143,9 @@ export class StrataStage extends LitElement {
           top: 12px;
           bottom: auto;
           left: 12px;
+        }
+        .scale.lowered {
+          top: 44px; /* beneath the label of <strata-together-bar> */
         }
       }
     `,
@@ -226,7 +207,8 @@ export class StrataStage extends LitElement {
         ${paints ? this.brush_cursor() : nothing}
         ${session.tools.outline ? outline_overlay(session, session.tools.outline) : nothing}
       </div>
-      ${this.people()} ${this.scale_bar()}
+      <strata-people-overlay .session=${session}></strata-people-overlay>
+      ${this.scale_bar()}
       ${session.view.frames_drawn === 0
         ? html`<div class="waiting" role="status">${texts.model.waiting_for_picture}</div>`
         : nothing}`;
@@ -274,31 +256,13 @@ export class StrataStage extends LitElement {
     return html`<div class="shape-cursor" aria-hidden="true" ${styled(square)}><i ${styled(tint)}></i></div>`;
   }
 
-  private people(): TemplateResult[] {
-    const { session } = this;
-    return session.users.flatMap((user) => {
-      if (user.session === session.session || !user.pointer) return [];
-      const at = session.view.camera.project(user.pointer.position);
-      if (!at) return [];
-      const [x, y] = [at.x / session.view.scale, at.y / session.view.scale];
-      if (x < 0 || y < 0 || x > this.clientWidth || y > this.clientHeight) return [];
-      return [
-        html`<div class="person" ${styled({ transform: `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)` })}>
-          <svg viewBox="0 0 18 18" aria-hidden="true">
-            <path d="M1 1l5.2 14.5 2.4-6.1 6.3-2.200z" fill=${user.color} stroke="#fff" stroke-width="1.3" />
-          </svg>
-          <b ${styled({ background: user.color })}>${user.name}</b>
-        </div>`,
-      ];
-    });
-  }
-
   private scale_bar(): TemplateResult {
     const { session } = this;
     if (!session.model || session.view.frames_drawn === 0) return html``;
     const depth = session.pointer.picked?.hit ? session.pointer.surface_depth() : session.view.camera.distance;
     const metres_per_px = session.view.camera.unit_per_pixel(depth) * session.view.scale * metres_per(session.model.unit);
     const bar = scale_bar(metres_per_px, kScaleBar_px);
-    return html`<div class="scale numeric"><i ${styled({ width: `${bar.px.toFixed(1)}px` })}></i>${bar.label}</div>`;
+    const lowered = session.together.followed || session.together.leading;
+    return html`<div class="scale numeric ${lowered ? "lowered" : ""}"><i ${styled({ width: `${bar.px.toFixed(1)}px` })}></i>${bar.label}</div>`;
   }
 }

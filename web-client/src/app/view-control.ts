@@ -1,11 +1,13 @@
 // The camera of this page's view: it moves while nothing is painted, and the server hears of every move.
 
-import { between, OrbitCamera, place_of, type Bounds, type StandardView } from "../core/camera";
+import { between, OrbitCamera, place_of, type Bounds, type CameraMessage, type StandardView } from "../core/camera";
+import { has_arrived, place_like } from "../core/look-along";
 import type { Plane } from "../core/protocol.gen";
 import type { Model } from "../core/types";
 
 const kStillAfter_ms = 120; // without input the camera counts as still
 const kFlight_ms = 600;
+const kEase_ms = { least: 70, most: 250 }; // in which a followed camera comes nearer by a factor of e
 
 export interface ViewHost {
   send(moving: boolean): void;
@@ -13,6 +15,8 @@ export interface ViewHost {
   when_free(action: () => void): void;
   is_painting(): boolean;
   came_to_rest(): void;
+  /** This person moved the view, which looked along with somebody. */
+  went_own_way(): void;
   changed(): void;
 }
 
@@ -26,6 +30,8 @@ export class ViewControl {
   private fitted_ = false;
   private still_timer_: ReturnType<typeof setTimeout> | null = null;
   private flight_ = 0; // of requestAnimationFrame; 0: none
+  private beside_: { camera: CameraMessage; heard_ms: number; ease_ms: number; glided_ms: number } | null = null; // whom it looks along with
+  private glide_ = 0; // of requestAnimationFrame; 0: none
 
   constructor(private readonly host_: ViewHost) {}
 
@@ -36,6 +42,7 @@ export class ViewControl {
       this.camera.resize(width * scale, height * scale);
       this.fit_at_first();
       this.moved(false);
+      this.glide();
     });
   }
 
@@ -74,11 +81,12 @@ export class ViewControl {
   /** To a part of the model, in a moment; at once for people who want less motion. Any other move ends the flight. */
   fly_to(box: Bounds): void {
     if (this.host_.is_painting()) return;
+    this.go_own_way();
     this.end_flight();
     const from = place_of(this.camera);
     this.camera.look_at(box);
     const to = place_of(this.camera);
-    if (matchMedia("(prefers-reduced-motion: reduce)").matches) {
+    if (wants_less_motion()) {
       this.moved(false);
       return;
     }
@@ -95,6 +103,76 @@ export class ViewControl {
   private end_flight(): void {
     if (this.flight_) cancelAnimationFrame(this.flight_);
     this.flight_ = 0;
+  }
+
+  /** To where somebody's newest camera is, and along with it until `look_alone`. Strokes are waited for. */
+  look_along(camera: CameraMessage): void {
+    const now = performance.now();
+    if (this.beside_) {
+      // As smooth as what comes is frequent.
+      const ease_ms = Math.min(kEase_ms.most, Math.max(kEase_ms.least, now - this.beside_.heard_ms));
+      this.beside_ = { ...this.beside_, camera, heard_ms: now, ease_ms };
+    } else {
+      this.end_flight();
+      this.beside_ = { camera, heard_ms: now, ease_ms: kEase_ms.most / 2, glided_ms: now };
+    }
+    this.host_.when_free(() => this.glide());
+  }
+
+  /** What it shows stays, seen with the usual field. */
+  look_alone(): void {
+    if (!this.beside_) return;
+    this.beside_ = null;
+    this.end_glide();
+    this.host_.when_free(() => {
+      this.camera.reset_field();
+      this.moved(false);
+    });
+  }
+
+  /** Turns from now on around what is seen in the middle, in this depth. */
+  turn_around(depth: number): void {
+    this.camera.turn_around(depth);
+  }
+
+  /** On its way to where somebody looks from. */
+  get gliding(): boolean {
+    return this.glide_ !== 0;
+  }
+
+  private glide(): void {
+    if (!this.beside_ || this.glide_ || !this.fitted_) return;
+    this.beside_.glided_ms = performance.now();
+    this.glide_step();
+  }
+
+  private readonly glide_step = (): void => {
+    this.glide_ = 0;
+    const { beside_: beside, camera } = this;
+    if (!beside) return;
+    if (this.host_.is_painting()) {
+      this.host_.when_free(() => this.glide());
+      return;
+    }
+    const to = place_like(beside.camera, camera);
+    if (camera.perspective === to.perspective) camera.turn_around(to.perspective ? to.distance : camera.depth_of(to.target)); // so that the eye goes straight
+    const now = performance.now();
+    const share = wants_less_motion() ? 1 : 1 - Math.exp((beside.glided_ms - now) / beside.ease_ms);
+    beside.glided_ms = now;
+    Object.assign(camera, between(place_of(camera), to, share));
+    const arrived = has_arrived(camera, to);
+    if (arrived) Object.assign(camera, to);
+    else this.glide_ = requestAnimationFrame(this.glide_step);
+    this.moved(!arrived);
+  };
+
+  private end_glide(): void {
+    if (this.glide_) cancelAnimationFrame(this.glide_);
+    this.glide_ = 0;
+  }
+
+  private go_own_way(): void {
+    if (this.beside_) this.host_.went_own_way();
   }
 
   set_perspective(perspective: boolean): void {
@@ -116,6 +194,7 @@ export class ViewControl {
 
   stop(): void {
     this.end_flight();
+    this.end_glide();
     this.stop_waiting();
   }
 
@@ -134,6 +213,7 @@ export class ViewControl {
 
   private move(change: () => void, moving = true): void {
     if (this.host_.is_painting()) return;
+    this.go_own_way();
     this.end_flight();
     change();
     this.moved(moving);
@@ -150,3 +230,5 @@ export class ViewControl {
     this.host_.changed();
   }
 }
+
+export const wants_less_motion = (): boolean => matchMedia("(prefers-reduced-motion: reduce)").matches;

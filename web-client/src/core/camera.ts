@@ -21,8 +21,8 @@ export interface CameraMessage {
   section?: Plane[];
 }
 
-export const kFieldOfView = (35 * Math.PI) / 180; // vertical
-const kHalfFieldTangent = Math.tan(kFieldOfView / 2);
+const kFieldOfView = (35 * Math.PI) / 180; // vertical
+export const kHalfFieldTangent = Math.tan(kFieldOfView / 2);
 const kMinZoom = 1e-4; // smallest and largest distance, relative to the model's radius
 const kMaxZoom = 40;
 const kFitMargin = 1.04;
@@ -34,7 +34,7 @@ interface Frame {
 }
 
 // Right-handed frames of the front view: `right` of the picture, `into` the picture, `up`.
-const kFrames: Record<UpAxis, Frame> = {
+export const kFrames: Record<UpAxis, Frame> = {
   z: { right: [1, 0, 0], into: [0, 1, 0], up: [0, 0, 1] },
   y: { right: [1, 0, 0], into: [0, 0, -1], up: [0, 1, 0] },
   x: { right: [0, 1, 0], into: [0, 0, 1], up: [1, 0, 0] },
@@ -49,6 +49,8 @@ export class OrbitCamera {
   azimuth = 0; // radians around up; 0 looks at the front
   elevation = 0; // radians above the horizon, −π/2…π/2
   perspective = true;
+  /** Tangent of half the vertical field of view; another than the usual one while this camera sees what somebody else sees. */
+  half_field = kHalfFieldTangent;
   width = 1; // window pixels
   height = 1;
   /** What the planes cut away is not there for this camera. */
@@ -78,7 +80,7 @@ export class OrbitCamera {
   fit(): void {
     const { min, max } = this.bounds_;
     const { right, up, back } = this.axes();
-    const half_width = (kHalfFieldTangent * this.width) / this.height;
+    const half_width = (this.half_field * this.width) / this.height;
     this.target = centre(this.bounds_);
     let distance = 0;
     for (let corner = 0; corner < 8; ++corner) {
@@ -86,7 +88,7 @@ export class OrbitCamera {
       const offset = subtract(at, this.target);
       const towards = this.perspective ? dot(offset, back) : 0;
       const across = Math.abs(dot(offset, right)) / half_width;
-      const along = Math.abs(dot(offset, up)) / kHalfFieldTangent;
+      const along = Math.abs(dot(offset, up)) / this.half_field;
       distance = Math.max(distance, towards + Math.max(across, along));
     }
     this.distance = Math.max(distance * kFitMargin, bounding_radius(this.bounds_) * kMinZoom);
@@ -102,8 +104,8 @@ export class OrbitCamera {
     this.target = middle;
     const least = bounding_radius(this.bounds_) * 0.08; // some of what is around a small thing
     const radius = Math.max(bounding_radius(box), least);
-    const half_width = (kHalfFieldTangent * this.width) / this.height;
-    this.distance = (radius * 1.25) / Math.sin(Math.atan(Math.min(kHalfFieldTangent, half_width)));
+    const half_width = (this.half_field * this.width) / this.height;
+    this.distance = (radius * 1.25) / Math.sin(Math.atan(Math.min(this.half_field, half_width)));
   }
 
   /** Turns so that `outwards` points to the viewer. */
@@ -153,7 +155,7 @@ export class OrbitCamera {
 
   /** World lengths of one window pixel at a depth before the eye. */
   unit_per_pixel(depth = this.distance): number {
-    return (2 * kHalfFieldTangent * (this.perspective ? depth : this.distance)) / this.height;
+    return (2 * this.half_field * (this.perspective ? depth : this.distance)) / this.height;
   }
 
   /** World length of a window pixel at a place, for the camera as it is now. */
@@ -161,6 +163,18 @@ export class OrbitCamera {
     const [eye, { back }, unit] = [this.eye(), this.axes(), this.unit_per_pixel(1)];
     const { perspective } = this;
     return (place) => (perspective ? unit * dot(subtract(eye, place), back) : unit);
+  }
+
+  /** The usual field again; what is as far away as the target stays as large. */
+  reset_field(): void {
+    this.distance *= this.half_field / kHalfFieldTangent;
+    this.half_field = kHalfFieldTangent;
+  }
+
+  /** From now on it turns around what is in the middle of the window at a depth. The picture stays. */
+  turn_around(depth: number): void {
+    this.target = subtract(this.eye(), scale(this.axes().back, depth));
+    if (this.perspective) this.distance = depth;
   }
 
   depth_of(point: Vec3): number {
@@ -219,7 +233,7 @@ export class OrbitCamera {
     const { near, far } = this.depth_range();
     const aspect = this.width / this.height;
     if (this.perspective) {
-      const f = 1 / kHalfFieldTangent;
+      const f = 1 / this.half_field;
       // prettier-ignore
       return [
         f / aspect, 0, 0, 0,
@@ -228,7 +242,7 @@ export class OrbitCamera {
         0, 0, (2 * far * near) / (near - far), 0,
       ];
     }
-    const half_height = kHalfFieldTangent * this.distance;
+    const half_height = this.half_field * this.distance;
     // prettier-ignore
     return [
       1 / (half_height * aspect), 0, 0, 0,
@@ -270,13 +284,11 @@ export class OrbitCamera {
 }
 
 /** Where a camera stands; `between` two of them, at a share of the way. */
-export interface Place {
-  target: Vec3;
-  distance: number;
-  azimuth: number;
-  elevation: number;
-}
-export const place_of = ({ target, distance, azimuth, elevation }: OrbitCamera): Place => ({ target, distance, azimuth, elevation });
+export type Place = Pick<OrbitCamera, "target" | "distance" | "azimuth" | "elevation" | "perspective" | "half_field">;
+export const place_of = (camera: OrbitCamera): Place => {
+  const { target, distance, azimuth, elevation, perspective, half_field } = camera;
+  return { target, distance, azimuth, elevation, perspective, half_field };
+};
 export function between(from: Place, to: Place, share: number): Place {
   const mix = (a: number, b: number): number => a + (b - a) * share;
   return {
@@ -284,6 +296,8 @@ export function between(from: Place, to: Place, share: number): Place {
     distance: Math.exp(mix(Math.log(from.distance), Math.log(to.distance))),
     azimuth: wrap(from.azimuth + wrap(to.azimuth - from.azimuth) * share),
     elevation: mix(from.elevation, to.elevation),
+    perspective: to.perspective,
+    half_field: mix(from.half_field, to.half_field),
   };
 }
 

@@ -18,6 +18,7 @@ import {
   type ModelEvent,
   type Picked,
   type Presence,
+  type PresenceUpdate,
   type ProblemMessage,
   type RecordEditors,
   type RecordEvent,
@@ -237,9 +238,9 @@ export class Connection {
     if (this.state_ === "open") this.send({ op: "pick", id, x, y, ...(camera ? { camera } : {}) });
   }
 
-  /** The pixel this person points at. */
-  presence(pointer: Point | null): void {
-    if (this.state_ === "open") this.send({ op: "presence", pointer });
+  /** What this person shows of themselves; replaces what was shown before. */
+  presence(shown: Omit<PresenceUpdate, "op">): void {
+    if (this.state_ === "open") this.send({ op: "presence", ...shown });
   }
 
   /** That this person writes into a record, or no longer. */
