@@ -420,6 +420,42 @@ CREATE TABLE public.blobs (
     CONSTRAINT blobs_sha256_check CHECK ((octet_length(sha256) = 32))
 );
 
+CREATE TABLE public.comments (
+    id bigint NOT NULL,
+    model_id bigint NOT NULL,
+    thread_id bigint,
+    "position" double precision[],
+    normal double precision[],
+    layer_id bigint,
+    table_id bigint,
+    record_key bigint,
+    text text NOT NULL,
+    user_name text NOT NULL,
+    "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    edited timestamp with time zone,
+    deleted timestamp with time zone,
+    resolved timestamp with time zone,
+    resolved_by text,
+    changed timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT comments_check CHECK (((thread_id IS NULL) = (("position" IS NOT NULL) AND (normal IS NOT NULL)))),
+    CONSTRAINT comments_check1 CHECK (((resolved IS NULL) = (resolved_by IS NULL))),
+    CONSTRAINT comments_check2 CHECK (((thread_id IS NULL) OR ((resolved IS NULL) AND (deleted IS NULL)))),
+    CONSTRAINT comments_normal_check CHECK ((cardinality(normal) = 3)),
+    CONSTRAINT comments_position_check CHECK ((cardinality("position") = 3)),
+    CONSTRAINT comments_record_key_check CHECK (((record_key >= 0) AND (record_key <= '4294967295'::bigint))),
+    CONSTRAINT comments_text_check CHECK ((char_length(text) <= 10000))
+);
+
+ALTER TABLE public.comments ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.comments_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.detail_levels (
     model_id bigint NOT NULL,
     level integer NOT NULL,
@@ -636,6 +672,9 @@ ALTER TABLE ONLY public.blob_chunks
 ALTER TABLE ONLY public.blobs
     ADD CONSTRAINT blobs_pkey PRIMARY KEY (sha256);
 
+ALTER TABLE ONLY public.comments
+    ADD CONSTRAINT comments_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.detail_levels
     ADD CONSTRAINT detail_levels_pkey PRIMARY KEY (model_id, level);
 
@@ -732,6 +771,14 @@ CREATE INDEX attachments_blob ON public.attachments USING btree (sha256);
 
 CREATE INDEX attachments_table ON public.attachments USING btree (table_id);
 
+CREATE INDEX comments_layer ON public.comments USING btree (layer_id);
+
+CREATE INDEX comments_model ON public.comments USING btree (model_id, id);
+
+CREATE INDEX comments_table ON public.comments USING btree (table_id);
+
+CREATE INDEX comments_thread ON public.comments USING btree (thread_id, id);
+
 CREATE INDEX detail_levels_geometry ON public.detail_levels USING btree (geometry);
 
 CREATE INDEX edits_author ON public.edits USING btree (layer_id, user_name, in_force, sequence) WHERE writer;
@@ -796,6 +843,18 @@ ALTER TABLE ONLY public.attachments
 
 ALTER TABLE ONLY public.blob_chunks
     ADD CONSTRAINT blob_chunks_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.comments
+    ADD CONSTRAINT comments_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE SET NULL;
+
+ALTER TABLE ONLY public.comments
+    ADD CONSTRAINT comments_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.comments
+    ADD CONSTRAINT comments_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE SET NULL;
+
+ALTER TABLE ONLY public.comments
+    ADD CONSTRAINT comments_thread_id_fkey FOREIGN KEY (thread_id) REFERENCES public.comments(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.detail_levels
     ADD CONSTRAINT detail_levels_geometry_fkey FOREIGN KEY (geometry) REFERENCES public.blobs(sha256);

@@ -255,9 +255,12 @@ Result<void> Store::delete_person(const std::string& name) {
           "UPDATE table_edits SET user_name = $2 WHERE user_name = $1",
           "UPDATE attachments SET user_name = $2 WHERE user_name = $1"})
       if (auto done = run(connection, sql, Params().text(person->name).text(former)); !done) return done;
-    // Answers that are kept for calls that come again may tell it; names hold nothing that JSON writes otherwise.
+    if (auto done = rename_in_comments(connection, person->name, former); !done) return done;
+    // Answers that are kept for calls that come again may tell it, as the name of somebody or in what is said to them; names hold
+    // nothing that JSON writes otherwise.
     return run(connection,
-               "DELETE FROM answers WHERE position('\"' || $1 || '\"' IN replace(answer::text, '\\', '')) > 0",
+               "DELETE FROM answers WHERE position('\"' || $1 || '\"' IN replace(answer::text, '\\', '')) > 0 "
+               "OR position('@' || lower($1) IN lower(answer::text)) > 0",
                Params().text(person->name));
   });
 }

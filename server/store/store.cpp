@@ -28,6 +28,8 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options, const std::file
   return store;
 }
 
+Comments& Store::comments() { return impl_->comments; }
+
 Result<StoreInfo> Store::info() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {
     auto row = connection.query("SELECT current_setting('server_version'), pg_database_size(current_database())");

@@ -30,6 +30,8 @@
 
 namespace strata::store {
 
+class Comments;
+
 struct StoreOptions {
   std::string dsn;      // libpq connection string
   int connections = 8;  // pooled, for everything but the journal writer
@@ -104,6 +106,8 @@ class Store {
   Result<Look> update_look(const Look& look, const FirstAnswer<Look>& answer = {});  // all but its picture
   Result<void> delete_look(std::int64_t id, const FirstAnswer<>& answer = {});
   Result<std::vector<std::uint8_t>> look_picture(std::int64_t id);
+
+  Comments& comments();  // threads on models (store/comments.h); lives as long as this
 
   // --- tools: shapes for the brush, of the whole site
   static constexpr int kMostTools = 200;  // that are not deleted

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "core/slug.h"
+#include "store/comments.h"
 #include "store/pool.h"
 #include "store/store.h"
 
@@ -20,23 +21,30 @@ inline Result<void> keep(PgConnection& connection, const FirstAnswer<>& answer, 
   return answer.key.empty() ? Result<void>{} : insert_answer(connection, answer.key, answer.make());
 }
 
+// A transaction that also keeps the answer to who asked for it.
+template <class Answer, class Work>
+auto change(Pool& pool, const Answer& answer, Work&& work, const PgLimits& limits = kRequestLimits)
+    -> std::invoke_result_t<Work, PgConnection&> {
+  return pool.write_within(limits, [&](PgConnection& connection) {
+    auto effect = work(connection);
+    if (effect)
+      if (auto kept = keep(connection, answer, effect); !kept) effect = tl::unexpected(kept.error());
+    return effect;
+  });
+}
+
 struct Store::Impl {
   Impl(StoreOptions given)
       : options(std::move(given)), pool(options.dsn, options.connections, options.limits, options.slot_for) {}
   const StoreOptions options;
   Pool pool;
+  Comments comments{pool};
   std::int64_t schema_version = 0;
 
-  // A transaction that also keeps the answer to who asked for it.
   template <class Answer, class Work>
   auto change(const Answer& answer, Work&& work, const PgLimits& limits = kRequestLimits)
       -> std::invoke_result_t<Work, PgConnection&> {
-    return pool.write_within(limits, [&](PgConnection& connection) {
-      auto effect = work(connection);
-      if (effect)
-        if (auto kept = keep(connection, answer, effect); !kept) effect = tl::unexpected(kept.error());
-      return effect;
-    });
+    return store::change(pool, answer, std::forward<Work>(work), limits);
   }
 
   // Of its own, so that a busy pool is not taken for a database that is away.
