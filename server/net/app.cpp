@@ -84,6 +84,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_job_routes(router_, context_);
   add_layer_routes(router_, context_);
   add_look_routes(router_, context_);
+  add_comment_routes(router_, context_);
   add_tool_routes(router_, context_);
   add_table_routes(router_, context_);
   add_term_routes(router_, context_);

@@ -23,6 +23,10 @@ class LiveSockets {
   void tell_all(const protocol::ServerMessage& message) {
     tell_if([](const LiveSession&) { return true; }, message);
   }
+  // Whoever looks at the model.
+  void tell_model(std::int64_t model_id, const protocol::ServerMessage& message) {
+    tell_if([&](const LiveSession& session) { return session.model_id() == model_id; }, message);
+  }
   // Whoever looks at a model of the project.
   void tell_project(std::int64_t project_id, const protocol::ServerMessage& message) {
     tell_if([&](const LiveSession& session) { return session.project_id() == project_id; }, message);

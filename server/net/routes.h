@@ -46,6 +46,7 @@ void add_import_routes(Router& router, const RouteContext& context);
 void add_job_routes(Router& router, const RouteContext& context);
 void add_layer_routes(Router& router, const RouteContext& context);
 void add_look_routes(Router& router, const RouteContext& context);
+void add_comment_routes(Router& router, const RouteContext& context);
 void add_tool_routes(Router& router, const RouteContext& context);
 void add_table_routes(Router& router, const RouteContext& context);
 void add_term_routes(Router& router, const RouteContext& context);

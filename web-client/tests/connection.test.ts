@@ -48,6 +48,7 @@ beforeEach(() => {
     record: vi.fn(),
     table: vi.fn(),
     editors: vi.fn(),
+    comment: vi.fn(),
     presence: vi.fn(),
     picked: vi.fn(),
     problem: vi.fn(),

@@ -153,6 +153,8 @@ export class Site {
       await server.json("POST", "/models/wall/layers", { name, type, resolution: 2048 });
     await server.json("POST", "/models/wall-2/layers", { name: "Cracks", type: "u8", resolution: 2048 });
     await server.json("POST", "/models/wall/layers", { name: "Units", kind: "database", type: "u16", table: "units", resolution: 2048 });
+    const { id } = await server.json("POST", "/models/wall/comments", { text: "Since when?", position: [10, 10, 0], layer: "units", record: 1 });
+    await server.json("POST", `/comments/${id}/replies`, { text: "Since 2019." });
     for (const [layer, value, where] of [
       ["cracks", 3, "x < 30"],
       ["moisture", 0.5, "y < 50"],
@@ -214,6 +216,8 @@ export class Site {
           (await this.#post(`/tables/units/records/2/attachments?name=${encodeURIComponent(`${name}.txt`)}`, "letter.txt")).attachments[0]
             .id,
         );
+      case "comment":
+        return String((await server.json("POST", "/models/wall/comments", { text: name, position: [50, 50, 0] })).id);
       case "user":
         return (await server.json("POST", "/users", { user: `spare-${this.#made}` })).user.user;
       case "token":

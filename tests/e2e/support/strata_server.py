@@ -197,6 +197,15 @@ class StrataServer:
         return wait_for(lambda: (lambda now: now if now["state"] not in ("queued", "running") else None)(
             self.ok("GET", f"/jobs/{job}").json()), f"job {job}")
 
+    def add_person(self, user, role):
+        """A token for scripts of a new person."""
+        invitation = self.ok("POST", "/users", {"user": user, "role": role}).json()["path"].partition("#")[2]
+        of_page = {"Origin": self.url}
+        joined = self.ok("POST", "/invitations/accept", {"invitation": invitation, "password": f"{user} and seven blue herons"},
+                         headers=of_page, token=False)
+        of_page["Cookie"] = joined.headers["Set-Cookie"].split(";")[0]
+        return self.ok("POST", "/me/tokens", {"name": "tests"}, headers=of_page, token=False).json()["secret"]
+
     def import_model(self, content, filename, **query):
         """Imports and returns the model."""
         asked = urllib.parse.urlencode({"filename": filename, **query})

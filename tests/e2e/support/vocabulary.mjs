@@ -124,6 +124,7 @@ export const path_words = {
   column: mostly(...kColumnSlugs),
   key: mostly("1", "2", "3"),
   attachment: mostly("1", "2"),
+  comment: mostly("1", "1", "2"),
   job: mostly("(a job)"),
   name: mostly("wall.ply"),
   format: one("png", "npy", "tif"),
@@ -134,6 +135,7 @@ export const path_words = {
 };
 export const query_words = {
   at: at.map(String),
+  since: one("2001-05-04T12:00:00Z", "2030-01-01", "yesterday"),
   filter,
   where: condition,
   sortby: one("depth", "-code", "key", "area_m2", "depth,-code", "nothing"),
@@ -224,6 +226,18 @@ export const particulars = {
   delete_record: { path: { table: one("units"), ...spare("key", "1") }, queries: what_of_texels },
   delete_layer_record: { path: { model: one("wall"), layer: one("units"), ...spare("key", "1") }, queries: what_of_texels },
   delete_attachment: { path: spare("attachment") },
+  delete_comment: { path: spare("comment") },
+  change_comment: { path: spare("comment", "2") },
+  create_comment: {
+    path: { model: one("wall", "wall", "wall", "nothing") },
+    ...json({
+      by_schema: {
+        CommentCreate: fc
+          .tuple(point, one({}, { layer: "cracks" }, { layer: "units", record: 1 }, { layer: "cracks", record: 1 }))
+          .map(([position, about]) => ({ text: "Since when?\nSee https://example.org, @guest", position, ...about })),
+      },
+    }),
+  },
   drop_column: { path: { table: one("scratch"), ...spare("column") } },
   change_column: { path: { table: one("scratch"), ...spare("column", "note") }, ...json({ by_name: { target: one("units", "scratch") } }) },
   cancel_job: { path: spare("job", "(a job)") },

@@ -14,6 +14,7 @@ const kTools: Record<string, ToolName> = {
   i: "pick",
   d: "line",
   s: "point",
+  c: "comment",
   v: "orbit",
   h: "pan",
 };
@@ -100,6 +101,8 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
     case "T":
       session.toggle_table();
       return true;
+    case "Escape":
+      return session.comments.close();
     case "?":
       show_help();
       return true;

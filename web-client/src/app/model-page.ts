@@ -14,6 +14,9 @@ import type { WhereRequest } from "./brush-panel";
 import "./brush-panel";
 import "./color-dialog";
 import "./column-dialog";
+import "./comment-card";
+import "./comment-panel";
+import "./comment-pins";
 import "./csv-dialog";
 import "./delete-record-dialog";
 import { ask, modal_is_open } from "./dialog";
@@ -32,7 +35,7 @@ import "./record-card";
 import "./people-menu";
 import "./photos-dialog";
 import "./record-dialog";
-import { follow } from "./routes";
+import { comment_of, follow, hash_of_comment, put_hash } from "./routes";
 import "./scale-dialog";
 import "./sheets";
 import "./stage";
@@ -75,6 +78,7 @@ export class StrataModelPage extends LitElement {
   private session_: ModelSession | null = null;
   private asked_scale_ = false;
   private role_: Role | null = null; // of the newest welcome
+  private wanted_comment_: number | null = null; // by the address
 
   static override styles = [shared_styles, model_styles];
 
@@ -83,6 +87,7 @@ export class StrataModelPage extends LitElement {
     addEventListener("keydown", this.on_key_down);
     addEventListener("keyup", this.on_key_up);
     addEventListener("blur", this.on_blur);
+    addEventListener("hashchange", this.on_hash);
   }
 
   override disconnectedCallback(): void {
@@ -90,6 +95,7 @@ export class StrataModelPage extends LitElement {
     removeEventListener("keydown", this.on_key_down);
     removeEventListener("keyup", this.on_key_up);
     removeEventListener("blur", this.on_blur);
+    removeEventListener("hashchange", this.on_hash);
     this.lift_notices(null);
     this.session_?.close();
     this.session_ = null;
@@ -101,6 +107,7 @@ export class StrataModelPage extends LitElement {
     this.session_ = new ModelSession(this.api, this.model_id);
     this.missing_ = null;
     this.asked_scale_ = false;
+    this.wanted_comment_ = comment_of(location.hash);
     void this.open(this.session_);
   }
 
@@ -136,12 +143,28 @@ export class StrataModelPage extends LitElement {
       if (session.role !== this.me.role) this.dispatchEvent(new CustomEvent("role-changed"));
     }
     if (session.model) document.title = `${session.model.name} – ${texts.product}`;
+    this.follow_address(session);
     const asks_scale = session.model && !session.model.scale_verified && session.can_curate;
     if (asks_scale && session.view.frames_drawn > 0 && !this.asked_scale_) {
       this.asked_scale_ = true;
       this.dialog_ ??= { dialog: "scale" };
     }
     this.requestUpdate();
+  }
+
+  private readonly on_hash = (): void => {
+    this.wanted_comment_ = comment_of(location.hash);
+    if (this.session_) this.follow_address(this.session_);
+  };
+
+  /** To the comment that the address names, once it can be gone to; from then on the address names the one that is looked at. */
+  private follow_address(session: ModelSession): void {
+    const { comments, view } = session;
+    if (!comments.loaded || view.frames_drawn === 0) return;
+    const wanted = this.wanted_comment_;
+    this.wanted_comment_ = null;
+    if (wanted !== null) comments.go_to(wanted);
+    put_hash(typeof comments.card === "number" ? hash_of_comment(comments.card) : "");
   }
 
   override render(): TemplateResult {
@@ -162,6 +185,8 @@ export class StrataModelPage extends LitElement {
         <main>
           <strata-stage .session=${session}></strata-stage>
           <strata-together-bar .session=${session}></strata-together-bar>
+          <strata-comment-pins .session=${session}></strata-comment-pins>
+          ${session.comments.card === null ? nothing : html`<strata-comment-card .session=${session}></strata-comment-card>`}
           ${this.banner(session)}
           <div class="readings">
             ${session.tables.card
@@ -214,7 +239,9 @@ export class StrataModelPage extends LitElement {
         title=${this.panel_shown_ ? texts.model.hide_panel : texts.model.show_panel}
         @click=${() => (this.panel_shown_ = !this.panel_shown_)}
       >
-        ${icon("panel")}
+        ${icon("panel")}${!this.panel_shown_ && session.comments.unread_count > 0
+          ? html`<span class="unread" role="img" aria-label=${texts.comments.unread(session.comments.unread_count)}></span>`
+          : nothing}
       </button>
       <strata-account-menu .me=${this.me}></strata-account-menu>
     </header>`;
@@ -275,6 +302,7 @@ export class StrataModelPage extends LitElement {
             @request=${request}
           ></strata-layer-panel>
         </section>
+        <section><strata-comment-panel .session=${session}></strata-comment-panel></section>
         <section>
           <strata-view-panel
             .session=${session}
@@ -392,8 +420,9 @@ export class StrataModelPage extends LitElement {
   private readonly on_key_down = (event: KeyboardEvent): void => {
     const session = this.session_;
     if (!session || modal_is_open() || event.defaultPrevented || is_for_field(event)) return;
+    const on_button = event.composedPath()[0] instanceof HTMLButtonElement;
+    if (event.key === "Enter" && on_button) return;
     if (event.key === " ") {
-      const on_button = (event.composedPath()[0] as HTMLElement).tagName === "BUTTON";
       if (on_button) return;
       if (this.stage_) this.stage_.orbit_held = true;
       event.preventDefault();

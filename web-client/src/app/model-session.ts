@@ -1,5 +1,5 @@
 // One open model on this page: its life, and the messages between its parts. `view` is the camera, `layers` what is painted on,
-// `tables` the records that layers hold the keys of, `hovered` the one that the mouse rests on, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits, `together` who else is
+// `tables` the records that layers hold the keys of, `comments` what people wrote on the surface, `hovered` the one that the mouse rests on, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits, `together` who else is
 // here and whose view this is, `cursors` where they point. Elements
 // subscribe and draw themselves from their state; they change it only through their methods.
 
@@ -11,14 +11,16 @@ import type { LayerEvent, ModelEvent, Picked, ProblemMessage, Welcome } from "..
 import { complete_layer, may_curate, may_paint, type Column, type Layer, type Model, type ModelPatch, type Role } from "../core/types";
 import { BrushTool } from "../tools/brush";
 import { BucketTool } from "../tools/bucket";
+import { CommentTool } from "../tools/comment";
 import { LineTool } from "../tools/line";
 import { OrbitTool, PanTool } from "../tools/navigate";
 import { LassoTool, PolygonTool } from "../tools/outline";
 import { PickTool } from "../tools/pick";
 import { PointTool } from "../tools/point";
-import { kMarkingTools, kPaintingTools, type ToolName } from "../tools/tool";
+import { kChangingTools, kMarkingTools, kPaintingTools, type ToolName } from "../tools/tool";
 import { ToolManager } from "../tools/tool-manager";
 import { Appearance } from "./appearance";
+import { Comments } from "./comments";
 import { LayerJobs } from "./layer-jobs";
 import { LayerList } from "./layer-list";
 import { MarkDrawing } from "./mark-drawing";
@@ -54,6 +56,7 @@ export class ModelSession {
   readonly tables: Tables;
   readonly editors: RecordEditors;
   readonly marks: MarkDrawing;
+  readonly comments: Comments;
   readonly hovered: RecordHover;
   readonly together: Together;
   readonly cursors: PeopleCursors;
@@ -80,6 +83,7 @@ export class ModelSession {
     this.view = new ViewControl({
       send: (moving) => {
         this.hovered.wait_again();
+        this.comments.sight.camera_moved();
         this.connection_.set_camera(this.view.camera.message(), moving);
       },
       when_free: (action) => this.painting.when_free(action),
@@ -88,6 +92,7 @@ export class ModelSession {
         this.pointer.ask_again();
         this.cursors.look_again();
         this.together.came_to_rest();
+        this.comments.look_again();
       },
       went_own_way: () => this.together.stop_following(),
       changed,
@@ -146,6 +151,15 @@ export class ModelSession {
       painting: this.painting,
       tables: this.tables,
       model: () => this.model,
+      changed,
+    });
+    this.comments = new Comments(api, model_id, {
+      view: this.view,
+      layers: this.layers,
+      tables: this.tables,
+      model: () => this.model,
+      here: () => this.together.viewers,
+      began: () => this.tools.choose("orbit"),
       changed,
     });
     this.hovered = new RecordHover({
@@ -209,6 +223,7 @@ export class ModelSession {
         model: (event) => this.on_model(event),
         record: (event) => this.tables.on_record(event),
         table: (event) => this.tables.on_table(event),
+        comment: (event) => this.comments.on_event(event),
         editors: (message) => this.editors.on_message(message),
         presence: ({ users }) => {
           if (this.closed_) return;
@@ -230,6 +245,7 @@ export class ModelSession {
       radius_px: () => this.painting.radius_window_px(),
       next_frame: (callback: () => void) => void requestAnimationFrame(callback),
     };
+    const comment = (sample: PointerSample): void => void this.comments.begin(sample);
     const navigator = {
       orbit: (dx: number, dy: number) => this.view.orbit_pixels(dx, dy),
       pan: (dx: number, dy: number) => this.view.pan_pixels(dx, dy),
@@ -263,6 +279,7 @@ export class ModelSession {
         new PickTool((sample) => this.pointer.take(sample)),
         new LineTool(line_host),
         new PointTool((sample) => this.marks.set_point(sample)),
+        new CommentTool({ ...navigator, tap: comment }, () => ({ x: this.view.camera.width / 2, y: this.view.camera.height / 2 })),
       ],
       "orbit",
       () => this.target_changed(),
@@ -386,7 +403,7 @@ export class ModelSession {
   // ── what elements ask for ─────────────────────────────────────────────────────────────────────────────────────────
 
   choose_tool(name: ToolName): void {
-    if (kPaintingTools.includes(name) && this.refuses_changes()) return;
+    if (kChangingTools.includes(name) && this.refuses_changes()) return;
     this.tools.choose(name);
   }
 
@@ -525,7 +542,7 @@ export class ModelSession {
     this.was_open_ = true;
     this.signed_out = false;
     this.role = message.role;
-    if (!this.can_paint && kPaintingTools.includes(this.tools.active)) this.tools.choose("orbit");
+    if (!this.can_paint && kChangingTools.includes(this.tools.active)) this.tools.choose("orbit");
     this.session = message.session;
     this.editors.joined(message.session, message.user);
     this.put_model(message.model);
@@ -534,6 +551,7 @@ export class ModelSession {
     this.shapes.refresh();
     this.tables.refresh();
     this.together.connected();
+    this.comments.welcome(message.user);
   }
 
   /** The brush is told as large as it is on the surface. */

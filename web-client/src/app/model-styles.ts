@@ -68,6 +68,24 @@ export const model_styles = css`
     position: absolute;
     inset: 0;
   }
+  strata-comment-card {
+    position: absolute;
+    inset: 0;
+    z-index: 4; /* over what tells of the pointer */
+    pointer-events: none;
+  }
+  header button.icon {
+    position: relative;
+  }
+  .unread {
+    position: absolute;
+    top: 3px;
+    right: 3px;
+    width: 9px;
+    height: 9px;
+    border-radius: 50%;
+    background: #d6311f;
+  }
   .scale-chip {
     min-height: 28px;
     padding: 0 12px;

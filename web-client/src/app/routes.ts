@@ -16,6 +16,18 @@ export function route_of(path: string): Route {
 export const path_now = (): string => location.pathname;
 export const path_of_model = (id: number | string): string => `/models/${encodeURIComponent(id)}`;
 
+/** The comment that an address leads to. */
+export function comment_of(hash: string): number | null {
+  const found = /^#comment=([1-9]\d{0,15})$/.exec(hash);
+  return found ? Number(found[1]) : null;
+}
+export const hash_of_comment = (id: number): string => `#comment=${id}`;
+
+/** The address tells what is looked at; nobody has to go there. */
+export function put_hash(hash: string): void {
+  if (hash !== location.hash) history.replaceState(history.state, "", `${location.pathname}${location.search}${hash}`);
+}
+
 const listeners = new Set<() => void>();
 
 export function on_navigate(listener: () => void): void {

@@ -3,7 +3,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import type { StandardView } from "../core/camera";
-import { kPaintingTools, type ToolName } from "../tools/tool";
+import { kChangingTools, type ToolName } from "../tools/tool";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import "./menu";
@@ -22,6 +22,7 @@ const kTools: [ToolName, string][] = [
   ["line", "D"],
   ["point", "S"],
   ["pick", "I"],
+  ["comment", "C"],
 ];
 const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
 
@@ -162,7 +163,7 @@ export class StrataToolRail extends LitElement {
   /** Lines and points have their tools where the layer's table has columns of them. */
   private shows(name: ToolName): boolean {
     const { session } = this;
-    if (kPaintingTools.includes(name) && !session.can_paint) return false;
+    if (kChangingTools.includes(name) && !session.can_paint) return false;
     return (name !== "line" && name !== "point") || session.tools.active === name || session.marks.column(name) !== null;
   }
 

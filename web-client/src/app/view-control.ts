@@ -4,6 +4,7 @@ import { between, OrbitCamera, place_of, type Bounds, type CameraMessage, type S
 import { has_arrived, place_like } from "../core/look-along";
 import type { Plane } from "../core/protocol.gen";
 import type { Model } from "../core/types";
+import type { Vec3 } from "../core/vector";
 
 const kStillAfter_ms = 120; // without input the camera counts as still
 const kFlight_ms = 600;
@@ -79,12 +80,12 @@ export class ViewControl {
     this.move(() => this.camera.fit(), false);
   }
   /** To a part of the model, in a moment; at once for people who want less motion. Any other move ends the flight. */
-  fly_to(box: Bounds): void {
+  fly_to(box: Bounds, normal?: Vec3): void {
     if (this.host_.is_painting()) return;
     this.go_own_way();
     this.end_flight();
     const from = place_of(this.camera);
-    this.camera.look_at(box);
+    this.camera.look_at(box, normal);
     const to = place_of(this.camera);
     if (wants_less_motion()) {
       this.moved(false);

@@ -259,6 +259,32 @@ export class Api {
   async delete_look(model: Id, look: Id): Promise<void> {
     await this.request("DELETE", look_path(model, look));
   }
+  /** Of a model, with replies, by id. */
+  async comments(model: Id): Promise<wire.Comment[]> {
+    const comments: wire.Comment[] = [];
+    for (;;) {
+      const page = await this.json<wire.CommentList>("GET", `/models/${encodeURIComponent(model)}/comments?limit=1000&offset=${comments.length}`);
+      comments.push(...page.comments);
+      if (comments.length >= page.total || page.comments.length === 0) return comments;
+    }
+  }
+  async comment(id: number): Promise<wire.Comment> {
+    return this.json("GET", comment_path(id));
+  }
+  /** Sent again with the same key it is not written twice. */
+  async create_comment(model: Id, comment: wire.CommentCreate, key: string): Promise<wire.Comment> {
+    return this.parsed(await this.request("POST", `/models/${encodeURIComponent(model)}/comments`, comment, { "Idempotency-Key": key }));
+  }
+  async create_reply(thread: number, text: string, key: string): Promise<wire.Comment> {
+    return this.parsed(await this.request("POST", `${comment_path(thread)}/replies`, { text }, { "Idempotency-Key": key }));
+  }
+  /** With the version that was read: another's change in between is an ApiError of status 412. */
+  async change_comment(id: number, change: wire.CommentPatch, version: number): Promise<wire.Comment> {
+    return (await this.versioned<wire.Comment>("PATCH", comment_path(id), change, etag_of(version))).value;
+  }
+  async delete_comment(id: number, version: number): Promise<void> {
+    await this.request("DELETE", comment_path(id), undefined, { "If-Match": etag_of(version) });
+  }
   async tables(project: Id): Promise<wire.Table[]> {
     return (await this.json<wire.TableList>("GET", `${project_path(project)}/tables?limit=1000`)).tables;
   }
@@ -517,7 +543,7 @@ export class Api {
     headers: Record<string, string> = {},
   ): Promise<Response> {
     const all: Record<string, string> = { Accept: "application/json", ...headers };
-    if (method === "POST" && !kWithSecrets.test(path)) all["Idempotency-Key"] = new_id();
+    if (method === "POST" && !kWithSecrets.test(path)) all["Idempotency-Key"] ??= new_id();
     let response: Response;
     try {
       response = await this.fetch_(kBase + path, {
@@ -551,6 +577,10 @@ const table_path = (table: Id): string => `/tables/${encodeURIComponent(table)}`
 
 const records_path = (place: RecordPlace): string =>
   `${"table" in place ? table_path(place.table) : layer_path(place.model, place.layer)}/records`;
+
+const comment_path = (id: number): string => `/comments/${id}`;
+
+const etag_of = (version: number): string => `"v${version}"`;
 
 const look_path = (model: Id, look: Id): string =>
   `/models/${encodeURIComponent(model)}/looks/${encodeURIComponent(look)}`;

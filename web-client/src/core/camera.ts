@@ -94,13 +94,15 @@ export class OrbitCamera {
     this.distance = Math.max(distance * kFitMargin, bounding_radius(this.bounds_) * kMinZoom);
   }
 
-  /** A box that is a part of the model, seen from its own side of the model; the model's middle has no side. */
-  look_at(box: Bounds): void {
+  /** A box that is a part of the model, seen from where its surface faces; where that is not said, from its own side of the model, of which
+   *  the model's middle has none. */
+  look_at(box: Bounds, normal?: Vec3): void {
     const middle = centre(box);
-    const outwards = subtract(middle, centre(this.bounds_));
+    const outwards = normal ?? subtract(middle, centre(this.bounds_));
     const { back } = this.axes();
+    const has_side = normal !== undefined || length(outwards) > 0.15 * bounding_radius(this.bounds_);
     // What faces away is turned to; what is seen already is left as it is.
-    if (length(outwards) > 0.15 * bounding_radius(this.bounds_) && dot(outwards, back) < 0.3 * length(outwards)) this.face(outwards);
+    if (has_side && dot(outwards, back) < 0.3 * length(outwards)) this.face(outwards);
     this.target = middle;
     const least = bounding_radius(this.bounds_) * 0.08; // some of what is around a small thing
     const radius = Math.max(bounding_radius(box), least);

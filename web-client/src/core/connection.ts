@@ -10,6 +10,7 @@ import {
   SUBPROTOCOL,
   type Applied,
   type ClientMessage,
+  type CommentEvent,
   type LayerEvent,
   type LayerOverride,
   type Light,
@@ -67,6 +68,7 @@ export interface ConnectionCallbacks {
   record(message: RecordEvent): void;
   table(message: TableEvent): void;
   editors(message: RecordEditors): void;
+  comment(message: CommentEvent): void;
   presence(message: Presence): void;
   picked(message: Picked): void;
   /** A refusal. What was refused for good is no longer waiting. */
@@ -367,6 +369,8 @@ export class Connection {
         return this.callbacks_.table(message);
       case "record.editors":
         return this.callbacks_.editors(message);
+      case "comment":
+        return this.callbacks_.comment(message);
       case "presence":
         return this.callbacks_.presence(message);
       case "picked":

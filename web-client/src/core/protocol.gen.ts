@@ -97,6 +97,46 @@ export interface TableRecord {
   point_count?: number;
 }
 
+/** Whether there is still something to do. */
+export type CommentState = "open" | "resolved";
+
+/** Who settled a thread. */
+export interface CommentResolution {
+  user: string;
+  /** UTC, RFC 3339. */
+  time: string;
+}
+
+/** Comment on a model. The first one of a thread has its place and state, replies have `thread`. */
+export interface Comment {
+  id: number;
+  /** Its id. */
+  model: number;
+  /** Of a reply: id of the thread's first comment. */
+  thread?: number;
+  /** On the surface; world coordinates. */
+  position?: Point3;
+  normal?: Point3;
+  /** Id of the layer that it is about, while there is one. */
+  layer?: number;
+  /** With `record`: id of its table. */
+  table?: number;
+  /** Key of the record that it is about, while there is its table. */
+  record?: number;
+  state?: CommentState;
+  resolved?: CommentResolution;
+  /** Plain text; empty where it was deleted. */
+  text: string;
+  user: string;
+  /** UTC, RFC 3339. */
+  time: string;
+  /** When its text was changed last. */
+  edited?: string;
+  /** It stands there for its replies. */
+  deleted: boolean;
+  version: number;
+}
+
 /** Layer by id or slug. */
 export type LayerRef = number | string;
 
@@ -702,6 +742,15 @@ export interface TableEvent {
   event: "created" | "changed" | "deleted";
   table_id: number;
   table?: Table;
+  user?: string;
+}
+
+/** A comment was written, changed or deleted. Of the model. `comment` is there unless it was deleted; one that stays for its replies is changed. */
+export interface CommentEvent {
+  op: "comment";
+  event: "created" | "changed" | "deleted";
+  comment_id: number;
+  comment?: Comment;
   user?: string;
 }
 
@@ -1654,6 +1703,44 @@ export interface LookList {
   total: number;
 }
 
+/** Comments of a model, by id. */
+export interface CommentList {
+  comments: Comment[];
+  total: number;
+}
+
+/** Replies of a thread, by id. */
+export interface ReplyList {
+  replies: Comment[];
+  total: number;
+}
+
+/** First comment of a thread. */
+export interface CommentCreate {
+  /** Plain text. */
+  text: string;
+  /** World coordinates; the nearest place of the surface is taken, within 5 % of the model's diagonal. */
+  position: Point3;
+  /** What it is about. */
+  layer?: LayerRef;
+  /** What it is about: a key of the layer, which is of a table. */
+  record?: number;
+}
+
+/** Reply in a thread. */
+export interface ReplyCreate {
+  /** Plain text. */
+  text: string;
+}
+
+/** Another text, or another state of a thread. */
+export interface CommentPatch {
+  /** Of one's own comment. */
+  text?: string;
+  /** Of the thread's first comment. */
+  state?: CommentState;
+}
+
 /** Tools of the site, by name. */
 export interface ToolList {
   tools: Tool[];
@@ -2005,6 +2092,7 @@ export type ServerMessage =
   | RecordEvent
   | RecordEditors
   | TableEvent
+  | CommentEvent
   | Presence
   | Picked
   | ProblemMessage;
@@ -2023,6 +2111,7 @@ const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([
   "record",
   "record.editors",
   "table",
+  "comment",
   "presence",
   "picked",
   "problem",

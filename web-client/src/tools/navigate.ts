@@ -13,7 +13,7 @@ export interface Navigator {
 
 const kTapReach = 7; // window pixels that a hand trembles
 
-abstract class DragTool {
+export abstract class DragTool {
   private last_: PointerSample | null = null;
   private start_: PointerSample | null = null; // null: it was dragged away from there
 

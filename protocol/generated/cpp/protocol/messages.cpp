@@ -47,6 +47,22 @@ void read(const nlohmann::json& json, ColumnKind& value) {
 
 nlohmann::json to_json(const ColumnKind& value) { return name(value); }
 
+std::string_view name(CommentState value) {
+  switch (value) {
+    case CommentState::open: return "open";
+    case CommentState::resolved: return "resolved";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, CommentState& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "open") value = CommentState::open;
+  if (text == "resolved") value = CommentState::resolved;
+}
+
+nlohmann::json to_json(const CommentState& value) { return name(value); }
+
 std::string_view name(EditFillMode value) {
   switch (value) {
     case EditFillMode::where: return "where";
@@ -266,6 +282,24 @@ void read(const nlohmann::json& json, TableEventEvent& value) {
 }
 
 nlohmann::json to_json(const TableEventEvent& value) { return name(value); }
+
+std::string_view name(CommentEventEvent value) {
+  switch (value) {
+    case CommentEventEvent::created: return "created";
+    case CommentEventEvent::changed: return "changed";
+    case CommentEventEvent::deleted: return "deleted";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, CommentEventEvent& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "created") value = CommentEventEvent::created;
+  if (text == "changed") value = CommentEventEvent::changed;
+  if (text == "deleted") value = CommentEventEvent::deleted;
+}
+
+nlohmann::json to_json(const CommentEventEvent& value) { return name(value); }
 
 std::string_view name(PersonState value) {
   switch (value) {
@@ -1235,6 +1269,23 @@ nlohmann::json to_json(const TableEvent& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, CommentEvent& value) {
+  read_member(json, "event", value.event);
+  read_member(json, "comment_id", value.comment_id);
+  read_optional_member(json, "comment", value.comment);
+  read_optional_member(json, "user", value.user);
+}
+
+nlohmann::json to_json(const CommentEvent& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "comment";
+  write_member(json, "event", value.event);
+  write_member(json, "comment_id", value.comment_id);
+  write_optional_member(json, "comment", value.comment);
+  write_optional_member(json, "user", value.user);
+  return json;
+}
+
 void read(const nlohmann::json& json, PresencePointer& value) {
   read_member(json, "position", value.position);
   read_optional_member(json, "radius", value.radius);
@@ -1943,6 +1994,44 @@ nlohmann::json to_json(const VertexPropertyList& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, CommentCreate& value) {
+  read_member(json, "text", value.text);
+  read_member(json, "position", value.position);
+  read_optional_member(json, "layer", value.layer);
+  read_optional_member(json, "record", value.record);
+}
+
+nlohmann::json to_json(const CommentCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "text", value.text);
+  write_member(json, "position", value.position);
+  write_optional_member(json, "layer", value.layer);
+  write_optional_member(json, "record", value.record);
+  return json;
+}
+
+void read(const nlohmann::json& json, ReplyCreate& value) {
+  read_member(json, "text", value.text);
+}
+
+nlohmann::json to_json(const ReplyCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "text", value.text);
+  return json;
+}
+
+void read(const nlohmann::json& json, CommentPatch& value) {
+  read_optional_member(json, "text", value.text);
+  read_optional_member(json, "state", value.state);
+}
+
+nlohmann::json to_json(const CommentPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "text", value.text);
+  write_optional_member(json, "state", value.state);
+  return json;
+}
+
 void read(const nlohmann::json& json, ToolPatch& value) {
   read_member(json, "name", value.name);
 }
@@ -2599,6 +2688,7 @@ std::optional<Schema> server_message_schema(std::string_view op) {
   if (op == RecordEvent::kOp) return Schema::RecordEvent;
   if (op == RecordEditors::kOp) return Schema::RecordEditors;
   if (op == TableEvent::kOp) return Schema::TableEvent;
+  if (op == CommentEvent::kOp) return Schema::CommentEvent;
   if (op == Presence::kOp) return Schema::Presence;
   if (op == Picked::kOp) return Schema::Picked;
   if (op == ProblemMessage::kOp) return Schema::ProblemMessage;
@@ -2649,6 +2739,10 @@ void read(const nlohmann::json& json, ServerMessage& value) {
   }
   if (op == TableEvent::kOp) {
     read(json, value.emplace<TableEvent>());
+    return;
+  }
+  if (op == CommentEvent::kOp) {
+    read(json, value.emplace<CommentEvent>());
     return;
   }
   if (op == Presence::kOp) {

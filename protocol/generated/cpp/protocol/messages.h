@@ -41,6 +41,9 @@ enum class Schema {
   Column,
   Table,
   TableRecord,
+  CommentState,
+  CommentResolution,
+  Comment,
   LayerRef,
   Uuid,
   Camera,
@@ -105,6 +108,7 @@ enum class Schema {
   RecordEditor,
   RecordEditors,
   TableEvent,
+  CommentEvent,
   PresencePointer,
   PresenceUser,
   Presence,
@@ -197,6 +201,11 @@ enum class Schema {
   VertexPropertyList,
   VertexPropertyName,
   LookList,
+  CommentList,
+  ReplyList,
+  CommentCreate,
+  ReplyCreate,
+  CommentPatch,
   ToolList,
   ToolPatch,
   LookPatch,
@@ -233,7 +242,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 207;
+constexpr int kSchemaCount = 216;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -258,6 +267,12 @@ nlohmann::json to_json(const ColumnKind& value);
 
 // Place of a mark.
 using MarkPlace = std::array<double, 3>;
+
+// Whether there is still something to do.
+enum class CommentState { open, resolved };
+std::string_view name(CommentState value);
+void read(const nlohmann::json& json, CommentState& value);
+nlohmann::json to_json(const CommentState& value);
 
 // Layer by id or slug.
 using LayerRef = std::variant<std::int64_t, std::string>;
@@ -935,6 +950,25 @@ nlohmann::json to_json(const TableEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<TableEvent> = Schema::TableEvent;
 
+enum class CommentEventEvent { created, changed, deleted };
+std::string_view name(CommentEventEvent value);
+void read(const nlohmann::json& json, CommentEventEvent& value);
+nlohmann::json to_json(const CommentEventEvent& value);
+
+// A comment was written, changed or deleted. Of the model. `comment` is there unless it was deleted; one that stays for its replies is changed.
+struct CommentEvent {
+  static constexpr std::string_view kOp = "comment";
+  CommentEventEvent event{};
+  std::int64_t comment_id = 0;
+  std::optional<nlohmann::json> comment;
+  std::optional<std::string> user;
+  bool operator==(const CommentEvent&) const = default;
+};
+void read(const nlohmann::json& json, CommentEvent& value);
+nlohmann::json to_json(const CommentEvent& value);
+template <>
+inline constexpr Schema kSchemaOf<CommentEvent> = Schema::CommentEvent;
+
 // Where a pointer touches the surface. World coordinates.
 struct PresencePointer {
   glm::dvec3 position{0};
@@ -1515,6 +1549,40 @@ nlohmann::json to_json(const VertexPropertyList& value);
 template <>
 inline constexpr Schema kSchemaOf<VertexPropertyList> = Schema::VertexPropertyList;
 
+// First comment of a thread.
+struct CommentCreate {
+  std::string text;  // Plain text.
+  glm::dvec3 position{0};  // World coordinates; the nearest place of the surface is taken, within 5 % of the model's diagonal.
+  std::optional<LayerRef> layer;  // What it is about.
+  std::optional<std::int64_t> record;  // What it is about: a key of the layer, which is of a table.
+  bool operator==(const CommentCreate&) const = default;
+};
+void read(const nlohmann::json& json, CommentCreate& value);
+nlohmann::json to_json(const CommentCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<CommentCreate> = Schema::CommentCreate;
+
+// Reply in a thread.
+struct ReplyCreate {
+  std::string text;  // Plain text.
+  bool operator==(const ReplyCreate&) const = default;
+};
+void read(const nlohmann::json& json, ReplyCreate& value);
+nlohmann::json to_json(const ReplyCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<ReplyCreate> = Schema::ReplyCreate;
+
+// Another text, or another state of a thread.
+struct CommentPatch {
+  std::optional<std::string> text;  // Of one's own comment.
+  std::optional<CommentState> state;  // Of the thread's first comment.
+  bool operator==(const CommentPatch&) const = default;
+};
+void read(const nlohmann::json& json, CommentPatch& value);
+nlohmann::json to_json(const CommentPatch& value);
+template <>
+inline constexpr Schema kSchemaOf<CommentPatch> = Schema::CommentPatch;
+
 // Another name for a tool.
 struct ToolPatch {
   std::string name;
@@ -1969,7 +2037,7 @@ std::optional<Schema> client_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ClientMessage& value);
 nlohmann::json to_json(const ClientMessage& value);
 
-using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, Presence, Picked, ProblemMessage>;
+using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, CommentEvent, Presence, Picked, ProblemMessage>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> server_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ServerMessage& value);

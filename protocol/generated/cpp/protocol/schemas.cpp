@@ -21,6 +21,9 @@ std::string_view name(Schema schema) {
     case Schema::Column: return "Column";
     case Schema::Table: return "Table";
     case Schema::TableRecord: return "TableRecord";
+    case Schema::CommentState: return "CommentState";
+    case Schema::CommentResolution: return "CommentResolution";
+    case Schema::Comment: return "Comment";
     case Schema::LayerRef: return "LayerRef";
     case Schema::Uuid: return "Uuid";
     case Schema::Camera: return "Camera";
@@ -85,6 +88,7 @@ std::string_view name(Schema schema) {
     case Schema::RecordEditor: return "RecordEditor";
     case Schema::RecordEditors: return "RecordEditors";
     case Schema::TableEvent: return "TableEvent";
+    case Schema::CommentEvent: return "CommentEvent";
     case Schema::PresencePointer: return "PresencePointer";
     case Schema::PresenceUser: return "PresenceUser";
     case Schema::Presence: return "Presence";
@@ -177,6 +181,11 @@ std::string_view name(Schema schema) {
     case Schema::VertexPropertyList: return "VertexPropertyList";
     case Schema::VertexPropertyName: return "VertexPropertyName";
     case Schema::LookList: return "LookList";
+    case Schema::CommentList: return "CommentList";
+    case Schema::ReplyList: return "ReplyList";
+    case Schema::CommentCreate: return "CommentCreate";
+    case Schema::ReplyCreate: return "ReplyCreate";
+    case Schema::CommentPatch: return "CommentPatch";
     case Schema::ToolList: return "ToolList";
     case Schema::ToolPatch: return "ToolPatch";
     case Schema::LookPatch: return "LookPatch";
@@ -234,6 +243,9 @@ std::string_view schema_bundle() {
 "Column":{"type":"object","additionalProperties":false,"required":["id","name","slug","labels","kind","required","unique","comment","order"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"name":{"type":"string","minLength":1,"maxLength":2000},"slug":{"type":"string","minLength":1,"maxLength":128},"labels":{"$ref":"#/definitions/Labels"},"kind":{"$ref":"#/definitions/ColumnKind"},"unit":{"type":"string","maxLength":2000},"required":{"type":"boolean"},"unique":{"type":"boolean"},"default":{"$ref":"#/definitions/CellValue"},"comment":{"type":"string","maxLength":2000},"choices":{"type":"array","minItems":0,"maxItems":1000,"items":{"type":"string","maxLength":2000}},"target":{"type":"integer","minimum":1,"maximum":9007199254740991},"minimum":{"type":"number","minimum":-1e+300,"maximum":1e+300},"maximum":{"type":"number","minimum":-1e+300,"maximum":1e+300},"order":{"type":"integer","minimum":-1000000,"maximum":1000000}}},
 "Table":{"type":"object","additionalProperties":false,"required":["id","project","name","slug","kind","labels","description","columns","records","sequence"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"project":{"type":"integer","minimum":1,"maximum":9007199254740991},"name":{"type":"string","minLength":1,"maxLength":255},"slug":{"type":"string","minLength":1,"maxLength":128},"kind":{"type":"string","enum":["records","terms"]},"labels":{"$ref":"#/definitions/Labels"},"description":{"type":"string","maxLength":10000},"columns":{"type":"array","minItems":0,"maxItems":256,"items":{"$ref":"#/definitions/Column"}},"records":{"type":"integer","minimum":0,"maximum":1000000},"sequence":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
 "TableRecord":{"type":"object","additionalProperties":false,"required":["key","version","values"],"properties":{"key":{"type":"integer","minimum":0,"maximum":4294967295},"version":{"type":"integer","minimum":0,"maximum":9007199254740991},"values":{"$ref":"#/definitions/CellValues"},"area_m2":{"type":"number","minimum":0,"maximum":1e+30},"length_m":{"type":"number","minimum":0,"maximum":1e+30},"point_count":{"type":"integer","minimum":0,"maximum":1000000}}},
+"CommentState":{"type":"string","enum":["open","resolved"]},
+"CommentResolution":{"type":"object","additionalProperties":false,"required":["user","time"],"properties":{"user":{"type":"string","maxLength":200},"time":{"type":"string","minLength":20,"maxLength":40}}},
+"Comment":{"type":"object","additionalProperties":false,"required":["id","model","text","user","time","deleted","version"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"model":{"type":"integer","minimum":1,"maximum":9007199254740991},"thread":{"type":"integer","minimum":1,"maximum":9007199254740991},"position":{"$ref":"#/definitions/Point3"},"normal":{"$ref":"#/definitions/Point3"},"layer":{"type":"integer","minimum":1,"maximum":9007199254740991},"table":{"type":"integer","minimum":1,"maximum":9007199254740991},"record":{"type":"integer","minimum":0,"maximum":4294967295},"state":{"$ref":"#/definitions/CommentState"},"resolved":{"$ref":"#/definitions/CommentResolution"},"text":{"type":"string","maxLength":10000},"user":{"type":"string","maxLength":200},"time":{"type":"string","minLength":20,"maxLength":40},"edited":{"type":"string","minLength":20,"maxLength":40},"deleted":{"type":"boolean"},"version":{"type":"integer","minimum":1,"maximum":9007199254740991}}},
 "LayerRef":{"oneOf":[{"type":"integer","minimum":1,"maximum":9007199254740991},{"type":"string","minLength":1,"maxLength":128}]},
 "Uuid":{"type":"string","minLength":36,"maxLength":36,"pattern":"^[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}$"},
 "Camera":{"type":"object","additionalProperties":false,"required":["view","projection","width","height"],"properties":{"view":{"$ref":"#/definitions/Matrix"},"projection":{"$ref":"#/definitions/Matrix"},"width":{"type":"integer","minimum":1,"maximum":8192},"height":{"type":"integer","minimum":1,"maximum":8192},"section":{"$ref":"#/definitions/Section"}}},
@@ -298,6 +310,7 @@ std::string_view schema_bundle() {
 "RecordEditor":{"type":"object","additionalProperties":false,"required":["table","key"],"properties":{"table":{"type":"integer","minimum":1,"maximum":9007199254740991},"key":{"type":"integer","minimum":0,"maximum":4294967295},"session":{"$ref":"#/definitions/Uuid"},"user":{"type":"string","maxLength":200}}},
 "RecordEditors":{"type":"object","additionalProperties":false,"required":["op","records"],"properties":{"op":{"const":"record.editors"},"records":{"type":"array","minItems":1,"maxItems":1000,"items":{"$ref":"#/definitions/RecordEditor"}}}},
 "TableEvent":{"type":"object","additionalProperties":false,"required":["op","event","table_id"],"properties":{"op":{"const":"table"},"event":{"type":"string","enum":["created","changed","deleted"]},"table_id":{"type":"integer","minimum":1,"maximum":9007199254740991},"table":{"$ref":"#/definitions/Table"},"user":{"type":"string","maxLength":200}}},
+"CommentEvent":{"type":"object","additionalProperties":false,"required":["op","event","comment_id"],"properties":{"op":{"const":"comment"},"event":{"type":"string","enum":["created","changed","deleted"]},"comment_id":{"type":"integer","minimum":1,"maximum":9007199254740991},"comment":{"$ref":"#/definitions/Comment"},"user":{"type":"string","maxLength":200}}},
 "PresencePointer":{"type":"object","additionalProperties":false,"required":["position"],"properties":{"position":{"$ref":"#/definitions/Point3"},"radius":{"type":"number","exclusiveMinimum":0,"maximum":1000000000.0}}},
 "PresenceUser":{"type":"object","additionalProperties":false,"required":["session","name","color"],"properties":{"session":{"$ref":"#/definitions/Uuid"},"name":{"type":"string","minLength":1,"maxLength":200},"full_name":{"type":"string","minLength":1,"maxLength":200},"color":{"type":"string","minLength":7,"maxLength":7,"pattern":"^#[0-9a-f]{6}$"},"pointer":{"$ref":"#/definitions/PresencePointer"},"leading":{"type":"boolean"},"following":{"$ref":"#/definitions/Uuid"},"camera":{"$ref":"#/definitions/Camera"}}},
 "Presence":{"type":"object","additionalProperties":false,"required":["op","users"],"properties":{"op":{"const":"presence"},"users":{"type":"array","minItems":0,"maxItems":10000,"items":{"$ref":"#/definitions/PresenceUser"}}}},
@@ -390,6 +403,11 @@ std::string_view schema_bundle() {
 "VertexPropertyList":{"type":"object","additionalProperties":false,"required":["properties","total"],"properties":{"properties":{"type":"array","minItems":0,"maxItems":10000,"items":{"$ref":"#/definitions/VertexPropertyName"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
 "VertexPropertyName":{"type":"object","additionalProperties":false,"required":["source","property"],"properties":{"source":{"type":"string","maxLength":255},"property":{"type":"string","maxLength":1000}}},
 "LookList":{"type":"object","additionalProperties":false,"required":["looks","total"],"properties":{"looks":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/Look"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
+"CommentList":{"type":"object","additionalProperties":false,"required":["comments","total"],"properties":{"comments":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/Comment"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
+"ReplyList":{"type":"object","additionalProperties":false,"required":["replies","total"],"properties":{"replies":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/Comment"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
+"CommentCreate":{"type":"object","additionalProperties":false,"required":["text","position"],"properties":{"text":{"type":"string","minLength":1,"maxLength":10000},"position":{"$ref":"#/definitions/Point3"},"layer":{"$ref":"#/definitions/LayerRef"},"record":{"type":"integer","minimum":0,"maximum":4294967295}}},
+"ReplyCreate":{"type":"object","additionalProperties":false,"required":["text"],"properties":{"text":{"type":"string","minLength":1,"maxLength":10000}}},
+"CommentPatch":{"type":"object","additionalProperties":false,"minProperties":1,"properties":{"text":{"type":"string","minLength":1,"maxLength":10000},"state":{"$ref":"#/definitions/CommentState"}}},
 "ToolList":{"type":"object","additionalProperties":false,"required":["tools","total"],"properties":{"tools":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/Tool"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
 "ToolPatch":{"type":"object","additionalProperties":false,"required":["name"],"properties":{"name":{"type":"string","minLength":1,"maxLength":200}}},
 "LookPatch":{"type":"object","additionalProperties":false,"minProperties":1,"properties":{"name":{"type":"string","minLength":1,"maxLength":200},"description":{"type":"string","maxLength":10000},"opacity":{"type":"number","minimum":0,"maximum":1},"visible":{"type":"boolean"},"order":{"type":"integer","minimum":-1000000,"maximum":1000000}}},

@@ -1,0 +1,259 @@
+// Threads of comments on a model. Everybody reads them, annotators write; what one wrote one changes oneself, and curators may delete it.
+#include "core/timestamp.h"
+#include "net/answer_book.h"
+#include "net/routes.h"
+#include "net/wire.h"
+#include "store/comments.h"
+
+namespace strata::net {
+namespace {
+
+using protocol::CommentEventEvent;
+using store::Comment;
+using store::Comments;
+
+constexpr double kFarthest = 0.05;  // from the surface, of the model's diagonal
+
+nlohmann::json to_json(const glm::dvec3& point) { return {point.x, point.y, point.z}; }
+
+nlohmann::json to_json(const Comment& comment) {
+  nlohmann::json json{{"id", comment.id},          {"model", comment.model_id},      {"text", comment.text},
+                      {"user", comment.user},      {"time", utc_text(comment.time)}, {"deleted", comment.deleted},
+                      {"version", comment.version}};
+  if (comment.thread) json["thread"] = *comment.thread;
+  if (comment.place) {
+    json["position"] = to_json(comment.place->position);
+    json["normal"] = to_json(comment.place->normal);
+    json["state"] = comment.resolved ? "resolved" : "open";
+  }
+  if (comment.layer_id) json["layer"] = *comment.layer_id;
+  if (comment.table_id && comment.record) {
+    json["table"] = *comment.table_id;
+    json["record"] = *comment.record;
+  }
+  if (comment.resolved)
+    json["resolved"] = {{"user", comment.resolved->user}, {"time", utc_text(comment.resolved->time)}};
+  if (comment.edited) json["edited"] = utc_text(*comment.edited);
+  return json;
+}
+
+Response page_response(const Request& request, const char* list, const Comments::Page& found, const Page& page) {
+  nlohmann::json comments = nlohmann::json::array();
+  for (const Comment& comment : found.comments) comments.push_back(to_json(comment));
+  Response response = json_response({{list, std::move(comments)}, {"total", found.total}});
+  add_page_links(response, request, page, found.total);
+  return response;
+}
+
+void tell(const RouteContext& context, CommentEventEvent event, const Comment& comment, const std::string& user) {
+  protocol::CommentEvent message;
+  message.event = event;
+  message.comment_id = comment.id;
+  message.comment = to_json(comment);
+  message.user = user;
+  context.live_sockets.tell_model(comment.model_id, message);
+}
+
+Result<Comment> stored_comment(const RouteContext& context, const Request& request) {
+  const auto id = parse_integer(request.param("comment"), 1, INT64_MAX, "comment");
+  if (!id) return fail(404, "Not found", "Comments have whole numbers as ids.");
+  return context.store.comments().comment(*id);
+}
+
+Result<Response> list_comments(const RouteContext& context, const Request& request) {
+  const auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  Comments::Query query;
+  query.limit = page->limit;
+  query.offset = page->offset;
+  if (const auto state = request.query.find("state"); state != request.query.end()) {
+    if (state->second != "open" && state->second != "resolved")
+      return fail(422, "No such state", "`state` is open or resolved.", "state");
+    query.resolved = state->second == "resolved";
+  }
+  if (const auto since = request.query.find("since"); since != request.query.end()) {
+    query.since = utc_timestamp(since->second);
+    if (!query.since)
+      return fail(422, "Not a time", "`since` is a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).", "since");
+  }
+  const auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  const auto found = context.store.comments().of_model(model->id, query);
+  if (!found) return tl::unexpected(found.error());
+  return page_response(request, "comments", *found, *page);
+}
+
+Result<Response> list_replies(const RouteContext& context, const Request& request) {
+  const auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  const auto thread = stored_comment(context, request);
+  if (!thread) return tl::unexpected(thread.error());
+  const auto found = context.store.comments().replies(thread->id, page->limit, page->offset);
+  if (!found) return tl::unexpected(found.error());
+  return page_response(request, "replies", *found, *page);
+}
+
+Result<Comment::Place> place_on(room::Room& room, const glm::dvec3& world) {
+  const auto nearest = room.position(world, {});
+  if (!nearest) return tl::unexpected(nearest.error());
+  const Model model = room.model();
+  const double farthest = kFarthest * glm::length(model.bounds_max - model.bounds_min);
+  if (!nearest->hit || nearest->distance > farthest)
+    return fail(
+        422, "Not on the model",
+        "`position` must lie on the surface or within 5 % of the model's diagonal from it, in world coordinates.",
+        "position");
+  return Comment::Place{nearest->position, glm::dvec3(nearest->normal)};
+}
+
+// What the comment is about, as asked for.
+Result<void> put_subject(const RouteContext& context, const room::Room& room, const protocol::CommentCreate& asked,
+                         Comment& comment) {
+  if (!asked.layer) {
+    if (asked.record) return fail(422, "Record of no layer", "`record` is a key of a `layer`; name it, too.", "layer");
+    return {};
+  }
+  const auto layers = find_layers(room, {protocol::to_ref(*asked.layer)}, "layer");
+  if (!layers) return tl::unexpected(layers.error());
+  const Layer& layer = layers->front();
+  comment.layer_id = layer.id;
+  if (!asked.record) return {};
+  if (!layer.table)
+    return fail(422, "No records", "The layer `" + layer.slug + "` is numeric: it has no records.", "record");
+  const auto missing = context.store.missing_records(*layer.table, std::vector{*asked.record});
+  if (!missing) return tl::unexpected(missing.error());
+  if (!missing->empty())
+    return fail(422, "No such record",
+                "The table of `" + layer.slug + "` has no record " + std::to_string(*asked.record) + ".", "record");
+  comment.table_id = *layer.table;
+  comment.record = *asked.record;
+  return {};
+}
+
+Result<Response> write(const RouteContext& context, const Request& request, const Comment& comment) {
+  const auto answer = [](const Comment& made) {
+    return json_response(to_json(made), 201)
+        .with("Location", "/api/v1/comments/" + std::to_string(made.id))
+        .with("ETag", etag_of(made.version));
+  };
+  const auto written = context.store.comments().create(comment, first_answer<Comment>(request, answer));
+  if (!written) return tl::unexpected(written.error());
+  tell(context, CommentEventEvent::created, *written, request.user());
+  return answer(*written);
+}
+
+Result<Response> create_comment(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::CommentCreate>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto room = context.rooms.open(request.param("model"));
+  if (!room) return tl::unexpected(room.error());
+  const auto place = place_on(**room, asked->position);
+  if (!place) return tl::unexpected(place.error());
+  Comment comment;
+  comment.model_id = (*room)->model().id;
+  comment.place = *place;
+  if (auto put = put_subject(context, **room, *asked, comment); !put) return tl::unexpected(put.error());
+  comment.text = asked->text;
+  comment.user = request.user();
+  return write(context, request, comment);
+}
+
+Result<Response> create_reply(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::ReplyCreate>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto thread = stored_comment(context, request);
+  if (!thread) return tl::unexpected(thread.error());
+  Comment comment;
+  comment.thread = thread->id;
+  comment.text = asked->text;
+  comment.user = request.user();
+  return write(context, request, comment);
+}
+
+Result<Response> change_comment(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::CommentPatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto comment = stored_comment(context, request);
+  if (!comment) return tl::unexpected(comment.error());
+  if (auto fresh = check_if_match(request, comment->version); !fresh) return tl::unexpected(fresh.error());
+  if (asked->text) {
+    if (comment->user != request.user())
+      return fail(403, "Not yours", "Only " + comment->user + " changes the text of this comment. Reply to it.",
+                  "text");
+    if (comment->deleted)
+      return fail(409, "Deleted already", "The comment was deleted; it stands there for its replies.", "text");
+    comment->text = *asked->text;
+  }
+  if (asked->state) {
+    if (comment->thread)
+      return fail(422, "State of a reply",
+                  "The state is that of the thread: change comment " + std::to_string(*comment->thread) + ".", "state");
+    if (*asked->state == protocol::CommentState::open)
+      comment->resolved.reset();
+    else if (!comment->resolved)
+      comment->resolved = Comment::Resolution{request.user(), {}};
+  }
+  const auto answer = [](const Comment& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
+  const auto changed = context.store.comments().update(*comment, first_answer<Comment>(request, answer));
+  if (!changed) return tl::unexpected(changed.error());
+  tell(context, CommentEventEvent::changed, *changed, request.user());
+  return answer(*changed);
+}
+
+Result<Response> delete_comment(const RouteContext& context, const Request& request) {
+  const auto comment = stored_comment(context, request);
+  if (!comment) return tl::unexpected(comment.error());
+  if (auto fresh = check_if_match(request, comment->version); !fresh) return tl::unexpected(fresh.error());
+  if (comment->user != request.user() && request.principal->role < Role::curator)
+    return fail(403, "Not yours", "Only " + comment->user + " and curators delete this comment.");
+  const auto answer = [](const Comments::Removal&) { return empty_response(204); };
+  const auto removal = context.store.comments().remove(*comment, first_answer<Comments::Removal>(request, answer));
+  if (!removal) return tl::unexpected(removal.error());
+  if (removal->left) tell(context, CommentEventEvent::changed, *removal->left, request.user());
+  for (const auto id : removal->gone) {
+    protocol::CommentEvent message;
+    message.event = CommentEventEvent::deleted;
+    message.comment_id = id;
+    message.user = request.user();
+    context.live_sockets.tell_model(removal->model_id, message);
+  }
+  return answer(*removal);
+}
+
+}  // namespace
+
+void add_comment_routes(Router& router, const RouteContext& context) {
+  using Answer = Result<Response> (*)(const RouteContext&, const Request&);
+  const auto add_read = [&](std::string pattern, Answer answer, std::vector<std::string> query) {
+    router.add({.method = Method::get,
+                .pattern = std::move(pattern),
+                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
+                .query = std::move(query)});
+  };
+  const auto add_change = [&](Method method, std::string pattern, Answer answer) {
+    const bool has_body = method != Method::remove;
+    router.add({.method = method,
+                .pattern = std::move(pattern),
+                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
+                .role = Role::annotator,
+                .body = has_body ? BodyKind::memory : BodyKind::none,
+                .max_body = has_body ? context.options.max_json_bytes : 0,
+                .keeps_answer = true});
+  };
+  const std::string of_model = "/api/v1/models/{model}/comments", comment = "/api/v1/comments/{comment}";
+  add_read(of_model, list_comments, {"state", "since", "limit", "offset"});
+  add_change(Method::post, of_model, create_comment);
+  add_read(comment,
+           [](const RouteContext& of, const Request& request) -> Result<Response> {
+             const auto found = stored_comment(of, request);
+             if (!found) return tl::unexpected(found.error());
+             return with_etag(json_response(to_json(*found)), request, found->version);
+           },
+           {});
+  add_change(Method::patch, comment, change_comment);
+  add_change(Method::remove, comment, delete_comment);
+  add_read(comment + "/replies", list_replies, {"limit", "offset"});
+  add_change(Method::post, comment + "/replies", create_reply);
+}
+
+}  // namespace strata::net

@@ -1,0 +1,293 @@
+// Comments on the surface: written at a place, kept unsent, seen by others at once, answered, resolved, edited, deleted, found in the panel and by
+// their address; by mouse, keyboard and finger. Pins are not shown through the model.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kBase = "/models/demo-pot";
+const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+const kExpected = ["status of 412", "status of 422"]; // answers that the test wants
+
+const [ada, bea, phone] = [await Browser.open(), await Browser.open(), await Browser.open(kPhone)];
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const shot = async ({ page }, name) => {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+};
+const button = ({ page }, name) => page.getByRole("button", { name, exact: true });
+const card = ({ page }) => page.locator("strata-comment-card section");
+const panel = ({ page }) => page.locator("strata-comment-panel");
+const pins = ({ page }) => page.locator("strata-comment-pins button[data-comment]");
+const pin = ({ page }, id) => page.locator(`strata-comment-pins button[data-comment="${id}"]`);
+const article = (who, text) => card(who).locator("article", { hasText: text });
+const gone = (locator) => locator.waitFor({ state: "detached" });
+const comments = async () => (await server.json("GET", `${kBase}/comments?limit=1000`)).comments;
+const comment_with = (text) => wait_for(async () => (await comments()).find((comment) => comment.text.includes(text)), `a comment with ${text}`);
+const focused = ({ page }) =>
+  page.evaluate(() => {
+    let active = document.activeElement;
+    while (active?.shadowRoot?.activeElement) active = active.shadowRoot.activeElement;
+    return active?.getAttribute("data-comment") ?? active?.tagName.toLowerCase() ?? "";
+  });
+
+async function open_model(who) {
+  await who.page.goto(`${server.url}/models/${id}`);
+  await who.drawn();
+}
+async function click_at(who, x, y) {
+  const box = await who.stage_box();
+  await who.page.mouse.click(box.x + x * box.width, box.y + y * box.height);
+}
+let id;
+
+try {
+  await server.start();
+  for (const layer of (await server.json("GET", `${kBase}/layers`)).layers) await server.json("PATCH", `${kBase}/layers/${layer.id}`, { visible: false });
+  await server.json("POST", `${kBase}/layers`, {
+    name: "Finds", kind: "database", type: "u16", resolution: 2048, columns: [{ name: "Name", required: true, unique: true }],
+    palette: { mode: "categorical", points: [{ at: 1, color: "#2c6a63" }] },
+  });
+  await server.json("POST", "/tables/finds/records", { values: { name: "Handle" } });
+  await server.json("POST", `${kBase}/layers/finds/edits`, { op: "fill", mode: "where", where: "true", value: 1 });
+  const model = await server.json("PATCH", kBase, { scale_verified: true }); // or curators are asked for it
+  id = model.id;
+  await ada.sign_in(server, await server.add_person("ada", "annotator"));
+  await bea.sign_in(server, await server.add_person("bea", "annotator"));
+  await phone.sign_in(server, await server.add_person("carl", "curator"));
+
+  say("a click with the tool begins a comment there, and one beside the model none");
+  await open_model(ada);
+  await open_model(bea);
+  await ada.page.keyboard.press("c");
+  assert.equal(await button(ada, "Comment").getAttribute("aria-pressed"), "true");
+  await click_at(ada, 0.04, 0.5);
+  await ada.page.getByText("There is no surface there.").waitFor();
+  await click_at(ada, 0.47, 0.62);
+  await card(ada).getByRole("textbox", { name: "Comment" }).waitFor();
+  assert.equal(await focused(ada), "textarea");
+  assert.equal(await button(ada, "Comment").first().isDisabled(), false);
+  assert.equal(await card(ada).getByRole("button", { name: "Comment", exact: true }).isDisabled(), true, "nothing is written yet");
+  await ada.page.keyboard.type("Is this the crack of 2019?\nSee https://example.org/report (page 3).");
+  await card(ada).getByLabel("About").selectOption({ label: "Handle (Finds)" });
+  await shot(ada, "composer");
+
+  say("what is not sent outlives the card and the page, and is nobody else's");
+  await ada.page.keyboard.press("Escape");
+  await gone(card(ada));
+  await ada.page.reload();
+  await ada.drawn();
+  await button(ada, "Your comment that is not sent yet").click();
+  assert.match(await card(ada).getByRole("textbox", { name: "Comment" }).inputValue(), /^Is this the crack of 2019\?\nSee/);
+  assert.equal((await comments()).length, 0);
+  assert.equal(await pins(bea).count(), 0);
+
+  say("it is sent by the keyboard, and seen by others without asking");
+  await card(ada).getByRole("textbox", { name: "Comment" }).focus();
+  await ada.page.keyboard.press("Control+Enter");
+  await article(ada, "Is this the crack").waitFor();
+  const first = await comment_with("Is this the crack");
+  assert.equal(first.record, 1);
+  await pin(bea, first.id).waitFor();
+  assert.match(await pin(bea, first.id).getAttribute("aria-label"), /^Comment by ada: something new: Is this the crack of 2019\? See/);
+  assert.equal(await button(ada, "Your comment that is not sent yet").count(), 0);
+  assert.match(ada.page.url(), new RegExp(`#comment=${first.id}$`));
+  const link = card(ada).getByRole("link", { name: "https://example.org/report", exact: true });
+  assert.equal(await link.getAttribute("rel"), "noopener noreferrer nofollow");
+  await card(ada).getByText("About Handle (Finds)").waitFor();
+  await shot(ada, "thread");
+
+  say("a reply with somebody's name reaches them");
+  await pin(bea, first.id).click();
+  await article(bea, "Is this the crack").waitFor();
+  await wait_for(async () => !/something new/.test(await pin(bea, first.id).getAttribute("aria-label")), "the thread to be read");
+  await ada.page.keyboard.press("Escape");
+  await gone(card(ada));
+  await card(bea).getByRole("textbox", { name: "Reply" }).fill("@ada yes, <b>it</b> has grown.\nMore in May.");
+  await card(bea).getByRole("button", { name: "Reply", exact: true }).click();
+  await article(bea, "it has grown").or(article(bea, "has grown.")).first().waitFor();
+  assert.equal(await card(bea).locator(".mention").innerText(), "@ada");
+  await ada.page.getByText("bea wrote to you").waitFor();
+  assert.match(await pin(ada, first.id).getAttribute("aria-label"), /something new/);
+  await ada.page.getByRole("button", { name: "Show", exact: true }).click();
+  await article(ada, "<b>it</b> has grown.").waitFor();
+  await shot(bea, "reply");
+
+  say("pins are hidden behind the surface: on the far side, and inside where the wall stands before them");
+  await bea.page.keyboard.press("Escape");
+  await bea.page.keyboard.press("c");
+  await click_at(bea, 0.44, 0.42); // through the gap, the inside of the far wall
+  await card(bea).getByRole("textbox", { name: "Comment" }).fill("Inside");
+  await bea.page.keyboard.press("Control+Enter");
+  const inside = await comment_with("Inside");
+  await bea.page.keyboard.press("Escape");
+  await pin(bea, inside.id).waitFor();
+  await bea.page.keyboard.press("2");
+  await gone(pin(bea, first.id));
+  await gone(pin(bea, inside.id));
+  await bea.page.keyboard.press("1"); // straight from the front, to which it still faces
+  await pin(bea, first.id).waitFor();
+  await gone(pin(bea, inside.id));
+  await server.request("DELETE", `/comments/${inside.id}`);
+
+  say("one who has the keyboard comes from the pin to the thread and back");
+  await pin(bea, first.id).focus();
+  await bea.page.keyboard.press("Enter");
+  await article(bea, "Is this the crack").waitFor();
+  await wait_for(async () => (await focused(bea)) === "section", "the card to have the keyboard");
+  await bea.page.keyboard.press("Escape");
+  await gone(card(bea));
+  assert.equal(await focused(bea), String(first.id));
+
+  say("texts are edited by who wrote them, and others see it");
+  await article(ada, "Is this the crack").getByRole("button", { name: "Edit" }).click();
+  assert.equal(await article(ada, "has grown").getByRole("button", { name: "Edit" }).count(), 0);
+  await card(ada).locator(`textarea[name="edit ${first.id}"]`).fill("Is this the crack of 2020?");
+  await card(ada).getByRole("button", { name: "Save" }).click();
+  await article(ada, "Is this the crack of 2020?").getByText(/^edited/).waitFor();
+  await pin(bea, first.id).click();
+  await article(bea, "Is this the crack of 2020?").waitFor();
+
+  say("of two who change one text at once the later is told");
+  await article(ada, "of 2020?").getByRole("button", { name: "Edit" }).click();
+  await card(ada).locator(`textarea[name="edit ${first.id}"]`).fill("Is this the crack of 2021?");
+  await ada.page.route(`**/comments/${first.id}`, async (route) => {
+    if (route.request().method() === "PATCH") await server.json("PATCH", `/comments/${first.id}`, { state: "open" });
+    await route.continue();
+  });
+  await card(ada).getByRole("button", { name: "Save" }).click();
+  await card(ada).getByRole("alert").getByText(/changed this since/i).waitFor();
+  await ada.page.unroute(`**/comments/${first.id}`);
+  assert.equal(await card(ada).locator(`textarea[name="edit ${first.id}"]`).inputValue(), "Is this the crack of 2021?");
+  await card(ada).getByRole("button", { name: "Save" }).click();
+  await article(bea, "Is this the crack of 2021?").waitFor();
+
+  say("a thread is resolved by anybody who writes; its pin is shown only when asked for");
+  await card(bea).getByRole("button", { name: "Resolve" }).click();
+  await card(bea).getByText(/^Resolved by bea/).waitFor();
+  await card(ada).getByText(/^Resolved by bea/).waitFor();
+  await ada.page.keyboard.press("Escape");
+  await gone(pin(ada, first.id));
+  await panel(ada).getByRole("button", { name: /^Comments/ }).click();
+  await panel(ada).getByText("None is like that.").waitFor();
+  await panel(ada).getByRole("radio", { name: "Resolved" }).click();
+  await pin(ada, first.id).waitFor();
+  await panel(ada).getByText("Is this the crack of 2021?").waitFor();
+  await bea.page.keyboard.press("Escape");
+
+  say("the list finds threads by words, state and person, and goes to them");
+  const height = model.bounds.max[2] - model.bounds.min[2];
+  for (const [n, text] of ["Soot on the rim", "Old repair, see @bea", "Fingerprint"].entries()) {
+    const [x, y, z] = first.position;
+    const coords = encodeURIComponent(`POINT Z(${x} ${y} ${z + [-0.2, 0.18, -0.38][n] * height})`); // so far that a finger tells them apart
+    const { position } = await server.json("GET", `${kBase}/position?coords=${coords}`);
+    await server.json("POST", `${kBase}/comments`, { text, position });
+  }
+  await panel(bea).getByRole("button", { name: /^Comments/ }).click();
+  const rows = panel(bea).locator("li button");
+  await wait_for(async () => (await rows.count()) === 3, "three open threads");
+  await panel(bea).getByRole("img", { name: "3 threads with something new" }).waitFor();
+  await panel(bea).getByRole("textbox", { name: "Find comments" }).fill("RIM owner");
+  await wait_for(async () => (await rows.count()) === 1, "the one with these words");
+  await panel(bea).getByRole("textbox", { name: "Find comments" }).fill("");
+  await panel(bea).getByRole("button", { name: "With me" }).click();
+  await wait_for(async () => (await rows.count()) === 1, "the one that names bea");
+  await panel(bea).getByRole("radio", { name: "All" }).click();
+  await wait_for(async () => (await rows.count()) === 2, "those with bea");
+  await panel(bea).getByRole("button", { name: "With me" }).click();
+  await shot(bea, "panel");
+  await bea.page.keyboard.press("2");
+  await rows.filter({ hasText: "Fingerprint" }).click();
+  await article(bea, "Fingerprint").waitFor();
+  const fingerprint = await comment_with("Fingerprint");
+  await pin(bea, fingerprint.id).waitFor();
+  await shot(bea, "flown");
+  await panel(bea).getByRole("button", { name: "Mark all as read" }).click();
+  await gone(panel(bea).getByRole("img", { name: /something new/ }));
+
+  say("an address leads to its comment, also to a reply");
+  const reply = await comment_with("has grown");
+  await bea.page.goto(`${server.url}/`);
+  await bea.page.goto(`${server.url}/models/${id}#comment=${reply.id}`);
+  await article(bea, "has grown").waitFor();
+  await pin(bea, first.id).waitFor();
+  await bea.page.goto(`${server.url}/models/${id}#comment=999999`);
+  await bea.page.getByText("This comment is not here any more.").waitFor();
+
+  say("a first comment that is deleted leaves its place while there are replies");
+  await pin(ada, first.id).click();
+  await article(ada, "of 2021?").getByRole("button", { name: "Delete" }).click();
+  await ada.page.getByRole("button", { name: "Cancel" }).click();
+  await article(ada, "of 2021?").getByRole("button", { name: "Delete" }).click();
+  await ada.page.locator("strata-dialog").getByRole("button", { name: "Delete" }).click();
+  await card(ada).getByText("This comment was deleted.").waitFor();
+  assert.equal(await article(ada, "has grown").getByRole("button", { name: "Delete" }).count(), 0, "it is bea's");
+  await card(ada).getByRole("button", { name: "Open again" }).click();
+  await gone(card(ada).getByText(/^Resolved by/));
+  await panel(ada).getByRole("radio", { name: "Open" }).click();
+  await shot(ada, "deleted");
+
+  say("on a phone the thread is a sheet, and a finger writes");
+  await open_model(phone);
+  const box = await phone.stage_box();
+  await button(phone, "Comment").click();
+  await phone.page.touchscreen.tap(box.x + 0.35 * box.width, box.y + 0.62 * box.height);
+  await card(phone).getByRole("textbox", { name: "Comment" }).fill("Glaze?");
+  await shot(phone, "phone_composer");
+  await card(phone).getByRole("button", { name: "Comment", exact: true }).click();
+  await article(phone, "Glaze?").waitFor();
+  await shot(phone, "phone_thread");
+  await button(phone, "Close the comment").click();
+  await pin(phone, first.id).tap();
+  await card(phone).getByText("This comment was deleted.").waitFor();
+  await article(phone, "has grown").getByRole("button", { name: "Delete" }).click();
+  await phone.page.locator("strata-dialog").getByRole("button", { name: "Delete" }).click();
+  await gone(card(phone));
+  await gone(pin(ada, first.id));
+  await pin(ada, (await comment_with("Glaze?")).id).waitFor();
+
+  say("without a pointer a comment goes to the middle of the view");
+  await ada.page.keyboard.press("Escape");
+  await ada.page.locator("strata-stage .surface").focus();
+  await ada.page.keyboard.press("c");
+  await ada.page.keyboard.press("Enter");
+  await card(ada).getByRole("textbox", { name: "Comment" }).waitFor();
+  await wait_for(async () => (await focused(ada)) === "textarea", "the composer to have the keyboard");
+  await ada.page.keyboard.type("In the middle");
+  await card(ada).getByRole("button", { name: "Discard" }).click();
+  await gone(card(ada));
+  assert.equal(await button(ada, "Your comment that is not sent yet").count(), 0);
+
+  say("pins let paint through, and can be hidden");
+  await ada.page.keyboard.press("b");
+  const pin_of_paint = pins(ada).first();
+  assert.equal(await pin_of_paint.evaluate((each) => getComputedStyle(each).pointerEvents), "none");
+  await ada.page.keyboard.press("v");
+  await panel(ada).getByRole("button", { name: "Hide them on the model" }).click();
+  await wait_for(async () => (await pins(ada).count()) === 0, "the pins to go");
+
+  say("who only looks reads, and is not offered to write");
+  await phone.page.context().clearCookies();
+  await phone.sign_in(server, await server.add_person("vera", "viewer"));
+  await open_model(phone);
+  assert.equal(await button(phone, "Comment").count(), 0);
+  await pin(phone, fingerprint.id).tap();
+  await article(phone, "Fingerprint").waitFor();
+  assert.equal(await card(phone).getByRole("textbox").count(), 0);
+  assert.equal(await card(phone).getByRole("button", { name: /Resolve|Edit|Delete/ }).count(), 0);
+  await shot(phone, "phone_viewer");
+
+  say("the end");
+  for (const who of [ada, bea, phone]) who.assert_no_complaints(kExpected);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
+  for (const [name, who] of Object.entries({ ada, bea, phone })) await shot(who, `comments_failed_${name}`).catch(() => {});
+  throw error;
+} finally {
+  for (const who of [ada, bea, phone]) await who.close();
+  await server.remove();
+}
