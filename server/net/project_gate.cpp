@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "store/comments.h"
+
 namespace strata::net {
 namespace {
 
@@ -41,6 +43,14 @@ constexpr Place kPlaces[] = {
          const auto attachment = context.store.attachment(id);
          if (!attachment) return tl::unexpected(attachment.error());
          return project_id_of(context.store.table(std::to_string(attachment->table_id)));
+       });
+     }},
+    {"comment",
+     [](const RouteContext& context, const std::string& ref) {
+       return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
+         const auto comment = context.store.comments().comment(id);
+         if (!comment) return tl::unexpected(comment.error());
+         return project_id_of(context.store.model(std::to_string(comment->model_id)));
        });
      }},
     {"job",

@@ -5,7 +5,7 @@
 namespace strata::net {
 
 // What who asks may do where the address leads: sets the role of the request's principal to theirs in the project of the model, table,
-// job or attachment that the address names, or in that of the query's `project` (absent: `default`) where `in_query`.
+// attachment, comment or job that the address names, or in that of the query's `project` (absent: `default`) where `in_query`.
 // 404, as if it was not there: they have none in it.
 Result<void> enter_project(const RouteContext& context, Request& request, bool in_query);
 

@@ -11,7 +11,8 @@ from support.meshes import folded_grid
 from support.strata_server import StrataServer
 
 FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
-IN_PROJECTS = ("project", "model", "table", "attachment", "job")
+IN_PROJECTS = ("project", "model", "table", "attachment", "comment", "job")
+OF_THE_SITE = ("user", "session", "token", "tool")
 PASSWORD = "seven blue herons at noon"
 
 
@@ -55,7 +56,8 @@ def make_sites(server):
         table = server.ok("POST", f"/projects/{slug}/tables", {"name": name + " finds", "columns": [{"name": "Photo", "kind": "picture"}, {"name": "What"}]}).json()
         server.ok("POST", f"/tables/{table['id']}/records", {"records": [{"values": {"what": "a coin"}}]})
         attachment = server.ok("POST", f"/tables/{table['id']}/records/1/attachments?column=photo&name=x.png", PNG).json()["attachments"][0]
-        sites[slug] = {"project": project, "model": model, "table": table, "attachment": attachment, "job": {"id": job}}
+        comment = server.ok("POST", f"/models/{model['slug']}/comments", {"text": "Look here.", "position": [0, 0, 0]}).json()
+        sites[slug] = {"comment": comment, "project": project, "model": model, "table": table, "attachment": attachment, "job": {"id": job}}
     return sites
 
 
@@ -67,6 +69,7 @@ def doors(server, site):
     for path, operations in server.contract.document["paths"].items():
         place = next((name for name in IN_PROJECTS if "{" + name + "}" in path), None)
         if place is None or path.endswith("/live"):
+            assert place or all(name in OF_THE_SITE for name in re.findall(r"\{(\w+)\}", path)), f"whose is {path}?"
             continue
         for ref in ("id", "slug"):
             if ref not in site[place]:
