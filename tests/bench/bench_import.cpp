@@ -66,8 +66,11 @@ int run(const Options& options) {
     layer.palette = default_palette(layer.type, false);
     layer.opacity = 0.6;
     layer = must(room->create_layer(layer));
-    edit_and_wait(
-        *room, {random_uuid(), "bench", layer.id, room::FillEdit{false, std::uint32_t(20 + 30 * i)}, {{"op", "fill"}}});
+    edit_and_wait(*room, {random_uuid(),
+                          {"bench", Role::owner},
+                          layer.id,
+                          room::FillEdit{false, std::uint32_t(20 + 30 * i)},
+                          {{"op", "fill"}}});
   }
   room.reset();
 

@@ -196,8 +196,11 @@ class Queries {
         tiles[{static_cast<std::uint16_t>(tx), static_cast<std::uint16_t>(ty)}] = std::move(tile);
       }
     }
-    edit_and_wait(*room_,
-                  {random_uuid(), "bench", made.id, room::ImportEdit{std::move(tiles), false}, {{"op", "import"}}});
+    edit_and_wait(*room_, {random_uuid(),
+                           {"bench", Role::owner},
+                           made.id,
+                           room::ImportEdit{std::move(tiles), false},
+                           {{"op", "import"}}});
   }
   void make_layer(const std::string& name, ValueType type, double value) {
     Layer layer;
@@ -212,7 +215,7 @@ class Queries {
     const Layer& layer = layers_.at(name);
     const double filled = value.value_or(is_float(layer.type) ? 0.001 * ++fills_ : double(100 + ++fills_ % 100));
     edit_and_wait(*room_, {random_uuid(),
-                           "bench",
+                           {"bench", Role::owner},
                            layer.id,
                            room::FillEdit{false, must(encode_value(layer.type, filled)), {}},
                            {{"op", "fill"}}});

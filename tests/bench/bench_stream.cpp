@@ -178,7 +178,7 @@ class Stream {
     layer.order = number;
     layers_.push_back(must(room_->create_layer(layer)));
     edit_and_wait(*room_, {random_uuid(),
-                           "bench",
+                           {"bench", Role::owner},
                            layers_.back().id,
                            room::FillEdit{false, std::uint32_t(10 + 20 * number)},
                            {{"op", "fill"}}});

@@ -350,7 +350,8 @@ TEST_F(Live, the_room_hears_who_edits_and_what_they_may) {
 TEST_F(Live, who_writes_into_a_record_is_told_to_all_of_the_project) {
   hello();
   const auto others_socket = std::make_shared<FakeSocket>();
-  auto other = std::make_shared<LiveSession>(shared, room, "default", Principal{"bea", Role::annotator}, "Bea", others_socket);
+  auto other =
+      std::make_shared<LiveSession>(shared, room, "default", Principal{"bea", Role::annotator}, "Bea", others_socket);
   shared->sockets->add(others_socket, other, "other");
   edit_record(*session, 7, true);
   edit_record(*session, 8, true);
