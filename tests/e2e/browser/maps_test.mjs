@@ -112,7 +112,7 @@ try {
   await open_dialog("States");
   await give("plan.png", "plan.pgw");
   await page.getByText("The file says where it lies.").waitFor();
-  const values = page.locator("strata-map-colors input[type=number]");
+  const values = page.locator("strata-map-colors input[type=text]");
   await wait_for(async () => (await values.count()) === 3, "the three colours");
   assert.deepEqual(await Promise.all([0, 1, 2].map((i) => values.nth(i).isDisabled())), [true, false, false]);
   await values.nth(1).fill("");

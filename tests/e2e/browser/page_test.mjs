@@ -104,7 +104,7 @@ try {
   await page.keyboard.press("b");
   await compare_footprint("40 px");
   await radio("on the object").click();
-  await page.getByRole("spinbutton", { name: "Width, mm" }).fill("9");
+  await page.getByRole("textbox", { name: "Width, mm" }).fill("9");
   await page.keyboard.press("Enter");
   const far = await compare_footprint("9 mm");
   for (let i = 0; i < 4; ++i) await page.keyboard.press("+");

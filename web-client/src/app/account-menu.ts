@@ -9,7 +9,7 @@ import "./menu";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
-export type AccountRequest = "account" | "people" | "sign-out";
+export type AccountRequest = "account" | "people" | "preferences" | "sign-out";
 
 /** To whatever element of the page takes it. */
 export const ask_account = (from: EventTarget, detail: AccountRequest): boolean =>
@@ -63,6 +63,7 @@ export class StrataAccountMenu extends LitElement {
       ${may_administer(me.role)
         ? html`<button class="quiet" role="menuitem" @click=${() => ask_account(this, "people")}>${icon("people")}${words.people}</button>`
         : nothing}
+      <button class="quiet" role="menuitem" @click=${() => ask_account(this, "preferences")}>${icon("language")}${texts.settings.open}</button>
       <hr />
       <button class="quiet" role="menuitem" @click=${() => ask_account(this, "sign-out")}>${icon("leave")}${words.sign_out}</button>
     </strata-menu>`;

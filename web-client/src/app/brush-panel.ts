@@ -3,6 +3,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { label_of } from "../core/cells";
+import { read_number, typed_number } from "../core/locale";
 import type { MarkKind } from "../core/marks";
 import { format_length, format_number } from "../core/measure";
 import type { Layer } from "../core/types";
@@ -11,6 +12,7 @@ import { ask } from "./dialog";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
+import { number_input } from "./number-input";
 import { radio_group } from "./radio-group";
 import { number_field_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -200,20 +202,17 @@ export class StrataBrushPanel extends LitElement {
         <span>${texts.brush.slant}</span>
       </label>
       <span class="number">
-        <input
-          type="number"
-          min="1"
-          max="90"
-          step="any"
-          .value=${String(slant.max_deg)}
-          ?disabled=${!limited}
-          aria-label=${texts.brush.slant_degrees}
-          @change=${(event: Event) => {
-            const input = event.target as HTMLInputElement;
-            painting.set_brush((brush) => brush.set_slant(input.valueAsNumber));
-            input.value = String(painting.brush.slant.max_deg);
-          }}
-        />
+        ${number_input({
+          label: texts.brush.slant_degrees,
+          value: slant.max_deg,
+          min: 1,
+          max: 90,
+          disabled: !limited,
+          changed: (text, input) => {
+            painting.set_brush((brush) => brush.set_slant(read_number(text)));
+            input.value = typed_number(painting.brush.slant.max_deg);
+          },
+        })}
         <span>°</span>
       </span>
     </div>`;
@@ -251,15 +250,15 @@ export class StrataBrushPanel extends LitElement {
           }}
         />
         <span class="number">
-          <input
-            type="number"
-            min=${range.min}
-            max=${range.max}
-            step="any"
-            .value=${String(now)}
-            aria-label="${texts.brush.width}, ${unit}"
-            @change=${(event: Event) => this.set_width(unit, Number((event.target as HTMLInputElement).value))}
-          />
+          ${number_input({
+            label: `${texts.brush.width}, ${unit}`,
+            value: now,
+            ...range,
+            changed: (text, input) => {
+              this.set_width(unit, read_number(text));
+              input.value = typed_number(this.session.painting.brush.width[unit]);
+            },
+          })}
           <span>${unit === "px" ? texts.brush.width_px : texts.brush.width_mm}</span>
         </span>
       </div>

@@ -4,6 +4,7 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { holds_files, is_number, label_of } from "../core/cells";
+import { format_count, read_number, typed_number } from "../core/locale";
 import { holds_marks } from "../core/marks";
 import { category_palette, css_gradient, graduated_palette, kClassColors, kRamps, opaque_color, ramp_colors, record_palette, swatch_style, type Ramp } from "../core/palette";
 import type { Column, ColumnClasses } from "../core/protocol.gen";
@@ -14,6 +15,7 @@ import { follow_session } from "./follow-session";
 import { class_range, value_label } from "./legend";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { number_input } from "./number-input";
 import { choices_styles, shared_styles } from "./styles";
 import { styled } from "./styled";
 import { texts } from "./texts";
@@ -155,15 +157,8 @@ export class StrataColorDialog extends LitElement {
               ? nothing
               : html`<label
                   ><span class="caption">${words.count}</span>
-                  <input
-                    type="number"
-                    name="count"
-                    min="2"
-                    max="9"
-                    step="1"
-                    .value=${String(this.count_)}
-                    @change=${(event: Event) => this.choose({ count: Number((event.target as HTMLInputElement).value) })}
-                  /></label>`}
+                  ${number_input({ name: "count", value: this.count_, min: 2, max: 9, changed: (text, input) => this.on_count(text, input) })}</label
+                >`}
             ${this.method_ === "unique"
               ? nothing
               : html`<div class="full ramps" role="group" aria-label=${words.ramp}>
@@ -188,6 +183,7 @@ export class StrataColorDialog extends LitElement {
     return html`<ul>
       ${palette.points.map((point, index) => {
         const text = name(point, index);
+        const records = this.classes_?.classes[index]?.records;
         return html`<li>
           <span class="swatch" ${styled(swatch_style(point))}></span>
           <input
@@ -197,7 +193,7 @@ export class StrataColorDialog extends LitElement {
             @input=${(event: Event) => this.change_point(index, { color: `${(event.target as HTMLInputElement).value}ff` })}
           />
           <span class="ellipsis" title=${text}>${text}</span>
-          <span class="hint numeric">${this.classes_?.classes[index]?.records.toLocaleString("en-GB") ?? ""}</span>
+          <span class="hint numeric">${records === undefined ? "" : format_count(records)}</span>
           <select
             aria-label=${words.pattern_of(text)}
             @change=${(event: Event) => this.change_point(index, { pattern: (event.target as HTMLSelectElement).value as (typeof kPatterns)[number] })}
@@ -241,6 +237,11 @@ export class StrataColorDialog extends LitElement {
     }
     this.method_ = is_number(column) ? "quantile" : "unique";
     void this.classify(column);
+  }
+
+  private on_count(text: string, input: HTMLInputElement): void {
+    this.choose({ count: read_number(text) });
+    input.value = typed_number(this.count_);
   }
 
   private choose({ method = this.method_, count = this.count_, ramp = this.ramp_ }: { method?: Method; count?: number; ramp?: Ramp }): void {

@@ -3,7 +3,8 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
-import { label_of, parse_cell } from "../core/cells";
+import { cell_text, label_of, parse_cell } from "../core/cells";
+import { format_list } from "../core/locale";
 import type { Column, ColumnChanged, ColumnCreate, ColumnKind, Table } from "../core/protocol.gen";
 import { column_changes, has_limits, has_target, kColumnKinds, of_kind, type ColumnWanted } from "./column-changes";
 import "./dialog";
@@ -101,10 +102,10 @@ export class StrataColumnDialog extends LitElement {
         ? html`<div class="three">
             <label class="field"><span>${words.unit}</span><input type="text" name="unit" maxlength="40" .value=${column?.unit ?? ""} /></label>
             <label class="field"
-              ><span>${words.minimum}</span><input type="text" inputmode="decimal" name="minimum" .value=${String(column?.minimum ?? "")}
+              ><span>${words.minimum}</span><input type="text" inputmode="decimal" name="minimum" .value=${cell_text(column?.minimum)}
             /></label>
             <label class="field"
-              ><span>${words.maximum}</span><input type="text" inputmode="decimal" name="maximum" .value=${String(column?.maximum ?? "")}
+              ><span>${words.maximum}</span><input type="text" inputmode="decimal" name="maximum" .value=${cell_text(column?.maximum)}
             /></label>
           </div>`
         : nothing}
@@ -137,7 +138,7 @@ export class StrataColumnDialog extends LitElement {
 
   private lost({ converted = 0, lost = 0, lost_keys = [] }: ColumnChanged): TemplateResult {
     return html`<p>${words.lost(lost, converted)}</p>
-      <p class="hint numeric">${words.lost_of(lost_keys.join(", "))}</p>`;
+      <p class="hint numeric">${words.lost_of(format_list(lost_keys.map(String)))}</p>`;
   }
 
   /** Enter saves, also from a field in an element of its own. */

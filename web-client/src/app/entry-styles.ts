@@ -49,6 +49,10 @@ export const entry_styles = css`
   h1 + p {
     margin-top: 6px;
   }
+  strata-preferences {
+    padding-top: 16px;
+    border-top: 1px solid var(--line);
+  }
   code {
     font: 0.8rem var(--mono);
     overflow-wrap: anywhere;

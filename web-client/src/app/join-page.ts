@@ -10,6 +10,7 @@ import { is_useless_link, password_words } from "./entry";
 import { entry_styles } from "./entry-styles";
 import { logo } from "./icons";
 import { password_field, password_styles } from "./password-field";
+import "./preferences-fields";
 import { follow } from "./routes";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -67,6 +68,7 @@ export class StrataJoinPage extends LitElement {
         <div><b>${texts.product}</b><span>${texts.tagline}</span></div>
       </div>
       ${this.content()}
+      <strata-preferences></strata-preferences>
     </main>`;
   }
 
@@ -104,7 +106,7 @@ export class StrataJoinPage extends LitElement {
     const problems = this.field_problems_;
     return html`<div>
         <h1>${words.greeting(called(person))}</h1>
-        <p>${person.state === "invited" ? words.lead(texts.roles[person.role].toLowerCase()) : words.lead_again}</p>
+        <p>${person.state === "invited" ? words.lead(texts.roles[person.role]) : words.lead_again}</p>
       </div>
       <form @submit=${this.on_submit} novalidate>
         <label class="field">

@@ -3,13 +3,14 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { kCommonLanguages, labels_of, name_of_language, rows_of, well_written_tag, type LabelRow } from "../core/languages";
+import { compare_words } from "../core/locale";
 import type { Labels } from "../core/protocol.gen";
 import { icon } from "./icons";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
 const words = texts.labels;
-const offered = kCommonLanguages.map((tag) => ({ tag, name: name_of_language(tag) })).sort((a, b) => a.name.localeCompare(b.name));
+const offered = kCommonLanguages.map((tag) => ({ tag, name: name_of_language(tag) })).sort((a, b) => compare_words(a.name, b.name));
 
 @customElement("strata-labels-field")
 export class StrataLabelsField extends LitElement {

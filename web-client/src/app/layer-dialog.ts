@@ -4,6 +4,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
+import { read_number } from "../core/locale";
 import { detail_choices, format_length } from "../core/measure";
 import {
   class_palette,
@@ -27,6 +28,7 @@ import { icon } from "./icons";
 import { layer_changes, type LayerWanted } from "./layer-changes";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { number_input } from "./number-input";
 import { radio_group } from "./radio-group";
 import "./shape-fields";
 import type { StrataShapeFields } from "./shape-fields";
@@ -369,18 +371,12 @@ export class StrataLayerDialog extends LitElement {
     return html`<div class="range">
         <label class="field">
           <span>${words.range}</span>
-          <input type="number" name="min" step="any" .value=${String(palette?.min ?? 0)} />
+          ${number_input({ name: "min", value: palette?.min ?? 0, wrong: this.problem_field_ === "min" })}
         </label>
         <span>${words.range_to}</span>
         <label class="field">
           <span class="visually-hidden">${words.range_to}</span>
-          <input
-            type="number"
-            name="max"
-            step="any"
-            .value=${String(palette?.max ?? 100)}
-            aria-invalid=${this.problem_field_ === "max" ? "true" : "false"}
-          />
+          ${number_input({ name: "max", value: palette?.max ?? 100, wrong: this.problem_field_ === "max" })}
         </label>
         <label class="field">
           <span>${words.unit}</span>
@@ -442,7 +438,7 @@ export class StrataLayerDialog extends LitElement {
     const formula = this.expression_ ? this.wanted_formula(form) : {};
     if (!formula) return this.refuse("expression", words.expression_missing);
     if (!this.layer && formula.expression !== undefined) return this.create_computed({ name, description: text("description"), ...formula });
-    const palette = this.palette(name, Number(text("min")), Number(text("max")));
+    const palette = this.palette(name, read_number(text("min")), read_number(text("max")));
     if (!palette) return;
     await this.attempt(async () => {
       const unit = this.purpose_ === "measurement" ? text("unit") : (this.base_?.layer.unit ?? "");
@@ -524,8 +520,9 @@ export class StrataLayerDialog extends LitElement {
         return old ? { ...old, points: palette.points } : palette;
       }
       case "measurement": {
-        if (!(max > min)) {
-          this.refuse("max", words.range_wrong);
+        const wrong = Number.isNaN(min) ? "min" : Number.isNaN(max) || max <= min ? "max" : null;
+        if (wrong) {
+          this.refuse(wrong, Number.isNaN(min + max) ? texts.brush.bad_value : words.range_wrong);
           return null;
         }
         const mode = this.stepped_ ? "step" : "linear";

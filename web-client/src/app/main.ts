@@ -1,1 +1,13 @@
-import "./strata-app";
+import { page_language } from "../core/locale";
+import { chosen_language } from "./preferences";
+import { load_texts } from "./texts";
+
+async function start(): Promise<void> {
+  const chosen = chosen_language();
+  const language = page_language(chosen, navigator.languages);
+  document.documentElement.lang = language;
+  await load_texts(language, chosen !== null, navigator.languages);
+  await import("./strata-app"); // whose parts take their words while they are loaded
+}
+
+void start();

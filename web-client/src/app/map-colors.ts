@@ -3,9 +3,11 @@
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
+import { format_fixed, read_number } from "../core/locale";
 import type { Layer } from "../core/types";
 import { describe_value } from "./brush-settings";
 import type { ColorRow } from "./map-file";
+import { number_input } from "./number-input";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -49,7 +51,7 @@ export class StrataMapColors extends LitElement {
       tr.off .numeric {
         opacity: 0.5;
       }
-      input[type="number"] {
+      input[type="text"] {
         width: 84px;
         min-height: 32px;
         text-align: right;
@@ -75,7 +77,7 @@ export class StrataMapColors extends LitElement {
   }
 
   private row(row: ColorRow, index: number): TemplateResult {
-    const number = row.value.trim() === "" ? Number.NaN : Number(row.value);
+    const number = read_number(row.value);
     const said = Number.isFinite(number) && this.layer.palette.mode === "categorical" ? describe_value(this.layer, number) : "";
     return html`<tr class=${row.used ? "" : "off"}>
       <td>
@@ -88,18 +90,16 @@ export class StrataMapColors extends LitElement {
           <span class="swatch" ${styled({ background: row.color })}></span><span class="numeric">${row.color}</span>
         </label>
       </td>
-      <td class="numeric">${(100 * row.share).toFixed(1)} %</td>
+      <td class="numeric">${format_fixed(100 * row.share, 1)} %</td>
       <td>
         <span class="value">
-          <input
-            type="number"
-            step="any"
-            aria-label=${words.value_of(row.color)}
-            .value=${row.value}
-            ?disabled=${!row.used}
-            aria-invalid=${row.used && !Number.isFinite(number) ? "true" : "false"}
-            @input=${(event: Event) => this.change(index, { value: (event.target as HTMLInputElement).value })}
-          />
+          ${number_input({
+            label: words.value_of(row.color),
+            value: row.value,
+            disabled: !row.used,
+            wrong: row.used && Number.isNaN(number),
+            typed: (value) => this.change(index, { value }),
+          })}
           <span class="ellipsis hint">${row.used ? said : words.left_out}</span>
         </span>
       </td>

@@ -2,6 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
+import { format_list, read_number } from "../core/locale";
 import { format_area } from "../core/measure";
 import type { EditResult } from "../core/protocol.gen";
 import type { Layer, MapContents } from "../core/types";
@@ -15,6 +16,7 @@ import {
 import { direction_field, found_line, progress_line, world_field } from "./map-place";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { number_input } from "./number-input";
 import { radio_group } from "./radio-group";
 import { Sending, type Begin } from "./sending";
 import { number_field_styles, shared_styles } from "./styles";
@@ -129,13 +131,7 @@ export class StrataMapDialog extends LitElement {
       html`<label class="field">
         <span>${label}</span>
         <span class="number">
-          <input
-            type="number"
-            min="0"
-            step="any"
-            .value=${String(value)}
-            @input=${(event: Event) => set(Number((event.target as HTMLInputElement).value))}
-          />
+          ${number_input({ value, min: 0, changed: (text) => set(read_number(text)) })}
           <span>mm</span>
         </span>
       </label>`;
@@ -181,7 +177,7 @@ export class StrataMapDialog extends LitElement {
           )}
         </select>
       </label>
-      ${chosen && chosen.samples.length > 0 ? html`<p class="hint">${words.samples(chosen.samples.slice(0, 6).join(", "))}</p>` : nothing}
+      ${chosen && chosen.samples.length > 0 ? html`<p class="hint">${words.samples(format_list(chosen.samples.slice(0, 6)))}</p>` : nothing}
       ${chosen?.type === "text" ? html`<p class="hint">${has_names ? words.names_become : words.names_need_legend}</p>` : nothing}
       ${chosen?.type === "number" && has_names && name_columns.length > 0
         ? html`<label class="field">
@@ -221,15 +217,7 @@ export class StrataMapDialog extends LitElement {
   private band(bands: number): TemplateResult {
     return html`<label class="field">
       <span>${words.band}</span>
-      <input
-        class="short"
-        type="number"
-        name="band"
-        min="1"
-        max=${bands}
-        .value=${String(this.band_)}
-        @input=${(event: Event) => (this.band_ = Number((event.target as HTMLInputElement).value))}
-      />
+      <span class="short">${number_input({ name: "band", value: this.band_, min: 1, max: bands, changed: (text) => (this.band_ = read_number(text)) })}</span>
     </label>`;
   }
 
@@ -241,17 +229,16 @@ export class StrataMapDialog extends LitElement {
       ></strata-map-colors>
       <label class="field">
         <span>${words.color_tolerance}</span>
-        <input
-          class="short"
-          type="number"
-          name="tolerance"
-          min=${kTolerance.least}
-          max=${kTolerance.most}
-          step="any"
-          title=${words.color_tolerance_hint}
-          .value=${String(this.tolerance_)}
-          @change=${(event: Event) => void this.on_tolerance(event)}
-        />
+        <span class="short">
+          ${number_input({
+            name: "tolerance",
+            title: words.color_tolerance_hint,
+            value: this.tolerance_,
+            min: kTolerance.least,
+            max: kTolerance.most,
+            changed: (text) => void this.on_tolerance(read_number(text)),
+          })}
+        </span>
       </label>`;
   }
 
@@ -294,8 +281,7 @@ export class StrataMapDialog extends LitElement {
     }
   }
 
-  private async on_tolerance(event: Event): Promise<void> {
-    const tolerance = Number((event.target as HTMLInputElement).value);
+  private async on_tolerance(tolerance: number): Promise<void> {
     if (!(tolerance >= kTolerance.least && tolerance <= kTolerance.most)) {
       this.sending_.refuse(words.bad_tolerance(kTolerance.least, kTolerance.most));
       return;

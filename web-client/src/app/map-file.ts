@@ -1,6 +1,7 @@
 // Files that are painted over a layer: what they are, and what is asked for.
 
 import type { UploadFile } from "../core/api";
+import { read_number, typed_number } from "../core/locale";
 import type { MapColor, MapContents } from "../core/types";
 
 export const kAlong = ["-z", "+z", "-y", "+y", "-x", "+x"] as const;
@@ -66,7 +67,7 @@ export function color_rows(colors: readonly MapColor[], values: readonly number[
   let next = 0;
   let above = Math.max(0, ...values);
   return colors.map(({ color, share, background }) => {
-    const value = background ? "" : String(values[next++] ?? ++above);
+    const value = background ? "" : typed_number(values[next++] ?? ++above);
     return { color, share, used: !background, value };
   });
 }
@@ -74,6 +75,6 @@ export function color_rows(colors: readonly MapColor[], values: readonly number[
 /** `{"#c02020":1}`; null: a colour that is used has no number, or none is used. */
 export function color_keys(rows: readonly ColorRow[]): string | null {
   const used = rows.filter((row) => row.used);
-  if (used.length === 0 || used.some((row) => row.value.trim() === "" || !Number.isFinite(Number(row.value)))) return null;
-  return JSON.stringify(Object.fromEntries(used.map((row) => [row.color, Number(row.value)])));
+  if (used.length === 0 || used.some((row) => Number.isNaN(read_number(row.value)))) return null;
+  return JSON.stringify(Object.fromEntries(used.map((row) => [row.color, read_number(row.value)])));
 }

@@ -537,7 +537,7 @@ export class ModelSession {
   private on_welcome(message: Welcome): void {
     if (this.was_open_ && !this.closed_) {
       if (message.role === this.role) notices.show("success", texts.connection.back);
-      else notices.show("info", texts.people.role_now(texts.roles[message.role].toLowerCase()), texts.role_hints[message.role]);
+      else notices.show("info", texts.people.role_now(texts.roles[message.role]), texts.role_hints[message.role]);
     }
     this.was_open_ = true;
     this.signed_out = false;

@@ -389,7 +389,7 @@ export class StrataPeopleDialog extends LitElement {
 
   private async change_role(person: Person, select: HTMLSelectElement): Promise<void> {
     const role = select.value as Role;
-    const done = await this.change(person, { role }, words.role_changed(texts.roles[role].toLowerCase()));
+    const done = await this.change(person, { role }, words.role_changed(texts.roles[role]));
     if (!done) select.value = person.role;
   }
 

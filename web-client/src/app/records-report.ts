@@ -1,6 +1,7 @@
 // What an import would do, or has done: how many rows are new, and line by line what is wrong.
 
 import { css, html, nothing, type TemplateResult } from "lit";
+import { format_count } from "../core/locale";
 import type { RecordsReport } from "../core/protocol.gen";
 import { texts } from "./texts";
 
@@ -58,7 +59,7 @@ export function records_report(report: RecordsReport, rows: string): TemplateRes
     [words.unchanged, report.unchanged],
   ];
   const left_out = report.left_out ?? 0;
-  return html`<dl class="counts numeric">${counts.map(([what, count]) => html`<div><dt>${what}</dt><dd>${count.toLocaleString("en-GB")}</dd></div>`)}</dl>
+  return html`<dl class="counts numeric">${counts.map(([what, count]) => html`<div><dt>${what}</dt><dd>${format_count(count)}</dd></div>`)}</dl>
     ${left_out > 0 ? html`<p class="hint">${words.left_out(left_out)}</p>` : nothing}
     ${report.problems.length === 0 ? html`<p>${report.created + report.changed > 0 ? words.good : words.same}</p>` : what_is_wrong(report)}`;
 }

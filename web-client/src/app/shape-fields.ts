@@ -5,6 +5,7 @@ import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
 import type { Model, VertexPropertyName } from "../core/types";
 import type { ModelSession } from "./model-session";
+import { number_input } from "./number-input";
 import { kRays, kShapeGroups, other_models, recipe_of, shape_kind, type ShapeInput, type ShapeKind } from "./shape-kinds";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -123,16 +124,7 @@ export class StrataShapeFields extends LitElement {
     return html`<label class="field">
       <span>${label}</span>
       <div class="length">
-        <input
-          type="number"
-          name=${name}
-          min="0"
-          step="any"
-          placeholder=${hint}
-          .value=${this.input_[name]}
-          aria-invalid=${this.wrong === name ? "true" : "false"}
-          @input=${(event: Event) => this.change({ [name]: (event.target as HTMLInputElement).value })}
-        />
+        ${number_input({ name, value: this.input_[name], placeholder: hint, min: 0, wrong: this.wrong === name, typed: (text) => this.change({ [name]: text }) })}
         mm
       </div>
     </label>`;
@@ -141,18 +133,16 @@ export class StrataShapeFields extends LitElement {
   private rays_field(): TemplateResult {
     return html`<label class="field">
       <span>${words.rays}</span>
-      <input
-        type="number"
-        name="rays"
-        min=${kRays.least}
-        max=${kRays.most}
-        step="1"
-        placeholder=${kRays.usual}
-        title=${words.rays_hint}
-        .value=${this.input_.rays}
-        aria-invalid=${this.wrong === "rays" ? "true" : "false"}
-        @input=${(event: Event) => this.change({ rays: (event.target as HTMLInputElement).value })}
-      />
+      ${number_input({
+        name: "rays",
+        title: words.rays_hint,
+        value: this.input_.rays,
+        placeholder: kRays.usual,
+        min: kRays.least,
+        max: kRays.most,
+        wrong: this.wrong === "rays",
+        typed: (rays) => this.change({ rays }),
+      })}
     </label>`;
   }
 

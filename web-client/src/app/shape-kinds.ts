@@ -1,5 +1,6 @@
 // What can be computed from a model's shape, in the words of who studies it.
 
+import { read_number } from "../core/locale";
 import type { Model, ShapeRecipe } from "../core/types";
 import { texts } from "./texts";
 
@@ -74,12 +75,12 @@ export function recipe_of(input: ShapeInput): ShapeRecipe | { problem: string; f
     ["distance", "distance_mm", input.distance],
   ] as const) {
     if (!takes.includes(name) || text.trim() === "") continue;
-    const value = Number(text);
+    const value = read_number(text);
     if (!(value > 0)) return { problem: texts.shape.bad_length, field: name };
     recipe[member] = value;
   }
   if (takes.includes("rays") && input.rays.trim() !== "") {
-    const rays = Number(input.rays);
+    const rays = read_number(input.rays);
     const { least, most } = kRays;
     if (!Number.isInteger(rays) || rays < least || rays > most) return { problem: texts.shape.bad_rays(least, most), field: "rays" };
     recipe.rays = rays;

@@ -2,6 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
+import { format_count } from "../core/locale";
 import { detail_choices, format_area, format_bytes, format_length, format_size, metres_per } from "../core/measure";
 import type { Model } from "../core/types";
 import "./dialog";
@@ -73,7 +74,7 @@ export class StrataAboutSheet extends LitElement {
     const rows: [string, string][] = [
       [words.size, format_size(sides)],
       [words.area, format_area(model.area_m2)],
-      [words.triangles, model.triangles.toLocaleString("en-GB")],
+      [words.triangles, format_count(model.triangles)],
       [words.up, model.up.toUpperCase()],
       [words.smallest, detail ? format_length(detail.detail_m) : ""],
       [words.crs, model.crs],
@@ -83,7 +84,7 @@ export class StrataAboutSheet extends LitElement {
       [words.captured, model.captured],
       [words.rights, model.rights_uri],
       [words.credit, model.credit],
-      [words.repairs, model.repairs.map((repair) => `${repair.what}: ${repair.count.toLocaleString("en-GB")}`).join("; ")],
+      [words.repairs, model.repairs.map((repair) => `${repair.what}: ${format_count(repair.count)}`).join("; ")],
     ];
     return html`<strata-dialog wide heading=${model.name} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <dl>

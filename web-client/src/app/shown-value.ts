@@ -2,6 +2,7 @@
 
 import { html } from "lit";
 import { cell_text, named_keys, names_records } from "../core/cells";
+import { format_list } from "../core/locale";
 import { holds_marks, marks_of, summary_of } from "../core/marks";
 import { format_length } from "../core/measure";
 import type { CellValue, Column } from "../core/protocol.gen";
@@ -15,9 +16,7 @@ export function shown_value(session: ModelSession, column: Column, value: CellVa
   if (value === null) return "";
   if (names_records(column)) {
     const target = column.target ?? 0;
-    return named_keys(value)
-      .map((key) => session.tables.label(target, key) ?? texts.tables.record(key))
-      .join(", ");
+    return format_list(named_keys(value).map((key) => session.tables.label(target, key) ?? texts.tables.record(key)));
   }
   if (holds_marks(column)) return shown_marks(session, column, value);
   if (column.kind === "document") return texts.files.count(named_keys(value).length);

@@ -7,6 +7,7 @@ import { login_path_of, sign_in_problem } from "./entry";
 import { entry_styles } from "./entry-styles";
 import { icon, logo } from "./icons";
 import { password_field, password_styles } from "./password-field";
+import "./preferences-fields";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -104,6 +105,7 @@ export class StrataSignIn extends LitElement {
           <p class="hint">${words.token_hint} <code>${location.origin}/login?link=…</code></p>
         </form>
       </details>
+      <strata-preferences></strata-preferences>
     </main>`;
   }
 

@@ -20,6 +20,7 @@ import "./model-page";
 import { notices } from "./notices";
 import "./notices-view";
 import "./people-dialog";
+import "./preferences-fields";
 import { navigate, on_navigate, path_now, path_of_model, replace_address, route_of, type Route } from "./routes";
 import { check_connections, discard_unsaved, unsaved_changes } from "./sessions";
 import { shared_styles } from "./styles";
@@ -38,7 +39,7 @@ export class StrataApp extends LitElement {
   @state() private chosen_project_ = ""; // for imports
   @state() private session_: "unknown" | "signed-in" | "signed-out" | "unreachable" = "unknown";
   @state() private problem_ = "";
-  @state() private dialog_: "account" | "people" | null = null;
+  @state() private dialog_: "account" | "people" | "preferences" | null = null;
   @state() private dropping_ = false;
   @state() private imported_ = 0;
   private drag_depth_ = 0;
@@ -232,6 +233,7 @@ export class StrataApp extends LitElement {
     if (this.dialog_ === "people") {
       return html`<strata-people-dialog .api=${this.api_} .me=${me} @closed=${closed} @signed-out=${this.signed_out}></strata-people-dialog>`;
     }
+    if (this.dialog_ === "preferences") return html`<strata-preferences-dialog @closed=${closed}></strata-preferences-dialog>`;
     return nothing;
   }
 

@@ -108,7 +108,6 @@ export const shared_styles = css`
   }
   input[type="text"],
   input[type="password"],
-  input[type="number"],
   select,
   textarea {
     width: 100%;

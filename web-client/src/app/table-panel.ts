@@ -30,6 +30,7 @@ import type { TableView } from "./table-view";
 import type { TermsRequest } from "./terms-dialog";
 import { terms_type } from "./terms-files";
 import { texts } from "./texts";
+import { told_clock } from "./times";
 
 export type TablePanelRequest =
   | TermsRequest
@@ -540,7 +541,7 @@ export class StrataTablePanel extends LitElement {
     const words = texts.tables;
     const theirs = edit.theirs!;
     const shown = (value: CellValue): unknown => (value === null ? words.no_value : this.shown(column, value));
-    const time = theirs.time ? new Date(theirs.time).toLocaleTimeString("en-GB", { hour: "2-digit", minute: "2-digit" }) : "";
+    const time = theirs.time ? told_clock(theirs.time) : "";
     return html`<span>${words.changed_by(theirs.user || words.somebody, time)} <b>${shown(theirs.value)}</b></span>
       <span>${words.yours} <b>${shown(edit.value)}</b></span>
       <div class="row">

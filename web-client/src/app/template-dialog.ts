@@ -4,6 +4,7 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
 import { label_of } from "../core/cells";
+import { person_languages } from "../core/locale";
 import type { Template, TemplateTable } from "../core/protocol.gen";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
@@ -146,7 +147,7 @@ export class StrataTemplateDialog extends LitElement {
     this.making_ = slug;
     this.refused_ = null;
     try {
-      const { tables, layers } = await session.api.use_template(session.model.project, slug, { model: session.model_id, language: navigator.language });
+      const { tables, layers } = await session.api.use_template(session.model.project, slug, { model: session.model_id, language: person_languages()[0]! });
       for (const layer of layers) session.layers.put(layer);
       const first = layers.find(({ kind }) => kind === "database");
       if (first) session.add_created(first);
@@ -162,7 +163,7 @@ export class StrataTemplateDialog extends LitElement {
 }
 
 /** The server names what it makes in one language, that of the page's person: here it is called the same. */
-const named = ({ name, labels = {} }: Pick<Template, "name" | "labels">): string => label_of({ name, labels }, [navigator.language]);
+const named = ({ name, labels = {} }: Pick<Template, "name" | "labels">): string => label_of({ name, labels });
 
 const contents = ({ terms, columns }: TemplateTable): string => (terms ? words.terms(terms.length) : words.columns(columns?.length ?? 0));
 

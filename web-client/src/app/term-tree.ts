@@ -2,6 +2,7 @@
 // first ones, since the server finds the others.
 
 import { ApiError, type Api } from "../core/api";
+import { person_languages } from "../core/locale";
 import type { ListedTerm, TermTree as FoundTerms } from "../core/protocol.gen";
 
 const kAtOnce = 1000;
@@ -21,7 +22,7 @@ export class TermTree {
     private readonly api_: Api,
     private readonly table_: number,
     private readonly changed_: () => void,
-    private readonly language_ = navigator.language,
+    private readonly language_ = person_languages()[0]!,
   ) {}
 
   /** To be called by who shows them. */

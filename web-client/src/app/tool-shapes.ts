@@ -1,6 +1,7 @@
 // The shapes that the brush can have beside round and square: tools of the site, made of pictures. All people share them.
 
 import type { Api } from "../core/api";
+import { compare_words } from "../core/locale";
 import type { Tool, ToolEvent, ToolShape } from "../core/protocol.gen";
 import type { ShapePart } from "../core/shape";
 import { notices } from "./notices";
@@ -68,7 +69,7 @@ export class ToolShapes {
 
   private take(tools: Tool[]): void {
     const before = this.find(this.host_.chosen());
-    this.list = tools.sort((a, b) => a.name.localeCompare(b.name));
+    this.list = tools.sort((a, b) => compare_words(a.name, b.name));
     if (before && !this.find(before.id)) {
       this.host_.choose("disc");
       notices.show("info", texts.shapes.gone(before.name));

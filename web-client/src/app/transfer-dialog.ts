@@ -3,12 +3,14 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
+import { read_number } from "../core/locale";
 import { format_number, metres_per } from "../core/measure";
 import type { Layer, Model } from "../core/types";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
 import { layer_chip } from "./legend";
 import type { ModelSession } from "./model-session";
+import { number_input } from "./number-input";
 import { other_models } from "./shape-kinds";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -151,14 +153,7 @@ export class StrataTransferDialog extends LitElement {
       <label class="field">
         <span>${words.tolerance}</span>
         <div class="length">
-          <input
-            type="number"
-            name="tolerance"
-            min="0"
-            step="any"
-            .value=${model ? String(likely_tolerance_mm(model)) : "1"}
-            aria-invalid=${this.problem_field_ === "tolerance_mm" ? "true" : "false"}
-          />
+          ${number_input({ name: "tolerance", value: model ? likely_tolerance_mm(model) : 1, min: 0, wrong: this.problem_field_ === "tolerance_mm" })}
           mm
         </div>
       </label>
@@ -166,15 +161,7 @@ export class StrataTransferDialog extends LitElement {
       <label class="field">
         <span>${words.angle}</span>
         <div class="length">
-          <input
-            type="number"
-            name="angle"
-            min="1"
-            max="180"
-            step="any"
-            value=${kUsualAngle}
-            aria-invalid=${this.problem_field_ === "max_angle" ? "true" : "false"}
-          />
+          ${number_input({ name: "angle", value: kUsualAngle, min: 1, max: 180, wrong: this.problem_field_ === "max_angle" })}
           °
         </div>
       </label>
@@ -193,8 +180,8 @@ export class StrataTransferDialog extends LitElement {
     event.preventDefault();
     const { session } = this;
     const form = new FormData(this.form_!);
-    const tolerance_mm = Number(form.get("tolerance"));
-    const max_angle = Number(form.get("angle"));
+    const tolerance_mm = read_number(String(form.get("tolerance")));
+    const max_angle = read_number(String(form.get("angle")));
     if (!(tolerance_mm > 0)) {
       this.problem_field_ = "tolerance_mm";
       this.problem_ = texts.shape.bad_length;

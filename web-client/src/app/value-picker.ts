@@ -3,11 +3,13 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
+import { read_number } from "../core/locale";
 import { css_color, purpose_of } from "../core/palette";
 import type { Layer } from "../core/types";
 import { describe_value, value_problem } from "./brush-settings";
 import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
+import { number_input } from "./number-input";
 import { radio_group } from "./radio-group";
 import "./record-chooser";
 import { styled } from "./styled";
@@ -112,13 +114,7 @@ export class StrataValuePicker extends LitElement {
       <label class="field">
         <span>${purpose === "records" ? texts.brush.record : texts.brush.value}</span>
         <span class="number">
-          <input
-            type="number"
-            step=${steps}
-            .value=${String(this.missing_ ?? value)}
-            aria-invalid=${this.wrong_value_ ? "true" : "false"}
-            @change=${(event: Event) => this.on_value(layer, event)}
-          />
+          ${number_input({ value: this.missing_ ?? value, wrong: this.wrong_value_ !== "", changed: (text) => this.on_value(layer, read_number(text)) })}
           <span>${layer.unit}</span>
         </span>
       </label>
@@ -142,7 +138,7 @@ export class StrataValuePicker extends LitElement {
             step=${steps === "any" ? (layer.palette.max - layer.palette.min) / 200 : 1}
             .value=${String(value)}
             aria-label=${texts.brush.value}
-            @input=${(event: Event) => this.on_value(layer, event)}
+            @input=${(event: Event) => this.on_value(layer, (event.target as HTMLInputElement).valueAsNumber)}
           />`
         : nothing}
       ${this.wrong_value_ ? html`<p class="error" role="alert">${this.wrong_value_}</p>` : nothing}
@@ -187,9 +183,7 @@ export class StrataValuePicker extends LitElement {
     this.session.painting.set_brush((brush) => brush.set_value(layer, value));
   }
 
-  private on_value(layer: Layer, event: Event): void {
-    const typed = (event.target as HTMLInputElement).value.trim();
-    const number = typed === "" ? Number.NaN : Number(typed);
+  private on_value(layer: Layer, number: number): void {
     const value = layer.type.startsWith("f") ? Number(number.toPrecision(6)) : number;
     this.wrong_value_ = value_problem(layer, value) ?? "";
     if (this.wrong_value_) return;

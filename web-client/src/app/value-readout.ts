@@ -2,6 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
+import { format_fixed, format_place } from "../core/locale";
 import { color_of, css_color } from "../core/palette";
 import type { Layer } from "../core/types";
 import { describe_value } from "./brush-settings";
@@ -71,7 +72,7 @@ export class StrataValueReadout extends LitElement {
     const { layers } = session;
     const shown = [...layers.all].reverse().filter((layer) => layers.visible(layer) || layer === layers.selected);
     const decimals = model.unit === "mm" ? 2 : model.unit === "cm" ? 3 : 4;
-    const coordinates = picked.position.map((each) => each.toFixed(decimals)).join(", ");
+    const coordinates = format_place(picked.position.map((each) => format_fixed(each, decimals)));
     return html`<div class="card">
       ${shown.map((layer) => this.line(layer))}
       <span class="position numeric">${texts.value.position} ${coordinates} ${model.unit}</span>

@@ -2,6 +2,7 @@
 // problem a person can read.
 
 import type { CameraMessage } from "./camera";
+import { own_problems } from "./own-problems";
 import type * as wire from "./protocol.gen";
 import {
   complete_layer,
@@ -585,23 +586,10 @@ const etag_of = (version: number): string => `"v${version}"`;
 const look_path = (model: Id, look: Id): string =>
   `/models/${encodeURIComponent(model)}/looks/${encodeURIComponent(look)}`;
 
-const unreachable = (): ApiError =>
-  new ApiError({
-    status: 0,
-    title: "The server cannot be reached",
-    detail: "Check that the server runs and that you are connected to its network, then try again.",
-  });
-
-const kPlainWords: Record<number, [string, string]> = {
-  401: ["Not signed in", "Sign in again."],
-  403: ["Not allowed", "Your account may not do this. Ask the owner of the site."],
-  404: ["Not found", "It may have been deleted. Reload the page."],
-  412: ["Changed by someone else", "Somebody changed this at the same time. Look at it again, then repeat your change."],
-  413: ["Too large", "The file or message is larger than the server accepts."],
-  429: ["Too fast", "The server asks for a pause. Try again in a moment."],
-  502: ["Unexpected answer", "The server's answer could not be read. Reload the page."],
-  503: ["The server is not ready", "It starts or lacks its database. Try again in a moment."],
-};
+function unreachable(): ApiError {
+  const [title, detail] = own_problems().unreachable;
+  return new ApiError({ status: 0, title, detail });
+}
 
 /** The problem in an answer's text; where the text is not one, what the status means in plain words. */
 export function problem_of_text(status: number, text: string): ProblemBody {
@@ -620,7 +608,8 @@ export function problem_of_text(status: number, text: string): ProblemBody {
   } catch {
     // Not JSON: a proxy's page, or nothing. The status says enough.
   }
-  const [title, detail] = kPlainWords[status] ?? [`The server answered ${status}`, "Try again; if it stays, tell whoever runs the server."];
+  const words = own_problems();
+  const [title, detail] = words.statuses[status] ?? [words.other_status(status), words.other_status_detail];
   return { status, title, detail };
 }
 

@@ -1,5 +1,6 @@
 // Values of records as people read and write them. The server judges what a value may be; here is only what a field needs.
 
+import { person_languages, read_number, typed_number } from "./locale";
 import { is_list_of_marks } from "./marks";
 import type { CellValue, Column, Labels, Table, TableRecord } from "./protocol.gen";
 
@@ -11,7 +12,7 @@ function kinds_of_language(language: string): string[] {
 }
 
 /** What it is called in the first of the person's languages that it has a name in: of "es-MX" also the name in "es". */
-export function label_of(thing: { name: string; labels: Labels }, languages: readonly string[] = navigator.languages): string {
+export function label_of(thing: { name: string; labels: Labels }, languages: readonly string[] = person_languages()): string {
   const labels = new Map(Object.entries(thing.labels).map(([tag, label]) => [tag.toLowerCase(), label]));
   for (const tag of languages.flatMap(kinds_of_language)) {
     const label = labels.get(tag);
@@ -34,6 +35,7 @@ export function named_keys(value: CellValue | undefined): number[] {
 /** As it is typed and shown; what names records is shown by their labels instead, and of lines and points how many there are. */
 export function cell_text(value: CellValue | undefined): string {
   if (value === null || value === undefined) return "";
+  if (typeof value === "number") return typed_number(value);
   if (!Array.isArray(value)) return String(value);
   return is_list_of_marks(value) ? String(value.length) : value.join(" ");
 }
@@ -50,8 +52,7 @@ export function parse_cell(column: Pick<Column, "kind">, text: string): Parsed {
   switch (column.kind) {
     case "integer":
     case "numeric": {
-      // A comma may part thousands or decimals: nothing is guessed.
-      const number = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(typed) ? Number(typed) : Number.NaN;
+      const number = read_number(typed);
       if (!Number.isFinite(number)) return { wrong: "number" };
       return column.kind === "integer" && !Number.isInteger(number) ? { wrong: "whole" } : { value: number };
     }
@@ -86,7 +87,7 @@ type Naming = Pick<Table, "columns" | "kind">;
 export function naming_columns(table: Naming, languages?: readonly string[]): Column[] {
   const last = label_column(table) ?? [];
   if (table.kind !== "terms") return [last].flat();
-  const slugs = (languages ?? navigator.languages).flatMap(kinds_of_language).map((tag) => `label-${tag}`);
+  const slugs = (languages ?? person_languages()).flatMap(kinds_of_language).map((tag) => `label-${tag}`);
   const labels = [...slugs, "label"].map((slug) => table.columns.find((column) => column.kind === "text" && column.slug === slug) ?? []);
   return [...new Set([...labels, last].flat())];
 }

@@ -5,6 +5,7 @@ import { new_id } from "./api";
 import type { CameraMessage } from "./camera";
 import { decode_frame, FrameError, type FrameMessage } from "./frame-header";
 import { Outbox, type ChangeMessage, type SingleChange } from "./outbox";
+import { own_problems } from "./own-problems";
 import {
   parse_server_message,
   SUBPROTOCOL,
@@ -542,7 +543,7 @@ export class StrokeHandle {
 }
 
 const unreadable = (what: string): Omit<ProblemMessage, "op"> => ({
-  title: "The server sent something this page cannot read",
+  title: own_problems().unreadable,
   status: 502,
-  detail: `${what}. Reload the page; if it stays, the page and the server are of different versions.`,
+  detail: own_problems().unreadable_detail(what),
 });

@@ -1,5 +1,6 @@
 // Lines and points that records have on models, as cells of columns of these kinds hold them.
 
+import { format_place, typed_number } from "./locale";
 import { format_length, metres_per } from "./measure";
 import type { CellValue, Column, Mark, MarkPlace, Table } from "./protocol.gen";
 import type { Model } from "./types";
@@ -36,7 +37,7 @@ export function summary_of(value: CellValue | undefined, model: Pick<Model, "id"
 /** Of a line "1.24 m", of a point "12.1, 4.25, 30" in the model's unit. */
 export function describe_mark(mark: Mark, kind: MarkKind, model: Pick<Model, "unit">): string {
   if (kind === "line") return format_length(mark_length(mark) * metres_per(model.unit));
-  return `${mark.coordinates[0]!.map((number) => Number(number.toPrecision(5))).join(", ")} ${model.unit}`;
+  return `${format_place(mark.coordinates[0]!.map((number) => typed_number(Number(number.toPrecision(5)))))} ${model.unit}`;
 }
 
 const kLongestStep_px = 40; // between the places of two neighbouring pixels: the surface is seen at 1.5° or less

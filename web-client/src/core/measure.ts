@@ -1,5 +1,6 @@
 // Lengths, areas and numbers as people write them, and the smallest detail a layer can hold.
 
+import { format_count, page_locale, with_decimal_sign } from "./locale";
 import type { Atlas, Model, Unit } from "./types";
 
 export const metres_per = (unit: Unit): number => ({ mm: 0.001, cm: 0.01, m: 1 })[unit];
@@ -9,9 +10,9 @@ export function format_number(value: number, digits = 3): string {
   if (!Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size >= 1e9 || size < 1e-5) return value.toExponential(digits - 1);
+  if (size >= 1e9 || size < 1e-5) return with_decimal_sign(value.toExponential(digits - 1));
   const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
-  return value.toLocaleString("en-GB", { maximumFractionDigits: Math.min(decimals, 20) });
+  return value.toLocaleString(page_locale(), { maximumFractionDigits: Math.min(decimals, 20) });
 }
 
 /** A length in metres with the unit that suits its size: "0.8 mm", "12.4 cm", "3.1 m". */
@@ -38,7 +39,7 @@ export function format_size(sides_in_metres: readonly number[]): string {
   const [factor, unit] = largest < 1 ? [1000, "mm"] : largest < 10 ? [100, "cm"] : [1, "m"];
   const side = (metres: number): string => {
     const value = metres * factor;
-    return value >= 100 ? Math.round(value).toLocaleString("en-GB") : format_number(value);
+    return value >= 100 ? format_count(Math.round(value)) : format_number(value);
   };
   return `${sides_in_metres.map(side).join(" × ")} ${unit}`;
 }

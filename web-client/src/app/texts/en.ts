@@ -1,6 +1,7 @@
-// Every word the page shows, in one place.
+// English, the measure of the other languages: see index.ts.
 
-const count = (n: number, one: string, many: string): string => `${n.toLocaleString("en-GB")} ${n === 1 ? one : many}`;
+import { format_count } from "../../core/locale";
+import { count, plural } from "./count";
 
 const what_changed = (created: number, changed: number, deleted: number): string =>
   [
@@ -50,7 +51,7 @@ export const texts = {
 
   join: {
     greeting: (name: string) => `Welcome, ${name}`,
-    lead: (role: string) => `You are invited to this site as ${role}. Choose a password: from then on you sign in with it and your name.`,
+    lead: (role: string) => `You are invited to this site as ${role.toLowerCase()}. Choose a password: from then on you sign in with it and your name.`,
     lead_again: "Choose a new password: from then on you sign in with it and your name. The old one is good until then.",
     user: "Name for signing in",
     full_name: "Full name",
@@ -155,7 +156,7 @@ export const texts = {
     filter: "Find people",
     filter_hint: "Name or role",
     count: (n: number) => count(n, "person", "people"),
-    count_of: (n: number, all: number) => `${n.toLocaleString("en-GB")} of ${count(all, "person", "people")}`,
+    count_of: (n: number, all: number) => `${format_count(n)} of ${count(all, "person", "people")}`,
     none_found: "Nobody is called that.",
     user: "Name",
     full_name: "Full name",
@@ -193,7 +194,7 @@ export const texts = {
     delete: "Delete…",
     delete_title: (name: string) => `Delete the account of ${name}?`,
     delete_lead: "They are signed out and cannot come back. What they painted and wrote stays in the history, under a name that nobody can tell. This cannot be undone.",
-    role_changed: (role: string) => `Is ${role} now.`,
+    role_changed: (role: string) => `Is ${role.toLowerCase()} now.`,
     disabled: "Cannot sign in any more.",
     enabled: "Can sign in again.",
   },
@@ -241,7 +242,7 @@ export const texts = {
     dismiss: (name: string) => `Remove the note about ${name}`,
     open: "Open",
     wrong_kind: (name: string) => `“${name}” is not a scan that can be read here: PLY, OBJ, STL, glTF, GLB or a zip of one. Export it as one of these, then drop it here.`,
-    left_out: (n: number, name: string) => (n === 1 ? `“${name}” was left out.` : `“${name}” and ${n - 1} more files were left out.`),
+    left_out: (n: number, name: string) => (n === 1 ? `“${name}” was left out.` : `“${name}” and ${count(n - 1, "more file", "more files")} were left out.`),
     empty_file: (name: string) => `“${name}” is empty.`,
     ready: (name: string) => `“${name}” is ready.`,
   },
@@ -329,7 +330,7 @@ export const texts = {
 
   people: {
     you: "you",
-    role_now: (role: string) => `Your role is ${role} now.`,
+    role_now: (role: string) => `Your role is ${role.toLowerCase()} now.`,
     here: (n: number) => (n === 1 ? "Only you are here" : `${n} people are here`),
   },
 
@@ -397,9 +398,9 @@ export const texts = {
     show_all: "Show all terms",
     tree: "Terms",
     none_found: "No term is called that.",
-    more_found: (n: number) => `and ${n.toLocaleString("en-GB")} more: write more of the word`,
+    more_found: (n: number) => `and ${format_count(n)} more: write more of the word`,
     empty: "The list has no terms yet.",
-    more: (n: number, all: number) => `The first ${n.toLocaleString("en-GB")} of ${all.toLocaleString("en-GB")} terms. Search for the others.`,
+    more: (n: number, all: number) => `The first ${format_count(n)} of ${format_count(all)} terms. Search for the others.`,
   },
 
   templates: {
@@ -625,7 +626,7 @@ export const texts = {
     locked_to_others: "Locked for annotators. You may still change it.",
     widen: "Room for more records…",
     widen_title: (layer: string) => `Room for more records in “${layer}”?`,
-    widen_lead: (highest: number) => `It holds keys up to ${highest.toLocaleString("en-GB")}. Afterwards it holds all keys and takes more memory; what is painted and its history stay.`,
+    widen_lead: (highest: number) => `It holds keys up to ${format_count(highest)}. Afterwards it holds all keys and takes more memory; what is painted and its history stay.`,
     widen_yes: "Make room",
     widened: "The layer now holds all keys.",
     saved_default: "What you see is now the default for everyone.",
@@ -635,7 +636,7 @@ export const texts = {
     deleted_by_other: (name: string) => `The layer “${name}” was deleted.`,
     created: (name: string) => `Layer “${name}” is ready to paint.`,
     no_labels: "Numbered classes",
-    more_classes: (n: number) => `and ${n.toLocaleString("en-GB")} more`,
+    more_classes: (n: number) => `and ${format_count(n)} more`,
     class_number: (n: number) => `Class ${n}`,
     record_number: (n: number) => `Record ${n}`,
     no_records: "Each record has a colour of its own.",
@@ -798,7 +799,7 @@ export const texts = {
       attached: "The record has a file of this name",
       twice: "The same name comes twice",
     },
-    more: (n: number) => `and ${n.toLocaleString("en-GB")} more`,
+    more: (n: number) => `and ${format_count(n)} more`,
     send: (n: number) => (n === 0 ? "Send" : `Send ${count(n, "file", "files")}`),
     sending: (n: number, of: number) => `Sending ${Math.min(n, of)} of ${of}…`,
     sent: (n: number) => `${count(n, "file was", "files were")} put to their records.`,
@@ -808,7 +809,7 @@ export const texts = {
     lines: (n: number) => count(n, "line", "lines"),
     points: (n: number) => count(n, "point", "points"),
     elsewhere: (what: string) => `${what} on other models`,
-    and_elsewhere: (n: number) => `${n.toLocaleString("en-GB")} on other models`,
+    and_elsewhere: (n: number) => `${format_count(n)} on other models`,
     draw: "Draw…",
     draw_hint: "Saves the record and goes to the model, where new ones are drawn",
     remove: (what: string) => `Take out ${what}`,
@@ -897,7 +898,7 @@ export const texts = {
     more: "More about the table",
     record: (key: number) => `Record ${key}`,
     records: (n: number) => count(n, "record", "records"),
-    records_of: (n: number, all: number) => `${n.toLocaleString("en-GB")} of ${count(all, "record", "records")}`,
+    records_of: (n: number, all: number) => `${format_count(n)} of ${count(all, "record", "records")}`,
     empty: "There is no record yet.",
     nothing_matches: "No record matches the filter.",
     on_model: "On the model",
@@ -906,7 +907,7 @@ export const texts = {
     isolate: "Hide all other records",
     fly: "Go to where they are",
     nothing_painted: "None of them is painted on this model",
-    painted_of: (n: number, all: number) => `${n.toLocaleString("en-GB")} of ${count(all, "record", "records")} painted on this model`,
+    painted_of: (n: number, all: number) => `${format_count(n)} of ${count(all, "record", "records")} painted on this model`,
     sort: (column: string) => `Sort by ${column}; again turns the order round`,
     required: "Must have a value",
     yes: "yes",
@@ -987,7 +988,7 @@ export const texts = {
     csv_looking: "Looking into it…",
     csv_rows: "Rows",
     csv_import: "Import",
-    csv_done: (created: number, changed: number) => `${count(created, "record", "records")} made, ${changed.toLocaleString("en-GB")} changed.`,
+    csv_done: (created: number, changed: number) => `${count(created, "record", "records")} made, ${format_count(changed)} changed.`,
   },
 
   reports: {
@@ -997,7 +998,7 @@ export const texts = {
     left_out: (n: number) => `${count(n, "further label or broader term has", "further labels or broader terms have")} no place in a list and will be left out.`,
     good: "All of it fits. Nothing has been written yet.",
     same: "The table holds all of that already.",
-    wrong: (n: number) => `${n === 1 ? "One of them does" : `${n} of them do`} not fit, so none will be written. Mend the file and try it again.`,
+    wrong: (n: number) => `${plural(n, "One of them does", `${format_count(n)} of them do`)} not fit, so none will be written. Mend the file and try it again.`,
     line: "Line",
     term: "Term",
     column: "Column",
@@ -1022,7 +1023,7 @@ export const texts = {
     looking: "Looking into it…",
     unknown: (file: string) => `“${file}” is no list of terms that can be read here. Take CSV (.csv) or SKOS as Turtle (.ttl), N-Triples (.nt) or RDF/XML (.rdf).`,
     import: "Import",
-    done: (created: number, changed: number) => `${count(created, "term", "terms")} made, ${changed.toLocaleString("en-GB")} changed.`,
+    done: (created: number, changed: number) => `${count(created, "term", "terms")} made, ${format_count(changed)} changed.`,
     no_layer: (list: string) => `“${list}” was made, but no layer of it`,
   },
 
@@ -1061,7 +1062,7 @@ export const texts = {
     comment: "Comment",
     comment_hint: "What belongs here; shown beside the field",
     lost: (lost: number, converted: number) =>
-      `${count(lost, "value", "values")} could not be of the new kind and ${lost === 1 ? "was" : "were"} left out; ${count(converted, "value was", "values were")} taken over.`,
+      `${count(lost, "value", "values")} could not be of the new kind and ${plural(lost, "was", "were")} left out; ${count(converted, "value was", "values were")} taken over.`,
     lost_of: (keys: string) => `Records ${keys}`,
     take_back: "Take it back",
     keep: "Keep the new kind",
@@ -1242,6 +1243,34 @@ export const texts = {
       ["New layer → From the shape", "values computed from the mesh; they can be undone like strokes"],
       ["Layers ⋯ → Bring layers over", "what was painted on an earlier scan of the object, with a report of what was lost"],
     ],
+  },
+
+  settings: {
+    open: "Language…",
+    title: "Language",
+    language: "Language",
+    as_browser: "As the browser",
+    reload_title: "Change the language now?",
+    reload_lead: (n: number) => `The page is loaded anew. ${count(n, "change is", "changes are")} not saved yet and will be lost.`,
+    reload: "Change the language",
+  },
+
+  calls: {
+    unreachable: ["The server cannot be reached", "Check that the server runs and that you are connected to its network, then try again."],
+    statuses: {
+      401: ["Not signed in", "Sign in again."],
+      403: ["Not allowed", "Your account may not do this. Ask the owner of the site."],
+      404: ["Not found", "It may have been deleted. Reload the page."],
+      412: ["Changed by someone else", "Somebody changed this at the same time. Look at it again, then repeat your change."],
+      413: ["Too large", "The file or message is larger than the server accepts."],
+      429: ["Too fast", "The server asks for a pause. Try again in a moment."],
+      502: ["Unexpected answer", "The server's answer could not be read. Reload the page."],
+      503: ["The server is not ready", "It starts or lacks its database. Try again in a moment."],
+    },
+    other_status: (status: number) => `The server answered ${status}`,
+    other_status_detail: "Try again; if it stays, tell whoever runs the server.",
+    unreadable: "The server sent something this page cannot read",
+    unreadable_detail: (what: string) => `${what}. Reload the page; if it stays, the page and the server are of different versions.`,
   },
 
   problems: {

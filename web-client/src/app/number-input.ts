@@ -1,0 +1,56 @@
+// A field for one number, written as in the language of the page. The browser's own number fields follow the language of the browser instead, and
+// drop what they do not take: "1,5" typed into an English one becomes 15.
+
+import { html, noChange, type TemplateResult } from "lit";
+import { ifDefined } from "lit/directives/if-defined.js";
+import { read_number, typed_number } from "../core/locale";
+
+export interface NumberInput {
+  /** A text: as it was typed. NaN leaves what is in the field. */
+  value: number | string;
+  name?: string;
+  /** Where no <label> is around it. */
+  label?: string;
+  title?: string;
+  placeholder?: string | number;
+  /** Where the arrow keys end; what may be typed is for the listener to judge. */
+  min?: number;
+  max?: number;
+  wrong?: boolean;
+  disabled?: boolean;
+  /** With what is in the field, to be read by read_number(). */
+  typed?(text: string): void;
+  /** Once it is left, or Enter is pressed. */
+  changed?(text: string, input: HTMLInputElement): void;
+}
+
+export function number_input(field: NumberInput): TemplateResult {
+  const { value, typed, changed } = field;
+  const input_of = (event: Event): HTMLInputElement => event.target as HTMLInputElement;
+  return html`<input
+    type="text"
+    inputmode="decimal"
+    autocomplete="off"
+    name=${ifDefined(field.name)}
+    aria-label=${ifDefined(field.label)}
+    title=${ifDefined(field.title)}
+    placeholder=${ifDefined(field.placeholder)}
+    aria-invalid=${field.wrong ? "true" : "false"}
+    ?disabled=${field.disabled ?? false}
+    .value=${typeof value === "string" ? value : Number.isNaN(value) ? noChange : typed_number(value)}
+    @input=${(event: Event) => typed?.(input_of(event).value)}
+    @change=${(event: Event) => changed?.(input_of(event).value, input_of(event))}
+    @keydown=${(event: KeyboardEvent) => on_step(event, field)}
+  />`;
+}
+
+/** The arrow keys count up and down by one. */
+function on_step(event: KeyboardEvent, { min = -Infinity, max = Infinity }: NumberInput): void {
+  const step = event.key === "ArrowUp" ? 1 : event.key === "ArrowDown" ? -1 : 0;
+  const input = event.target as HTMLInputElement;
+  const now = read_number(input.value);
+  if (step === 0 || Number.isNaN(now)) return;
+  event.preventDefault();
+  input.value = typed_number(Number(Math.min(max, Math.max(min, now + step)).toPrecision(12)));
+  for (const type of ["input", "change"]) input.dispatchEvent(new Event(type, { bubbles: true, composed: true }));
+}
