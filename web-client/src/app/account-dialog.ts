@@ -47,7 +47,7 @@ export class StrataAccountDialog extends LitElement {
       }
       section + section {
         padding-top: 18px;
-        border-top: 1px solid var(--line);
+        border-top: var(--edge) solid var(--line);
       }
       h3 {
         font-size: 1rem;
@@ -83,7 +83,7 @@ export class StrataAccountDialog extends LitElement {
         padding: 7px 0;
       }
       li + li {
-        border-top: 1px solid var(--line);
+        border-top: var(--edge) solid var(--line);
       }
       li b {
         font-weight: 600;

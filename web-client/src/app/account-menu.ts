@@ -33,7 +33,7 @@ export class StrataAccountMenu extends LitElement {
         height: 30px;
         border-radius: 50%;
         background: var(--calm);
-        color: var(--surface);
+        color: var(--calm-ink);
         font-size: 0.76rem;
         font-weight: 700;
         letter-spacing: 0.02em;

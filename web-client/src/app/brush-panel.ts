@@ -57,7 +57,7 @@ export class StrataBrushPanel extends LitElement {
         gap: 12px;
       }
       .slant input:disabled + span {
-        opacity: 0.5;
+        opacity: var(--unavailable);
       }
       .locked {
         display: flex;

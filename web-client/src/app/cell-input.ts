@@ -61,7 +61,7 @@ export class StrataCellInput extends LitElement {
         width: 100%;
         min-height: 38px;
         padding: 6px 10px;
-        border: 1px solid var(--line-strong);
+        border: var(--edge) solid var(--line-strong);
         border-radius: var(--radius-small);
         background: var(--raised);
       }

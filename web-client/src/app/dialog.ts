@@ -30,7 +30,7 @@ export class StrataDialog extends LitElement {
         max-width: none;
         max-height: calc(100dvh - 24px);
         padding: 0;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: 14px;
         background: var(--surface);
         color: var(--ink);
@@ -47,13 +47,13 @@ export class StrataDialog extends LitElement {
         width: min(820px, calc(100vw - 24px));
       }
       dialog::backdrop {
-        background: rgb(20 24 24 / 0.42);
+        background: var(--veil);
       }
       :host([aside]) dialog {
         margin: 66px 14px auto auto;
       }
       :host([aside]) dialog::backdrop {
-        background: rgb(20 24 24 / 0.12);
+        background: var(--thin-veil);
       }
       .head {
         display: flex;
@@ -80,7 +80,7 @@ export class StrataDialog extends LitElement {
         justify-content: flex-end;
         gap: 10px;
         padding: 14px 24px 18px;
-        border-top: 1px solid var(--line);
+        border-top: var(--edge) solid var(--line);
       }
       footer.empty {
         display: none;

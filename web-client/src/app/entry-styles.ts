@@ -16,7 +16,7 @@ export const entry_styles = css`
     display: grid;
     gap: 18px;
     padding: 36px 34px 32px;
-    border: 1px solid var(--line);
+    border: var(--edge) solid var(--line);
     border-radius: 16px;
     background: var(--surface);
     box-shadow: var(--shadow);
@@ -51,7 +51,7 @@ export const entry_styles = css`
   }
   strata-preferences {
     padding-top: 16px;
-    border-top: 1px solid var(--line);
+    border-top: var(--edge) solid var(--line);
   }
   code {
     font: 0.8rem var(--mono);

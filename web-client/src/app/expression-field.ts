@@ -60,7 +60,7 @@ export class StrataExpressionField extends LitElement {
         margin: 2px 0 0;
         padding: 4px;
         list-style: none;
-        border: 1px solid var(--line-strong);
+        border: var(--edge) solid var(--line-strong);
         border-radius: var(--radius-small);
         background: var(--paper);
         box-shadow: var(--shadow);
@@ -98,7 +98,7 @@ export class StrataExpressionField extends LitElement {
       mark {
         background: none;
         color: inherit;
-        text-decoration: underline wavy var(--danger, #b3261e) 2px;
+        text-decoration: underline wavy var(--danger) 2px;
         white-space: pre;
       }
     `,

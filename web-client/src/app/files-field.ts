@@ -43,7 +43,7 @@ export class StrataFilesField extends LitElement {
         gap: 8px;
         align-items: stretch;
         padding: 8px;
-        border: 1px dashed var(--line-strong);
+        border: var(--edge) dashed var(--line-strong);
         border-radius: var(--radius-small);
       }
       .field.over {
@@ -63,7 +63,7 @@ export class StrataFilesField extends LitElement {
         display: grid;
         place-items: center;
         overflow: hidden;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: 6px;
         background: var(--raised);
         color: var(--ink-soft);

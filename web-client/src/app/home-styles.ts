@@ -10,7 +10,7 @@ export const home_styles = css`
     align-items: center;
     gap: 14px;
     padding: 12px clamp(16px, 4vw, 56px);
-    border-bottom: 1px solid var(--line);
+    border-bottom: var(--edge) solid var(--line);
     background: var(--surface);
   }
   .brand {
@@ -71,7 +71,7 @@ export const home_styles = css`
   li > a {
     display: block;
     overflow: hidden;
-    border: 1px solid var(--line);
+    border: var(--edge) solid var(--line);
     border-radius: 12px;
     background: var(--surface);
     color: inherit;
@@ -147,7 +147,7 @@ export const home_styles = css`
     align-items: center;
     gap: 16px;
     padding: 13px 16px;
-    border: 1px solid var(--line);
+    border: var(--edge) solid var(--line);
     border-radius: 12px;
     background: var(--surface);
   }

@@ -43,7 +43,7 @@ export class StrataHoverCard extends LitElement {
         width: max-content;
         max-width: 236px;
         padding: 9px 12px 10px;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
         box-shadow: var(--shadow);

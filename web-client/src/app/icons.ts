@@ -65,10 +65,10 @@ export const icon = (name: IconName): TemplateResult =>
   html`<svg class="glyph" viewBox="0 0 24 24" aria-hidden="true">${shapes[name]}</svg>`;
 
 export const logo = (): TemplateResult => html`<svg class="logo" viewBox="0 0 32 32" aria-hidden="true">
-  <rect width="32" height="32" rx="7" fill="#22302f" />
+  <rect width="32" height="32" rx="7" fill="var(--logo-ground)" />
   <g fill="none" stroke-width="2.6" stroke-linecap="round">
-    <path d="M5 11c4-3 7-3 11 0s7 3 11 0" stroke="#e8dfcf" />
-    <path d="M5 17c4-3 7-3 11 0s7 3 11 0" stroke="#d08b5b" />
-    <path d="M5 23c4-3 7-3 11 0s7 3 11 0" stroke="#6fa39b" />
+    <path d="M5 11c4-3 7-3 11 0s7 3 11 0" stroke="var(--logo-top)" />
+    <path d="M5 17c4-3 7-3 11 0s7 3 11 0" stroke="var(--logo-middle)" />
+    <path d="M5 23c4-3 7-3 11 0s7 3 11 0" stroke="var(--logo-bottom)" />
   </g>
 </svg>`;

@@ -17,7 +17,7 @@ export const layer_job_styles = css`
     gap: 8px;
     margin-bottom: 8px;
     padding: 10px 8px 12px 14px;
-    border: 1px solid var(--line);
+    border: var(--edge) solid var(--line);
     border-radius: var(--radius);
     background: var(--raised);
     font-size: 0.88rem;
@@ -57,7 +57,7 @@ export const layer_job_styles = css`
   }
   .job td {
     padding: 3px 0 3px 8px;
-    border-top: 1px solid var(--line);
+    border-top: var(--edge) solid var(--line);
     text-align: right;
     white-space: nowrap;
   }

@@ -62,7 +62,7 @@ export class StrataLayerPanel extends LitElement {
       }
       li.layer {
         position: relative;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
       }
@@ -133,7 +133,7 @@ export class StrataLayerPanel extends LitElement {
         display: grid;
         gap: 12px;
         padding: 6px 14px 14px;
-        border-top: 1px solid var(--line);
+        border-top: var(--edge) solid var(--line);
       }
       .more p.description {
         color: var(--ink-soft);
@@ -184,7 +184,7 @@ export class StrataLayerPanel extends LitElement {
         gap: 10px;
         justify-items: start;
         padding: 16px;
-        border: 1px dashed var(--line-strong);
+        border: var(--edge) dashed var(--line-strong);
         border-radius: var(--radius);
       }
       .empty p {

@@ -15,7 +15,7 @@ export const legend_styles = css`
   .legend-gradient {
     height: 14px;
     border-radius: 4px;
-    box-shadow: inset 0 0 0 1px rgb(0 0 0 / 0.18);
+    box-shadow: inset 0 0 0 1px var(--swatch-rim);
   }
   .legend-ticks {
     position: relative;
@@ -36,7 +36,7 @@ export const legend_styles = css`
     left: 50%;
     top: -5px;
     height: 4px;
-    border-left: 1px solid var(--line-strong);
+    border-left: var(--edge) solid var(--line-strong);
   }
   .legend-ticks span.first {
     transform: none;

@@ -34,9 +34,9 @@ export class StrataLightPad extends LitElement {
         position: relative;
         width: 112px;
         height: 112px;
-        border: 1px solid var(--line-strong);
+        border: var(--edge) solid var(--line-strong);
         border-radius: 50%;
-        background: radial-gradient(circle at var(--x) var(--y), #fff8e6 0, #cfc3ad 30%, #6d655a 72%, #45413b 100%);
+        background: radial-gradient(circle at var(--x) var(--y), var(--ball-lit) 0, var(--ball-bright) 30%, var(--ball-dim) 72%, var(--ball-dark) 100%);
         cursor: crosshair;
         touch-action: none;
       }
@@ -44,7 +44,7 @@ export class StrataLightPad extends LitElement {
         content: "";
         position: absolute;
         inset: 26%;
-        border: 1px dashed rgb(255 255 255 / 0.5);
+        border: 1px dashed var(--ball-rim);
         border-radius: 50%;
       }
       .handle {
@@ -54,10 +54,10 @@ export class StrataLightPad extends LitElement {
         width: 20px;
         height: 20px;
         margin: -10px 0 0 -10px;
-        border: 2px solid #fff;
+        border: 2px solid var(--mark-light);
         border-radius: 50%;
         background: var(--accent);
-        box-shadow: 0 1px 4px rgb(0 0 0 / 0.5);
+        box-shadow: 0 1px 4px var(--mark-shadow);
         pointer-events: none;
       }
       @media (pointer: coarse) {

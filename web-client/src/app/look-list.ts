@@ -52,7 +52,7 @@ export class StrataLookList extends LitElement {
         align-items: center;
         gap: 2px 8px;
         padding: 3px 4px 6px 2px;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
       }
@@ -63,7 +63,9 @@ export class StrataLookList extends LitElement {
         border-radius: 4px;
         background: var(--paper);
       }
-      li.off .name,
+      li.off .name {
+        color: var(--ink-soft);
+      }
       li.off img {
         opacity: 0.55;
       }

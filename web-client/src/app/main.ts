@@ -1,8 +1,9 @@
 import { page_language } from "../core/locale";
-import { chosen_language } from "./preferences";
+import { chosen_language, follow_theme } from "./preferences";
 import { load_texts } from "./texts";
 
 async function start(): Promise<void> {
+  follow_theme();
   const chosen = chosen_language();
   const language = page_language(chosen, navigator.languages);
   document.documentElement.lang = language;

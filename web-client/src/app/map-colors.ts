@@ -40,15 +40,17 @@ export class StrataMapColors extends LitElement {
       }
       td {
         padding: 4px 6px 4px 0;
-        border-top: 1px solid var(--line);
+        border-top: var(--edge) solid var(--line);
       }
       label {
         display: flex;
         align-items: center;
         gap: 9px;
       }
-      tr.off .swatch,
       tr.off .numeric {
+        color: var(--ink-soft);
+      }
+      tr.off .swatch {
         opacity: 0.5;
       }
       input[type="text"] {

@@ -34,7 +34,7 @@ export class StrataMarksField extends LitElement {
         align-items: center;
         gap: 8px;
         padding: 8px;
-        border: 1px solid var(--line-strong);
+        border: var(--edge) solid var(--line-strong);
         border-radius: var(--radius-small);
       }
       .mark {
@@ -42,7 +42,7 @@ export class StrataMarksField extends LitElement {
         align-items: center;
         gap: 6px;
         padding-left: 9px;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: var(--radius-small);
         background: var(--raised);
         font-size: 0.9rem;

@@ -60,7 +60,7 @@ export class StrataMenu extends LitElement {
       ::slotted(hr) {
         margin: 5px 0;
         border: 0;
-        border-top: 1px solid var(--line);
+        border-top: var(--edge) solid var(--line);
       }
     `,
   ];

@@ -29,7 +29,7 @@ export const model_styles = css`
     display: grid;
     min-width: 0;
     min-height: 0;
-    border-top: 1px solid var(--line-strong);
+    border-top: var(--edge) solid var(--line-strong);
   }
   header {
     grid-area: header;
@@ -37,7 +37,7 @@ export const model_styles = css`
     align-items: center;
     gap: 8px;
     padding: 0 12px;
-    border-bottom: 1px solid var(--line);
+    border-bottom: var(--edge) solid var(--line);
     background: var(--surface);
   }
   .home {
@@ -130,7 +130,7 @@ export const model_styles = css`
     width: max-content;
     max-width: calc(100% - 28px);
     padding: 8px 8px 8px 14px;
-    border: 1px solid var(--warn);
+    border: var(--edge) solid var(--warn);
     border-radius: var(--radius);
     background: var(--warn-soft);
     color: var(--warn);
@@ -171,7 +171,7 @@ export const model_styles = css`
     grid-area: panel;
     position: relative;
     min-height: 0;
-    border-left: 1px solid var(--line);
+    border-left: var(--edge) solid var(--line);
     background: var(--surface);
   }
   .scroll {
@@ -184,7 +184,7 @@ export const model_styles = css`
     padding: 15px 0 17px;
   }
   aside section + section {
-    border-top: 1px solid var(--line);
+    border-top: var(--edge) solid var(--line);
   }
 
   @media (max-width: 820px) {
@@ -215,9 +215,9 @@ export const model_styles = css`
       display: grid;
       max-height: 44dvh;
       border-left: 0;
-      border-top: 1px solid var(--line);
+      border-top: var(--edge) solid var(--line);
       border-radius: 16px 16px 0 0;
-      box-shadow: 0 -6px 20px rgb(0 0 0 / 0.1);
+      box-shadow: var(--shadow-above);
       z-index: 2;
     }
     .scroll {

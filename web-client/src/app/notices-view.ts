@@ -39,7 +39,7 @@ export class StrataNotices extends LitElement {
         align-items: flex-start;
         gap: 10px;
         padding: 11px 8px 11px 14px;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-left: 4px solid var(--calm);
         border-radius: var(--radius);
         background: var(--raised);

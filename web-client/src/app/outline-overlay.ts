@@ -22,13 +22,13 @@ export function outline_overlay(session: ModelSession, { points, corners, pointe
   const at_first =
     closable && first && pointer && Math.hypot(pointer[0] - first[0], pointer[1] - first[1]) <= kSnap_px * scale;
   return html`<svg class="over" aria-hidden="true">
-      ${area ? svg`<polygon points=${line} fill=${color ? css_color(color) : "#fff"} fill-opacity="0.28" stroke="none" />` : nothing}
-      <polyline points=${line} fill="none" stroke="rgb(20 26 26 / 0.6)" stroke-width="3.4" stroke-linejoin="round" />
-      <polyline points=${line} fill="none" stroke=${area || !color ? "#fff" : css_color(color)} stroke-width="1.6" stroke-linejoin="round" />
+      ${area ? svg`<polygon points=${line} fill=${color ? css_color(color) : "var(--mark-light)"} fill-opacity="0.28" stroke="none" />` : nothing}
+      <polyline points=${line} fill="none" stroke="var(--mark-rim)" stroke-width="3.4" stroke-linejoin="round" />
+      <polyline points=${line} fill="none" stroke=${area || !color ? "var(--mark-light)" : css_color(color)} stroke-width="1.6" stroke-linejoin="round" />
       ${corners.map(
         ([x, y], index) =>
-          svg`<circle cx=${x / scale} cy=${y / scale} r=${index === 0 && at_first ? 8 : 4} fill=${index === 0 ? "#20292a" : "#fff"}
-            stroke=${index === 0 ? "#fff" : "#20292a"} stroke-width="1.5" />`,
+          svg`<circle cx=${x / scale} cy=${y / scale} r=${index === 0 && at_first ? 8 : 4} fill=${index === 0 ? "var(--mark-dark)" : "var(--mark-light)"}
+            stroke=${index === 0 ? "var(--mark-light)" : "var(--mark-dark)"} stroke-width="1.5" />`,
       )}
     </svg>
     ${area ? nothing : length_so_far(session, pointer ?? points[points.length - 1]!)}`;

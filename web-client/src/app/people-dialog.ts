@@ -63,7 +63,7 @@ export class StrataPeopleDialog extends LitElement {
         border-radius: var(--radius);
       }
       form {
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
       }
       .fields {
         display: grid;
@@ -96,7 +96,7 @@ export class StrataPeopleDialog extends LitElement {
       }
       td {
         padding: 7px 10px 7px 0;
-        border-top: 1px solid var(--line);
+        border-top: var(--edge) solid var(--line);
       }
       td:last-child {
         width: 36px;
@@ -169,7 +169,7 @@ export class StrataPeopleDialog extends LitElement {
           align-items: center;
           gap: 6px 12px;
           padding: 10px 0;
-          border-top: 1px solid var(--line);
+          border-top: var(--edge) solid var(--line);
         }
         td {
           padding: 0;

@@ -66,7 +66,7 @@ export class StrataPhotosDialog extends LitElement {
       }
       td {
         padding: 4px 8px 4px 0;
-        border-bottom: 1px solid var(--line);
+        border-bottom: var(--edge) solid var(--line);
         overflow-wrap: anywhere;
       }
       td.left {

@@ -5,7 +5,7 @@ import { customElement, query } from "lit/decorators.js";
 import { kPageLanguages } from "../core/locale";
 import { name_of_language } from "../core/languages";
 import { ask } from "./dialog";
-import { chosen_language, keep_language } from "./preferences";
+import { chosen_language, chosen_theme, keep_language, keep_theme, kThemes } from "./preferences";
 import { discard_unsaved, unsaved_changes } from "./sessions";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -15,6 +15,7 @@ const titled = (name: string): string => name.slice(0, 1).toUpperCase() + name.s
 
 @customElement("strata-preferences")
 export class StrataPreferences extends LitElement {
+  @query("select[name=theme]") private theme_!: HTMLSelectElement;
   @query("select[name=language]") private language_!: HTMLSelectElement;
 
   static override styles = [
@@ -38,6 +39,12 @@ export class StrataPreferences extends LitElement {
         ${kPageLanguages.map(
           (language) => html`<option value=${language} lang=${language} ?selected=${language === chosen}>${titled(name_of_language(language))}</option>`,
         )}
+      </select>
+    </label>
+    <label class="field">
+      <span>${words.theme}</span>
+      <select name="theme" @change=${() => keep_theme(kThemes.find((theme) => theme === this.theme_.value) ?? "system")}>
+        ${kThemes.map((theme) => html`<option value=${theme} ?selected=${theme === chosen_theme()}>${words.themes[theme]}</option>`)}
       </select>
     </label>`;
   }

@@ -1,8 +1,12 @@
-// What this person chose for the page at this browser: its language. Nothing of it is told to the server.
+// What this person chose for the page at this browser: its language and its theme. Nothing of it is told to the server.
 
 import { kPageLanguages, type PageLanguage } from "../core/locale";
 
 const kLanguageKey = "strata.language";
+const kThemeKey = "strata.theme";
+
+export const kThemes = ["system", "light", "dark", "contrast"] as const;
+export type Theme = (typeof kThemes)[number];
 
 /** Null: as the browser. */
 export function chosen_language(): PageLanguage | null {
@@ -14,4 +18,34 @@ export function chosen_language(): PageLanguage | null {
 export function keep_language(language: PageLanguage | null): void {
   if (language === null) localStorage.removeItem(kLanguageKey);
   else localStorage.setItem(kLanguageKey, language);
+}
+
+export function chosen_theme(): Theme {
+  const kept = localStorage.getItem(kThemeKey);
+  return kThemes.find((theme) => theme === kept) ?? "system";
+}
+
+/** Is seen at once. */
+export function keep_theme(theme: Theme): void {
+  if (theme === "system") localStorage.removeItem(kThemeKey);
+  else localStorage.setItem(kThemeKey, theme);
+  show_theme();
+}
+
+/** The one that holds: who asks their system for more contrast gets it, also from a dark one. */
+export const theme_of = (chosen: Theme, system: { dark: boolean; contrast: boolean }): Exclude<Theme, "system"> =>
+  chosen !== "system" ? chosen : system.contrast ? "contrast" : system.dark ? "dark" : "light";
+
+const dark = "(prefers-color-scheme: dark)";
+const contrast = "(prefers-contrast: more)";
+
+function show_theme(): void {
+  const system = { dark: matchMedia(dark).matches, contrast: matchMedia(contrast).matches };
+  document.documentElement.dataset["theme"] = theme_of(chosen_theme(), system);
+}
+
+/** Shows the theme, and follows the system from then on. */
+export function follow_theme(): void {
+  for (const query of [dark, contrast]) matchMedia(query).addEventListener("change", show_theme);
+  show_theme();
 }

@@ -38,7 +38,7 @@ export class StrataRecordCard extends LitElement {
         display: grid;
         gap: 8px;
         padding: 8px 8px 10px 13px;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
         box-shadow: var(--shadow);

@@ -48,12 +48,12 @@ export class StrataRecordChooser extends LitElement {
         gap: 4px;
         min-height: 38px;
         padding: 3px 4px;
-        border: 1px solid var(--line-strong);
+        border: var(--edge) solid var(--line-strong);
         border-radius: var(--radius-small);
         background: var(--raised);
       }
       .field:focus-within {
-        outline: 2px solid var(--accent);
+        outline: var(--focus);
       }
       .field.invalid {
         border-color: var(--danger);
@@ -99,7 +99,7 @@ export class StrataRecordChooser extends LitElement {
         padding: 4px;
         max-height: 260px;
         overflow: auto;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: var(--radius-small);
         background: var(--raised);
         color: var(--ink);

@@ -42,7 +42,7 @@ export const report_styles = css`
   .wrong th,
   .wrong td {
     padding: 4px 8px 4px 0;
-    border-bottom: 1px solid var(--line);
+    border-bottom: var(--edge) solid var(--line);
     vertical-align: top;
   }
 `;

@@ -35,9 +35,9 @@ export class StrataShapeDialog extends LitElement {
         justify-self: center;
         width: 160px;
         height: 160px;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: var(--radius);
-        background: #fff;
+        background: var(--mark-light); /* the shape is drawn in black, as the brush will see it */
       }
       .segments {
         display: flex;

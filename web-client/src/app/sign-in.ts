@@ -28,7 +28,7 @@ export class StrataSignIn extends LitElement {
     css`
       details {
         padding-top: 16px;
-        border-top: 1px solid var(--line);
+        border-top: var(--edge) solid var(--line);
       }
       summary {
         display: flex;

@@ -90,7 +90,7 @@ export class StrataStage extends LitElement {
         position: absolute;
         pointer-events: none;
         opacity: 0.62;
-        filter: drop-shadow(0 0 1px #fff) drop-shadow(0 0 1px rgb(20 26 26));
+        filter: drop-shadow(0 0 1px var(--mark-light)) drop-shadow(0 0 1px var(--mark-dark));
       }
       .shape-cursor i {
         display: block;
@@ -106,8 +106,8 @@ export class StrataStage extends LitElement {
       .length b {
         padding: 3px 9px;
         border-radius: 99px;
-        background: rgb(20 26 26 / 0.78);
-        color: #fff;
+        background: var(--mark-ground);
+        color: var(--mark-light);
         font-size: 0.82rem;
         font-weight: 600;
         white-space: nowrap;
@@ -117,25 +117,25 @@ export class StrataStage extends LitElement {
         inset: 0;
         display: grid;
         place-items: center;
-        color: var(--ink-soft);
+        color: var(--on-stage);
         pointer-events: none;
       }
       .scale {
         position: absolute;
         left: 18px;
         bottom: 16px;
-        color: #20292a;
+        color: var(--on-stage);
         font-size: 0.8rem;
         font-weight: 600;
         pointer-events: none;
         padding: 3px 8px 5px;
         border-radius: 5px;
-        background: rgb(255 255 255 / 0.72);
+        background: var(--on-stage-ground);
       }
       .scale i {
         display: block;
         height: 6px;
-        border: 2px solid #20292a;
+        border: 2px solid var(--on-stage);
         border-top: 0;
       }
       @media (max-width: 820px) {
@@ -237,10 +237,10 @@ export class StrataStage extends LitElement {
             fill-opacity="0.32" stroke=${stroke} stroke-width=${width} stroke-dasharray=${dashes} />`;
     const dashes = erases ? "5 4" : "none";
     return html`<svg class="over" aria-hidden="true">
-      ${outline(3, "rgb(20 26 26 / 0.55)", "none", true)} ${outline(1.5, "#fff", dashes, false)}
+      ${outline(3, "var(--mark-rim)", "none", true)} ${outline(1.5, "var(--mark-light)", dashes, false)}
       ${radius < 4
-        ? svg`<path d="M${x - 10} ${y}h6M${x + 4} ${y}h6M${x} ${y - 10}v6M${x} ${y + 4}v6" stroke="#20292a" stroke-width="1.5" />`
-        : svg`<circle cx=${x} cy=${y} r="1.2" fill="#fff" />`}
+        ? svg`<path d="M${x - 10} ${y}h6M${x + 4} ${y}h6M${x} ${y - 10}v6M${x} ${y + 4}v6" stroke="var(--mark-dark)" stroke-width="1.5" />`
+        : svg`<circle cx=${x} cy=${y} r="1.2" fill="var(--mark-light)" />`}
     </svg>`;
   }
 
@@ -252,7 +252,7 @@ export class StrataStage extends LitElement {
       width: `${2 * radius}px`,
       height: `${2 * radius}px`,
     };
-    const tint = { "mask-image": `url(${shape_picture(tool)})`, background: color ? css_color(color) : "#fff" };
+    const tint = { "mask-image": `url(${shape_picture(tool)})`, background: color ? css_color(color) : "var(--mark-light)" };
     return html`<div class="shape-cursor" aria-hidden="true" ${styled(square)}><i ${styled(tint)}></i></div>`;
   }
 

@@ -58,14 +58,14 @@ export class StrataStatisticsDialog extends LitElement {
         height: 9px;
         margin-top: 4px;
         border-radius: 3px;
-        background: color-mix(in srgb, var(--ink) 8%, transparent);
+        background: var(--hover);
       }
       .bars .track i {
         display: block;
         height: 100%;
         min-width: 2px;
         border-radius: 3px;
-        box-shadow: inset 0 0 0 1px rgb(0 0 0 / 0.16);
+        box-shadow: inset 0 0 0 1px var(--swatch-rim);
       }
       dl {
         display: grid;
@@ -87,7 +87,7 @@ export class StrataStatisticsDialog extends LitElement {
         align-items: flex-end;
         gap: 1px;
         height: 120px;
-        border-bottom: 1px solid var(--line-strong);
+        border-bottom: var(--edge) solid var(--line-strong);
       }
       .histogram i {
         flex: 1;

@@ -53,7 +53,7 @@ export class StrataApp extends LitElement {
         z-index: 40;
         display: grid;
         padding: 20px;
-        background: color-mix(in srgb, var(--paper) 82%, transparent);
+        background: var(--drop);
         pointer-events: none;
       }
       .drop-target > div {

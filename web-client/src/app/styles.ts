@@ -43,7 +43,7 @@ export const shared_styles = css`
     gap: 0.5em;
     min-height: 36px;
     padding: 0 14px;
-    border: 1px solid var(--line);
+    border: var(--edge) solid var(--line);
     border-radius: var(--radius-small);
     background: var(--raised);
     color: inherit;
@@ -59,7 +59,7 @@ export const shared_styles = css`
     border-color: var(--line-strong);
   }
   button:disabled {
-    opacity: 0.45;
+    opacity: var(--unavailable);
     cursor: default;
   }
   button.primary {
@@ -75,7 +75,7 @@ export const shared_styles = css`
   button.danger {
     border-color: var(--danger);
     background: var(--danger);
-    color: var(--surface);
+    color: var(--danger-ink);
     font-weight: 600;
   }
   button.quiet {
@@ -83,7 +83,7 @@ export const shared_styles = css`
     background: transparent;
   }
   button.quiet:hover:not(:disabled) {
-    background: color-mix(in srgb, var(--ink) 8%, transparent);
+    background: var(--hover);
   }
   button.icon {
     width: 36px;
@@ -103,7 +103,7 @@ export const shared_styles = css`
     text-underline-offset: 2px;
   }
   :focus-visible {
-    outline: 2px solid var(--accent);
+    outline: var(--focus);
     outline-offset: 2px;
   }
   input[type="text"],
@@ -113,7 +113,7 @@ export const shared_styles = css`
     width: 100%;
     min-height: 38px;
     padding: 6px 10px;
-    border: 1px solid var(--line-strong);
+    border: var(--edge) solid var(--line-strong);
     border-radius: var(--radius-small);
     background: var(--raised);
   }
@@ -141,7 +141,7 @@ export const shared_styles = css`
     height: 38px;
     flex: none;
     padding: 3px;
-    border: 1px solid var(--line-strong);
+    border: var(--edge) solid var(--line-strong);
     border-radius: var(--radius-small);
     background: var(--raised);
     cursor: pointer;
@@ -188,12 +188,12 @@ export const shared_styles = css`
     width: 16px;
     height: 16px;
     border-radius: 4px;
-    box-shadow: inset 0 0 0 1px rgb(0 0 0 / 0.18);
+    box-shadow: inset 0 0 0 1px var(--swatch-rim);
   }
   .segments {
     display: inline-flex;
     padding: 2px;
-    border: 1px solid var(--line);
+    border: var(--edge) solid var(--line);
     border-radius: var(--radius-small);
     background: var(--paper);
   }
@@ -208,7 +208,8 @@ export const shared_styles = css`
   }
   .segments button[aria-checked="true"],
   .segments button[aria-pressed="true"] {
-    background: var(--raised);
+    background: var(--chosen);
+    color: var(--chosen-ink);
     box-shadow: 0 0 0 1px var(--line-strong);
     font-weight: 600;
   }
@@ -236,6 +237,21 @@ export const shared_styles = css`
     *::after {
       transition: none !important;
       animation: none !important;
+    }
+  }
+  @media (forced-colors: active) {
+    .swatch {
+      forced-color-adjust: none;
+    }
+    [aria-pressed="true"],
+    [aria-checked="true"],
+    [aria-selected="true"] {
+      outline: 3px solid Highlight;
+      outline-offset: -3px;
+    }
+    :focus-visible {
+      outline: 3px solid CanvasText;
+      outline-offset: 2px;
     }
   }
   @media (pointer: coarse) {

@@ -17,7 +17,7 @@ export const table_styles = css`
     align-items: center;
     gap: 6px;
     padding: 5px 8px 5px 14px;
-    border-bottom: 1px solid var(--line);
+    border-bottom: var(--edge) solid var(--line);
   }
   .bar h2 {
     font-size: 1.02rem;
@@ -104,7 +104,7 @@ export const table_styles = css`
     display: grid;
     gap: 2px;
     padding: 6px 14px;
-    border-bottom: 1px solid var(--line);
+    border-bottom: var(--edge) solid var(--line);
     background: var(--danger-soft);
   }
   .wrong code {
@@ -142,7 +142,7 @@ export const table_styles = css`
     top: 0;
     grid-auto-rows: 33px;
     height: 34px;
-    border-bottom: 1px solid var(--line-strong);
+    border-bottom: var(--edge) solid var(--line-strong);
     background: var(--paper);
   }
   .body {
@@ -152,7 +152,7 @@ export const table_styles = css`
     position: absolute;
     left: 0;
     height: var(--row);
-    border-bottom: 1px solid var(--line);
+    border-bottom: var(--edge) solid var(--line);
     background: var(--raised);
   }
   .line.chosen-row,
@@ -164,7 +164,7 @@ export const table_styles = css`
     align-items: center;
     min-width: 0;
     padding: 0 9px;
-    border-right: 1px solid var(--line);
+    border-right: var(--edge) solid var(--line);
     cursor: default;
   }
   .cell.number {
@@ -270,7 +270,7 @@ export const table_styles = css`
     width: max-content;
     max-width: 380px;
     padding: 8px 12px;
-    border: 1px solid var(--danger);
+    border: var(--edge) solid var(--danger);
     border-radius: var(--radius-small);
     background: var(--raised);
     box-shadow: var(--shadow);

@@ -43,7 +43,7 @@ export class StrataTemplateDialog extends LitElement {
         align-items: start;
         gap: 6px 14px;
         padding: 13px 14px;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
       }

@@ -90,7 +90,7 @@ export class StrataTermChooser extends LitElement {
       .tree {
         max-height: ${kTree_px}px;
         overflow: auto;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: var(--radius-small);
         background: var(--raised);
       }
@@ -110,7 +110,7 @@ export class StrataTermChooser extends LitElement {
         cursor: pointer;
       }
       .term:hover {
-        background: color-mix(in srgb, var(--ink) 6%, transparent);
+        background: var(--hover);
       }
       .term.above-found {
         color: var(--ink-soft);

@@ -51,7 +51,7 @@ export class StrataTermsDialog extends LitElement {
         align-items: center;
         gap: 12px;
         padding: 12px;
-        border: 1px dashed var(--line-strong);
+        border: var(--edge) dashed var(--line-strong);
         border-radius: var(--radius-small);
       }
       .file.over {

@@ -45,7 +45,7 @@ export class StrataThumbnail extends LitElement {
         inset: 0;
         display: grid;
         place-items: center;
-        color: var(--ink-soft);
+        color: var(--on-stage);
         font-size: 0.85rem;
       }
     `,

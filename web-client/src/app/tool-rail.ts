@@ -45,7 +45,7 @@ export class StrataToolRail extends LitElement {
         gap: 4px;
         padding: 10px 8px;
         background: var(--surface);
-        border-right: 1px solid var(--line);
+        border-right: var(--edge) solid var(--line);
       }
       button.icon {
         width: 42px;
@@ -63,7 +63,7 @@ export class StrataToolRail extends LitElement {
         width: 28px;
         margin: 5px 0;
         border: 0;
-        border-top: 1px solid var(--line);
+        border-top: var(--edge) solid var(--line);
       }
       kbd {
         margin-left: auto;
@@ -79,13 +79,13 @@ export class StrataToolRail extends LitElement {
           gap: 2px;
           padding: 6px;
           border-right: 0;
-          border-top: 1px solid var(--line);
+          border-top: var(--edge) solid var(--line);
         }
         hr {
           width: 0;
           height: 26px;
           margin: 0 3px;
-          border-left: 1px solid var(--line);
+          border-left: var(--edge) solid var(--line);
           border-top: 0;
         }
         button.icon,

@@ -32,9 +32,9 @@ export class StrataValueReadout extends LitElement {
         display: grid;
         gap: 4px;
         padding: 9px 13px 10px;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: var(--radius);
-        background: color-mix(in srgb, var(--raised) 93%, transparent);
+        background: var(--hint);
         box-shadow: var(--shadow);
         font-size: 0.86rem;
       }

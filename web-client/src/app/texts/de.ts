@@ -1150,10 +1150,12 @@ export const texts = {
   },
 
   settings: {
-    open: "Sprache …",
-    title: "Sprache",
+    open: "Sprache und Farbschema …",
+    title: "Sprache und Farbschema",
     language: "Sprache",
     as_browser: "Wie der Browser",
+    theme: "Farbschema",
+    themes: { system: "Wie das System", light: "Hell", dark: "Dunkel", contrast: "Hoher Kontrast" },
     reload_title: "Sprache jetzt wechseln?",
     reload_lead: (n) => `Die Seite wird neu geladen. ${changes(n)} ${plural(n, "ist", "sind")} noch nicht gespeichert und ${plural(n, "geht", "gehen")} verloren.`,
     reload: "Sprache wechseln",

@@ -1246,10 +1246,12 @@ export const texts = {
   },
 
   settings: {
-    open: "Language…",
-    title: "Language",
+    open: "Language and theme…",
+    title: "Language and theme",
     language: "Language",
     as_browser: "As the browser",
+    theme: "Theme",
+    themes: { system: "As the system", light: "Light", dark: "Dark", contrast: "High contrast" },
     reload_title: "Change the language now?",
     reload_lead: (n: number) => `The page is loaded anew. ${count(n, "change is", "changes are")} not saved yet and will be lost.`,
     reload: "Change the language",

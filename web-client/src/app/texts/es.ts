@@ -1156,10 +1156,12 @@ export const texts = {
   },
 
   settings: {
-    open: "Idioma…",
-    title: "Idioma",
+    open: "Idioma y tema…",
+    title: "Idioma y tema",
     language: "Idioma",
     as_browser: "Como el navegador",
+    theme: "Tema",
+    themes: { system: "Como el sistema", light: "Claro", dark: "Oscuro", contrast: "Alto contraste" },
     reload_title: "¿Cambiar el idioma ahora?",
     reload_lead: (n) => `La página se carga de nuevo. ${changes(n)} todavía sin guardar ${plural(n, "se perderá", "se perderán")}.`,
     reload: "Cambiar el idioma",
