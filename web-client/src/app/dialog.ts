@@ -1,6 +1,6 @@
 // <strata-dialog>: a modal sheet with a heading, content and a row of buttons (slot "actions").
 
-import { css, html, LitElement, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
 import { icon } from "./icons";
 import { shared_styles } from "./styles";
@@ -17,6 +17,8 @@ export class StrataDialog extends LitElement {
   @property({ type: Boolean, reflect: true }) wide = false;
   /** For tables. */
   @property({ type: Boolean, reflect: true }) broad = false;
+  /** Holds words to read and hardly a control: it is scrolled by keys as well. */
+  @property({ type: Boolean }) prose = false;
   /** Leaves the picture behind it visible: for questions about what is seen. */
   @property({ type: Boolean, reflect: true }) aside = false;
 
@@ -73,6 +75,7 @@ export class StrataDialog extends LitElement {
         gap: 16px;
         padding: 14px 24px 20px;
         overflow: auto;
+        outline-offset: -3px;
       }
       footer {
         display: flex;
@@ -125,7 +128,14 @@ export class StrataDialog extends LitElement {
           ${icon("close")}
         </button>
       </div>
-      <div class="content"><slot></slot></div>
+      <div
+        class="content"
+        tabindex=${this.prose ? 0 : nothing}
+        role=${this.prose ? "region" : nothing}
+        aria-labelledby=${this.prose ? "heading" : nothing}
+      >
+        <slot></slot>
+      </div>
       <footer class="empty"><slot name="actions" @slotchange=${this.on_actions}></slot></footer>
     </dialog>`;
   }

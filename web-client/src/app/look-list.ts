@@ -28,9 +28,11 @@ export class StrataLookList extends LitElement {
     css`
       :host {
         display: grid;
+        grid-template-columns: minmax(0, 1fr);
         gap: 10px;
       }
       .row {
+        flex-wrap: wrap;
         min-height: 30px;
       }
       h3 {

@@ -30,10 +30,12 @@ export class StrataMenu extends LitElement {
         inset: auto;
         margin: 0;
         padding: 5px;
+        width: max-content;
         min-width: 180px;
         max-height: calc(100dvh - 16px);
+        max-width: calc(100vw - 16px);
         overflow-y: auto;
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
         color: var(--ink);
@@ -53,6 +55,8 @@ export class StrataMenu extends LitElement {
         display: flex !important;
         width: 100%;
         justify-content: flex-start !important;
+        text-align: start;
+        white-space: normal !important;
       }
       ::slotted([slot="face"]) {
         pointer-events: none; /* the button's own */
@@ -75,14 +79,18 @@ export class StrataMenu extends LitElement {
       >
         <slot name="face">${icon(this.glyph)}</slot>
       </button>
-      <div class="list" popover="auto" role="menu" @click=${this.close} @keydown=${this.on_key} @toggle=${this.on_toggle}>
-        <slot></slot>
+      <div class="list" popover="auto" role="menu" @click=${this.closing_} @keydown=${this.on_key} @beforetoggle=${this.on_before_toggle} @toggle=${this.on_toggle}>
+        <slot @click=${(event: Event) => event.stopPropagation()}></slot>
       </div>`;
   }
 
   private open(event: Event): void {
     event.stopPropagation();
     this.list_.showPopover();
+    this.place();
+  }
+
+  private readonly place = (): void => {
     const anchor = this.button_.getBoundingClientRect();
     const box = this.list_.getBoundingClientRect();
     const margin = 8;
@@ -90,19 +98,32 @@ export class StrataMenu extends LitElement {
     const top = this.side === "right" ? anchor.top : anchor.bottom + 4;
     this.list_.style.left = `${Math.max(margin, Math.min(left, innerWidth - box.width - margin))}px`;
     this.list_.style.top = `${Math.max(margin, Math.min(top, innerHeight - box.height - margin))}px`;
-  }
+  };
 
-  private close(event: Event): void {
-    event.stopPropagation();
-    this.list_.hidePopover();
-  }
+  /** Before the command hears of it: a dialog that it opens gives the focus back to this menu's button, which has it by then. */
+  private readonly closing_ = { handleEvent: (): void => this.list_.hidePopover(), capture: true };
 
   private items(): HTMLButtonElement[] {
     return [...this.querySelectorAll("button")].filter((button) => !button.disabled);
   }
 
+  /** The browser does not give the focus back from slotted buttons, which are no descendants of the list. */
+  private on_before_toggle(event: ToggleEvent): void {
+    if (event.newState === "closed" && this.items().some((item) => item.matches(":focus"))) this.button_.focus();
+  }
+
   private on_toggle(event: ToggleEvent): void {
-    if (event.newState === "open") this.items()[0]?.focus();
+    if (event.newState === "open") {
+      addEventListener("resize", this.place);
+      this.items()[0]?.focus();
+    } else {
+      removeEventListener("resize", this.place);
+    }
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    removeEventListener("resize", this.place);
   }
 
   private on_key(event: KeyboardEvent): void {

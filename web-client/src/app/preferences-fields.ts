@@ -23,7 +23,7 @@ export class StrataPreferences extends LitElement {
     css`
       :host {
         display: grid;
-        grid-template-columns: 1fr 1fr;
+        grid-template-columns: repeat(auto-fit, minmax(170px, 1fr));
         gap: 12px;
       }
     `,

@@ -50,7 +50,7 @@ export class StrataHelpSheet extends LitElement {
     const part = (title: string, rows: readonly (readonly [string, string])[]): TemplateResult =>
       html`<h3>${title}</h3>
         <dl class="keys">${rows.map(([keys, does]) => html`<dt>${keys}</dt><dd>${does}</dd>`)}</dl>`;
-    return html`<strata-dialog wide heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog wide prose heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       ${part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
       ${part(words.brush, words.brush_rows)} ${part(words.terms, words.terms_rows)} ${part(words.table, words.table_rows)} ${part(words.layers, words.layer_rows)}
     </strata-dialog>`;
@@ -86,7 +86,7 @@ export class StrataAboutSheet extends LitElement {
       [words.credit, model.credit],
       [words.repairs, model.repairs.map((repair) => `${repair.what}: ${format_count(repair.count)}`).join("; ")],
     ];
-    return html`<strata-dialog wide heading=${model.name} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog wide prose heading=${model.name} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <dl>
         ${rows.map(([name, value]) => (value ? html`<dt>${name}</dt><dd class="numeric">${value}</dd>` : nothing))}
         ${model.source_files.length > 0

@@ -192,6 +192,8 @@ export const shared_styles = css`
   }
   .segments {
     display: inline-flex;
+    flex-wrap: wrap;
+    max-width: 100%;
     padding: 2px;
     border: var(--edge) solid var(--line);
     border-radius: var(--radius-small);

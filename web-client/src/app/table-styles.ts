@@ -125,6 +125,10 @@ export const table_styles = css`
     outline: 0;
     scrollbar-gutter: stable;
   }
+  .scroller:focus-visible:not(:has(.cell.active)) {
+    outline: var(--focus);
+    outline-offset: -3px;
+  }
   .scroller:focus-visible .cell.active,
   .scroller:focus-within .cell.active {
     box-shadow: inset 0 0 0 2px var(--accent);

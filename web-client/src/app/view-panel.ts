@@ -68,11 +68,13 @@ export class StrataViewPanel extends LitElement {
       }
       .parts {
         display: grid;
+        grid-template-columns: minmax(0, 1fr);
         gap: 18px;
         margin-top: 10px;
       }
       .part {
         display: grid;
+        grid-template-columns: minmax(0, 1fr);
         gap: 10px;
       }
       .part > .row {

@@ -38,12 +38,13 @@ export class StrataWhereDialog extends LitElement {
       }
       dl {
         display: grid;
-        grid-template-columns: auto 1fr;
+        grid-template-columns: minmax(0, 2fr) minmax(0, 3fr);
         gap: 4px 16px;
         margin: 0;
         font-size: 0.88rem;
       }
       dt {
+        overflow-wrap: anywhere;
         font-family: var(--mono);
       }
       dd {

@@ -1,0 +1,318 @@
+// Every screen and dialog of the page: what axe-core finds in it, in English and German; its contrast in each theme; no overflow in the longest
+// language, in four sizes of the window; keyboards reach every control, see where they are, stay in dialogs and come back from them.
+import assert from "node:assert/strict";
+import { mkdirSync } from "node:fs";
+import { join } from "node:path";
+import { Browser } from "../support/browser.mjs";
+import { active, findings, overflows, walk } from "../support/accessible.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+import { texts_of } from "../support/texts.mjs";
+
+const kSizes = [[390, 844], [820, 1180], [1280, 800], [3840, 2160]];
+const kShownSizes = new Set([390, 1280]); // whose pictures are kept
+const kThemes = ["light", "dark", "contrast"];
+const output = process.env.STRATA_TEST_OUTPUT && join(process.env.STRATA_TEST_OUTPUT, "accessibility");
+if (output) mkdirSync(output, { recursive: true });
+
+const browsers = { en: await Browser.open(), de: await Browser.open({ locale: "de-DE" }) };
+const server = new StrataServer({ demo: true });
+const checked = [];
+const wrong = [];
+let step = "start";
+
+/** All screens, in the words of a language. Each begins where `start` left the page and is left by `end`. */
+function screens_of({ page }, w, site) {
+  const exact = (name) => ({ name, exact: true });
+  const button = (name) => page.getByRole("button", exact(name));
+  const item = (name) => page.getByRole("menuitem", exact(name));
+  const dialog = page.locator("dialog[open]");
+  const open = async (by) => {
+    await by.click();
+    await dialog.first().waitFor();
+  };
+  const close_dialog = async () => {
+    await page.keyboard.press("Escape");
+    await wait_for(async () => (await dialog.count()) === 0, "the dialog to close");
+  };
+  const from_menu = (menu, name) => async () => {
+    await button(menu).click();
+    await open(item(name));
+  };
+  const escape = () => page.keyboard.press("Escape");
+  const of_layer = (layer, name) => from_menu(w.layers.options(layer), name);
+  const account = (name) => from_menu(w.account.menu("owner"), name);
+  const choose_layer = (name) => button(w.layers.select(name)).click();
+  const tool = async (key) => {
+    await page.locator("strata-stage .surface").focus();
+    await page.keyboard.press(key);
+  };
+  const purpose = (name) => async () => {
+    await open(button(w.layers.new));
+    await page.getByRole("radio", { name: new RegExp(`^${name}`) }).click();
+  };
+  const to_sign_in = async () => {
+    await page.goto(server.url);
+    await page.getByRole("heading", exact(w.sign_in.title)).waitFor();
+  };
+
+  return [
+    { name: "sign-in", start: to_sign_in },
+    { name: "sign-in with a token", start: () => page.getByText(w.sign_in.otherwise).click() },
+    { name: "sign-in that fails", start: async () => {
+      await page.getByRole("textbox", exact(w.sign_in.user)).fill("nobody");
+      await page.getByLabel(w.sign_in.password, { exact: true }).fill("no such password");
+      await page.keyboard.press("Enter");
+      await page.getByText(w.sign_in.wrong).waitFor();
+    } },
+    { name: "join", start: async () => {
+      await page.goto(`${server.url}${site.invitation}`);
+      await page.getByRole("heading", exact(w.join.greeting("Ada Lovelace"))).waitFor();
+    } },
+    { name: "join without a link", start: async () => {
+      await page.goto(`${server.url}/join`);
+      await page.getByText(w.join.incomplete_title).waitFor();
+    } },
+    { name: "home", start: async () => {
+      await page.context().request.post(`${server.url}/api/v1/login`, { data: { token: server.token }, headers: { Origin: server.url } });
+      await page.goto(server.url);
+      await page.getByRole("heading", exact(w.home.title)).waitFor();
+      await page.locator("strata-thumbnail canvas.drawn").first().waitFor();
+    }, keyboard: true },
+    { name: "menu of the account", start: () => button(w.account.menu("owner")).click(), end: escape },
+    { name: "menu of a model", start: async () => {
+      await page.locator("li").first().hover();
+      await button(w.home.options("Demo pot")).click();
+    }, end: escape },
+    { name: "question", start: from_menu(w.home.options("Demo pot"), w.layers.delete), end: close_dialog, keyboard: true },
+    { name: "account", start: account(w.account.open), end: close_dialog, keyboard: true },
+    { name: "account: new token", start: async () => {
+      await account(w.account.open)();
+      await button(w.account.token_new).click();
+    }, end: close_dialog },
+    { name: "people", start: async () => {
+      await account(w.account.people)();
+      await page.getByRole("row", { name: /Ada Lovelace/ }).waitFor();
+    }, end: close_dialog, keyboard: true },
+    { name: "people: invite", start: async () => {
+      await account(w.account.people)();
+      await button(w.site_people.invite).click();
+    }, end: close_dialog },
+    { name: "preferences", start: account(w.settings.open), end: close_dialog, keyboard: true },
+    { name: "no such model", start: async () => {
+      await page.goto(`${server.url}/models/999`);
+      await page.getByText(w.model.not_found_title).waitFor();
+    } },
+    { name: "model", start: async () => {
+      await page.goto(`${server.url}/models/${site.model}`);
+      await wait_for(async () => Number(await page.locator("strata-stage canvas").first().evaluate((canvas) => canvas.dataset.frames ?? 0)) > 0, "the first picture");
+    }, keyboard: true },
+    { name: "brush: a class", start: async () => {
+      await choose_layer("cracks");
+      await tool("b");
+    }, keyboard: true },
+    { name: "brush: a number", start: () => choose_layer("Moisture") },
+    { name: "brush: a record", start: () => choose_layer("Finds") },
+    { name: "brush: a term", start: () => choose_layer(site.terms) },
+    { name: "eraser", start: () => tool("e") },
+    { name: "polygon", start: () => tool("a") },
+    { name: "fill connected", start: () => tool("g") },
+    { name: "line", start: () => tool("d") },
+    { name: "value under the pointer", start: async () => {
+      await tool("v");
+      await choose_layer("Finds");
+      const box = await page.locator("strata-stage").boundingBox();
+      await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+      await page.locator("strata-value-readout .card").waitFor();
+    }, end: () => page.mouse.move(2, 2) },
+    { name: "menu of a layer", start: () => button(w.layers.options("Finds")).click(), end: escape },
+    { name: "menu of the layers", start: () => button(w.layers.more).click(), end: escape },
+    { name: "menu of the view", start: () => button(w.model.view).first().click(), end: escape },
+    ...["presence", "classes", "measurement", "records", "formula", "shape"].map((kind) => ({ name: `new layer: ${kind}`, start: purpose(w.layer_dialog[kind]), end: close_dialog, keyboard: kind === "classes" })),
+    { name: "layer", start: of_layer("Moisture", w.layers.edit), end: close_dialog },
+    { name: "colours", start: of_layer("Finds", w.colors.open), end: close_dialog },
+    { name: "areas of classes", start: of_layer("cracks", w.layers.statistics), end: close_dialog },
+    { name: "areas of measurements", start: async () => {
+      await of_layer("Moisture", w.layers.statistics)();
+      await page.locator("strata-statistics-dialog").getByText(w.statistics.mean).waitFor();
+    }, end: close_dialog, keyboard: true },
+    { name: "paint from a file", start: of_layer("Moisture", w.maps.menu), end: close_dialog },
+    { name: "fill where", start: async () => {
+      await choose_layer("Moisture");
+      await tool("b");
+      await open(button(w.areas.where));
+    }, end: close_dialog },
+    { name: "templates", start: async () => {
+      await from_menu(w.layers.more, w.templates.open)();
+      await page.locator("strata-template-dialog").getByRole("listitem").first().waitFor();
+    }, end: close_dialog },
+    { name: "terms from a file", start: from_menu(w.layers.more, w.terms_dialog.open), end: close_dialog },
+    { name: "layers of another scan", start: from_menu(w.layers.more, w.transfer.open), end: close_dialog },
+    { name: "view", start: async () => {
+      await page.locator("strata-view-panel").getByRole("button", { name: w.view.title }).first().click();
+      await page.keyboard.press("Escape");
+      await page.getByRole("radio", exact(w.view.lights.raking)).click();
+      await page.getByRole("radio", exact(w.view.sections.box)).click();
+    } },
+    { name: "orthophoto", start: async () => {
+      await from_menu(w.view.look_more, w.orthophoto.open)();
+    }, end: close_dialog },
+    { name: "help", start: () => open(button(w.model.help)), end: close_dialog, keyboard: true },
+    { name: "about", start: () => open(button(w.model.details)), end: close_dialog },
+    { name: "size", start: async () => {
+      await open(button(w.model.details));
+      await button(w.model.correct_size).click();
+      await page.locator("strata-scale-dialog dialog[open]").waitFor();
+    }, end: close_dialog },
+    { name: "table", start: async () => {
+      await choose_layer("Finds");
+      await button(w.tables.open).first().click();
+      await page.getByRole("grid").getByText("Handle").first().waitFor();
+    }, keyboard: true },
+    { name: "menu of a table", start: () => button(w.tables.more).click(), end: escape },
+    { name: "new column", start: from_menu(w.tables.more, w.tables.new_column), end: close_dialog, keyboard: true },
+    { name: "record", start: () => open(page.locator("strata-table-panel").getByRole("button", exact(w.tables.new_record))), end: close_dialog },
+    { name: "delete a record", start: async () => {
+      await page.getByRole("grid").getByRole("rowheader", exact("1")).click();
+      await open(page.locator("strata-table-panel").getByRole("button", exact(w.tables.delete)).first());
+    }, end: close_dialog },
+  ];
+}
+
+async function check(language, { page }, screen) {
+  const found = async (what, lines) => void (await lines).forEach((line) => wrong.push(`${language}, ${screen.name}, ${what}: ${line}`));
+  for (const theme of kThemes) {
+    if (language === "de" && theme !== "light") continue;
+    await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
+    await found(theme, findings(page, theme === "light" ? null : ["color-contrast"]));
+    if (output && theme !== "light") await page.screenshot({ path: join(output, `${theme}_${screen.name.replaceAll(/\W+/g, "_")}.png`) });
+  }
+  await page.evaluate(() => (document.documentElement.dataset.theme = "light"));
+  if (language === "de") {
+    for (const [width, height] of kSizes) {
+      await page.setViewportSize({ width, height });
+      await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+      await found(`${width}×${height}`, overflows(page));
+      if (output && kShownSizes.has(width)) await page.screenshot({ path: join(output, `${width}_${screen.name.replaceAll(/\W+/g, "_")}.png`) });
+    }
+    await page.setViewportSize({ width: 1280, height: 800 });
+  }
+  if (language === "en" && screen.keyboard) {
+    const { unreached, unseen, stops } = await walk(page);
+    await found("not reached by the Tab key", unreached);
+    await found("has an invisible focus", unseen);
+    assert.ok(stops > 0, `${screen.name} has no stop of the Tab key`);
+  }
+  checked.push(`${language} ${screen.name}`);
+}
+
+/** A site with a bit of everything. */
+async function make_site() {
+  const { models } = await server.json("GET", "/models");
+  const [{ id: model, project }] = models;
+  const { path } = await server.json("POST", "/users", { user: "ada", full_name: "Ada Lovelace", role: "annotator" });
+  await server.json("POST", `/models/${model}/layers`, {
+    name: "Moisture", kind: "numeric", type: "f32", resolution: 2048, unit: "%",
+    palette: { mode: "linear", min: 0, max: 5, points: [{ at: 0, color: "#ffffffff" }, { at: 5, color: "#0000ffff" }] },
+  });
+  await server.json("POST", `/models/${model}/layers/moisture/edits`, { op: "fill", value: 2.5, mode: "where", where: "true" });
+  const columns = [
+    { name: "Name", kind: "text", required: true },
+    { name: "Depth", kind: "numeric", unit: "m" },
+    { name: "Found", kind: "date" },
+    { name: "State", kind: "enumeration", choices: ["whole", "broken"] },
+    { name: "Photos", kind: "picture" },
+    { name: "Edges", kind: "line" },
+  ];
+  const finds = await server.json("POST", `/projects/${project}/tables`, { name: "Finds", columns });
+  for (const [name, depth, state] of [["Handle", 1.25, "broken"], ["Rim", 0.5, "whole"], ["Base", 2, "whole"]])
+    await server.json("POST", `/tables/${finds.id}/records`, { values: { name, depth, state } });
+  await server.json("POST", `/models/${model}/layers`, { name: "Finds", kind: "database", type: "u16", resolution: 2048, table: finds.slug });
+  const made = await server.json("POST", `/projects/${project}/templates/stone-condition`, { model: String(model) });
+  return { model, invitation: path, terms: made.layers[0].name };
+}
+
+try {
+  await server.start();
+  step = "the site";
+  const site = await make_site();
+  for (const [language, browser] of Object.entries(browsers)) {
+    for (const screen of screens_of(browser, texts_of(language), site)) {
+      step = `${language}: ${screen.name}`;
+      await screen.start();
+      await check(language, browser, screen);
+      await screen.end?.();
+    }
+  }
+
+  step = "empty home";
+  await server.request("DELETE", `/models/${site.model}`);
+  for (const [language, browser] of Object.entries(browsers)) {
+    await browser.page.goto(server.url);
+    await browser.page.getByText(texts_of(language).home.empty_title).waitFor();
+    await check(language, browser, { name: "empty home", keyboard: true });
+  }
+
+  step = "a dialog keeps the focus and gives it back";
+  const { page } = browsers.en;
+  const opener = page.getByRole("button", { name: "Account of owner" });
+  await opener.focus();
+  const before = await active(page);
+  for (const key of ["Enter", "ArrowDown", "Enter"]) await page.keyboard.press(key);
+  await page.getByRole("dialog").waitFor();
+  for (let presses = 0; presses < 30; ++presses) {
+    await page.keyboard.press("Tab");
+    const inside = await page.evaluate(() => {
+      let at = document.activeElement;
+      const path = [];
+      while (at) {
+        path.push(at);
+        at = at.shadowRoot?.activeElement;
+      }
+      return path.length === 0 || path[0] === document.body || path.some((each) => /-dialog$/.test(each.localName));
+    });
+    assert.ok(inside, `Tab leaves the dialog for ${await active(page)}`);
+  }
+  await page.keyboard.press("Escape");
+  await wait_for(async () => (await active(page)) === before, `the focus to come back to ${before}`);
+
+  step = "a theme is chosen and kept, and the system is followed where none is";
+  const theme = () => page.evaluate(() => document.documentElement.dataset.theme);
+  const becomes = (name) => wait_for(async () => (await theme()) === name, `the theme to be ${name}`);
+  const choose_theme = async (name) => {
+    await opener.click();
+    await page.getByRole("menuitem", { name: "Language and theme…" }).click();
+    await page.getByRole("combobox", { name: "Theme" }).selectOption(name);
+    await page.keyboard.press("Escape");
+  };
+  await choose_theme("Dark");
+  await becomes("dark");
+  await page.reload();
+  await opener.waitFor();
+  assert.equal(await theme(), "dark");
+  await page.emulateMedia({ colorScheme: "light", contrast: "more" });
+  assert.equal(await theme(), "dark", "a theme that was chosen gave way");
+  await choose_theme("As the system");
+  await becomes("contrast");
+  await page.emulateMedia({ colorScheme: "dark", contrast: "no-preference" });
+  await becomes("dark");
+  await page.emulateMedia({ colorScheme: "light", forcedColors: "active" });
+  await becomes("light");
+  assert.deepEqual(await findings(page), []);
+  if (output) await page.screenshot({ path: join(output, "forced_colors.png") });
+
+  step = "the end";
+  console.log(`${checked.length} screens checked:\n  ${checked.join("\n  ")}`);
+  if (wrong.length > 0) throw new Error(`${wrong.length} findings:\n${[...new Set(wrong)].join("\n")}`);
+  for (const browser of Object.values(browsers)) browser.assert_no_complaints(["status of 401", "status of 404"]);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}; findings so far:\n${[...new Set(wrong)].join("\n")}\n--- log of the server\n${server.log.slice(-30).join("\n")}`);
+  if (process.env.STRATA_TEST_OUTPUT) {
+    for (const [language, { page }] of Object.entries(browsers)) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `accessibility_${language}.png`) }).catch(() => {});
+  }
+  throw error;
+} finally {
+  for (const browser of Object.values(browsers)) await browser.close();
+  await server.remove();
+}

@@ -1,0 +1,101 @@
+// What a person with a keyboard, a reader of the screen, strong light or a small window needs of whatever the page shows now.
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { kRoot, load_module } from "./modules.mjs";
+
+const kAxe = readFileSync(join(kRoot, "web-client", "node_modules", "axe-core", "axe.min.js"), "utf8");
+load_module("axe-core");
+
+/** The serious and critical findings of axe-core, a line each. `rules`: only these. */
+export async function findings(page, rules = null) {
+  if (!(await page.evaluate(() => "axe" in globalThis))) await page.evaluate(kAxe);
+  const violations = await page.evaluate(
+    async (only) => (await globalThis.axe.run(document, { resultTypes: ["violations"], ...(only ? { runOnly: { type: "rule", values: only } } : {}) })).violations,
+    rules,
+  );
+  return violations
+    .filter(({ impact }) => impact === "serious" || impact === "critical")
+    .flatMap(({ id, nodes }) => nodes.map(({ target, html, any, all }) => `${id}: ${target.flat().join(" ")} ${html.slice(0, 120)} ${[...any, ...all].map(({ message }) => message).join("; ").slice(0, 200)}`));
+}
+
+/** Sees through the roots of elements. */
+const kDeep = `
+  const deep_all = (root = document) => [...root.querySelectorAll("*")].flatMap((each) => [each, ...(each.shadowRoot ? deep_all(each.shadowRoot) : [])]);
+  const deep_active = () => { let at = document.activeElement; while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement; return at; };
+  const told = (each) => each.localName + (each.id ? "#" + each.id : "") + (each.className && typeof each.className === "string" ? "." + each.className.trim().replace(/\\s+/g, ".") : "") +
+    " “" + (each.getAttribute("aria-label") ?? each.textContent ?? "").trim().slice(0, 40) + "”";
+`;
+const evaluate = (page, body) => page.evaluate(`(() => { ${kDeep} ${body} })()`);
+
+/** What is wider than its room: the document, dialogs and menus as wholes, and words that leave their control. */
+export const overflows = (page) =>
+  evaluate(
+    page,
+    `const found = [];
+     const root = document.scrollingElement;
+     if (root.scrollWidth > root.clientWidth) found.push("document: " + root.scrollWidth + " in " + root.clientWidth);
+     const scrolls = (each) => /auto|scroll/.test(getComputedStyle(each).overflowX);
+     for (const each of deep_all()) {
+       if (!each.checkVisibility() || each.getClientRects().length === 0) continue;
+       const box = each.getBoundingClientRect();
+       if (each.matches("dialog[open], [popover]:popover-open")) {
+         if (box.left < -0.5 || box.right > innerWidth + 0.5) found.push(told(each) + " leaves the window");
+         if (each.scrollWidth > each.clientWidth + 1) found.push(told(each) + ": " + each.scrollWidth + " in " + each.clientWidth);
+       }
+       if (each.matches("button, input:not([hidden]), select, textarea, a[href], output")) {
+         for (let at = each.assignedSlot ?? each.parentNode; at && at !== document; at = at.assignedSlot ?? at.parentNode ?? at.host) {
+           if (!(at instanceof Element)) continue;
+           if (scrolls(at)) break;
+           if (getComputedStyle(at).overflowX === "hidden" && box.right > at.getBoundingClientRect().right + 1) {
+             found.push(told(each) + " is cut off by " + told(at).slice(0, 40));
+             break;
+           }
+         }
+       }
+       const inside = each.closest("dialog[open]");
+       if (inside && each.matches(".content, footer") && each.scrollWidth > each.clientWidth + 1) found.push(told(each) + ": " + each.scrollWidth + " in " + each.clientWidth);
+       if (each.matches("button") && !each.querySelector("slot") && each.scrollWidth > each.clientWidth + 1 && !each.querySelector(".ellipsis") && getComputedStyle(each).overflowX === "visible")
+         found.push(told(each) + " has " + each.scrollWidth + " in " + each.clientWidth);
+     }
+     return found;`,
+  );
+
+export const active = (page) => evaluate(page, "const at = deep_active(); return at === document.body ? '' : told(at);");
+
+/** Goes through all stops of the Tab key; what they do not reach, and those whose focus is not seen. */
+export async function walk(page) {
+  await evaluate(page, "window.reached = new Set(); window.unseen = []; document.activeElement?.blur();");
+  const count = await evaluate(
+    page,
+    `const top = [...deep_all()].filter((each) => each.matches("dialog[open]")).at(-1);
+     const within = (each) => { for (let at = each; at; at = at.parentNode ?? at.host) if (at === top) return true; return !top; };
+     const flat = (each) => { for (let at = each; at; at = at.assignedSlot ?? at.parentNode ?? at.host) if (at === top) return true; return !top; };
+     window.wanted = deep_all().filter((each) => each.matches("a[href], button, input, select, textarea, summary, [tabindex]") && !each.disabled && each.tabIndex >= 0 &&
+       each.checkVisibility({ visibilityProperty: true }) && each.getClientRects().length > 0 && (within(each) || flat(each)) &&
+       !(each.shadowRoot?.delegatesFocus));
+     return window.wanted.length;`,
+  );
+  for (let presses = 0; presses < 2 * count + 10; ++presses) {
+    await page.keyboard.press("Tab");
+    const done = await evaluate(
+      page,
+      `const at = deep_active();
+       if (at && at !== document.body) {
+         if (window.reached.has(at) && window.wanted.every((each) => window.reached.has(each))) return true;
+         window.reached.add(at);
+         // On itself, on the field around it, or on its cell that has the keyboard.
+         const shown = [at, at.parentElement, at.parentElement?.parentElement, at.querySelector(".cell.active")].filter(Boolean).map((each) => getComputedStyle(each));
+         const ring = ({ outlineStyle, outlineWidth, boxShadow }) => (outlineStyle !== "none" && parseFloat(outlineWidth) >= 2) || boxShadow.includes("2px inset");
+         if (!shown.some(ring)) window.unseen.push(told(at));
+       }
+       return false;`,
+    );
+    if (done) break;
+  }
+  return evaluate(
+    page,
+    `// Of radio buttons one is a stop.
+     const radios = new Set([...window.reached].filter((each) => each.type === "radio").map((each) => each.name));
+     return { unreached: window.wanted.filter((each) => !window.reached.has(each) && !(each.type === "radio" && radios.has(each.name))).map(told), unseen: window.unseen, stops: window.reached.size };`,
+  );
+}

@@ -1,0 +1,16 @@
+// The words of the page in one of its languages, as the page itself has them.
+import { join } from "node:path";
+import { kRoot, load_module } from "./modules.mjs";
+
+export function texts_of(language) {
+  const { buildSync } = load_module("esbuild"); // vite's
+  const contents = `
+    import { set_locale } from "./core/locale";
+    export { texts } from "./app/texts/${language}";
+    set_locale("${language}", true, []);`;
+  const stdin = { contents, resolveDir: join(kRoot, "web-client", "src"), loader: "ts" };
+  const [{ text }] = buildSync({ stdin, bundle: true, write: false, format: "cjs", target: "node18" }).outputFiles;
+  const made = { exports: {} };
+  new Function("module", "exports", text)(made, made.exports);
+  return made.exports.texts;
+}
