@@ -289,6 +289,9 @@ describe("roles", () => {
     expect(changes()).toEqual(until_now);
     expect(until_now.at(-1)).toBe("stroke.end");
     expect(told).toEqual([texts.layers.locked]);
+    // What was on its way is refused in the server's words: they say nothing new.
+    socket().receive({ op: "problem", title: "Locked, says the server", status: 403, detail: "in its language", field: "layer" });
+    expect(told).toEqual([texts.layers.locked]);
 
     session.layers.select(session.layers.find(7)!);
     expect(session.locked_target).toBe(null);

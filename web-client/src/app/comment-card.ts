@@ -455,7 +455,7 @@ export class StrataCommentCard extends LitElement {
 
   private async send(of: DraftOf, work: () => Promise<void>, text = this.session.comments.draft(of)?.text ?? ""): Promise<void> {
     if (text.trim() === "" || this.busy_) return;
-    if ([...text].length > kMostCharacters) this.problem_ = { of, text: words.too_long };
+    if ([...text].length > kMostCharacters) this.problem_ = { of, text: words.too_long(kMostCharacters) };
     else await this.attempt(of, work);
   }
 

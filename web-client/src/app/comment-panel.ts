@@ -4,6 +4,7 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import type { Thread, ThreadState } from "../core/comments";
+import { format_count } from "../core/locale";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import { Kept } from "./kept";
@@ -146,7 +147,7 @@ export class StrataCommentPanel extends LitElement {
           <button class="quiet" aria-expanded=${open} aria-controls="parts" @click=${this.toggle}>
             ${icon("up")}${words.title}
             ${comments.open_count > 0
-              ? html`<span class="number numeric" aria-label=${words.open_count(comments.open_count)} role="img">${comments.open_count}</span>`
+              ? html`<span class="number numeric" aria-label=${words.open_count(comments.open_count)} role="img">${format_count(comments.open_count)}</span>`
               : nothing}
             ${unread > 0 ? html`<span class="dot" role="img" aria-label=${words.unread(unread)} title=${words.unread(unread)}></span>` : nothing}
           </button>
@@ -225,7 +226,7 @@ export class StrataCommentPanel extends LitElement {
         ${person_mark(first.user)}
         <span><b>${first.user}</b> <span class="hint">${told_time(newest.time)}</span></span>
         <span class="state">
-          ${replies.length > 0 ? html`<span class="hint numeric" role="img" aria-label=${words.replies(replies.length)} title=${words.replies(replies.length)}>${replies.length}</span>` : nothing}
+          ${replies.length > 0 ? html`<span class="hint numeric" role="img" aria-label=${words.replies(replies.length)} title=${words.replies(replies.length)}>${format_count(replies.length)}</span>` : nothing}
           ${first.state === "resolved" ? html`<span role="img" aria-label=${words.resolved} title=${words.resolved}>${icon("check")}</span>` : nothing}
           ${comments.is_unread(thread) ? html`<span class="dot" role="img" aria-label=${words.unread_here} title=${words.unread_here}></span>` : nothing}
         </span>

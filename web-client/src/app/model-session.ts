@@ -1,7 +1,8 @@
 // One open model on this page: its life, and the messages between its parts. `view` is the camera, `layers` what is painted on,
-// `tables` the records that layers hold the keys of, `comments` what people wrote on the surface, `hovered` the one that the mouse rests on, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits, `together` who else is
-// here and whose view this is, `cursors` where they point. Elements
-// subscribe and draw themselves from their state; they change it only through their methods.
+// `tables` the records that layers hold the keys of, `comments` what people wrote on the surface, `hovered` the one that the mouse rests
+// on, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits, `together` who
+// else is here and whose view this is, `cursors` where they point. Elements subscribe and draw themselves from their state; they change it
+// only through their methods.
 
 import { Api, ApiError, type Versioned } from "../core/api";
 import { Connection, type ConnectionState, type Point, type SavingState, type SocketLike } from "../core/connection";
@@ -361,7 +362,7 @@ export class ModelSession {
     if (locked && locked.id !== told) {
       this.painting.break_off();
       this.tools.stop();
-      notices.show("problem", texts.layers.locked, texts.layers.locked_detail(locked.name));
+      this.tell_locked(locked);
     }
     this.changed();
   }
@@ -586,6 +587,16 @@ export class ModelSession {
   private on_problem(problem: Omit<ProblemMessage, "op">): void {
     const { ref } = problem;
     if (this.pointer.refused(ref) || this.cursors.refused(ref) || this.together.refused(problem)) return;
-    notices.problem(problem);
+    const { selected } = this.layers;
+    if (is_of_lock(problem) && selected && this.is_locked(selected)) this.tell_locked(selected);
+    else notices.problem(problem);
+  }
+
+  /** In the words that the page has for it, whoever noticed: one notice stands for all. */
+  private tell_locked(layer: Layer): void {
+    notices.show("problem", texts.layers.locked, texts.layers.locked_detail(layer.name));
   }
 }
+
+/** It is painting that was on its way when the layer was locked. */
+const is_of_lock = ({ status, field }: Omit<ProblemMessage, "op">): boolean => status === 403 && field === "layer";

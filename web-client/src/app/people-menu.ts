@@ -3,6 +3,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
+import { format_list } from "../core/locale";
 import { called, initials } from "../core/people";
 import { ink_on, type PersonHere } from "../core/people-here";
 import { follow_session } from "./follow-session";
@@ -111,7 +112,7 @@ export class StrataPeopleMenu extends LitElement {
     if (people.length === 0) return html``;
     const words = texts.together;
     const others = people.filter(({ viewer }) => viewer !== null);
-    return html`<strata-menu wide label="${texts.people.here(people.length)}: ${people.map((person) => this.name(person)).join(", ")}">
+    return html`<strata-menu wide label="${texts.people.here(people.length)}: ${format_list(people.map((person) => this.name(person)))}">
       <span class="faces" slot="face">
         <span class="wide">${this.faces(kMostFaces)}</span><span class="phone">${this.faces(kMostFacesOnPhone)}</span>
       </span>

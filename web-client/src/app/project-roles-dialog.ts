@@ -81,7 +81,7 @@ export class StrataProjectRolesDialog extends LitElement {
   override render(): TemplateResult {
     const { role } = this.person;
     return html`<strata-dialog heading=${words.title(called(this.person))} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      <p class="hint">${words.lead(texts.roles[role].toLowerCase())}</p>
+      <p class="hint">${words.lead(texts.roles[role])}</p>
       ${this.problem_
         ? html`<p class="error" role="alert">${this.problem_}</p>
             <button @click=${() => void this.read()}>${texts.try_again}</button>`
@@ -117,7 +117,7 @@ export class StrataProjectRolesDialog extends LitElement {
     try {
       if (role) await this.api.put_member(project.slug, this.person.user, role);
       else await this.api.remove_member(project.slug, this.person.user);
-      say(role, "done", role ? texts.site_people.role_changed(texts.roles[role].toLowerCase()) : words.removed);
+      say(role, "done", role ? texts.site_people.role_changed(texts.roles[role]) : words.removed);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       select.value = before ?? "";

@@ -2,6 +2,7 @@
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
+import { format_list } from "../core/locale";
 import { called } from "../core/people";
 import { ink_on } from "../core/people-here";
 import { follow_session } from "./follow-session";
@@ -88,7 +89,7 @@ export class StrataTogetherBar extends LitElement {
     }
     if (!together.leading) return html``;
     const { followers } = together;
-    const names = followers.map((person) => called(person)).join(", ");
+    const names = format_list(followers.map((person) => called(person)));
     return html`<div role="status">
       <button title=${names === "" ? words.stop_leading : `${names}\n${words.stop_leading}`} @click=${() => together.lead(false)}>
         <span class="ellipsis">${words.leading(followers.length)}</span>${icon("close")}
