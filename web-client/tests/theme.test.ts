@@ -3,6 +3,7 @@ import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
 import { theme_of } from "../src/app/preferences";
+import { color_of_person } from "../src/core/comments";
 
 const kApp = join(__dirname, "../src/app");
 const css = readFileSync(join(kApp, "theme.css"), "utf8");
@@ -47,12 +48,20 @@ describe("themes", () => {
     const ratio = (a: string, b: string): number => contrast(colors.get(a)!, colors.get(b)!);
     for (const ground of ["--paper", "--surface", "--raised"]) {
       for (const ink of ["--ink", "--ink-soft", "--accent", "--danger"]) expect(ratio(ink, ground), `${ink} on ${ground}`).toBeGreaterThanOrEqual(words);
-      expect(ratio("--line-strong", ground), `--line-strong on ${ground}`).toBeGreaterThanOrEqual(lines);
+      for (const line of ["--line-strong", "--news"]) expect(ratio(line, ground), `${line} on ${ground}`).toBeGreaterThanOrEqual(lines);
     }
     for (const hue of ["--accent", "--calm", "--danger"]) expect(ratio(`${hue}-ink`, hue), `${hue}-ink`).toBeGreaterThanOrEqual(words);
     for (const hue of ["--accent", "--calm", "--danger", "--warn", "--ink"])
       expect(ratio(hue === "--ink" ? "--ink" : hue, hue === "--ink" ? "--accent-soft" : `${hue}-soft`), `${hue} on its soft ground`).toBeGreaterThanOrEqual(words);
+    expect(ratio("--surface", "--ink-soft"), "on what is as dark as soft ink").toBeGreaterThanOrEqual(words);
+    expect(ratio("--mark-light", "--mark-settled"), "on the pin of a resolved comment").toBeGreaterThanOrEqual(words);
     expect(ratio("--on-stage", "--stage"), "on the stage").toBeGreaterThanOrEqual(words);
+  });
+
+  it("leave people their colours, on which white stands out", () => {
+    const of_people = new Set(Array.from({ length: 200 }, (_, n) => color_of_person(`person${n}`)));
+    expect(of_people.size).toBe(8);
+    for (const color of of_people) expect(contrast(color, colors_of("light").get("--mark-light")!), color).toBeGreaterThanOrEqual(4.5);
   });
 
   it("are the only place of colours, beside those of data", () => {
@@ -63,5 +72,11 @@ describe("themes", () => {
       return [...code.matchAll(/#[0-9a-f]{3,8}\b|\b(?:rgb|hsl)a?\(/gi)].map(([color]) => `${name}: ${color}`);
     });
     expect(found.filter((each) => !kOfData.includes(each))).toEqual([]);
+  });
+
+  it("set the strength of all lines in their colours", () => {
+    const files = readdirSync(kApp).filter((name) => name.endsWith(".ts"));
+    const found = files.filter((name) => /\d(px)? (solid|dashed) var\(--line\)/.test(readFileSync(join(kApp, name), "utf8")));
+    expect(found).toEqual([]);
   });
 });

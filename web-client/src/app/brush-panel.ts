@@ -64,6 +64,7 @@ export class StrataBrushPanel extends LitElement {
         gap: 9px;
         align-items: start;
         padding: 10px 12px;
+        border: var(--edge) solid var(--calm);
         border-radius: var(--radius-small);
         background: var(--calm-soft);
         font-size: 0.88rem;

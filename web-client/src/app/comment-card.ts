@@ -51,7 +51,7 @@ export class StrataCommentCard extends LitElement {
         grid-template: auto minmax(0, 1fr) auto / minmax(0, 1fr);
         width: min(330px, calc(100% - 28px));
         max-height: min(480px, calc(100% - 28px));
-        border: 1px solid var(--line);
+        border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
         box-shadow: var(--shadow);
@@ -63,7 +63,7 @@ export class StrataCommentCard extends LitElement {
       .head {
         gap: 2px;
         padding: 6px 6px 6px 13px;
-        border-bottom: 1px solid var(--line);
+        border-bottom: var(--edge) solid var(--line);
       }
       h2 {
         font-size: 1.02rem;
@@ -150,7 +150,7 @@ export class StrataCommentCard extends LitElement {
         padding: 0;
       }
       .foot {
-        border-top: 1px solid var(--line);
+        border-top: var(--edge) solid var(--line);
       }
       textarea {
         min-height: 58px;
@@ -174,7 +174,7 @@ export class StrataCommentCard extends LitElement {
           border-radius: 16px 16px 0 0;
           border-bottom: 0;
           padding-bottom: env(safe-area-inset-bottom);
-          box-shadow: 0 -6px 20px rgb(0 0 0 / 0.18);
+          box-shadow: var(--shadow-above);
         }
       }
       @media (pointer: coarse) {

@@ -72,7 +72,7 @@ export class StrataCommentPanel extends LitElement {
         width: 9px;
         height: 9px;
         border-radius: 50%;
-        background: #d6311f;
+        background: var(--news);
       }
       .parts {
         display: grid;

@@ -52,17 +52,17 @@ export class StrataCommentPins extends LitElement {
         height: 30px;
         min-height: 0;
         padding: 0;
-        border: 2px solid #fff;
+        border: 2px solid var(--mark-light);
         border-radius: 50% 50% 50% 4px;
-        color: #fff;
+        color: var(--mark-light);
         font-size: 0.74rem;
         font-weight: 700;
         pointer-events: auto;
-        filter: drop-shadow(0 1px 2px rgb(0 0 0 / 0.45));
+        filter: drop-shadow(0 1px 2px var(--mark-shadow));
         transition: none;
       }
       button:hover:not(:disabled) {
-        border-color: #fff;
+        border-color: var(--mark-light);
       }
       button::before {
         content: "";
@@ -70,11 +70,11 @@ export class StrataCommentPins extends LitElement {
         inset: -5px; /* fingers are wide, and pins may be near to each other */
       }
       button.chosen {
-        outline: 3px solid var(--accent);
+        outline: 3px solid var(--mark-dark);
         outline-offset: 1px;
       }
       button.resolved {
-        background: #5b6462;
+        background: var(--mark-settled);
       }
       button.draft {
         border-style: dashed;
@@ -87,7 +87,7 @@ export class StrataCommentPins extends LitElement {
         height: 16px;
       }
       .aside button {
-        opacity: 0.55;
+        opacity: var(--unavailable);
         pointer-events: none; /* paint goes where it is meant */
       }
       i {
@@ -96,9 +96,9 @@ export class StrataCommentPins extends LitElement {
         right: -5px;
         width: 11px;
         height: 11px;
-        border: 2px solid #fff;
+        border: 2px solid var(--mark-light);
         border-radius: 50%;
-        background: #d6311f;
+        background: var(--mark-news);
       }
     `,
   ];

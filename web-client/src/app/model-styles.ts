@@ -84,7 +84,7 @@ export const model_styles = css`
     width: 9px;
     height: 9px;
     border-radius: 50%;
-    background: #d6311f;
+    background: var(--news);
   }
   .scale-chip {
     min-height: 28px;

@@ -54,8 +54,8 @@ export class StrataPeopleMenu extends LitElement {
         margin-left: -5px;
       }
       .face.rest {
-        background: var(--line);
-        color: var(--ink);
+        background: var(--ink-soft);
+        color: var(--surface);
       }
       .face.leading {
         border-color: var(--ink);

@@ -52,7 +52,7 @@ export class StrataPeopleOverlay extends LitElement {
         overflow: visible;
         width: 18px;
         height: 18px;
-        filter: drop-shadow(0 1px 1px rgb(0 0 0 / 0.4));
+        filter: drop-shadow(0 1px 1px var(--mark-shadow));
       }
       b {
         position: absolute;
@@ -64,7 +64,7 @@ export class StrataPeopleOverlay extends LitElement {
         font-size: 0.78rem;
         font-weight: 600;
         line-height: 1.35;
-        box-shadow: 0 1px 3px rgb(0 0 0 / 0.3);
+        box-shadow: 0 1px 3px var(--mark-shadow);
       }
       .leftwards b {
         left: auto;
@@ -117,9 +117,9 @@ export class StrataPeopleOverlay extends LitElement {
     return html`<div class=${classes} data-session=${viewer.session} ${styled({ transform: `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)` })}>
       <svg>
         ${brush
-          ? svg`<circle r=${radius} fill=${color} fill-opacity="0.14" stroke="#fff" stroke-width="3.6" />
-              <circle r=${radius} fill="none" stroke=${color} stroke-width="2" /><circle r="1.8" fill=${color} stroke="#fff" stroke-width="0.8" />`
-          : svg`<path d="M0 0l5.2 14.5 2.4-6.1 6.3-2.200z" fill=${color} stroke="#fff" stroke-width="1.3" />`}
+          ? svg`<circle r=${radius} fill=${color} fill-opacity="0.14" stroke="var(--mark-light)" stroke-width="3.6" />
+              <circle r=${radius} fill="none" stroke=${color} stroke-width="2" /><circle r="1.8" fill=${color} stroke="var(--mark-light)" stroke-width="0.8" />`
+          : svg`<path d="M0 0l5.2 14.5 2.4-6.1 6.3-2.200z" fill=${color} stroke="var(--mark-light)" stroke-width="1.3" />`}
       </svg>
       <b class="ellipsis" ${styled({ background: color, color: ink_on(color), transform: brush ? `translate(${leftwards ? -beside : beside}px, ${beside - 8}px)` : null })}
         >${name_of(viewer)}</b

@@ -13,7 +13,7 @@ export const person_mark_styles = css`
     width: 26px;
     height: 26px;
     border-radius: 50%;
-    color: #fff;
+    color: var(--mark-light);
     font-size: 0.72rem;
     font-weight: 700;
     letter-spacing: 0.02em;

@@ -41,7 +41,7 @@ export class StrataProjectRolesDialog extends LitElement {
         align-items: center;
         gap: 4px 12px;
         padding: 8px 0;
-        border-top: 1px solid var(--line);
+        border-top: var(--edge) solid var(--line);
       }
       li b {
         font-weight: 600;

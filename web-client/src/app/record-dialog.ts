@@ -63,6 +63,7 @@ export class StrataRecordDialog extends LitElement {
         align-items: center;
         gap: 8px 10px;
         padding: 10px 12px;
+        border: var(--edge) solid var(--calm);
         border-radius: var(--radius-small);
         background: var(--calm-soft);
         font-size: 0.9rem;

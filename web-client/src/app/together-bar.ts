@@ -46,7 +46,7 @@ export class StrataTogetherBar extends LitElement {
         border: 0;
         border-radius: 0 0 var(--radius) var(--radius);
         background: var(--calm);
-        color: var(--surface);
+        color: var(--calm-ink);
         font-size: 0.88rem;
         font-weight: 600;
         transform: translateX(-50%);
