@@ -276,6 +276,13 @@ describe("what others see of the pointer", () => {
     vi.advanceTimersByTime(200);
     const { camera } = session.view;
     expect(said().radius).toBeCloseTo(session.painting.radius_window_px() * camera.unit_per_pixel(camera.depth_of(position)), 9);
+    // What lies there may be known later than the place is told.
+    session.gestures.hover({ x: 402, y: 300 });
+    vi.advanceTimersByTime(200);
+    const nearer: [number, number, number] = [50, 20, 60];
+    socket().receive({ op: "picked", id: socket().of("pick").at(-1)!.id!, hit: true, position: nearer });
+    vi.advanceTimersByTime(200);
+    expect(said().radius).toBeCloseTo(session.painting.radius_window_px() * camera.unit_per_pixel(camera.depth_of(nearer)), 9);
     session.choose_tool("orbit");
     session.gestures.hover({ x: 401, y: 300 });
     vi.advanceTimersByTime(200);

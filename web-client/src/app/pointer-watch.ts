@@ -86,11 +86,18 @@ export class PointerWatch {
 
   private on_picked(message: Picked, purpose: PickPurpose): void {
     if (this.at || purpose !== "hover") this.picked = message;
-    if (message.hit && message.position) this.depth_ = this.host_.camera().depth_of(message.position);
+    if (message.hit && message.position) this.see_depth(this.host_.camera().depth_of(message.position));
     if (purpose === "take") this.host_.taken(message);
     if (purpose === "look") this.host_.looked(message);
     this.host_.learned();
     this.host_.changed();
+  }
+
+  /** How large the brush is on the surface was told with the depth that was known then. */
+  private see_depth(depth: number): void {
+    const told = this.depth_;
+    this.depth_ = depth;
+    if (this.at && depth !== told) this.schedule_presence();
   }
 
   private schedule_presence(): void {
