@@ -8,7 +8,7 @@ const kOwnersPassword = "four words of mine";
 const kAdasPassword = "engines weave algebra";
 const kAdasNext = "as the loom weaves flowers";
 // What the browser says of answers that the test wants, and of sockets that the server ends.
-const kExpected = ["status of 401", "status of 403", "status of 409", "status of 422", ...kOfLostServer];
+const kExpected = ["status of 401", "status of 403", "status of 404", "status of 409", "status of 422", ...kOfLostServer];
 
 const [owner, ada, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ viewport: { width: 390, height: 844 } })];
 const server = new StrataServer({ demo: true });
@@ -35,6 +35,22 @@ async function choose_for({ page }, name, command) {
 }
 const call = async (token, path, more = {}) =>
   (await fetch(`${server.url}/api/v1${path}`, { ...more, headers: { Authorization: `Bearer ${token}`, "Content-Type": "application/json" } })).status;
+
+const shot = async ({ page }, name) => {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `people_${name}.png`) });
+};
+
+/** A square of 100 mm. */
+async function import_square(name, project) {
+  const ply = ["ply", "format ascii 1.0", "element vertex 4", "property float x", "property float y", "property float z", "element face 2",
+    "property list uchar int vertex_indices", "end_header", "0 0 0", "100 0 0", "100 100 0", "0 100 0", "3 0 1 2", "3 0 2 3", ""].join("\n");
+  const started = await fetch(`${server.url}/api/v1/models?filename=square.ply&name=${name}&unit=mm&project=${project}`, {
+    method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" }, body: ply,
+  });
+  assert.equal(started.status, 202, await started.clone().text());
+  const { id } = await started.json();
+  await wait_for(async () => (await server.json("GET", `/jobs/${id}`)).state === "done", `the import of ${name}`);
+}
 
 try {
   await server.start();
@@ -227,6 +243,34 @@ try {
   const { edits: history } = await server.json("GET", `${path}/layers/cracks/edits?limit=1000`);
   assert.ok(history.some(({ user }) => user.startsWith("former-")), "what she did is not in the history");
   assert.ok(!history.some(({ user }) => user === "ada"), "her name is still in the history");
+
+  say("an administrator lets a guest annotate in one project: they see its models on their page, and no others");
+  await server.json("POST", "/projects", { name: "Villa Giulia" });
+  await import_square("Threshold", "villa-giulia");
+  await ada.sign_in(server, await server.add_person("anna", "administrator"));
+  await phone.sign_in(server, await server.add_person("gil", "guest"));
+  await phone.page.getByText("You see the models of projects that you have a role in.").waitFor();
+  await choose_in_menu(ada, "People…");
+  await choose_for(ada, "gil", "Roles in projects…");
+  await ada.page.getByText("Everywhere: guest.").waitFor();
+  const in_villa = ada.page.getByRole("combobox", { name: "Role in Villa Giulia" });
+  assert.equal(await in_villa.inputValue(), "");
+  await in_villa.selectOption("annotator");
+  await ada.page.locator("strata-project-roles-dialog").getByText("Is annotator now.").waitFor();
+  await shot(ada, "roles_in_projects");
+  await phone.page.reload();
+  await phone.page.getByRole("link", { name: /Threshold/ }).waitFor();
+  assert.equal(await phone.page.getByRole("link", { name: /Demo pot/ }).count(), 0, "the guest sees a model of another project");
+  assert.equal(await phone.page.getByRole("button", { name: "Import a scan" }).count(), 0, "an annotator is offered to import");
+  await shot(phone, "guest");
+  await phone.page.getByRole("link", { name: /Threshold/ }).click();
+  await phone.drawn();
+  await phone.page.getByRole("button", { name: "Brush", exact: true }).waitFor();
+  await shot(phone, "guest_model");
+  await in_villa.selectOption("");
+  await ada.page.locator("strata-project-roles-dialog").getByText("Has no role of their own there any more.").waitFor();
+  await phone.page.goto(server.url);
+  await phone.page.getByText("You see the models of projects that you have a role in.").waitFor();
 
   say("the end");
   for (const who of [owner, ada, phone]) who.assert_no_complaints(kExpected);

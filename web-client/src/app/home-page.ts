@@ -109,13 +109,12 @@ export class StrataHomePage extends LitElement {
   }
 
   private project_choice(projects: readonly Project[]): TemplateResult {
-    return html`<select
-      aria-label=${texts.home.into}
-      title=${texts.home.into}
-      @change=${(event: Event) => this.dispatchEvent(new CustomEvent<string>("choose-project", { detail: (event.target as HTMLSelectElement).value }))}
-    >
-      ${projects.map(({ slug, name }) => html`<option value=${slug} ?selected=${slug === this.into?.slug}>${name}</option>`)}
-    </select>`;
+    return html`<label class="into">
+      <span class="hint">${texts.home.into}</span>
+      <select @change=${(event: Event) => this.dispatchEvent(new CustomEvent<string>("choose-project", { detail: (event.target as HTMLSelectElement).value }))}>
+        ${projects.map(({ slug, name }) => html`<option value=${slug} ?selected=${slug === this.into?.slug}>${name}</option>`)}
+      </select>
+    </label>`;
   }
 
   private content(): TemplateResult {
@@ -130,7 +129,7 @@ export class StrataHomePage extends LitElement {
       return html`<div class="empty">
         ${logo()}
         <h2>${texts.home.empty_title}</h2>
-        <p>${this.can_curate ? texts.home.empty_lead : texts.home.empty_viewer}</p>
+        <p>${this.can_curate ? texts.home.empty_lead : this.me.role === "guest" ? texts.home.empty_guest : texts.home.empty_viewer}</p>
         ${this.can_curate
           ? html`<button class="primary" @click=${() => this.file_input_.click()}>${texts.home.choose_file}</button>`
           : nothing}

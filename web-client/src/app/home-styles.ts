@@ -54,6 +54,24 @@ export const home_styles = css`
     gap: 14px;
     margin-bottom: 24px;
   }
+  .title button,
+  .into {
+    align-self: center;
+  }
+  .into {
+    display: flex;
+    align-items: center;
+    gap: 8px;
+    min-width: 0;
+  }
+  .into span {
+    flex: none;
+  }
+  .into select {
+    width: auto;
+    min-width: 0;
+    max-width: min(260px, 100%);
+  }
   h1 {
     font-size: clamp(1.6rem, 3vw, 2.1rem);
   }

@@ -223,7 +223,7 @@ export const texts = {
   home: {
     title: "Modelle",
     import: "Scan importieren",
-    into: "Projekt",
+    into: "Importieren in",
     drop_title: "Zum Importieren ablegen",
     drop_lead: "PLY, OBJ, STL, glTF oder zip, mit seinen Bildern oder als Ordner",
     empty_title: "Noch keine Modelle",
@@ -236,6 +236,7 @@ export const texts = {
     deleted: (name) => `„${name}“ wurde gelöscht.`,
     triangles: (n) => count(n, "Dreieck", "Dreiecke"),
     empty_viewer: "Noch hat niemand einen Scan importiert.",
+    empty_guest: "Sie sehen die Modelle von Projekten, in denen Sie eine Rolle haben. Bitten Sie die Person, die Sie eingeladen hat, um eine.",
     count: (n) => count(n, "Modell", "Modelle"),
     no_picture: "Kein Bild",
     scale_open: "Größe nicht bestätigt",

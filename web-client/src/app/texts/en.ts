@@ -210,7 +210,7 @@ export const texts = {
   home: {
     title: "Models",
     import: "Import a scan",
-    into: "Project",
+    into: "Import into",
     drop_title: "Drop to import",
     drop_lead: "A PLY, OBJ, STL, glTF or zip, with its pictures or as a folder",
     empty_title: "No models yet",
@@ -223,6 +223,7 @@ export const texts = {
     deleted: (name: string) => `“${name}” was deleted.`,
     triangles: (n: number) => count(n, "triangle", "triangles"),
     empty_viewer: "Nobody has imported a scan yet.",
+    empty_guest: "You see the models of projects that you have a role in. Ask whoever invited you for one.",
     count: (n: number) => count(n, "model", "models"),
     no_picture: "No picture",
     scale_open: "Size not confirmed",

@@ -229,7 +229,7 @@ export const texts = {
   home: {
     title: "Modelos",
     import: "Importar un escaneo",
-    into: "Proyecto",
+    into: "Importar en",
     drop_title: "Suelte aquí para importar",
     drop_lead: "PLY, OBJ, STL, glTF o zip, con sus imágenes o como carpeta",
     empty_title: "Todavía no hay modelos",
@@ -242,6 +242,7 @@ export const texts = {
     deleted: (name) => `«${name}» se eliminó.`,
     triangles: (n) => count(n, "triángulo", "triángulos"),
     empty_viewer: "Todavía nadie importó un escaneo.",
+    empty_guest: "Ve los modelos de los proyectos en los que tiene un papel. Pida uno a quien le invitó.",
     count: (n) => count(n, "modelo", "modelos"),
     no_picture: "Sin imagen",
     scale_open: "Tamaño sin confirmar",
