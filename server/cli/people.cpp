@@ -31,7 +31,7 @@ CLI::App* add(CLI::App& app, const Options& options, const char* name, const cha
 
 void add_role(CLI::App& command, const Options& options, const char* what) {
   command.add_option("--role", options->role, what)
-      ->check(CLI::IsMember({"viewer", "annotator", "curator", "administrator"}));
+      ->check(CLI::IsMember({"guest", "viewer", "annotator", "curator", "administrator"}));
 }
 
 void add_password(CLI::App& command, const Options& options) {
@@ -191,9 +191,9 @@ Command add_user(CLI::App& app) {
   add(*parent, options, "list", "Everybody with an account");
   works["list"] = list_people;
   auto* role = add_named("role", "What somebody may do", changing(set_role));
-  role->add_option("role", options->role, "viewer, annotator, curator or administrator")
+  role->add_option("role", options->role, "guest, viewer, annotator, curator or administrator")
       ->required()
-      ->check(CLI::IsMember({"viewer", "annotator", "curator", "administrator"}));
+      ->check(CLI::IsMember({"guest", "viewer", "annotator", "curator", "administrator"}));
   add_password(*add_named("password", "A new link to choose a password, or a new password", changing(renew)), options);
   add_named("disable", "Signs somebody out everywhere, and lets them in no more", disabling(true));
   add_named("enable", "Lets somebody in again", disabling(false));

@@ -257,6 +257,8 @@ def commands(server):
     assert "too short" in strata("user", "password", "max", "--password-stdin", entered="short\n", code=1)
     strata("user", "password", "max", "--password-stdin", entered="a horse, a kingdom\n")
     assert server.get("/users/max").json()["state"] == "active"
+    strata("user", "role", "max", "guest")
+    assert re.search(r"Max +guest +active", strata("user", "list"))
     strata("user", "role", "max", "curator")
     listed = strata("user", "list")
     assert re.search(r"Max +curator +active", listed) and "owner" in listed, listed
