@@ -526,6 +526,13 @@ ALTER TABLE public.models ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     CACHE 1
 );
 
+CREATE TABLE public.project_members (
+    project_id bigint NOT NULL,
+    user_id bigint NOT NULL,
+    role text NOT NULL,
+    CONSTRAINT project_members_role_check CHECK ((role = ANY (ARRAY['viewer'::text, 'annotator'::text, 'curator'::text])))
+);
+
 ALTER TABLE public.projects ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     SEQUENCE NAME public.projects_id_seq
     START WITH 1
@@ -648,7 +655,7 @@ CREATE TABLE public.users (
     deleted timestamp with time zone,
     CONSTRAINT users_name_check CHECK ((name <> ''::text)),
     CONSTRAINT users_password_check CHECK ((password <> ''::text)),
-    CONSTRAINT users_role_check CHECK ((role = ANY (ARRAY['viewer'::text, 'annotator'::text, 'curator'::text, 'administrator'::text, 'owner'::text])))
+    CONSTRAINT users_role_check CHECK ((role = ANY (ARRAY['guest'::text, 'viewer'::text, 'annotator'::text, 'curator'::text, 'administrator'::text, 'owner'::text])))
 );
 
 ALTER TABLE public.users ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
@@ -707,6 +714,9 @@ ALTER TABLE ONLY public.models
 
 ALTER TABLE ONLY public.models
     ADD CONSTRAINT models_slug_key UNIQUE (slug);
+
+ALTER TABLE ONLY public.project_members
+    ADD CONSTRAINT project_members_pkey PRIMARY KEY (user_id, project_id);
 
 ALTER TABLE ONLY public.projects
     ADD CONSTRAINT projects_pkey PRIMARY KEY (id);
@@ -805,6 +815,8 @@ CREATE INDEX models_geometry ON public.models USING btree (geometry);
 
 CREATE INDEX models_project ON public.models USING btree (project_id);
 
+CREATE INDEX project_members_project ON public.project_members USING btree (project_id);
+
 CREATE UNIQUE INDEX record_columns_slug ON public.record_columns USING btree (table_id, ((properties ->> 'slug'::text))) WHERE (NOT hidden);
 
 CREATE INDEX record_columns_target ON public.record_columns USING btree (target);
@@ -900,6 +912,12 @@ ALTER TABLE ONLY public.models
 
 ALTER TABLE ONLY public.models
     ADD CONSTRAINT models_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id);
+
+ALTER TABLE ONLY public.project_members
+    ADD CONSTRAINT project_members_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.project_members
+    ADD CONSTRAINT project_members_user_id_fkey FOREIGN KEY (user_id) REFERENCES public.users(id);
 
 ALTER TABLE ONLY public.record_columns
     ADD CONSTRAINT record_columns_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;
