@@ -1,6 +1,7 @@
 import { beforeEach, describe, expect, it, vi } from "vitest";
 
 import { Comments, type CommentsHost } from "../src/app/comments";
+import { notices } from "../src/app/notices";
 import { kMostLooked, PinSight, type PinPlace } from "../src/app/pin-sight";
 import { comment_of, hash_of_comment } from "../src/app/routes";
 import { Api } from "../src/core/api";
@@ -275,6 +276,20 @@ describe("the comments of a model", () => {
     comments.on_event({ op: "comment", event: "deleted", comment_id: 1 });
     expect(comments.find(1)).toBeNull();
     expect(comments.card).toBeNull();
+  });
+
+  it("that name this person are shown as a notice, but to who reads the thread", () => {
+    let told: readonly string[] = [];
+    const stop = notices.subscribe((shown) => (told = shown.map(({ detail }) => detail)));
+    const reply_with = (id: number, text: string): void =>
+      comments.on_event({ op: "comment", event: "created", comment_id: id, comment: reply(id, 1, { user: "bob", text }), user: "bob" });
+    reply_with(4, "@ada first");
+    reply_with(5, "for everybody");
+    comments.show(1);
+    reply_with(6, "@ada second");
+    expect(told).toEqual(["@ada first"]);
+    expect(comments.said).toContain("@ada second");
+    stop();
   });
 
   it("keep what happens while they are read, and forget what happened before", async () => {

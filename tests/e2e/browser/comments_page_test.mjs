@@ -239,6 +239,19 @@ try {
   await card(phone).getByRole("button", { name: "Comment", exact: true }).click();
   await article(phone, "Glaze?").waitFor();
   await shot(phone, "phone_thread");
+
+  say("what somebody says meanwhile is shown above the sheet");
+  const { id: aside } = await server.json("POST", `${kBase}/comments`, { text: "@carl, see here", position: first.position });
+  const told = phone.page.locator("strata-notices .notice", { hasText: "owner wrote to you" });
+  await told.waitFor();
+  await shot(phone, "phone_told");
+  await wait_for(async () => {
+    const [notice, sheet] = [await told.boundingBox(), await card(phone).boundingBox()];
+    return notice.y + notice.height <= sheet.y;
+  }, "the notice to be above the sheet");
+  await told.getByRole("button", { name: "Close" }).click();
+  await server.request("DELETE", `/comments/${aside}`);
+  await gone(pin(phone, aside));
   await button(phone, "Close the comment").click();
   await pin(phone, first.id).tap();
   await card(phone).getByText("This comment was deleted.").waitFor();

@@ -69,6 +69,9 @@ export class StrataCellInput extends LitElement {
         background: var(--surface);
         color: var(--ink-soft);
       }
+      :host([fixed]) [inert] {
+        opacity: var(--unavailable);
+      }
       :host(.in-cell) :is(input, select, textarea) {
         min-height: 28px;
         padding: 2px 6px;

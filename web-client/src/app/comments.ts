@@ -181,8 +181,9 @@ export class Comments {
     this.put(comment);
     if (event !== "created" || !is_new || user === this.me_) return;
     this.said = words.said(comment.user, comment.text);
+    if (!mentions(comment.text, this.me_) || this.card === comment.thread) return; // who reads the thread sees it there
     const act = (): void => this.go_to(comment.id);
-    if (mentions(comment.text, this.me_)) notices.show("info", words.mentioned(comment.user), comment.text.slice(0, 200), { label: words.show, act });
+    notices.show("info", words.mentioned(comment.user), comment.text.slice(0, 200), { label: words.show, act });
   }
 
   private put(comment: Comment): void {

@@ -70,7 +70,7 @@ export const home_styles = css`
   .into select {
     width: auto;
     min-width: 0;
-    max-width: min(260px, 100%);
+    max-width: 260px;
   }
   h1 {
     font-size: clamp(1.6rem, 3vw, 2.1rem);

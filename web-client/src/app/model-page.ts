@@ -112,13 +112,16 @@ export class StrataModelPage extends LitElement {
   }
 
   override updated(): void {
-    this.lift_notices(this.session_?.tables.view ? `${this.table_height_}px` : null);
+    const session = this.session_;
+    const narrow = matchMedia("(max-width: 820px)").matches;
+    if (session?.tables.view) this.lift_notices(narrow ? "52dvh" : `${this.table_height_}px`);
+    else this.lift_notices(narrow && session && session.comments.card !== null ? "calc(48dvh - 56px)" : null); // its sheet lies over the tools
   }
 
-  /** They are an element of the whole page, and would lie over the table. */
+  /** They are an element of the whole page, and would lie over the table, or the sheet of a comment. */
   private lift_notices(height: string | null): void {
     const { style } = document.documentElement;
-    if (height) style.setProperty("--beneath", matchMedia("(max-width: 820px)").matches ? "52dvh" : height);
+    if (height) style.setProperty("--beneath", height);
     else style.removeProperty("--beneath");
   }
 

@@ -66,7 +66,7 @@ export class StrataPeopleMenu extends LitElement {
       .who {
         display: grid;
         min-width: 0;
-        max-width: 240px;
+        max-width: 280px;
         text-align: left;
         line-height: 1.25;
       }

@@ -350,7 +350,7 @@ export const texts = {
 
   together: {
     follow: (name) => `${name} folgen`,
-    follow_own: "Dem eigenen anderen Fenster folgen",
+    follow_own: "Ihrem anderen Fenster folgen",
     stop_following: "Nicht mehr folgen",
     following: (name) => `Sie folgen ${name}`,
     escape_stops: "Esc beendet",
