@@ -11,10 +11,12 @@ import { texts_of } from "../support/texts.mjs";
 const kSizes = [[390, 844], [820, 1180], [1280, 800], [3840, 2160]];
 const kShownSizes = new Set([390, 1280]); // whose pictures are kept
 const kThemes = ["light", "dark", "contrast"];
+const kOtherProject = "Excavation at the East Gate, Northern Profile";
 const output = process.env.STRATA_TEST_OUTPUT && join(process.env.STRATA_TEST_OUTPUT, "accessibility");
 if (output) mkdirSync(output, { recursive: true });
 
 const browsers = { en: await Browser.open(), de: await Browser.open({ locale: "de-DE" }) };
+const bea = await Browser.open(); // somebody else at the model
 const server = new StrataServer({ demo: true });
 const checked = [];
 const wrong = [];
@@ -50,6 +52,18 @@ function screens_of({ page }, w, site) {
     await open(button(w.layers.new));
     await page.getByRole("radio", { name: new RegExp(`^${name}`) }).click();
   };
+  const stage_centre = async () => {
+    const box = await page.locator("strata-stage").boundingBox();
+    return [box.x + box.width / 2, box.y + box.height / 2];
+  };
+  const row = (key) => page.getByRole("grid").getByRole("rowheader", { name: new RegExp(`^${key}\\b`) });
+  const people = page.locator("strata-people-menu");
+  const choose_of_people = async (name) => {
+    await people.locator(".faces").click();
+    await people.getByRole("menuitem", { name }).click();
+  };
+  const bar = page.locator("strata-together-bar button");
+  const card = page.locator("strata-comment-card section");
   const to_sign_in = async () => {
     await page.goto(server.url);
     await page.getByRole("heading", exact(w.sign_in.title)).waitFor();
@@ -77,6 +91,7 @@ function screens_of({ page }, w, site) {
       await page.goto(server.url);
       await page.getByRole("heading", exact(w.home.title)).waitFor();
       await page.locator("strata-thumbnail canvas.drawn").first().waitFor();
+      await page.getByRole("combobox", exact(w.home.into)).waitFor();
     }, keyboard: true },
     { name: "menu of the account", start: () => button(w.account.menu("owner")).click(), end: escape },
     { name: "menu of a model", start: async () => {
@@ -97,6 +112,17 @@ function screens_of({ page }, w, site) {
       await account(w.account.people)();
       await button(w.site_people.invite).click();
     }, end: close_dialog },
+    { name: "people: roles in projects", start: async () => {
+      await account(w.account.people)();
+      await button(w.site_people.options("Ada Lovelace")).click();
+      await item(w.site_people.projects).click();
+      await page.getByRole("combobox", exact(w.project_roles.role_in(kOtherProject))).selectOption("curator");
+      await page.locator("strata-project-roles-dialog").getByRole("status").waitFor();
+    }, end: async () => {
+      await escape();
+      await wait_for(async () => (await dialog.count()) === 1, "the inner dialog to close");
+      await close_dialog();
+    }, keyboard: true },
     { name: "preferences", start: account(w.settings.open), end: close_dialog, keyboard: true },
     { name: "no such model", start: async () => {
       await page.goto(`${server.url}/models/999`);
@@ -175,6 +201,79 @@ function screens_of({ page }, w, site) {
       await page.getByRole("grid").getByRole("rowheader", exact("1")).click();
       await open(page.locator("strata-table-panel").getByRole("button", exact(w.tables.delete)).first());
     }, end: close_dialog },
+    { name: "record that somebody else edits", start: async () => {
+      await bea_at(site.model);
+      await bea.page.getByRole("button", { name: "Paint on Finds" }).click();
+      await bea.page.keyboard.press("t");
+      await bea.page.getByRole("grid").getByRole("rowheader", exact("2")).click();
+      await bea.page.getByRole("button", exact("Edit the record")).click();
+      await row(2).getByRole("img", exact(w.tables.edited_by("bea"))).waitFor();
+      await row(2).click();
+      await open(page.locator("strata-table-panel").getByRole("button", exact(w.tables.edit)));
+      await page.locator("strata-record-dialog").getByText(w.tables.edited_by("bea")).waitFor();
+    }, end: async () => {
+      await close_dialog();
+      await bea.page.keyboard.press("Escape");
+      await page.locator("strata-table-panel").getByRole("button", exact(w.tables.close)).click();
+    }, keyboard: true },
+    { name: "menu of the people", start: async () => {
+      await bea_at(site.model); // without the table
+      await people.locator(".faces").click();
+      await people.getByRole("menuitem", { name: w.together.follow("Bea Ost") }).waitFor();
+    }, end: escape },
+    { name: "following", start: async () => {
+      await choose_of_people(w.together.follow("Bea Ost"));
+      await bar.getByText(w.together.following("Bea Ost")).waitFor();
+      const [x, y] = await stage_centre();
+      await bea.page.mouse.move(x + 20, y + 30); // she points
+      await page.locator("strata-people-overlay .person").waitFor({ state: "attached" });
+    }, end: async () => {
+      await bea.page.mouse.move(2, 2);
+      await bar.click();
+      await bar.waitFor({ state: "detached" });
+    }, keyboard: true },
+    { name: "asked to look along", start: async () => {
+      await bea.page.locator("strata-people-menu .faces").click();
+      await bea.page.getByRole("menuitem", { name: /Look with me/ }).click();
+      await page.getByText(w.together.invites("Bea Ost")).waitFor();
+    }, end: () => bea.page.locator("strata-together-bar button").click() },
+    { name: "others look along", start: async () => {
+      await choose_of_people(w.together.lead);
+      await bea.page.locator("strata-notices").getByRole("button", exact("Follow")).click();
+      await bar.getByText(w.together.leading(1)).waitFor();
+    }, end: async () => {
+      await bar.click();
+      await bar.waitFor({ state: "detached" });
+      await bea.page.keyboard.press("Escape");
+    } },
+    { name: "locked layer", start: async () => {
+      await server.json("PATCH", `/models/${site.model}/layers/finds`, { locked: true });
+      await choose_layer("Finds");
+      await page.locator("strata-layer-panel .more").getByText(w.layers.locked_to_others).waitFor();
+    }, end: () => server.json("PATCH", `/models/${site.model}/layers/finds`, { locked: false }) },
+    { name: "new comment", start: async () => {
+      await tool("c");
+      await page.mouse.click(...(await stage_centre()));
+      await card.getByRole("textbox", exact(w.comments.text)).fill("Is this the crack of 2019?\nSee https://example.org/report");
+    }, keyboard: true },
+    { name: "comment", start: async () => {
+      await card.getByRole("textbox", exact(w.comments.text)).press("Control+Enter");
+      await card.getByRole("article").first().waitFor();
+      const { comments } = await server.json("GET", `/models/${site.model}/comments`);
+      await site.reply(comments.at(-1).id, "@owner yes, it has grown. Look at the rim, too: https://example.org/a-very-long-address/that-does-not-break/anywhere/in-it");
+      await wait_for(async () => (await card.getByRole("article").count()) === 2, "the reply");
+    }, keyboard: true },
+    { name: "comments", start: async () => {
+      await card.getByRole("button", exact(w.comments.resolve)).click();
+      await card.getByRole("button", exact(w.comments.reopen)).waitFor();
+      await card.getByRole("button", exact(w.comments.close)).click();
+      await page.locator("strata-comment-panel").getByRole("button", { name: w.comments.title, expanded: false }).click();
+      await page.locator("strata-comment-panel").getByRole("radio", exact(w.comments.states.all)).click();
+      await page.locator("strata-comment-panel").getByRole("listitem").first().waitFor();
+      await page.locator("strata-comment-panel").evaluate((panel) => panel.scrollIntoView());
+    }, end: async () => {
+      for (const { id } of (await server.json("GET", `/models/${site.model}/comments`)).comments) await server.request("DELETE", `/comments/${id}`);
+    }, keyboard: true },
   ];
 }
 
@@ -192,7 +291,12 @@ async function check(language, { page }, screen) {
       await page.setViewportSize({ width, height });
       await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
       await found(`${width}×${height}`, overflows(page));
-      if (output && kShownSizes.has(width)) await page.screenshot({ path: join(output, `${width}_${screen.name.replaceAll(/\W+/g, "_")}.png`) });
+      if (!output || !kShownSizes.has(width)) continue;
+      for (const theme of ["light", "dark"]) {
+        await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
+        await page.screenshot({ path: join(output, `${width}_${screen.name.replaceAll(/\W+/g, "_")}${theme === "dark" ? "_dark" : ""}.png`) });
+      }
+      await page.evaluate(() => (document.documentElement.dataset.theme = "light"));
     }
     await page.setViewportSize({ width: 1280, height: 800 });
   }
@@ -228,7 +332,33 @@ async function make_site() {
     await server.json("POST", `/tables/${finds.id}/records`, { values: { name, depth, state } });
   await server.json("POST", `/models/${model}/layers`, { name: "Finds", kind: "database", type: "u16", resolution: 2048, table: finds.slug });
   const made = await server.json("POST", `/projects/${project}/templates/stone-condition`, { model: String(model) });
-  return { model, invitation: path, terms: made.layers[0].name };
+  await server.json("POST", "/projects", { name: kOtherProject });
+  const person = await server.add_person("bea", "annotator");
+  await server.json("PATCH", "/users/bea", { full_name: "Bea Ost" });
+  await bea.sign_in(server, person);
+  const reply = async (thread, text) => {
+    const headers = { Authorization: `Bearer ${person.token}`, "Content-Type": "application/json" };
+    const answer = await fetch(`${server.url}/api/v1/comments/${thread}/replies`, { method: "POST", headers, body: JSON.stringify({ text }) });
+    assert.equal(answer.status, 201);
+  };
+  return { model, invitation: path, terms: made.layers[0].name, reply };
+}
+
+async function bea_at(model) {
+  await bea.page.goto(`${server.url}/models/${model}`);
+  await bea.drawn();
+}
+
+/** Chosen by who may not change it, with the brush in hand. */
+async function locked_for_bea(language, model) {
+  const w = texts_of(language);
+  await bea.page.evaluate((chosen) => localStorage.setItem("strata.language", chosen), language);
+  await bea_at(model);
+  await bea.page.getByRole("button", { name: w.layers.select("Finds"), exact: true }).click();
+  await bea.page.keyboard.press("b");
+  await bea.page.locator("strata-brush-panel").getByText(w.layers.locked_detail("Finds")).waitFor();
+  await bea.page.locator("strata-notices").getByText(w.layers.locked, { exact: true }).waitFor();
+  await check(language, bea, { name: "brush on a locked layer", keyboard: true });
 }
 
 try {
@@ -244,7 +374,14 @@ try {
     }
   }
 
+  await server.json("PATCH", `/models/${site.model}/layers/finds`, { locked: true });
+  for (const language of Object.keys(browsers)) {
+    step = `${language}: brush on a locked layer`;
+    await locked_for_bea(language, site.model);
+  }
+
   step = "empty home";
+  for (const { page } of [...Object.values(browsers), bea]) await page.goto(server.url); // none asks for a model that goes
   await server.request("DELETE", `/models/${site.model}`);
   for (const [language, browser] of Object.entries(browsers)) {
     await browser.page.goto(server.url);
@@ -303,16 +440,16 @@ try {
   step = "the end";
   console.log(`${checked.length} screens checked:\n  ${checked.join("\n  ")}`);
   if (wrong.length > 0) throw new Error(`${wrong.length} findings:\n${[...new Set(wrong)].join("\n")}`);
-  for (const browser of Object.values(browsers)) browser.assert_no_complaints(["status of 401", "status of 404"]);
+  for (const browser of [...Object.values(browsers), bea]) browser.assert_no_complaints(["status of 401", "status of 404"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}; findings so far:\n${[...new Set(wrong)].join("\n")}\n--- log of the server\n${server.log.slice(-30).join("\n")}`);
   if (process.env.STRATA_TEST_OUTPUT) {
-    for (const [language, { page }] of Object.entries(browsers)) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `accessibility_${language}.png`) }).catch(() => {});
+    for (const [name, { page }] of Object.entries({ ...browsers, bea })) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `accessibility_${name}.png`) }).catch(() => {});
   }
   throw error;
 } finally {
-  for (const browser of Object.values(browsers)) await browser.close();
+  for (const browser of [...Object.values(browsers), bea]) await browser.close();
   await server.remove();
 }

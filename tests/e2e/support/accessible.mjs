@@ -54,7 +54,8 @@ export const overflows = (page) =>
        }
        const inside = each.closest("dialog[open]");
        if (inside && each.matches(".content, footer") && each.scrollWidth > each.clientWidth + 1) found.push(told(each) + ": " + each.scrollWidth + " in " + each.clientWidth);
-       if (each.matches("button") && !each.querySelector("slot") && each.scrollWidth > each.clientWidth + 1 && !each.querySelector(".ellipsis") && getComputedStyle(each).overflowX === "visible")
+       const reach = Math.max(0, -parseFloat(getComputedStyle(each, "::before").right) || 0); // what is pressed may be larger than what is seen
+       if (each.matches("button") && !each.querySelector("slot") && each.scrollWidth > each.clientWidth + 1 + reach && !each.querySelector(".ellipsis") && getComputedStyle(each).overflowX === "visible")
          found.push(told(each) + " has " + each.scrollWidth + " in " + each.clientWidth);
      }
      return found;`,
@@ -70,9 +71,10 @@ export async function walk(page) {
     `const top = [...deep_all()].filter((each) => each.matches("dialog[open]")).at(-1);
      const within = (each) => { for (let at = each; at; at = at.parentNode ?? at.host) if (at === top) return true; return !top; };
      const flat = (each) => { for (let at = each; at; at = at.assignedSlot ?? at.parentNode ?? at.host) if (at === top) return true; return !top; };
+     const is_inert = (each) => { for (let at = each; at; at = at.assignedSlot ?? at.parentNode ?? at.host) if (at.inert) return true; return false; };
      window.wanted = deep_all().filter((each) => each.matches("a[href], button, input, select, textarea, summary, [tabindex]") && !each.disabled && each.tabIndex >= 0 &&
        each.checkVisibility({ visibilityProperty: true }) && each.getClientRects().length > 0 && (within(each) || flat(each)) &&
-       !(each.shadowRoot?.delegatesFocus));
+       !is_inert(each) && !(each.shadowRoot?.delegatesFocus));
      return window.wanted.length;`,
   );
   for (let presses = 0; presses < 2 * count + 10; ++presses) {

@@ -34,7 +34,7 @@ export class Browser {
     });
     browser.page = browser.context.pages()[0] ?? (await browser.context.newPage());
     browser.page.setDefaultTimeout(kLong_ms);
-    browser.page.on("console", (message) => ["error", "warning"].includes(message.type()) && browser.complaints.push(message.text()));
+    browser.page.on("console", (message) => ["error", "warning"].includes(message.type()) && browser.complaints.push(`${message.text()} (${message.location().url})`));
     browser.page.on("pageerror", (error) => browser.complaints.push(String(error.stack ?? error)));
     return browser;
   }
