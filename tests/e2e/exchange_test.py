@@ -12,7 +12,7 @@ import urllib.parse
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.meshes import folded_grid
-from support.strata_server import StrataServer
+from support.strata_server import StrataServer, wait_for
 from support.workbook import Workbook
 
 XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
@@ -165,7 +165,7 @@ def check_workbooks(server, pieces):
             near(row[head], float(written[head]), 1e-15)  # a workbook has 16 digits
     assert [row["class"] for row in book.records] == ["Skull", hostile, "total"]
     assert [row["class"] for row in Workbook(server.get("/tables/pieces/quantities", headers={"Accept": XLSX}).body).records] == ["Skull", hostile, "total"]
-    assert os.listdir(os.path.join(server.data, "uploads")) == []  # nothing stays
+    wait_for(lambda: os.listdir(os.path.join(server.data, "uploads")) == [], "that nothing stays")  # they go after the answer
 
 
 def lines_of(server, path, **query):

@@ -40,6 +40,7 @@ def import_csv(server):
     taken = server.post(PROJECT + "/terms?name=STONE", STONE.encode(), headers=CSV)
     assert taken.status == 409 and "`stone`" in taken.json()["detail"], taken
     assert tree(server) == [(0, "Loss"), (1, "Worn"), (1, "Broken off"), (0, "On the surface"), (1, "Salts")]
+    assert server.get(LIST + "/terms?lang=" + "a" * 36).status == 422
     assert tree(server, "?lang=es-MX")[0] == (0, "Pérdida") and tree(server, "?lang=de")[0] == (0, "Loss")
     assert tree(server, "?q=ROTURA") == [(0, "Loss"), (1, "Broken off")], "words are looked for in all languages, and those above are told"
     assert tree(server, "?q=deposito") == [(0, "On the surface")] and tree(server, "?q=nothing") == []

@@ -394,7 +394,15 @@ try {
   const opener = page.getByRole("button", { name: "Account of owner" });
   await opener.focus();
   const before = await active(page);
-  for (const key of ["Enter", "ArrowDown", "Enter"]) await page.keyboard.press(key);
+  // Each key moves the focus, and the next one is for where it is then.
+  const moves = async (key) => {
+    const from = await active(page);
+    await page.keyboard.press(key);
+    await wait_for(async () => (await active(page)) !== from, `${key} to move the focus from ${from}`);
+  };
+  await moves("Enter");
+  await moves("ArrowDown");
+  await page.keyboard.press("Enter");
   await page.getByRole("dialog").waitFor();
   for (let presses = 0; presses < 30; ++presses) {
     await page.keyboard.press("Tab");
