@@ -381,7 +381,7 @@ try {
   }
 
   step = "empty home";
-  for (const { page } of [...Object.values(browsers), bea]) await page.goto(server.url); // none asks for a model that goes
+  for (const { page } of [...Object.values(browsers), bea]) await page.goto("about:blank"); // home, too, asks for a picture of a model that goes
   await server.request("DELETE", `/models/${site.model}`);
   for (const [language, browser] of Object.entries(browsers)) {
     await browser.page.goto(server.url);
