@@ -221,7 +221,14 @@ Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std:
   return value;
 }
 
-std::string asked_language(const Request& request) { return to_lower(request.query_or("lang", {})); }
+Result<std::string> asked_language(const Request& request) {
+  constexpr std::size_t kLongest = 35;  // BCP 47
+  std::string language = to_lower(request.query_or("lang", {}));
+  if (language.size() > kLongest)
+    return fail(422, "Not a language", "`lang` is a language such as `es` or `de-AT`, of 35 characters at most.",
+                "lang");
+  return language;
+}
 
 Result<Page> page_of(const Request& request) {
   Page page;

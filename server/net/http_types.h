@@ -114,8 +114,8 @@ constexpr int kMaxPage = 1000;
 Result<Page> page_of(const Request& request);
 void add_page_links(Response& response, const Request& request, const Page& page, std::int64_t total);
 
-// `lang`, a language tag in lower case; empty: any.
-std::string asked_language(const Request& request);
+// `lang`, a language tag in lower case; empty: any. Refused (422, `lang`): one that is too long.
+Result<std::string> asked_language(const Request& request);
 
 // Whole number in a query parameter or path; refused with the field's name otherwise.
 Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std::int64_t high,

@@ -79,7 +79,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   Work on_text(const std::string& text);
   void on_binary();
   void on_closed();
-  std::int64_t model_id() const { return room_->model().id; }            // any thread
+  std::int64_t model_id() const { return owner_.model_id; }
   std::int64_t project_id() const { return room_->model().project_id; }  // of the model; any thread
   const std::string& user() const { return principal_.user; }
   // What concerns the whole site or project; only who was welcomed hears it. Any thread.

@@ -3,9 +3,6 @@
 #include <algorithm>
 
 namespace strata::net {
-namespace {
-constexpr std::size_t kLongestLanguage = 35;  // BCP 47
-}  // namespace
 
 void Router::add(Route route) {
   Entry entry;
@@ -78,13 +75,7 @@ std::string allow_header(const std::vector<Method>& methods) {
 Result<void> check_query(const Route& route, const Request& request) {
   if (route.any_query) return {};
   for (const auto& [key, value] : request.query) {
-    if (std::find(route.query.begin(), route.query.end(), key) != route.query.end()) {
-      // Means the same wherever it is taken; not every address looks at it each time.
-      if (key == "lang" && value.size() > kLongestLanguage)
-        return fail(422, "Not a language", "`lang` is a language such as `es` or `de-AT`, of 35 characters at most.",
-                    key);
-      continue;
-    }
+    if (std::find(route.query.begin(), route.query.end(), key) != route.query.end()) continue;
     std::string known;
     for (const auto& name : route.query) known += (known.empty() ? "" : ", ") + name;
     return fail(400, "Unknown query parameter",

@@ -183,6 +183,8 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
   if (!format) return tl::unexpected(format.error());
   const auto separator = csv_separator(request);
   if (!separator) return tl::unexpected(separator.error());
+  const auto language = asked_language(request);
+  if (!language) return tl::unexpected(language.error());
   auto room = context.rooms.open(request.param("model"));
   if (!room) return tl::unexpected(room.error());
   const auto layer = (*room)->layer(request.param("layer"));
@@ -209,7 +211,7 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
     add_classes(*all, marks);
     std::vector<std::int64_t> keys;
     for (const query::Quantity& quantity : all->classes) keys.push_back(static_cast<std::int64_t>(*quantity.value));
-    auto found = record_names(context, *layer->table, std::move(keys), records_at, asked_language(request));
+    auto found = record_names(context, *layer->table, std::move(keys), records_at, *language);
     if (!found) return tl::unexpected(found.error());
     names = std::move(*found);
   }
@@ -262,6 +264,8 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   if (!format) return tl::unexpected(format.error());
   const auto separator = csv_separator(request);
   if (!separator) return tl::unexpected(separator.error());
+  const auto language = asked_language(request);
+  if (!language) return tl::unexpected(language.error());
   const auto table = context.store.table(request.param("table"));
   if (!table) return tl::unexpected(table.error());
   const auto layers = of_layers(context, table->id);
@@ -278,7 +282,7 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   for (const auto& [key, values] : marks->of_key) of_key.try_emplace(key);
   std::vector<std::int64_t> keys;
   for (const auto& [key, quantity] : of_key) keys.push_back(key);
-  const auto names = record_names(context, table->id, keys, {}, asked_language(request));
+  const auto names = record_names(context, table->id, keys, {}, *language);
   if (!names) return tl::unexpected(names.error());
   const auto text_of = [&](std::int64_t key) {
     const auto name = names->find(key);

@@ -151,8 +151,8 @@ std::vector<bool> with_those_above(const std::vector<ListedTerm>& terms, const s
   return told;
 }
 
-Response tree_response(const Request& request, const std::vector<ListedTerm>& terms, const Page& page) {
-  const std::string language = asked_language(request);
+Response tree_response(const Request& request, const std::string& language, const std::vector<ListedTerm>& terms,
+                       const Page& page) {
   const Palette palette = terms_palette(terms);
   std::map<std::int64_t, int> below;
   for (const ListedTerm& listed : terms)
@@ -194,6 +194,8 @@ Result<Response> list_terms_of(const RouteContext& context, const Request& reque
   if (!separator) return tl::unexpected(separator.error());
   auto shown = page_of(request);
   if (!shown) return tl::unexpected(shown.error());
+  const auto language = asked_language(request);
+  if (!language) return tl::unexpected(language.error());
   auto table = context.store.table(request.param("table"));
   if (!table) return tl::unexpected(table.error());
   if (!term_columns(*table))
@@ -207,7 +209,7 @@ Result<Response> list_terms_of(const RouteContext& context, const Request& reque
   const auto listed = list_terms(*columns, page->records);
   Response response;
   if (format == "json") {
-    response = tree_response(request, listed, *shown);
+    response = tree_response(request, *language, listed, *shown);
   } else {
     std::vector<Term> terms;
     for (const ListedTerm& each : listed) terms.push_back(each.term);
