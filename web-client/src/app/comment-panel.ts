@@ -5,6 +5,7 @@ import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import type { Thread, ThreadState } from "../core/comments";
 import { format_count } from "../core/locale";
+import { folding_heading_styles } from "./folding-heading";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import { Kept } from "./kept";
@@ -32,36 +33,12 @@ export class StrataCommentPanel extends LitElement {
 
   static override styles = [
     shared_styles,
+    folding_heading_styles,
     person_mark_styles,
     css`
       :host {
         display: block;
         position: relative; /* of what is hidden for eyes */
-      }
-      .heading {
-        display: flex;
-        align-items: center;
-        gap: 8px;
-      }
-      h2 {
-        flex: 1;
-        font-size: 1.08rem;
-      }
-      h2 button {
-        width: 100%;
-        justify-content: flex-start;
-        gap: 8px;
-        min-height: 36px;
-        margin-left: -8px;
-        padding: 0 8px;
-        font: inherit;
-      }
-      h2 svg.glyph {
-        transform: rotate(90deg);
-        transition: transform 120ms;
-      }
-      h2 button[aria-expanded="true"] svg.glyph {
-        transform: rotate(180deg);
       }
       .number {
         font: 600 0.82rem var(--sans, inherit);

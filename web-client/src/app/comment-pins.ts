@@ -129,9 +129,8 @@ export class StrataCommentPins extends LitElement {
 
   private at(position: Vec3): { x: number; y: number; depth: number } | null {
     const { camera, scale } = this.session.view;
-    const at = camera.project(position);
-    if (!at || at.x < 0 || at.y < 0 || at.x > camera.width || at.y > camera.height) return null;
-    return { x: at.x / scale, y: at.y / scale, depth: at.depth };
+    const at = camera.project_inside(position);
+    return at && { x: at.x / scale, y: at.y / scale, depth: at.depth };
   }
 
   private pin({ thread, x, y }: Placed, order: number): TemplateResult {

@@ -73,10 +73,10 @@ export class PeopleCursors {
     const [camera, scale, now] = [this.host_.camera(), this.host_.scale(), performance.now()];
     return [...this.cursors_.values()].flatMap((cursor) => {
       const place = this.place(cursor, now);
-      const seen = in_window(camera, place);
+      const seen = camera.project_inside(place);
       if (!seen) return [];
       const radius = cursor.radius === null ? null : cursor.radius / camera.unit_per_pixel(seen.depth) / scale;
-      const hidden = cursor.hidden || is_cut_away(camera, place);
+      const hidden = cursor.hidden || camera.cuts_away(place);
       return [{ viewer: cursor.viewer, x: seen.x / scale, y: seen.y / scale, radius, hidden, faded: now - cursor.moved_ms >= kFadesAfter_ms }];
     });
   }
@@ -162,7 +162,7 @@ export class PeopleCursors {
     const camera = this.host_.camera();
     for (const [session, cursor] of this.cursors_) {
       if (cursor.asked) continue;
-      const seen = in_window(camera, cursor.to);
+      const seen = camera.project_inside(cursor.to);
       if (!seen) continue;
       cursor.asked = true;
       const slack = Math.max(kSlack_px * camera.unit_per_pixel(seen.depth), 1e-3 * bounding_radius(camera.bounds));
@@ -176,11 +176,3 @@ export class PeopleCursors {
     }
   }
 }
-
-function in_window(camera: OrbitCamera, place: Vec3): { x: number; y: number; depth: number } | null {
-  const seen = camera.project(place);
-  return seen && seen.x >= 0 && seen.y >= 0 && seen.x <= camera.width && seen.y <= camera.height ? seen : null;
-}
-
-const is_cut_away = ({ section }: OrbitCamera, place: Vec3): boolean =>
-  section.some(([a, b, c, d]) => dot([a, b, c], place) + d < 0);

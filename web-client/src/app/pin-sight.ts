@@ -44,9 +44,9 @@ export class PinSight {
     const asked_of: { place: PinPlace; depth: number }[] = [];
     const pixels: Point[] = [];
     for (const place of this.host_.places()) {
-      const at = camera.project(place.position);
-      if (!at || at.x < 0 || at.y < 0 || at.x > camera.width || at.y > camera.height || pixels.length === kMostLooked) continue;
-      if (is_cut_away(camera, place.position)) {
+      const at = camera.project_inside(place.position);
+      if (!at || pixels.length === kMostLooked) continue;
+      if (camera.cuts_away(place.position)) {
         known.set(place.id, false);
         continue;
       }
@@ -71,11 +71,9 @@ export class PinSight {
     const known = this.known_.get(place.id);
     if (!this.moved_ && known !== undefined) return known;
     const camera = this.host_.camera();
-    return known !== false && faces(camera, place) && !is_cut_away(camera, place.position);
+    return known !== false && faces(camera, place) && !camera.cuts_away(place.position);
   }
 }
-
-const is_cut_away = ({ section }: OrbitCamera, [x, y, z]: Vec3): boolean => section.some(([a, b, c, d]) => a * x + b * y + c * z + d < 0);
 
 function faces(camera: OrbitCamera, { position, normal }: PinPlace): boolean {
   const towards = camera.perspective ? subtract(camera.eye(), position) : camera.axes().back;

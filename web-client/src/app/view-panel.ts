@@ -1,12 +1,14 @@
 // <strata-view-panel>: how this person sees the model: looks, light, section.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, state } from "lit/decorators.js";
+import { customElement, property } from "lit/decorators.js";
 import { format_length, metres_per } from "../core/measure";
 import type { LightMode, Point3 } from "../core/protocol.gen";
 import { kAxes, with_box_side, world_position, type SectionMode } from "../core/section";
+import { folding_heading_styles } from "./folding-heading";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
+import { Kept } from "./kept";
 import "./light-pad";
 import "./look-list";
 import type { ModelSession } from "./model-session";
@@ -17,12 +19,11 @@ import { texts } from "./texts";
 const kLights: readonly LightMode[] = ["museum", "headlight", "raking", "unlit"];
 const kSections: readonly SectionMode[] = ["off", "x", "y", "z", "box"];
 const kSteps = 1000; // of a section's slider
-const kOpenKey = "strata.view_panel_open";
 
 @customElement("strata-view-panel")
 export class StrataViewPanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private open_ = localStorage.getItem(kOpenKey) === "true";
+  private readonly open_ = new Kept(() => localStorage, "strata.view_panel_open", false);
 
   constructor() {
     super();
@@ -31,34 +32,10 @@ export class StrataViewPanel extends LitElement {
 
   static override styles = [
     shared_styles,
+    folding_heading_styles,
     css`
       :host {
         display: block;
-      }
-      .heading {
-        display: flex;
-        align-items: center;
-        gap: 8px;
-      }
-      h2 {
-        flex: 1;
-        font-size: 1.08rem;
-      }
-      h2 button {
-        width: 100%;
-        justify-content: flex-start;
-        gap: 8px;
-        min-height: 36px;
-        margin-left: -8px;
-        padding: 0 8px;
-        font: inherit;
-      }
-      h2 svg.glyph {
-        transform: rotate(90deg);
-        transition: transform 120ms;
-      }
-      h2 button[aria-expanded="true"] svg.glyph {
-        transform: rotate(180deg);
       }
       h2 .dot {
         width: 8px;
@@ -114,24 +91,25 @@ export class StrataViewPanel extends LitElement {
   override render(): TemplateResult {
     const { appearance } = this.session;
     const words = texts.view;
+    const open = this.open_.value;
     return html`<div class="heading">
         <h2>
-          <button class="quiet" aria-expanded=${this.open_} aria-controls="parts" @click=${this.toggle}>
-            ${icon("up")}${words.title}${appearance.is_default || this.open_
+          <button class="quiet" aria-expanded=${open} aria-controls="parts" @click=${this.toggle}>
+            ${icon("up")}${words.title}${appearance.is_default || open
               ? nothing
               : html`<span class="dot" role="img" aria-label=${words.changed} title=${words.changed}></span>`}
           </button>
         </h2>
-        ${this.open_ && !appearance.is_default
+        ${open && !appearance.is_default
           ? html`<button class="link" @click=${() => appearance.reset()}>${words.reset}</button>`
           : nothing}
       </div>
-      <div id="parts" class="parts" ?hidden=${!this.open_}>${this.open_ ? [this.looks(), this.light(), this.section()] : nothing}</div>`;
+      <div id="parts" class="parts" ?hidden=${!open}>${open ? [this.looks(), this.light(), this.section()] : nothing}</div>`;
   }
 
   private toggle(): void {
-    this.open_ = !this.open_;
-    localStorage.setItem(kOpenKey, String(this.open_));
+    this.open_.value = !this.open_.value;
+    this.requestUpdate();
   }
 
   private looks(): TemplateResult {

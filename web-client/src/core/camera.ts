@@ -276,6 +276,17 @@ export class OrbitCamera {
     };
   }
 
+  /** The same, or null outside the window, too. */
+  project_inside(point: Vec3): { x: number; y: number; depth: number } | null {
+    const at = this.project(point);
+    return at && at.x >= 0 && at.y >= 0 && at.x <= this.width && at.y <= this.height ? at : null;
+  }
+
+  /** Whether the section's planes cut the world point away. */
+  cuts_away(point: Vec3): boolean {
+    return this.section.some(([a, b, c, d]) => dot([a, b, c], point) + d < 0);
+  }
+
   private depth_range(): { near: number; far: number } {
     const radius = bounding_radius(this.bounds_) * 1.02;
     const middle = this.depth_of(centre(this.bounds_));
