@@ -7,49 +7,14 @@ import subprocess
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from support.live_client import Closed, LiveClient, Refused
+from support.browsers import PASSWORD, Browser, join, secret_of
+from support.live_client import LiveClient, Refused
 from support.meshes import folded_grid
 from support.strata_server import LONG_S, StrataServer
 
 M, L = "/models/sheet", "/models/sheet/layers/marks"
-PASSWORD, OTHER = "seven blue herons at noon", "no herons any more, a pity"
+OTHER = "no herons any more, a pity"
 FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
-
-
-class Browser:
-    """Somebody's browser: keeps the cookie, and says where its page is from."""
-
-    def __init__(self, server, agent="Mozilla/5.0 (X11; Linux) Firefox/128.0"):
-        self.server, self.agent, self.cookie = server, agent, None
-
-    def request(self, method, path, body=None, **headers):
-        sent = {"User-Agent": self.agent, "Origin": self.server.url, **headers}
-        if self.cookie:
-            sent["Cookie"] = self.cookie
-        answer = self.server.request(method, path, body, headers=sent, token=False)
-        if answer.headers.get("Set-Cookie"):
-            self.cookie = answer.headers["Set-Cookie"].split(";")[0]
-        return answer
-
-    def ok(self, method, path, body=None):
-        answer = self.request(method, path, body)
-        assert answer.status in (200, 201, 202, 204), (method, path, answer)
-        return answer
-
-    def sign_in(self, user, password):
-        return self.request("POST", "/login", {"user": user, "password": password})
-
-
-def secret_of(invitation):
-    path, _, secret = invitation["path"].partition("#")
-    assert path == "/join" and len(secret) == 43, invitation
-    return secret
-
-
-def join(server, invitation, password=PASSWORD, **more):
-    browser = Browser(server)
-    browser.ok("POST", "/invitations/accept", {"invitation": secret_of(invitation), "password": password, **more})
-    return browser
 
 
 def invitations(server):
@@ -118,12 +83,12 @@ def roles(server, ada):
     live = LiveClient(server, "sheet", token="", cookie=ada.cookie, origin=server.url)
     assert live.hello(dpr=1, accept=["jpeg"])["role"] == "annotator"
     anne.ok("PATCH", "/users/ada", {"role": "viewer"})
-    closed(live)
+    live.until_closed()
     assert ada.request("POST", L + "/edits", FILL).status == 403
     with LiveClient(server, "sheet", token="", cookie=ada.cookie, origin=server.url) as live:
         assert live.hello(dpr=1, accept=["jpeg"])["role"] == "viewer"
         anne.ok("PATCH", "/users/Ada", {"role": "annotator", "disabled": True})
-        closed(live)
+        live.until_closed()
     assert ada.request("GET", M).status == 401 and ada.sign_in("ada", OTHER).status == 401
     try:
         LiveClient(server, "sheet", token="", cookie=ada.cookie, origin=server.url)
@@ -135,14 +100,6 @@ def roles(server, ada):
     assert ada.request("GET", "/me").status == 401, "the sessions of before stay ended"
     assert ada.sign_in("Ada", OTHER).status == 200
     return vera, anne
-
-
-def closed(live):
-    try:
-        while True:
-            live.receive()
-    except Closed:
-        pass
 
 
 def slow_body(server):

@@ -6,33 +6,23 @@ import sys
 import urllib.parse
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from support.live_client import Closed, LiveClient, Refused
+from support.browsers import Browser, join
+from support.live_client import LiveClient, Refused
 from support.meshes import folded_grid
 from support.strata_server import StrataServer
 
 FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
 IN_PROJECTS = ("project", "model", "table", "attachment", "comment", "job")
 OF_THE_SITE = ("user", "session", "token", "tool")
-PASSWORD = "seven blue herons at noon"
 
 
-class Someone:
-    """A person who came in by an invitation, with a token for scripts."""
+class Someone(Browser):
+    """A person who came in by an invitation."""
 
     def __init__(self, server, user, role):
-        self.server, self.user = server, user
-        invitation = server.ok("POST", "/users", {"user": user, "role": role}).json()["path"].partition("#")[2]
-        joined = server.request("POST", "/invitations/accept", {"invitation": invitation, "password": PASSWORD}, headers={"Origin": server.url}, token=False)
-        self.cookie = joined.headers["Set-Cookie"].split(";")[0]
-        self.projects = {}
-
-    def request(self, method, path, body=None, **headers):
-        return self.server.request(method, path, body, headers={"Cookie": self.cookie, "Origin": self.server.url, **headers}, token=False)
-
-    def ok(self, method, path, body=None):
-        answer = self.request(method, path, body)
-        assert answer.status in (200, 201, 202, 204), (method, path, answer)
-        return answer
+        invitation = server.ok("POST", "/users", {"user": user, "role": role}).json()
+        super().__init__(server)
+        self.user, self.cookie = user, join(server, invitation).cookie
 
     def status(self, method, path, body=None):
         return self.request(method, path, body).status
@@ -182,11 +172,7 @@ def live(server, guest, villa):
         with look() as connection:
             assert connection.hello(dpr=1, accept=["jpeg"])["role"] == role
             guest.now("villa", then)
-            try:
-                while True:
-                    connection.receive()
-            except Closed:
-                pass
+            connection.until_closed()
     try:
         look()
         raise AssertionError("they are no member any more")

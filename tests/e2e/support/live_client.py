@@ -142,6 +142,14 @@ class LiveClient:
             if message["op"] in ops:
                 return message
 
+    def until_closed(self):
+        """Returns when the server has closed the connection."""
+        try:
+            while True:
+                self.receive()
+        except Closed:
+            pass
+
     def hello(self, **more):
         self.send({"op": "hello", "client": "e2e", **more})
         return self.receive_until("welcome")
