@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "protocol/fast_json.h"
 #include "protocol/frame_header.h"
 #include "protocol/parse.h"
 
@@ -67,6 +68,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   read_frame({data, size});
   const std::string text = unwrap_fixture({reinterpret_cast<const char*>(data), size});
   read_client_message(text);
+  if (const auto fast = read_json_fast(text, JsonLimits{}.max_depth)) demand(*fast == nlohmann::json::parse(text));
   if (const auto json = parse_json(text)) {
     read_bodies<Edit, Empty, FrameRequest, LayerCreate, LayerPatch, Login, LookPatch, ModelPatch, PickRequest,
                 PositionsRequest, ProjectCreate, ProjectPatch, Restore, ToolPatch, Transfer>(*json);

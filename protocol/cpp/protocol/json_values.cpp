@@ -56,6 +56,9 @@ void read_core(const nlohmann::json& json, strata::LayerKind& value) {
 void read_core(const nlohmann::json& json, strata::Unit& value) {
   if (auto unit = parse_unit(json.get_ref<const std::string&>())) value = *unit;
 }
+void read_core(const nlohmann::json& json, strata::Visibility& value) {
+  if (auto visibility = parse_visibility(json.get_ref<const std::string&>())) value = *visibility;
+}
 void read_core(const nlohmann::json& json, IdOrSlug& value) {
   if (json.is_string())
     value = json.get<std::string>();
@@ -85,6 +88,7 @@ nlohmann::json write_core(const strata::LayerKind& value) {
   return value == LayerKind::database ? "database" : "numeric";
 }
 nlohmann::json write_core(const strata::Unit& value) { return name(value); }
+nlohmann::json write_core(const strata::Visibility& value) { return name(value); }
 nlohmann::json write_core(const IdOrSlug& value) {
   return std::visit([](const auto& v) { return nlohmann::json(v); }, value);
 }

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/fast_json.h"
+
 namespace strata::protocol {
 namespace {
 
@@ -106,6 +108,7 @@ Result<json> parse_json(std::string_view text, const JsonLimits& limits) {
     return fail(413, "Too much at once",
                 "At most " + std::to_string(limits.max_bytes) + " bytes of JSON are taken; these are " +
                     std::to_string(text.size()) + ".");
+  if (auto value = read_json_fast(text, limits.max_depth)) return std::move(*value);
   StrictBuilder builder(limits.max_depth);
   if (!json::sax_parse(text.begin(), text.end(), &builder)) return tl::unexpected<Problem>(builder.take_problem());
   return builder.take();

@@ -1,0 +1,73 @@
+#include "protocol/fast_json.h"
+
+#include <simdjson.h>
+
+#include <string>
+#include <utility>
+
+namespace strata::protocol {
+namespace {
+
+using nlohmann::json;
+using simdjson::dom::element;
+using simdjson::dom::element_type;
+
+bool has_nul(std::string_view text) { return text.find('\0') != std::string_view::npos; }
+
+// False where the careful reader has to say why. `depth`: how many objects and lists may still be opened.
+bool convert(const element& from, int depth, json& to) {
+  switch (from.type()) {
+    case element_type::ARRAY: {
+      if (depth == 0) return false;
+      const simdjson::dom::array values = from;
+      to = json::array();
+      auto& list = to.get_ref<json::array_t&>();
+      list.reserve(values.size());
+      for (const element value : values)
+        if (!convert(value, depth - 1, list.emplace_back())) return false;
+      return true;
+    }
+    case element_type::OBJECT: {
+      if (depth == 0) return false;
+      const simdjson::dom::object members = from;
+      to = json::object();
+      for (const auto& [name, value] : members) {
+        const auto [place, is_new] = to.emplace(std::string(name), nullptr);
+        if (!is_new || has_nul(name) || !convert(value, depth - 1, *place)) return false;
+      }
+      return true;
+    }
+    case element_type::STRING: {
+      const std::string_view text = from;
+      if (has_nul(text)) return false;
+      to = std::string(text);
+      return true;
+    }
+    case element_type::INT64: {
+      const std::int64_t number = from;
+      if (number < 0)
+        to = number;
+      else
+        to = static_cast<std::uint64_t>(number);  // as nlohmann-json keeps what has no sign
+      return true;
+    }
+    case element_type::UINT64: to = static_cast<std::uint64_t>(from); return true;
+    case element_type::DOUBLE: to = static_cast<double>(from); return true;
+    case element_type::BOOL: to = static_cast<bool>(from); return true;
+    case element_type::NULL_VALUE: to = nullptr; return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::optional<json> read_json_fast(std::string_view text, int max_depth) {
+  simdjson::dom::parser parser;
+  element root;
+  if (parser.parse(text.data(), text.size()).get(root)) return std::nullopt;
+  json value;
+  if (!convert(root, max_depth, value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace strata::protocol
