@@ -40,18 +40,18 @@ install_packages() {
 }
 
 build_packages="g++ cmake ninja-build pkg-config ccache mold git python3 python3-yaml ca-certificates
-  libegl-dev libgl-dev libepoxy-dev libglm-dev libpq-dev nlohmann-json3-dev libvalijson-dev
+  libegl-dev libgl-dev libepoxy-dev libglm-dev libpq-dev nlohmann-json3-dev libvalijson-dev libsimdjson-dev
   libturbojpeg0-dev libjpeg62-turbo-dev libsodium-dev libssl-dev libspdlog-dev libcli11-dev libzstd-dev libpng-dev libtiff-dev
   libembree-dev libmeshoptimizer-dev libdraco-dev libzip-dev libshp-dev libxlsxwriter-dev libutf8proc-dev libexpected-dev libgtest-dev libgmock-dev"
 run_packages="libegl1 libegl-mesa0 libgl1-mesa-dri postgresql-15 curl"
-test_packages="chromium fonts-dejavu-core clang-format-14 xz-utils python3-pandas python3-openpyxl"
+test_packages="chromium openssl libpcre2-8-0 fonts-dejavu-core clang-format-14 xz-utils python3-pandas python3-openpyxl"
 fuzz_packages="clang-14 libclang-rt-14-dev llvm-14"
 
-# A package that cannot be installed beside one of the user's: its files are unpacked into build/deps instead.
+# A package that had better not be installed: its files are unpacked into build/deps instead. unpack_beside PACKAGE FILE-OF-IT WHY
 unpack_beside() {
-  local package=$1 file=$2 deps=$PWD/build/deps
+  local package=$1 file=$2 why=$3 deps=$PWD/build/deps
   [ ! -e "$deps/$file" ] || return 0
-  say "$package conflicts with a package that is installed and stays; unpacking it into build/deps"
+  say "Unpacking $package into build/deps: $why"
   mkdir -p "$deps"
   [ -n "$apt_updated" ] || { as_root apt-get update -qq; apt_updated=1; }
   (cd "$deps" && apt-get -qq download "$package" && dpkg -x "$package"_*.deb . && rm -f "$package"_*.deb) ||
@@ -65,7 +65,7 @@ setup_conflicting() {
   if [ -n "$(missing_packages libboost1.81-dev)" ]; then
     if [ -n "$(missing_packages libboost1.74-dev)" ]; then install_packages libboost1.81-dev
     else
-      unpack_beside libboost1.81-dev usr/include/boost/version.hpp
+      unpack_beside libboost1.81-dev usr/include/boost/version.hpp "it conflicts with a package that is installed and stays"
       STRATA_CMAKE_ARGS+=(-DSTRATA_BOOST_INCLUDE="$PWD/build/deps/usr/include")
     fi
   fi
@@ -74,10 +74,15 @@ setup_conflicting() {
     if [ -n "$(missing_packages libcurl4-openssl-dev)" ] && [ -n "$(missing_packages libcurl4-nss-dev)" ]; then install_packages libraptor2-dev
     else
       install_packages libraptor2-0
-      unpack_beside libraptor2-dev usr/include/raptor2/raptor2.h
+      unpack_beside libraptor2-dev usr/include/raptor2/raptor2.h "it conflicts with a package that is installed and stays"
       STRATA_CMAKE_ARGS+=(-DSTRATA_RAPTOR_INCLUDE="$PWD/build/deps/usr/include/raptor2")
     fi
   fi
+}
+
+# nginx is tested in front of the server. Installed, it would start and take port 80.
+setup_nginx() {
+  PATH=$PATH:/usr/sbin command -v nginx >/dev/null || unpack_beside nginx usr/sbin/nginx "installed, it would start a server of its own"
 }
 
 # Any Node from 18 on will do; Debian's is installed only where there is none.

@@ -21,6 +21,7 @@ struct ServeOptions {
   DataOptions data;
   std::string listen = "127.0.0.1:8080", sql_listen;
   std::vector<std::string> origins;
+  std::filesystem::path tls_cert, tls_key;
   std::uint64_t gpu_memory = 0, memory = 0;
   bool debug = false;
 };
@@ -51,7 +52,7 @@ Result<Address> parse_address(const std::string& text, const std::string& option
 Result<Address> parse_listen(const std::string& text) { return parse_address(text, "--listen"); }
 
 // A server that others can reach is protected by its accounts alone.
-Result<void> check_reach(store::Store& store, const Address& address) {
+Result<void> check_reach(store::Store& store, const Address& address, bool has_tls) {
   if (is_loopback(address.host)) return {};
   const auto people = store.people();
   if (!people) return tl::unexpected(people.error());
@@ -59,8 +60,10 @@ Result<void> check_reach(store::Store& store, const Address& address) {
     return person.has_password && !person.disabled && person.role >= Role::administrator;
   });
   if (has_account) {
-    log::warning("listening on " + address.host +
-                 ": passwords travel unencrypted unless a proxy with TLS stands before this server");
+    if (!has_tls)
+      log::warning(
+          "listening on " + address.host +
+          " without --tls-cert: passwords travel unencrypted unless a proxy with TLS stands before this server");
     return {};
   }
   return fail(
@@ -134,7 +137,7 @@ int run(ServeOptions options) {
   auto database = open_database(options.data);
   if (!database) return report(database.error());
   store::Store& store = *(*database)->store;
-  if (auto safe = check_reach(store, *address); !safe) return report(safe.error());
+  if (auto safe = check_reach(store, *address, !options.tls_cert.empty()); !safe) return report(safe.error());
   auto orphans = store.drop_orphans();
   if (!orphans) return report(orphans.error());
   if (*orphans > 0) log::info("dropped " + std::to_string(*orphans) + " files that nothing uses");
@@ -162,12 +165,14 @@ int run(ServeOptions options) {
   server_options.protocol_dir = dirs.protocol;
   server_options.templates_dir = dirs.templates;
   server_options.upload_dir = options.data.data / "uploads";
+  server_options.tls_chain = options.tls_cert;
+  server_options.tls_key = options.tls_key;
   server_options.owner_token = owner_token();
   auto server = net::Server::start(server_options, store, rooms, jobs, **renderer);
   if (!server) return report(server.error());
 
-  const std::string url =
-      "http://" + (address->host == "::1" ? "[::1]" : address->host) + ":" + std::to_string((*server)->port());
+  const std::string url = (options.tls_cert.empty() ? "http://" : "https://") +
+                          (address->host == "::1" ? "[::1]" : address->host) + ":" + std::to_string((*server)->port());
   std::cout << "listening on " << url << std::endl;
   const auto owner = store.person("owner");
   if (!owner) return report(owner.error());
@@ -207,6 +212,15 @@ Command add_serve(CLI::App& app) {
       ->check([](const std::string& text) { return usage_of(parse_sql_listen, text); });
   command->add_option("--origin", options->origins, "Further web origins that may connect (repeat)")
       ->envname("STRATA_ORIGIN");
+  auto* tls_cert = command
+                       ->add_option("--tls-cert", options->tls_cert,
+                                    "Speak https with this certificate chain (PEM; docs/operation.md)")
+                       ->envname("STRATA_TLS_CERT");
+  auto* tls_key =
+      command->add_option("--tls-key", options->tls_key, "Key of the certificate (PEM, without a passphrase)")
+          ->envname("STRATA_TLS_KEY");
+  tls_cert->needs(tls_key);
+  tls_key->needs(tls_cert);
   command
       ->add_option("--gpu-memory", options->gpu_memory,
                    "Budget of GPU memory, e.g. 4GiB (default: what the driver has)")

@@ -7,6 +7,7 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
+#include <boost/beast/core/detect_ssl.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <charconv>
@@ -14,6 +15,7 @@
 
 #include "core/log.h"
 #include "core/uuid.h"
+#include "net/connection_stream.h"
 #include "net/on_worker.h"
 #include "net/token_bucket.h"
 #include "net/websocket_session.h"
@@ -70,14 +72,15 @@ class CountAtWork {
 
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  HttpSession(tcp::socket socket, std::shared_ptr<Connections> connections)
+  HttpSession(tcp::socket socket, std::shared_ptr<Connections> connections, std::shared_ptr<asio::ssl::context> tls)
       : stream_(std::move(socket)),
+        tls_(std::move(tls)),
         connections_(std::move(connections)),
         app_(connections_->app),
         bucket_(app_.options().requests_per_second, app_.options().request_burst) {
     ++app_.metrics().open_connections;
     beast::error_code gone;
-    peer_ = stream_.socket().remote_endpoint(gone).address().to_string();
+    peer_ = connection().socket().remote_endpoint(gone).address().to_string();
   }
   ~HttpSession() {
     if (!connections_->stopping) --app_.metrics().open_connections;
@@ -85,11 +88,15 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   asio::awaitable<void> run() {
     auto self = shared_from_this();  // the frame keeps the session
+    if (tls_) {
+      const bool speaks_tls = co_await start_tls();
+      if (!speaks_tls) co_return;
+    }
     for (bool first = true;; first = false) {
       http::request_parser<http::empty_body> head;
       head.header_limit(kMaxHead);
       head.body_limit(boost::none);
-      stream_.expires_after(first ? kFirstHead : kIdle);
+      connection().expires_after(first ? kFirstHead : kIdle);
       auto [error, size] = co_await http::async_read_header(stream_, buffer_, head, kUseResult);
       if (error) {
         co_await refuse_head(error);
@@ -103,6 +110,34 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
  private:
+  // False: the connection is over. Who speaks plain HTTP here is told where to go.
+  asio::awaitable<bool> start_tls() {
+    connection().expires_after(kFirstHead);
+    auto [error, speaks_tls] = co_await beast::async_detect_ssl(connection(), buffer_, kUseResult);
+    if (error) co_return false;
+    if (speaks_tls) {
+      const auto first = buffer_.cdata();
+      auto [refused, used] = co_await stream_.async_start_tls(*tls_, first, kUseResult);
+      if (!refused) buffer_.consume(used);
+      co_return !refused;
+    }
+    http::request_parser<http::empty_body> head;
+    head.header_limit(kMaxHead);
+    auto [malformed, size] = co_await http::async_read_header(stream_, buffer_, head, kUseResult);
+    if (!malformed) {
+      Response elsewhere =
+          problem_response({400, "Plain HTTP", "This server speaks https: ask https:// in place of http://.", {}});
+      const auto host = head.get()[http::field::host];
+      if (!host.empty()) {
+        elsewhere.status = 308;
+        elsewhere.with("Location", "https://" + std::string(host) + std::string(head.get().target()));
+      }
+      co_await send(elsewhere, method_of(head.get().method()), false);
+    }
+    co_await say_goodbye();
+    co_return false;
+  }
+
   // Objects that are built inside a co_await expression are destroyed twice by GCC 12 in some cases: what the functions below
   // are given is always a named local of the caller, by reference.
   asio::awaitable<void> refuse_head(beast::error_code error) {
@@ -130,6 +165,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     const auto request = std::make_shared<Request>(std::move(*parsed));
     request->peer = peer_;
+    request->by_tls = stream_.has_tls();
     Response response;
     if (!bucket_.take()) {
       response = problem_response({429, "Too many requests", "This connection asks too fast; wait a second.", {}});
@@ -210,7 +246,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   asio::awaitable<bool> send_continue() {
     static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
-    stream_.expires_after(kStall);
+    connection().expires_after(kStall);
     auto [error, size] = co_await asio::async_write(stream_, asio::buffer(kContinue), kUseResult);
     co_return !error;
   }
@@ -221,7 +257,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     http::request_parser<http::string_body> parser(std::move(head));
     parser.body_limit(boost::none);
     while (!parser.is_done()) {
-      stream_.expires_after(kStall);
+      connection().expires_after(kStall);
       auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, kUseResult);
       if (error) {
         problem = body_problem(error);
@@ -251,7 +287,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       co_return false;
     }
     while (!parser.is_done()) {
-      stream_.expires_after(kStall);
+      connection().expires_after(kStall);
       auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, kUseResult);
       if (error) {
         problem = error == boost::system::errc::no_space_on_device
@@ -297,7 +333,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   asio::awaitable<bool> write(http::response<Body>& message) {
     http::response_serializer<Body> serializer(message);
     while (!serializer.is_done()) {
-      stream_.expires_after(kStall);
+      connection().expires_after(kStall);
       auto [error, size] = co_await http::async_write_some(stream_, serializer, kUseResult);
       if (error) co_return false;
     }
@@ -349,7 +385,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     put_head(message, response, true);
     message.chunked(true);
     http::response_serializer<http::empty_body> serializer(message);
-    stream_.expires_after(kStall);
+    connection().expires_after(kStall);
     auto [error, size] = co_await http::async_write_header(stream_, serializer, kUseResult);
     co_return !error;
   }
@@ -402,7 +438,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     auto result = std::make_shared<std::promise<bool>>();
     auto future = result->get_future();
     asio::post(stream_.get_executor(), [self = shared_from_this(), data, result] {
-      self->stream_.expires_after(kStall);
+      self->connection().expires_after(kStall);
       asio::async_write(self->stream_, asio::buffer(*data),
                         [self, data, result](beast::error_code error, std::size_t) { result->set_value(!error); });
     });
@@ -431,26 +467,30 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (response.status != 101) co_return co_await send(response, Method::get, false);
     app_.metrics().count_request(101);
     handed_over_ = true;
-    stream_.expires_never();
+    connection().expires_never();
     start_websocket(std::move(stream_), head.release(), connections_, std::move(*entry));
     co_return false;
   }
 
   // Ends our side, and reads what is still under way for a moment: closing at once could destroy the answer in the client's hands.
   asio::awaitable<void> say_goodbye() {
+    connection().expires_after(seconds(2));
+    if (stream_.has_tls()) (void)co_await stream_.async_end_tls(kUseResult);
     beast::error_code ignored;
-    stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-    stream_.expires_after(seconds(2));
+    connection().socket().shutdown(tcp::socket::shutdown_send, ignored);
     std::array<char, 4096> rest;
     for (std::uint64_t total = 0; total < (1u << 20);) {
-      auto [error, size] = co_await stream_.async_read_some(asio::buffer(rest), kUseResult);
+      auto [error, size] = co_await connection().async_read_some(asio::buffer(rest), kUseResult);
       if (error) break;
       total += size;
     }
-    stream_.close();
+    connection().close();
   }
 
-  beast::tcp_stream stream_;
+  beast::tcp_stream& connection() { return stream_.next_layer(); }
+
+  ConnectionStream stream_;
+  const std::shared_ptr<asio::ssl::context> tls_;
   const std::shared_ptr<Connections> connections_;
   App& app_;
   beast::flat_buffer buffer_;
@@ -462,11 +502,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
 }  // namespace
 
-void start_http_session(tcp::socket socket, std::shared_ptr<Connections> connections) {
+void start_http_session(tcp::socket socket, std::shared_ptr<Connections> connections,
+                        std::shared_ptr<asio::ssl::context> tls) {
   beast::error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
   auto executor = socket.get_executor();
-  auto session = std::make_shared<HttpSession>(std::move(socket), std::move(connections));
+  auto session = std::make_shared<HttpSession>(std::move(socket), std::move(connections), std::move(tls));
   asio::co_spawn(
       executor, [session] { return session->run(); },
       [](std::exception_ptr failure) {

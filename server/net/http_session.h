@@ -3,6 +3,7 @@
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
 #include <memory>
 
 #include "net/app.h"
@@ -19,7 +20,9 @@ struct Connections {
   std::atomic<bool> stopping{false};
 };
 
-// Serves one TCP connection until it ends or becomes a WebSocket. The socket's executor is a strand of its own.
-void start_http_session(boost::asio::ip::tcp::socket socket, std::shared_ptr<Connections> connections);
+// Serves one TCP connection until it ends or becomes a WebSocket. The socket's executor is a strand of its own. `tls`: the connection speaks
+// it; nothing: it does not.
+void start_http_session(boost::asio::ip::tcp::socket socket, std::shared_ptr<Connections> connections,
+                        std::shared_ptr<boost::asio::ssl::context> tls);
 
 }  // namespace strata::net

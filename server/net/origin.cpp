@@ -63,7 +63,8 @@ Result<void> check_upgrade_origin(const Request& request, const std::vector<std:
 }
 
 bool came_by_https(const Request& request) {
-  return request.header("x-forwarded-proto") == "https" || request.header("origin").starts_with("https://");
+  return request.by_tls || request.header("x-forwarded-proto") == "https" ||
+         request.header("origin").starts_with("https://");
 }
 
 }  // namespace strata::net

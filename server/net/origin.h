@@ -21,7 +21,7 @@ Result<void> check_same_origin(const Request& request, const std::vector<std::st
 // At the WebSocket's upgrade: browsers always send Origin; scripts may leave it out when they bring a bearer token.
 Result<void> check_upgrade_origin(const Request& request, const std::vector<std::string>& allowed);
 
-// Through a proxy that speaks https: then cookies must not travel without it.
+// To this server or to a proxy before it: then cookies must not travel without it.
 bool came_by_https(const Request& request);
 
 }  // namespace strata::net

@@ -16,6 +16,7 @@
 
 #include "core/log.h"
 #include "net/app.h"
+#include "net/certificate.h"
 #include "net/http_session.h"
 
 namespace strata::net {
@@ -76,11 +77,12 @@ Result<tcp::acceptor> listen(asio::io_context& io, const std::string& host, std:
 
 struct Server::Impl {
   Impl(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs, render::Renderer& renderer,
-       TemplateShelf templates)
+       TemplateShelf templates, std::optional<Certificate> own_certificate)
       : app(std::move(options), store, rooms, jobs, renderer, std::move(templates)),
         io(std::make_shared<asio::io_context>(app.options().http_threads)),
         connections(new Connections{io, app, 0, 0, false}),
-        acceptor(*io) {}
+        acceptor(*io),
+        certificate(std::move(own_certificate)) {}
 
   asio::awaitable<void> accept() {
     for (;;) {
@@ -96,7 +98,7 @@ struct Server::Impl {
       }
       const auto open = app.metrics().open_connections.load() + app.metrics().open_sockets.load();
       if (open >= static_cast<std::int64_t>(app.options().max_connections)) continue;  // closes it
-      start_http_session(std::move(socket), connections);
+      start_http_session(std::move(socket), connections, certificate ? certificate->context() : nullptr);
     }
   }
 
@@ -104,6 +106,7 @@ struct Server::Impl {
   std::shared_ptr<asio::io_context> io;
   std::shared_ptr<Connections> connections;
   tcp::acceptor acceptor;
+  std::optional<Certificate> certificate;  // used by `accept` alone
   std::vector<std::thread> threads;
   std::uint16_t port = 0;
   bool stopped = false;
@@ -123,10 +126,17 @@ Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Stor
   if (auto ready = prepare_upload_dir(options.upload_dir); !ready) return tl::unexpected(ready.error());
   auto templates = TemplateShelf::load(options.templates_dir);
   if (!templates) return tl::unexpected(templates.error());
+  std::optional<Certificate> certificate;
+  if (!options.tls_chain.empty()) {
+    auto loaded = Certificate::load(options.tls_chain, options.tls_key);
+    if (!loaded) return tl::unexpected(loaded.error());
+    certificate = std::move(*loaded);
+  }
   const std::string host = options.host;
   const std::uint16_t port = options.port;
   std::unique_ptr<Server> server(new Server);
-  server->impl_ = std::make_unique<Impl>(std::move(options), store, rooms, jobs, renderer, std::move(*templates));
+  server->impl_ = std::make_unique<Impl>(std::move(options), store, rooms, jobs, renderer, std::move(*templates),
+                                         std::move(certificate));
   Impl& impl = *server->impl_;
   auto acceptor = listen(*impl.io, host, port);
   if (!acceptor) {

@@ -15,7 +15,7 @@ namespace strata::net {
 // The server's sockets: HTTP, the live connections and the page. What it is given must outlive it.
 class Server {
  public:
-  // Listens when it returns. Refused with advice: an address in use, a short owner token, an upload folder that cannot be written.
+  // Listens when it returns. Refused with advice: an address in use, a short owner token, a certificate that cannot be used, an upload folder that cannot be written.
   static Result<std::unique_ptr<Server>> start(ServerOptions options, store::Store& store, room::Rooms& rooms,
                                                jobs::JobQueue& jobs, render::Renderer& renderer);
   ~Server();

@@ -17,6 +17,7 @@ struct ServerOptions {
   std::filesystem::path protocol_dir;        // folder of openapi.json
   std::filesystem::path templates_dir;       // of tables and layers; empty: there are none
   std::filesystem::path upload_dir;          // uploads on their way in; emptied at start
+  std::filesystem::path tls_chain, tls_key;  // PEM; empty: plain HTTP
   std::string owner_token;                   // STRATA_OWNER_TOKEN: empty or at least 32 characters
   int http_threads = 2;                      // for sockets; nothing on them blocks
   int worker_threads = 8;                    // for what blocks

@@ -36,7 +36,7 @@ constexpr std::size_t kMaxQueuedFrames = 64;  // credit allows a few frames of a
 
 class WebSocketSession final : public LiveSocket, public std::enable_shared_from_this<WebSocketSession> {
  public:
-  WebSocketSession(beast::tcp_stream stream, std::shared_ptr<Connections> connections)
+  WebSocketSession(ConnectionStream stream, std::shared_ptr<Connections> connections)
       : ws_(std::move(stream)),
         connections_(std::move(connections)),
         stall_timer_(ws_.get_executor()),
@@ -210,7 +210,7 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
   // The reader notices and ends the session.
   void drop() { beast::get_lowest_layer(ws_).close(); }
 
-  websocket::stream<beast::tcp_stream> ws_;
+  websocket::stream<ConnectionStream> ws_;
   const std::shared_ptr<Connections> connections_;
   std::shared_ptr<LiveSession> live_;
   asio::steady_timer stall_timer_, close_timer_, recheck_timer_;
@@ -225,7 +225,7 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
 
 }  // namespace
 
-void start_websocket(beast::tcp_stream stream, http::request<http::empty_body> request,
+void start_websocket(ConnectionStream stream, http::request<http::empty_body> request,
                      std::shared_ptr<Connections> connections, App::LiveEntry entry) {
   auto executor = stream.get_executor();
   auto session = std::make_shared<WebSocketSession>(std::move(stream), std::move(connections));

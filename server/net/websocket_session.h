@@ -1,17 +1,16 @@
 #pragma once
 
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <memory>
 
+#include "net/connection_stream.h"
 #include "net/http_session.h"
 
 namespace strata::net {
 
 // Takes over a connection whose upgrade request was admitted, until it closes.
-void start_websocket(boost::beast::tcp_stream stream,
-                     boost::beast::http::request<boost::beast::http::empty_body> request,
+void start_websocket(ConnectionStream stream, boost::beast::http::request<boost::beast::http::empty_body> request,
                      std::shared_ptr<Connections> connections, App::LiveEntry entry);
 
 }  // namespace strata::net

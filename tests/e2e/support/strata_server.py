@@ -59,6 +59,7 @@ class StrataServer:
         self.data = tempfile.mkdtemp(prefix="strata-e2e-", dir="/tmp")
         os.chmod(self.data, 0o755)
         self.process = None
+        self.tls = None  # an ssl.SSLContext when the server is spoken to by https
         self.contract = Contract()
         self.host, self.port, self.link = "127.0.0.1", None, None
         self.log = []
@@ -118,7 +119,7 @@ class StrataServer:
 
     @property
     def url(self):
-        return f"http://{self.host}:{self.port}"
+        return f"{'https' if self.tls else 'http'}://{self.host}:{self.port}"
 
     def kill(self):
         """kill -9, and waits for the end."""
@@ -159,6 +160,8 @@ class StrataServer:
         port = self.port
         if port is None:
             raise ConnectionRefusedError("the server is down")
+        if self.tls:
+            return http.client.HTTPSConnection(self.host, port, timeout=LONG_S, context=self.tls)
         return http.client.HTTPConnection(self.host, port, timeout=LONG_S)
 
     def request(self, method, path, body=None, headers=None, token=True, connection=None):
