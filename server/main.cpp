@@ -10,10 +10,11 @@ int main(int argc, char** argv) {
   app.get_formatter()->column_width(34);
 
   const std::map<std::string, strata::cli::Command> commands{
-      {"serve", strata::cli::add_serve(app)},   {"import", strata::cli::add_import(app)},
-      {"demo", strata::cli::add_demo(app)},     {"migrate", strata::cli::add_migrate(app)},
-      {"doctor", strata::cli::add_doctor(app)}, {"user", strata::cli::add_user(app)},
-      {"token", strata::cli::add_token(app)},
+      {"serve", strata::cli::add_serve(app)},     {"import", strata::cli::add_import(app)},
+      {"demo", strata::cli::add_demo(app)},       {"migrate", strata::cli::add_migrate(app)},
+      {"doctor", strata::cli::add_doctor(app)},   {"user", strata::cli::add_user(app)},
+      {"token", strata::cli::add_token(app)},     {"backup", strata::cli::add_backup(app)},
+      {"restore", strata::cli::add_restore(app)},
   };
   try {
     app.parse(argc, argv);

@@ -34,15 +34,6 @@ using namespace std::chrono_literals;
 constexpr std::size_t kLongestSocketPath = 107;  // sockaddr_un
 constexpr std::uintmax_t kLargestLog = 16u << 20;
 
-std::string quoted(const std::string& value) {
-  std::string out = "'";
-  for (const char c : value) {
-    if (c == '\'' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "'";
-}
-
 // Where the socket lies: in the folder, or in a short one where its path would be too long for a socket.
 fs::path socket_folder(const fs::path& folder) {
   if ((folder / ".s.PGSQL.65535.lock").string().size() <= kLongestSocketPath) return folder;
@@ -53,8 +44,8 @@ constexpr int kUsualPort = 5432;
 
 // PostgreSQL has one port, which names its socket, too.
 std::string dsn_of(const fs::path& sockets, int port, const std::string& database) {
-  return "host=" + quoted(sockets.string()) + " port=" + std::to_string(port) +
-         " user=strata dbname=" + quoted(database);
+  return "host=" + dsn_value(sockets.string()) + " port=" + std::to_string(port) +
+         " user=strata dbname=" + dsn_value(database);
 }
 
 // Of the postmaster that has the data open, from the fourth line of its file.

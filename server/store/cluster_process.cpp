@@ -149,6 +149,15 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
   return child;
 }
 
+std::string dsn_value(std::string_view value) {
+  std::string out = "'";
+  for (const char c : value) {
+    if (c == '\'' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "'";
+}
+
 std::string tail(const fs::path& file, std::size_t bytes) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
   if (!in) return {};

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <sys/types.h>
@@ -30,6 +31,9 @@ Result<void> give_folder(const std::filesystem::path& folder, const DatabaseUser
 // group of its own (so that Ctrl-C reaches only us) and `death_signal` when the calling thread ends. Returns the pid.
 Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser& user, const std::filesystem::path& log,
                     int death_signal);
+
+// Quoted for a connection string of libpq.
+std::string dsn_value(std::string_view value);
 
 // The last lines of a log file, for an error's detail.
 std::string tail(const std::filesystem::path& file, std::size_t bytes = 800);

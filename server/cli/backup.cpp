@@ -1,0 +1,138 @@
+// `strata backup` and `strata restore`: a whole site into a folder and back.
+#include <iostream>
+
+#include "cli/commands.h"
+#include "cli/install_dirs.h"
+#include "cli/open_database.h"
+#include "cli/progress_line.h"
+#include "store/backup.h"
+#include "store/inspect.h"
+
+namespace strata::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BackupOptions {
+  DataOptions data;
+  fs::path folder;
+  bool check_only = false;
+};
+
+std::string summary(const store::BackupFacts& facts) {
+  const auto count = [&](const char* table, const char* what) {
+    const auto rows = facts.rows_of(table);
+    return std::to_string(rows) + " " + what + (rows == 1 ? "" : "s");
+  };
+  return count("public.models", "model") + ", " + count("public.layers", "layer") + ", " +
+         count("public.edits", "edit") + ", " + count("public.attachments", "file") + "; " +
+         std::to_string((facts.bytes + (1u << 20) - 1) >> 20) + " MB, schema " + std::to_string(facts.schema_version) +
+         ", of " + facts.made;
+}
+
+// Where the data are, without changing them: a server may be using them, of this version or another.
+struct Source {
+  std::unique_ptr<store::Cluster> cluster;
+  std::string dsn;
+};
+Result<Source> find_source(const DataOptions& options) {
+  if (!options.database.empty()) return Source{nullptr, options.database};
+  const auto state = store::Cluster::inspect(options.data);
+  if (state.running) return Source{nullptr, state.dsn};
+  if (state.version == 0)
+    return fail(404, "No database",
+                "There is no database in " + fs::absolute(options.data).string() +
+                    ". Name the server's folder with --data, or its database with --database.");
+  auto cluster = store::Cluster::start(fs::absolute(options.data));
+  if (!cluster) return tl::unexpected(cluster.error());
+  std::string dsn = (*cluster)->dsn();
+  return Source{std::move(*cluster), std::move(dsn)};
+}
+
+int backup(const BackupOptions& options) {
+  auto source = find_source(options.data);
+  if (!source) return report(source.error());
+  Progress progress;
+  const auto facts = [&] {
+    const ProgressLine line(progress);
+    return store::write_backup(source->dsn, options.folder, progress);
+  }();
+  if (!facts) return report(facts.error());
+  std::cout << "backed up " << summary(*facts) << "\nin " << fs::absolute(options.folder).string() << std::endl;
+  return 0;
+}
+
+// Beside its place first, so that a restore which is cut short leaves no half database where a server would start on it.
+Result<void> restore_into_folder(const BackupOptions& options, const store::BackupFacts& facts, Progress& progress) {
+  const fs::path data = fs::absolute(options.data.data), place = data / "postgres", beside = data / "restoring";
+  std::error_code error;
+  if (fs::exists(place, error))
+    return fail(409, "Data are there",
+                data.string() + " holds a site already, which stays as it is. Name a new folder with --data.",
+                "--data");
+  fs::remove_all(beside, error);  // of one that was killed
+  const auto restored = [&]() -> Result<void> {
+    auto cluster = store::Cluster::start(beside);
+    if (!cluster) return tl::unexpected(cluster.error());
+    return store::restore_backup(options.folder, facts, (*cluster)->dsn(), progress);
+  }();
+  if (restored) {
+    fs::rename(beside / "postgres", place, error);
+    if (error)
+      return fail(500, "Not restored", "Cannot name the folder " + place.string() + ": " + error.message() + ".");
+  }
+  std::error_code ignored;
+  fs::remove_all(beside, ignored);
+  return restored;
+}
+
+int restore(const BackupOptions& options) {
+  Progress progress;
+  const auto facts = [&] {
+    const ProgressLine line(progress);
+    return store::check_backup(options.folder, progress);
+  }();
+  if (!facts) return report(facts.error());
+  if (options.check_only) {
+    std::cout << "whole: " << summary(*facts) << std::endl;
+    return 0;
+  }
+  const auto known = store::newest_migration(install_dirs().migrations);
+  if (!known) return report(known.error());
+  if (facts->schema_version > *known)
+    return report({409,
+                   "Newer backup",
+                   "The backup has schema " + std::to_string(facts->schema_version) + ", this program knows " +
+                       std::to_string(*known) + ": restore it with the version that wrote it, or a later one.",
+                   {}});
+  const auto done = [&]() -> Result<void> {
+    const ProgressLine line(progress);
+    if (options.data.database.empty()) return restore_into_folder(options, *facts, progress);
+    return store::restore_backup(options.folder, *facts, options.data.database, progress);
+  }();
+  if (!done) return report(done.error());
+  std::cout << "restored " << summary(*facts) << "\nevery table is what was backed up; the server may be started on it"
+            << std::endl;
+  return 0;
+}
+
+}  // namespace
+
+Command add_backup(CLI::App& app) {
+  auto* command = app.add_subcommand("backup", "Write the whole site into a folder, also while its server runs");
+  auto options = std::make_shared<BackupOptions>();
+  add_data_options(*command, options->data);
+  command->add_option("folder", options->folder, "Folder to make, e.g. /backups/2026-11-21")->required();
+  return [options] { return backup(*options); };
+}
+
+Command add_restore(CLI::App& app) {
+  auto* command = app.add_subcommand("restore", "Bring a backup back into a new data folder or an empty database");
+  auto options = std::make_shared<BackupOptions>();
+  add_data_options(*command, options->data);
+  command->add_option("folder", options->folder, "Folder that `strata backup` has written")->required();
+  command->add_flag("--check", options->check_only, "Only tell whether the backup is whole");
+  return [options] { return restore(*options); };
+}
+
+}  // namespace strata::cli
