@@ -5,6 +5,52 @@ CREATE SCHEMA records;
 CREATE DOMAIN public.slug AS text
 	CONSTRAINT slug_check CHECK (((VALUE ~ '^[a-z0-9-]+$'::text) AND (VALUE !~ '^[0-9]+$'::text)));
 
+CREATE FUNCTION public.activity_author() RETURNS text
+    LANGUAGE sql STABLE
+    AS $$ SELECT coalesce(current_setting('strata.user', true), '') $$;
+
+CREATE TABLE public.activities (
+    id bigint NOT NULL,
+    project_id bigint NOT NULL,
+    model_id bigint,
+    layer_id bigint,
+    table_id bigint,
+    record_key bigint,
+    comment_id bigint,
+    subject text NOT NULL,
+    user_name text NOT NULL,
+    kind text NOT NULL,
+    op text NOT NULL,
+    begun timestamp with time zone NOT NULL,
+    "time" timestamp with time zone NOT NULL,
+    count bigint DEFAULT 1 NOT NULL,
+    texels bigint,
+    area_m2 double precision,
+    last_stroke uuid,
+    person text,
+    role text,
+    changed text[],
+    visibility text DEFAULT 'public'::text NOT NULL,
+    CONSTRAINT activities_kind_check CHECK ((kind = ANY (ARRAY['edit'::text, 'layer'::text, 'look'::text, 'model'::text, 'table'::text, 'columns'::text, 'records'::text, 'comment'::text, 'member'::text, 'project'::text])))
+);
+
+CREATE FUNCTION public.activity_of(of_project bigint, of_kind text, of_op text, of_subject text) RETURNS public.activities
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  line activities;
+BEGIN
+  line.project_id := of_project;
+  line.kind := of_kind;
+  line.op := of_op;
+  line.subject := of_subject;
+  line.user_name := activity_author();
+  line.begun := clock_timestamp();
+  line.time := line.begun;
+  line.count := 1;
+  RETURN line;
+END $$;
+
 CREATE FUNCTION public.analysis_make_way(held regclass) RETURNS void
     LANGUAGE plpgsql
     AS $$
@@ -54,7 +100,8 @@ BEGIN
     new_name := analysis_name(new_name, ' (' || rows_table || ')');
   END IF;
   FOR col IN
-    SELECT c.id, c.kind, c.properties ->> 'name' AS name FROM record_columns c WHERE c.table_id = shown AND NOT c.hidden
+    SELECT c.id, c.kind, c.properties ->> 'name' AS name FROM record_columns c
+    WHERE c.table_id = shown AND NOT c.hidden AND c.visibility = 'public'
     ORDER BY (c.properties ->> 'order')::integer, c.id
   LOOP
     col_name := analysis_name(col.name, '');
@@ -73,6 +120,215 @@ CREATE FUNCTION public.analysis_table_changed() RETURNS trigger
     AS $$
 BEGIN
   PERFORM analysis_show_table(CASE TG_TABLE_NAME WHEN 'record_tables' THEN (to_jsonb(NEW) ->> 'id')::bigint ELSE (to_jsonb(NEW) ->> 'table_id')::bigint END);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.changed_columns(before jsonb, after jsonb) RETURNS text[]
+    LANGUAGE sql IMMUTABLE
+    AS $$
+  SELECT array_agg(a.key ORDER BY a.key) FROM jsonb_each(after) a
+  WHERE a.value IS DISTINCT FROM before -> a.key
+    AND a.key NOT IN ('version', 'sequence', 'computed_sequence', 'summed', 'bounds_min', 'bounds_max', 'area')
+$$;
+
+CREATE FUNCTION public.comment_is_activity() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  line activities;
+BEGIN
+  IF TG_OP = 'DELETE' OR NEW.deleted IS NOT NULL THEN
+    DELETE FROM activities WHERE comment_id = OLD.id;
+    RETURN NULL;
+  END IF;
+  IF TG_OP = 'UPDATE' AND (NEW.resolved IS NULL) = (OLD.resolved IS NULL) THEN
+    RETURN NULL;
+  END IF;
+  line := activity_of((SELECT m.project_id FROM models m WHERE m.id = NEW.model_id), 'comment', '', '');
+  line.model_id := NEW.model_id;
+  line.comment_id := NEW.id;
+  IF TG_OP = 'INSERT' THEN
+    line.op := CASE WHEN NEW.thread_id IS NULL THEN 'written' ELSE 'replied' END;
+    line.user_name := NEW.user_name;
+  ELSIF NEW.resolved IS NOT NULL THEN
+    line.op := 'resolved';
+    line.user_name := NEW.resolved_by;
+  ELSE
+    line.op := 'reopened';
+  END IF;
+  PERFORM note_activity(line);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.edits_are_activity() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  run record;
+  line activities;
+BEGIN
+  FOR run IN
+    SELECT m.project_id, e.model_id, e.layer_id, l.name, e.user_name, e.op, min(e.time) AS begun, max(e.time) AS time,
+      count(DISTINCT e.stroke) AS strokes, (array_agg(e.stroke ORDER BY e.sequence))[1] AS first_stroke,
+      (array_agg(e.stroke ORDER BY e.sequence DESC))[1] AS last_stroke,
+      sum((e.answer ->> 'texels_changed')::bigint) AS texels, sum((e.answer ->> 'area_m2')::double precision) AS area
+    FROM added e JOIN models m ON m.id = e.model_id JOIN layers l ON l.id = e.layer_id
+    GROUP BY m.project_id, e.model_id, e.layer_id, l.name, e.user_name, e.op ORDER BY max(e.sequence)
+  LOOP
+    line.project_id := run.project_id;
+    line.kind := 'edit';
+    line.op := run.op;
+    line.subject := run.name;
+    line.model_id := run.model_id;
+    line.layer_id := run.layer_id;
+    line.user_name := run.user_name;
+    line.begun := run.begun;
+    line.time := run.time;
+    line.texels := coalesce(run.texels, 0);
+    line.area_m2 := coalesce(run.area, 0);
+    line.last_stroke := run.last_stroke;
+    line.count := run.strokes;
+    PERFORM note_activity(line, run.first_stroke);
+  END LOOP;
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.member_is_activity() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  line activities;
+  membership record;
+BEGIN
+  IF activity_author() = '' OR (TG_OP = 'UPDATE' AND NEW.role = OLD.role) THEN
+    RETURN NULL;
+  END IF;
+  SELECT p.id, p.name, u.name AS person INTO membership FROM projects p, users u
+    WHERE p.id = CASE WHEN TG_OP = 'DELETE' THEN OLD.project_id ELSE NEW.project_id END
+      AND u.id = CASE WHEN TG_OP = 'DELETE' THEN OLD.user_id ELSE NEW.user_id END;
+  IF NOT FOUND THEN
+    RETURN NULL;
+  END IF;
+  line := activity_of(membership.id, 'member', CASE TG_OP WHEN 'INSERT' THEN 'added' WHEN 'UPDATE' THEN 'changed' ELSE 'removed' END,
+    membership.name);
+  line.person := membership.person;
+  IF TG_OP <> 'DELETE' THEN
+    line.role := NEW.role;
+  END IF;
+  PERFORM note_activity(line);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.note_activity(line public.activities, first_stroke uuid DEFAULT NULL::uuid) RETURNS void
+    LANGUAGE plpgsql
+    AS $$
+BEGIN
+  UPDATE activities a SET
+    time = greatest(a.time, line.time),
+    begun = least(a.begun, line.begun),
+    count = a.count + line.count - (first_stroke IS NOT NULL AND a.last_stroke = first_stroke)::integer,
+    texels = a.texels + line.texels,
+    area_m2 = a.area_m2 + line.area_m2,
+    last_stroke = line.last_stroke,
+    subject = line.subject,
+    record_key = CASE WHEN a.record_key = line.record_key THEN a.record_key END,
+    role = line.role,
+    changed = CASE WHEN line.changed IS NULL THEN a.changed
+      ELSE (SELECT array_agg(DISTINCT name ORDER BY name) FROM unnest(a.changed || line.changed) name) END
+  WHERE line.comment_id IS NULL AND a.id = (
+    SELECT l.id FROM activities l
+    WHERE l.project_id = line.project_id AND l.user_name = line.user_name AND l.time >= line.begun - interval '10 minutes'
+      AND l.kind = line.kind AND l.op = line.op AND l.model_id IS NOT DISTINCT FROM line.model_id
+      AND l.layer_id IS NOT DISTINCT FROM line.layer_id AND l.table_id IS NOT DISTINCT FROM line.table_id
+      AND l.person IS NOT DISTINCT FROM line.person
+      -- what is made or deleted, looks among them, which have no id here, is a line of its own
+      AND (line.kind NOT IN ('layer', 'look', 'model', 'table') OR (line.op = 'changed' AND l.subject = line.subject))
+    ORDER BY l.time DESC, l.id DESC LIMIT 1);
+  IF NOT FOUND THEN
+    INSERT INTO activities (project_id, model_id, layer_id, table_id, record_key, comment_id, subject, user_name, kind, op, begun, time,
+      count, texels, area_m2, last_stroke, person, role, changed, visibility)
+    VALUES (line.project_id, line.model_id, line.layer_id, line.table_id, line.record_key, line.comment_id, line.subject, line.user_name,
+      line.kind, line.op, line.begun, line.time, line.count, line.texels, line.area_m2, line.last_stroke, line.person, line.role,
+      line.changed, coalesce(line.visibility, 'public'));
+  END IF;
+END $$;
+
+CREATE FUNCTION public.table_edit_is_activity() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  line activities;
+  written record;
+  of_table record;
+BEGIN
+  SELECT count(*) FILTER (WHERE subject = 'record') AS records, count(*) FILTER (WHERE subject = 'column') AS columns,
+    min(subject_id) FILTER (WHERE subject = 'record') AS record
+    INTO written FROM table_changes WHERE table_id = NEW.table_id AND sequence = NEW.sequence;
+  SELECT t.project_id, t.name INTO of_table FROM record_tables t WHERE t.id = NEW.table_id;
+  IF NOT FOUND THEN
+    RETURN NULL;
+  END IF;
+  line := activity_of(of_table.project_id, CASE WHEN written.columns > 0 THEN 'columns' ELSE 'records' END, NEW.op, of_table.name);
+  line.table_id := NEW.table_id;
+  line.user_name := NEW.user_name;
+  line.begun := NEW.time;
+  line.time := NEW.time;
+  line.count := CASE WHEN written.columns > 0 THEN written.columns ELSE written.records END;
+  IF line.kind = 'records' AND written.records = 1 THEN
+    line.record_key := written.record;
+  END IF;
+  PERFORM note_activity(line);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.thing_is_activity() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  thing jsonb := CASE WHEN TG_OP = 'DELETE' THEN to_jsonb(OLD) ELSE to_jsonb(NEW) END;
+  line activities;
+  of_project bigint := (thing ->> 'project_id')::bigint;
+  own_id bigint := (thing ->> 'id')::bigint;
+BEGIN
+  IF TG_TABLE_NAME = 'layers' AND TG_OP = 'DELETE' THEN
+    UPDATE activities SET visibility = thing ->> 'visibility' WHERE model_id = (thing ->> 'model_id')::bigint AND layer_id = own_id;
+  END IF;
+  IF TG_TABLE_NAME IN ('layers', 'looks') THEN
+    SELECT m.project_id INTO of_project FROM models m WHERE m.id = (thing ->> 'model_id')::bigint;
+  ELSIF TG_TABLE_NAME = 'projects' THEN
+    of_project := own_id;
+  END IF;
+  -- Gone with their model or project, which has a line of its own.
+  IF of_project IS NULL OR NOT EXISTS (SELECT 1 FROM projects p WHERE p.id = of_project) THEN
+    RETURN NULL;
+  END IF;
+  line := activity_of(of_project, TG_ARGV[0], CASE TG_OP WHEN 'INSERT' THEN 'created' WHEN 'UPDATE' THEN 'changed' ELSE 'deleted' END,
+    thing ->> 'name');
+  line.model_id := CASE WHEN TG_TABLE_NAME = 'models' THEN own_id ELSE (thing ->> 'model_id')::bigint END;
+  IF TG_TABLE_NAME = 'layers' THEN
+    line.layer_id := own_id;
+    line.visibility := thing ->> 'visibility';
+  ELSIF TG_TABLE_NAME = 'record_tables' THEN
+    line.table_id := own_id;
+  END IF;
+  IF TG_OP = 'DELETE' AND line.user_name = '' AND TG_TABLE_NAME IN ('layers', 'record_tables') THEN
+    DELETE FROM activities WHERE layer_id = line.layer_id OR table_id = line.table_id;
+    RETURN NULL;
+  END IF;
+  IF TG_OP = 'UPDATE' THEN
+    line.changed := changed_columns(to_jsonb(OLD), thing);
+    -- Its lines go where it goes, so that those who do not see it there do not see them either.
+    IF TG_TABLE_NAME = 'models' AND 'project_id' = ANY (line.changed) THEN
+      UPDATE activities SET project_id = of_project WHERE model_id = line.model_id;
+    END IF;
+    -- The formula of a new layer is set after the layer is made.
+    IF line.changed IS NULL OR line.user_name = '' OR (TG_TABLE_NAME = 'layers' AND EXISTS (
+      SELECT 1 FROM activities a WHERE a.project_id = of_project AND a.time >= transaction_timestamp()
+        AND a.layer_id = line.layer_id AND a.kind = 'layer' AND a.op = 'created')) THEN
+      RETURN NULL;
+    END IF;
+  END IF;
+  PERFORM note_activity(line);
   RETURN NULL;
 END $$;
 
@@ -98,6 +354,7 @@ CREATE TABLE public.layers (
     computed_sequence bigint DEFAULT 0 NOT NULL,
     summed boolean DEFAULT true NOT NULL,
     locked boolean DEFAULT false NOT NULL,
+    visibility text DEFAULT 'public'::text NOT NULL,
     CONSTRAINT layers_check CHECK (((kind = 'database'::text) = (table_id IS NOT NULL))),
     CONSTRAINT layers_check1 CHECK (((expression IS NOT NULL) OR (NOT automatic))),
     CONSTRAINT layers_expression_check CHECK ((expression <> ''::text)),
@@ -105,7 +362,8 @@ CREATE TABLE public.layers (
     CONSTRAINT layers_name_check CHECK ((name <> ''::text)),
     CONSTRAINT layers_opacity_check CHECK (((opacity >= (0)::double precision) AND (opacity <= (1)::double precision))),
     CONSTRAINT layers_resolution_check CHECK ((((resolution >= 128) AND (resolution <= 16384)) AND ((resolution & (resolution - 1)) = 0))),
-    CONSTRAINT layers_type_check CHECK ((type = ANY (ARRAY['u8'::text, 'u16'::text, 'u32'::text, 'i8'::text, 'i16'::text, 'i32'::text, 'f16'::text, 'f32'::text])))
+    CONSTRAINT layers_type_check CHECK ((type = ANY (ARRAY['u8'::text, 'u16'::text, 'u32'::text, 'i8'::text, 'i16'::text, 'i32'::text, 'f16'::text, 'f32'::text]))),
+    CONSTRAINT layers_visibility_check CHECK ((visibility = ANY (ARRAY['public'::text, 'team'::text, 'private'::text])))
 );
 
 CREATE TABLE public.models (
@@ -140,10 +398,12 @@ CREATE TABLE public.models (
     geometry bytea NOT NULL,
     sequence bigint DEFAULT 0 NOT NULL,
     version bigint DEFAULT 1 NOT NULL,
+    source_download text DEFAULT 'annotator'::text NOT NULL,
     CONSTRAINT models_bounds_max_check CHECK ((cardinality(bounds_max) = 3)),
     CONSTRAINT models_bounds_min_check CHECK ((cardinality(bounds_min) = 3)),
     CONSTRAINT models_name_check CHECK ((name <> ''::text)),
     CONSTRAINT models_origin_check CHECK ((cardinality(origin) = 3)),
+    CONSTRAINT models_source_download_check CHECK ((source_download = ANY (ARRAY['viewer'::text, 'annotator'::text, 'curator'::text]))),
     CONSTRAINT models_unit_check CHECK ((unit = ANY (ARRAY['mm'::text, 'cm'::text, 'm'::text]))),
     CONSTRAINT models_up_check CHECK ((up = ANY (ARRAY['x'::text, 'y'::text, 'z'::text])))
 );
@@ -200,7 +460,7 @@ CREATE VIEW analysis.areas WITH (security_barrier='true') AS
            FROM public.tile_sums t,
             LATERAL UNNEST(t.keys, t.texels, t.areas, t.moments_x, t.moments_y, t.moments_z, t.low_x, t.low_y, t.low_z, t.high_x, t.high_y, t.high_z) e(key, texels, area, moment_x, moment_y, moment_z, low_x, low_y, low_z, high_x, high_y, high_z)
           GROUP BY t.layer_id, e.key) s
-     JOIN public.layers l ON (((l.id = s.layer_id) AND l.summed)))
+     JOIN public.layers l ON (((l.id = s.layer_id) AND l.summed AND (l.visibility = 'public'::text))))
      JOIN public.models m ON ((m.id = l.model_id)))
      CROSS JOIN LATERAL ( SELECT (
                 CASE m.unit
@@ -241,7 +501,7 @@ CREATE VIEW analysis.edits WITH (security_barrier='true') AS
     ((e.answer ->> 'area_m2'::text))::double precision AS area_m2
    FROM ((public.edits e
      JOIN public.models m ON ((m.id = e.model_id)))
-     JOIN public.layers l ON ((l.id = e.layer_id)));
+     JOIN public.layers l ON (((l.id = e.layer_id) AND (l.visibility = 'public'::text))));
 
 CREATE VIEW analysis.layers WITH (security_barrier='true') AS
  SELECT l.id AS layer_id,
@@ -258,7 +518,8 @@ CREATE VIEW analysis.layers WITH (security_barrier='true') AS
     l.sequence,
     l.summed AS areas_current
    FROM (public.layers l
-     JOIN public.models m ON ((m.id = l.model_id)));
+     JOIN public.models m ON ((m.id = l.model_id)))
+  WHERE (l.visibility = 'public'::text);
 
 CREATE TABLE public.projects (
     id bigint NOT NULL,
@@ -305,6 +566,18 @@ CREATE VIEW analysis.projects WITH (security_barrier='true') AS
     (projects.slug)::text AS slug,
     projects.description
    FROM public.projects;
+
+CREATE TABLE public.record_columns (
+    id bigint NOT NULL,
+    table_id bigint NOT NULL,
+    kind text NOT NULL,
+    target bigint,
+    properties jsonb NOT NULL,
+    hidden boolean DEFAULT false NOT NULL,
+    visibility text DEFAULT 'public'::text NOT NULL,
+    CONSTRAINT record_columns_kind_check CHECK ((kind = ANY (ARRAY['text'::text, 'integer'::text, 'numeric'::text, 'boolean'::text, 'date'::text, 'timestamp'::text, 'period'::text, 'enumeration'::text, 'url'::text, 'term'::text, 'relation'::text, 'picture'::text, 'document'::text, 'line'::text, 'point'::text]))),
+    CONSTRAINT record_columns_visibility_check CHECK ((visibility = ANY (ARRAY['public'::text, 'team'::text, 'private'::text])))
+);
 
 CREATE TABLE public.record_tables (
     id bigint NOT NULL,
@@ -354,11 +627,14 @@ CREATE VIEW analysis.record_edits WITH (security_barrier='true') AS
     e.in_force,
     c.subject,
     c.subject_id AS key,
-    c.before,
-    c.after
-   FROM ((public.table_edits e
+    (c.before - h.names) AS before,
+    (c.after - h.names) AS after
+   FROM (((public.table_edits e
      JOIN public.record_tables t ON ((t.id = e.table_id)))
-     LEFT JOIN public.table_changes c ON (((c.table_id = e.table_id) AND (c.sequence = e.sequence) AND (c.subject = 'record'::text))));
+     LEFT JOIN public.table_changes c ON (((c.table_id = e.table_id) AND (c.sequence = e.sequence) AND (c.subject = 'record'::text))))
+     CROSS JOIN LATERAL ( SELECT ARRAY( SELECT (i.id)::text AS id
+                   FROM public.record_columns i
+                  WHERE ((i.table_id = e.table_id) AND (i.visibility <> 'public'::text))) AS names) h);
 
 CREATE TABLE public.record_views (
     table_id bigint NOT NULL,
@@ -378,6 +654,15 @@ CREATE VIEW analysis.tables WITH (security_barrier='true') AS
      JOIN public.projects p ON ((p.id = t.project_id)))
      LEFT JOIN public.record_views v ON ((v.table_id = t.id)));
 
+ALTER TABLE public.activities ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.activities_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.answers (
     key text NOT NULL,
     answer jsonb NOT NULL,
@@ -394,8 +679,10 @@ CREATE TABLE public.attachments (
     height integer,
     user_name text NOT NULL,
     "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    visibility text DEFAULT 'public'::text NOT NULL,
     CONSTRAINT attachments_check CHECK (((width IS NULL) = (height IS NULL))),
-    CONSTRAINT attachments_name_check CHECK ((name <> ''::text))
+    CONSTRAINT attachments_name_check CHECK ((name <> ''::text)),
+    CONSTRAINT attachments_visibility_check CHECK ((visibility = ANY (ARRAY['public'::text, 'team'::text, 'private'::text])))
 );
 
 ALTER TABLE public.attachments ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
@@ -438,13 +725,15 @@ CREATE TABLE public.comments (
     resolved_by text,
     changed timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
     version bigint DEFAULT 1 NOT NULL,
+    visibility text DEFAULT 'public'::text NOT NULL,
     CONSTRAINT comments_check CHECK (((thread_id IS NULL) = (("position" IS NOT NULL) AND (normal IS NOT NULL)))),
     CONSTRAINT comments_check1 CHECK (((resolved IS NULL) = (resolved_by IS NULL))),
     CONSTRAINT comments_check2 CHECK (((thread_id IS NULL) OR ((resolved IS NULL) AND (deleted IS NULL)))),
     CONSTRAINT comments_normal_check CHECK ((cardinality(normal) = 3)),
     CONSTRAINT comments_position_check CHECK ((cardinality("position") = 3)),
     CONSTRAINT comments_record_key_check CHECK (((record_key >= 0) AND (record_key <= '4294967295'::bigint))),
-    CONSTRAINT comments_text_check CHECK ((char_length(text) <= 10000))
+    CONSTRAINT comments_text_check CHECK ((char_length(text) <= 10000)),
+    CONSTRAINT comments_visibility_check CHECK ((visibility = ANY (ARRAY['public'::text, 'team'::text, 'private'::text])))
 );
 
 ALTER TABLE public.comments ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
@@ -540,16 +829,6 @@ ALTER TABLE public.projects ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     NO MINVALUE
     NO MAXVALUE
     CACHE 1
-);
-
-CREATE TABLE public.record_columns (
-    id bigint NOT NULL,
-    table_id bigint NOT NULL,
-    kind text NOT NULL,
-    target bigint,
-    properties jsonb NOT NULL,
-    hidden boolean DEFAULT false NOT NULL,
-    CONSTRAINT record_columns_kind_check CHECK ((kind = ANY (ARRAY['text'::text, 'integer'::text, 'numeric'::text, 'boolean'::text, 'date'::text, 'timestamp'::text, 'period'::text, 'enumeration'::text, 'url'::text, 'term'::text, 'relation'::text, 'picture'::text, 'document'::text, 'line'::text, 'point'::text])))
 );
 
 ALTER TABLE public.record_columns ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
@@ -667,6 +946,32 @@ ALTER TABLE public.users ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     CACHE 1
 );
 
+CREATE TABLE public.views (
+    id bigint NOT NULL,
+    model_id bigint NOT NULL,
+    slug text NOT NULL,
+    name text NOT NULL,
+    text text DEFAULT ''::text NOT NULL,
+    content jsonb NOT NULL,
+    user_name text NOT NULL,
+    "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT views_name_check CHECK (((char_length(name) >= 1) AND (char_length(name) <= 200))),
+    CONSTRAINT views_text_check CHECK ((char_length(text) <= 10000))
+);
+
+ALTER TABLE public.views ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.views_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
+ALTER TABLE ONLY public.activities
+    ADD CONSTRAINT activities_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.answers
     ADD CONSTRAINT answers_pkey PRIMARY KEY (key);
 
@@ -775,6 +1080,22 @@ ALTER TABLE ONLY public.users
 ALTER TABLE ONLY public.users
     ADD CONSTRAINT users_pkey PRIMARY KEY (id);
 
+ALTER TABLE ONLY public.views
+    ADD CONSTRAINT views_model_id_slug_key UNIQUE (model_id, slug);
+
+ALTER TABLE ONLY public.views
+    ADD CONSTRAINT views_pkey PRIMARY KEY (id);
+
+CREATE INDEX activities_author ON public.activities USING btree (project_id, user_name, "time");
+
+CREATE INDEX activities_comment ON public.activities USING btree (comment_id) WHERE (comment_id IS NOT NULL);
+
+CREATE INDEX activities_model ON public.activities USING btree (model_id, "time", id) WHERE (model_id IS NOT NULL);
+
+CREATE INDEX activities_project ON public.activities USING btree (project_id, "time", id);
+
+CREATE INDEX activities_table ON public.activities USING btree (table_id, "time", id) WHERE (table_id IS NOT NULL);
+
 CREATE INDEX answers_time ON public.answers USING btree ("time");
 
 CREATE INDEX attachments_blob ON public.attachments USING btree (sha256);
@@ -841,11 +1162,34 @@ CREATE UNIQUE INDEX users_name_in_any_case ON public.users USING btree (lower(na
 
 CREATE CONSTRAINT TRIGGER column_is_changed AFTER UPDATE ON public.record_columns DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN (((old.hidden <> new.hidden) OR ((old.properties -> 'name'::text) <> (new.properties -> 'name'::text)) OR ((old.properties -> 'order'::text) <> (new.properties -> 'order'::text)))) EXECUTE FUNCTION public.analysis_table_changed();
 
+CREATE CONSTRAINT TRIGGER column_is_hidden_or_seen AFTER UPDATE ON public.record_columns DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN ((old.visibility <> new.visibility)) EXECUTE FUNCTION public.analysis_table_changed();
+
 CREATE CONSTRAINT TRIGGER column_is_shown AFTER INSERT ON public.record_columns DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN ((NOT new.hidden)) EXECUTE FUNCTION public.analysis_table_changed();
+
+CREATE TRIGGER comment_is_activity AFTER INSERT OR DELETE OR UPDATE OF resolved, deleted ON public.comments FOR EACH ROW EXECUTE FUNCTION public.comment_is_activity();
+
+CREATE TRIGGER edits_are_activity AFTER INSERT ON public.edits REFERENCING NEW TABLE AS added FOR EACH STATEMENT EXECUTE FUNCTION public.edits_are_activity();
+
+CREATE TRIGGER layer_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, slug, type, unit, description, palette, opacity, visible, draw_order, expression, automatic, locked, visibility ON public.layers FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('layer');
+
+CREATE TRIGGER look_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, slug, description, opacity, visible, draw_order ON public.looks FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('look');
+
+CREATE TRIGGER member_is_activity AFTER INSERT OR DELETE OR UPDATE OF role ON public.project_members FOR EACH ROW EXECUTE FUNCTION public.member_is_activity();
+
+CREATE TRIGGER model_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download ON public.models FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('model');
+
+CREATE TRIGGER project_is_activity AFTER INSERT OR UPDATE OF name, slug, description ON public.projects FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('project');
+
+CREATE CONSTRAINT TRIGGER table_edit_is_activity AFTER INSERT ON public.table_edits DEFERRABLE INITIALLY DEFERRED FOR EACH ROW EXECUTE FUNCTION public.table_edit_is_activity();
+
+CREATE TRIGGER table_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, labels, description ON public.record_tables FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('table');
 
 CREATE CONSTRAINT TRIGGER table_is_renamed AFTER UPDATE ON public.record_tables DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN ((old.name <> new.name)) EXECUTE FUNCTION public.analysis_table_changed();
 
 CREATE CONSTRAINT TRIGGER table_is_shown AFTER INSERT ON public.record_tables DEFERRABLE INITIALLY DEFERRED FOR EACH ROW EXECUTE FUNCTION public.analysis_table_changed();
+
+ALTER TABLE ONLY public.activities
+    ADD CONSTRAINT activities_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.attachments
     ADD CONSTRAINT attachments_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256);
@@ -948,4 +1292,7 @@ ALTER TABLE ONLY public.tile_sums
 
 ALTER TABLE ONLY public.tokens
     ADD CONSTRAINT tokens_user_name_fkey FOREIGN KEY (user_name) REFERENCES public.users(name) ON UPDATE CASCADE ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.views
+    ADD CONSTRAINT views_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
 

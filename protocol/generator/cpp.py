@@ -56,7 +56,7 @@ class Writer:
             return f" = {value}"
         if self.is_optional(member):
             return ""
-        by_type = {"glm::dvec2": "{0}", "glm::dvec3": "{0}", "glm::dmat4": "{1}", "strata::ValueType": "{}", "strata::LayerKind": "{}", "strata::Unit": "{}",
+        by_type = {"glm::dvec2": "{0}", "glm::dvec3": "{0}", "glm::dmat4": "{1}", "strata::ValueType": "{}", "strata::LayerKind": "{}", "strata::Unit": "{}", "strata::Visibility": "{}",
                    "strata::LightMode": "{}"}
         if spelled in by_type:
             return by_type[spelled]

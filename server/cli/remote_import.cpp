@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -48,6 +49,16 @@ Problem problem_of(const nlohmann::json& json, int status, const std::string& ti
 size_t collect(char* data, size_t size, size_t count, void* body) {
   static_cast<std::string*>(body)->append(data, size * count);
   return size * count;
+}
+
+// The certificate of a server on this machine names it as others reach it, and nobody stands in between.
+bool is_this_machine(const std::string& base) {
+  for (const char* host : {"https://127.0.0.1", "https://localhost", "https://[::1]"})
+    if (base.starts_with(host)) {
+      const std::string_view rest = std::string_view(base).substr(std::strlen(host));
+      return rest.empty() || rest.front() == ':' || rest.front() == '/';
+    }
+  return false;
 }
 
 class Client {
@@ -112,6 +123,10 @@ class Client {
     Reply reply;
     curl_easy_setopt(curl_.get(), CURLOPT_URL, (base_ + path).c_str());
     curl_easy_setopt(curl_.get(), CURLOPT_HTTPHEADER, headers);
+    if (is_this_machine(base_)) {
+      curl_easy_setopt(curl_.get(), CURLOPT_SSL_VERIFYHOST, 0L);
+      curl_easy_setopt(curl_.get(), CURLOPT_SSL_VERIFYPEER, 0L);
+    }
     curl_easy_setopt(curl_.get(), CURLOPT_WRITEFUNCTION, &collect);
     curl_easy_setopt(curl_.get(), CURLOPT_WRITEDATA, &reply.body);
     const CURLcode code = curl_easy_perform(curl_.get());

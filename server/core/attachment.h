@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "core/visibility.h"
+
 namespace strata {
 
 // A file that records of a table have. Its content never changes.
@@ -18,6 +20,12 @@ struct Attachment {
   std::optional<int> width, height;  // of pictures that can be read, before they are turned as Exif says
   std::string user;
   std::chrono::system_clock::time_point time;
+  Visibility visibility = Visibility::everyone;
 };
+
+// As core/visibility has it; who may attach files sees those that they attached themselves, too.
+inline bool sees(const Author& who, const Attachment& attachment) {
+  return sees(who.role, attachment.visibility) || (who.role >= Role::annotator && who.user == attachment.user);
+}
 
 }  // namespace strata

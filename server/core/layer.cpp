@@ -18,6 +18,7 @@ nlohmann::json to_json(const Layer& layer) {
                       {"opacity", layer.opacity},
                       {"visible", layer.visible},
                       {"locked", layer.locked},
+                      {"visibility", name(layer.visibility)},
                       {"order", layer.order},
                       {"sequence", layer.sequence}};
   if (layer.table) json["table"] = *layer.table;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/palette.h"
+#include "core/visibility.h"
 
 namespace strata {
 
@@ -43,7 +44,8 @@ struct Layer {
   double opacity = 1;
   bool visible = true;
   bool locked = false;  // against everybody below curator: neither its texels nor what it is may be changed
-  int order = 0;        // drawn ascending: higher is on top
+  Visibility visibility = Visibility::everyone;
+  int order = 0;                      // drawn ascending: higher is on top
   std::optional<std::int64_t> table;  // database: the project's table whose keys the texels hold
   std::optional<LayerFormula> formula;
   std::int64_t sequence = 0;  // of the last edit in it

@@ -101,6 +101,7 @@ nlohmann::json to_json(const Model& model, const std::string& project_slug) {
           {"processing", model.processing},
           {"rights_uri", model.rights_uri},
           {"credit", model.credit},
+          {"source_download", name(model.source_download)},
           {"sequence", model.sequence}};
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/problem.h"
+#include "core/role.h"
 
 namespace strata {
 
@@ -73,7 +74,8 @@ struct Model {
   AtlasReport atlas;
   std::vector<Repair> repairs;
   std::vector<SourceFile> source_files;
-  int default_resolution = 2048;  // of new layers
+  Role source_download = Role::annotator;  // the least that gets them, and what is as good as they are
+  int default_resolution = 2048;           // of new layers
   std::string inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit;
   std::int64_t sequence = 0;  // of the last journal entry
   std::int64_t version = 1;

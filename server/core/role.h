@@ -14,7 +14,7 @@ enum class Role { guest, viewer, annotator, curator, administrator, owner };
 std::optional<Role> parse_role(std::string_view name);
 std::string_view name(Role role);
 
-// Who changes something. Neither part has a default, so that whoever makes a change says both.
+// Who asks for something or changes it. Neither part has a default, so that whoever asks says both.
 struct Author {
   Author(std::string name, Role may) : user(std::move(name)), role(may) {}
   std::string user;

@@ -115,6 +115,11 @@ Result<void> check_column(Column& column) {
   if (auto good = check_choices(column); !good) return good;
   if (auto good = check_limits(column); !good) return good;
   if (auto good = check_kind(column); !good) return good;
+  // Who writes records must be able to.
+  if (column.required && column.visibility == Visibility::curators && column.default_value.is_null())
+    return fail(422, "Required and private",
+                "Who does not see the column could make no records: give it a default, or let it be empty.",
+                "visibility");
   if (column.default_value.is_null()) return {};
   auto value = check_value(column, column.default_value, "default");
   if (!value) return tl::unexpected(value.error());
@@ -123,9 +128,11 @@ Result<void> check_column(Column& column) {
 }
 
 nlohmann::json to_json(const Column& column) {
-  nlohmann::json json{{"id", column.id},         {"name", column.name},       {"slug", column.slug},
-                      {"labels", column.labels}, {"kind", name(column.kind)}, {"required", column.required},
-                      {"unique", column.unique}, {"comment", column.comment}, {"order", column.order}};
+  nlohmann::json json{{"id", column.id},           {"name", column.name},
+                      {"slug", column.slug},       {"labels", column.labels},
+                      {"kind", name(column.kind)}, {"required", column.required},
+                      {"unique", column.unique},   {"comment", column.comment},
+                      {"order", column.order},     {"visibility", name(column.visibility)}};
   if (is_number(column.kind)) json["unit"] = column.unit;
   if (!column.default_value.is_null()) json["default"] = column.default_value;
   if (column.kind == ColumnKind::enumeration) json["choices"] = column.choices;
@@ -133,6 +140,11 @@ nlohmann::json to_json(const Column& column) {
   if (column.minimum) json["minimum"] = *column.minimum;
   if (column.maximum) json["maximum"] = *column.maximum;
   return json;
+}
+
+Table seen_by(Table table, Role role) {
+  std::erase_if(table.columns, [role](const Column& column) { return !sees(role, column.visibility); });
+  return table;
 }
 
 nlohmann::json to_json(const Table& table) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/problem.h"
+#include "core/visibility.h"
 
 namespace strata {
 
@@ -56,6 +57,7 @@ struct Column {
   std::optional<std::int64_t> target;      // term and relation: a table of the project
   std::optional<double> minimum, maximum;  // integer and numeric
   int order = 0;
+  Visibility visibility = Visibility::everyone;
   bool hidden = false;  // dropped: its values stay for undo and for reading the past
 };
 
@@ -67,10 +69,11 @@ struct Table {
   std::string slug;  // unique in the project, never all digits
   Labels labels;
   std::string description;
-  std::vector<Column> columns;  // those that are not hidden, by order
-  std::int64_t records = 0;     // how many
-  std::int64_t sequence = 0;    // of the last change of records or columns
-  std::int64_t version = 1;     // of everything but the records, for ETag and If-Match
+  std::vector<Column>
+      columns;                // those that are not hidden, by order; where it is read for somebody, those that they see
+  std::int64_t records = 0;   // how many
+  std::int64_t sequence = 0;  // of the last change of records or columns
+  std::int64_t version = 1;   // of everything but the records, for ETag and If-Match
 };
 
 inline constexpr std::int64_t kHighestKey = 0xffffffff;
@@ -93,6 +96,8 @@ Result<void> check_labels(const Labels& labels, const std::string& field = "labe
 
 nlohmann::json to_json(const Column& column);
 nlohmann::json to_json(const Table& table);
+// Takes away the columns that the role does not see.
+Table seen_by(Table table, Role role);
 // `{key, version, values: {slug: value}}`, with every column of `columns`.
 nlohmann::json to_json(const Record& record, const std::vector<Column>& columns);
 

@@ -99,7 +99,7 @@ Result<Model> find_or_create_pot(store::Store& store, double detail, Progress& p
 }
 
 Result<Layer> find_or_create_layer(store::Store& store, const Model& model, Layer wanted) {
-  auto layer = store.layer(model.id, wanted.slug);
+  auto layer = store.layer(model.id, wanted.slug, Role::owner);
   if (layer || layer.error().status != 404) return layer;
   wanted.model_id = model.id;
   wanted.type = ValueType::u8;

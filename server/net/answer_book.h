@@ -41,9 +41,11 @@ Response response_of(const nlohmann::json& kept);
 template <class... Effect>
 store::FirstAnswer<Effect...> first_answer(const Request& request,
                                            std::type_identity_t<std::function<Response(const Effect&...)>> respond) {
-  return {scoped_key(request), [print = fingerprint(request), respond = std::move(respond)](const Effect&... effect) {
+  return {scoped_key(request),
+          [print = fingerprint(request), respond = std::move(respond)](const Effect&... effect) {
             return kept_answer(respond(effect...), print);
-          }};
+          },
+          request.user()};
 }
 
 }  // namespace strata::net

@@ -15,7 +15,7 @@ constexpr std::size_t kMaxWaitingQueries = 256;
 bool changes(Method method) { return method != Method::get && method != Method::head && method != Method::options; }
 
 Result<void> check_record(store::Store& store, std::int64_t project_id, const EditorBook::Record& record) {
-  const auto table = store.table(std::to_string(record.table));
+  const auto table = store.table(std::to_string(record.table), Role::viewer);
   if (!table && table.error().status != 404) return tl::unexpected(table.error());
   if (!table || table->project_id != project_id)
     return fail(404, "No such table", "The model's project has no table " + std::to_string(record.table) + ".",
@@ -79,12 +79,14 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_people_routes(router_, context_);
   add_project_routes(router_, context_);
   add_member_routes(router_, context_);
+  add_activity_routes(router_, context_);
   add_model_routes(router_, context_);
   add_import_routes(router_, context_);
   add_job_routes(router_, context_);
   add_layer_routes(router_, context_);
   add_look_routes(router_, context_);
   add_comment_routes(router_, context_);
+  add_view_routes(router_, context_);
   add_tool_routes(router_, context_);
   add_table_routes(router_, context_);
   add_term_routes(router_, context_);
@@ -221,7 +223,7 @@ Result<App::LiveEntry> App::admit_live(Request& request) {
   request.params["model"] = request.segments[3];
   if (auto known = identify(request, Role::viewer); !known) return tl::unexpected(known.error());
   if (auto own = check_upgrade_origin(request, options_.allowed_origins); !own) return tl::unexpected(own.error());
-  auto room = rooms_.open(request.segments[3]);
+  auto room = rooms_.open(request.segments[3], request.role());
   if (!room) return tl::unexpected(room.error());
   auto project = store_.project(std::to_string((*room)->model().project_id));
   if (!project) return tl::unexpected(project.error());

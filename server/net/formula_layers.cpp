@@ -14,13 +14,6 @@ namespace strata::net {
 namespace {
 
 // A number or a condition.
-Result<Expression> parse(const std::string& text) {
-  auto number = query::parse_number(text, "expression");
-  if (number) return number;
-  auto condition = query::parse_condition(text, "expression");
-  return condition ? std::move(condition) : std::move(number);
-}
-
 bool reads_records_of(const Expression& e, const std::string& layer) {
   return (e.is_column() && e.name == layer) ||
          std::ranges::any_of(e.parts, [&](const Expression& part) { return reads_records_of(part, layer); });
@@ -78,9 +71,16 @@ Result<Layer> with_colors(room::Room& room, Layer layer) {
 
 }  // namespace
 
+Result<Expression> parse_formula(const std::string& text) {
+  auto number = query::parse_number(text, "expression");
+  if (number) return number;
+  auto condition = query::parse_condition(text, "expression");
+  return condition ? std::move(condition) : std::move(number);
+}
+
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
-                                  std::optional<std::int64_t> self) {
-  const auto expression = parse(text);
+                                  Visibility visibility, std::optional<std::int64_t> self) {
+  const auto expression = parse_formula(text);
   if (!expression) return tl::unexpected(expression.error());
   const std::vector<Layer> layers = room.layers();
   const auto shapes = room::shapes_read(*expression, views_of(layers));
@@ -97,7 +97,8 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
     formula.inputs.push_back(std::move(input));
   }
   std::ranges::sort(formula.inputs, {}, &LayerFormula::Input::slug);
-  if (auto good = room.check_expression(*expression, "expression"); !good) return tl::unexpected(good.error());
+  if (auto good = room.check_expression(*expression, "expression", visibility); !good)
+    return tl::unexpected(good.error());
   return formula;
 }
 
@@ -110,7 +111,7 @@ Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<r
       return fail(409, "Input deleted",
                   "The expression reads the layer '" + input.slug + "', which was deleted. Change the expression.",
                   "expression");
-  const auto expression = parse(layer.formula->expression);
+  const auto expression = parse_formula(layer.formula->expression);
   if (!expression) return tl::unexpected(expression.error());
   auto shapes = shape_views(context, *room, *expression, layer.resolution, progress);
   if (!shapes) return tl::unexpected(shapes.error());
@@ -136,7 +137,7 @@ Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<r
 Result<Response> create_formula_layer(const RouteContext& context, JobBook& book, const Request& request,
                                       const std::shared_ptr<room::Room>& room, Layer layer, bool has_palette,
                                       const std::function<Response(const Layer&)>& answer) {
-  const auto expression = parse(layer.formula->expression);
+  const auto expression = parse_formula(layer.formula->expression);
   if (!expression) return tl::unexpected(expression.error());
   const auto compute = [&context, room, author = request.author(), has_palette](const Layer& made, Progress& progress) {
     auto computed = compute_layer(context, room, made, author, progress);
@@ -161,7 +162,7 @@ Result<Response> create_formula_layer(const RouteContext& context, JobBook& book
     layers.take_back();
     return tl::unexpected(shown.error());
   }
-  auto now = context.store.layer(room->model().id, std::to_string(layers.ids().front()));
+  auto now = context.store.layer(room->model().id, std::to_string(layers.ids().front()), Role::owner);
   if (!now) return tl::unexpected(now.error());
   return answer(*now);
 }

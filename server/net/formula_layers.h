@@ -8,10 +8,13 @@ namespace strata::net {
 
 // Layers that are computed by an expression over others (Layer::formula). All of it blocks.
 
+// A number or a condition. Refused (422 at `expression`, with the character): what cannot be read.
+Result<Expression> parse_formula(const std::string& text);
+
 // What the text reads on this model: names of layers, columns of their records, the surface. `self`: the layer that it is for, where
-// there is one. Refused (422 at `expression`, with the character): what cannot be read, or names nothing.
+// there is one; `visibility`: of that layer, whoever sees which must see all that it reads. Refused (422 at `expression`, with the character): what cannot be read, or names nothing.
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
-                                  std::optional<std::int64_t> self = {});
+                                  Visibility visibility, std::optional<std::int64_t> self = {});
 
 // Computes the layer's content anew, as one edit of the author, and tells who looks. Returns it as it is then. The normals, the height,
 // the slope and the curvature that an expression reads are worked out first, which takes as long as their layers do.

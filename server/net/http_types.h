@@ -50,12 +50,14 @@ struct Request {
   std::filesystem::path body_file;            // …in a file that is removed after the answer unless a handler moves it
   std::uint64_t body_bytes = 0;
   std::optional<Principal> principal;
-  std::string peer;  // address at the other end of the connection
+  std::string peer;     // address at the other end of the connection
+  bool by_tls = false;  // the connection speaks TLS
 
   std::string_view header(std::string_view lower_case_name) const;  // empty when absent
   const std::string& param(const std::string& name) const { return params.at(name); }
   std::string query_or(const std::string& name, std::string fallback) const;
   const std::string& user() const { return principal->user; }           // routes that need a principal have one
+  Role role() const { return principal->role; }                         // the same
   Author author() const { return {principal->user, principal->role}; }  // the same
 };
 

@@ -16,10 +16,12 @@ Result<jobs::JobResult> run(room::Room& room, NewLayers& layers, const MakeLayer
   result.layers = layers.ids();
   result.report = std::move(*report);
   const store::FirstAnswer<Layer> answer{
-      key, [&](const Layer&) {
+      key,
+      [&](const Layer&) {
         return nlohmann::json{
             {"request", print}, {"model", result.model}, {"layers", result.layers}, {"report", result.report}};
-      }};
+      },
+      {}};
   if (auto shown = layers.show(answer); !shown) return tl::unexpected(shown.error());
   return result;
 }

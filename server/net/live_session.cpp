@@ -104,8 +104,8 @@ void LiveSession::on(const protocol::Hello& message) {
       std::none_of(message.accept->begin(), message.accept->end(), [](const auto& codec) { return codec == "jpeg"; }))
     return refuse({406, "No common picture format", "Pictures are sent as jpeg.", "accept"}, std::string());
 
-  std::shared_ptr<room::Member> joined = room_->join(
-      principal_.user, full_name_, this, [socket = socket_, metrics = shared_->metrics](stream::FrameBytes frame) {
+  std::shared_ptr<room::Member> joined =
+      room_->join(author(), full_name_, this, [socket = socket_, metrics = shared_->metrics](stream::FrameBytes frame) {
         ++metrics->frames_sent;
         metrics->frame_bytes_sent += frame->size();
         if (auto open = socket.lock()) open->send_frame(std::move(frame));

@@ -82,6 +82,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   std::int64_t model_id() const { return owner_.model_id; }
   std::int64_t project_id() const { return room_->model().project_id; }  // of the model; any thread
   const std::string& user() const { return principal_.user; }
+  Role role() const { return principal_.role; }  // in that project
   // What concerns the whole site or project; only who was welcomed hears it. Any thread.
   void tell(const protocol::ServerMessage& message);
 

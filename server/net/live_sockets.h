@@ -27,9 +27,29 @@ class LiveSockets {
   void tell_model(std::int64_t model_id, const protocol::ServerMessage& message) {
     tell_if([&](const LiveSession& session) { return session.model_id() == model_id; }, message);
   }
+  // Whoever of them sees what is seen so.
+  void tell_model(std::int64_t model_id, Visibility visibility, const protocol::ServerMessage& message) {
+    tell_if(
+        [&](const LiveSession& session) { return session.model_id() == model_id && sees(session.role(), visibility); },
+        message);
+  }
+  // Those of them who see what is seen so, and nothing that fewer see.
+  void tell_sight(std::int64_t model_id, Visibility sight, const protocol::ServerMessage& message) {
+    tell_if(
+        [&](const LiveSession& session) { return session.model_id() == model_id && sight_of(session.role()) == sight; },
+        message);
+  }
   // Whoever looks at a model of the project.
   void tell_project(std::int64_t project_id, const protocol::ServerMessage& message) {
     tell_if([&](const LiveSession& session) { return session.project_id() == project_id; }, message);
+  }
+  // The same, of those who see columns that are seen so and no others.
+  void tell_project(std::int64_t project_id, Visibility sight, const protocol::ServerMessage& message) {
+    tell_if(
+        [&](const LiveSession& session) {
+          return session.project_id() == project_id && sight_of(session.role()) == sight;
+        },
+        message);
   }
   void close_all(int code, const std::string& reason) {
     close_if([](const Entry&) { return true; }, code, reason);

@@ -15,7 +15,7 @@ Result<MarkTransfer> bring_marks_of(const RouteContext& context, std::int64_t ta
   MarkTransfer brought;
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
-  const auto page = context.store.records(table_id, query);
+  const auto page = context.store.records(table_id, Role::curator, query);
   if (!page) return tl::unexpected(page.error());
   store::WriteRecords write;
   write.op = "transfer";

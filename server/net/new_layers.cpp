@@ -13,7 +13,7 @@ constexpr int kMostTries = 5;
 Result<Layer> NewLayers::add(Layer layer, const std::function<Result<Layer>(const Layer&)>& fill) {
   const bool visible = layer.visible;
   layer.visible = false;
-  auto created = room_->create_layer(std::move(layer));
+  auto created = room_->create_layer(std::move(layer), {.key = {}, .make = {}, .user = author_.user});
   if (!created) return created;
   made_.push_back({*created, visible});
   return fill(*created);
@@ -41,13 +41,15 @@ Result<Layer> NewLayers::paint(const Layer& created, TileMap tiles, nlohmann::js
 }
 
 Result<void> NewLayers::show(const store::FirstAnswer<Layer>& answer) {
+  store::FirstAnswer<Layer> last = answer;
+  last.user.clear();  // that they are shown belongs to their making
   for (std::size_t i = 0; i < made_.size(); ++i) {
     const bool is_last = i + 1 == made_.size();
     for (int tries = 0;; ++tries) {
       auto now = room_->layer(std::to_string(made_[i].layer.id));
       if (!now) return tl::unexpected(now.error());
       now->visible = made_[i].visible;
-      auto shown = room_->update_layer(*now, is_last ? answer : store::FirstAnswer<Layer>{});
+      auto shown = room_->update_layer(*now, is_last ? last : store::FirstAnswer<Layer>{});
       if (shown) break;
       // Someone renamed it at this very moment: then what they made of it is shown.
       if (shown.error().status != 412 || tries == kMostTries) return tl::unexpected(shown.error());

@@ -22,13 +22,13 @@ std::string area_text(double area_m2) {
 
 }  // namespace
 
-Result<std::vector<PaintedLayer>> painted_layers(const RouteContext& context, std::int64_t table_id) {
-  auto layers = context.store.layers_of_table(table_id);
+Result<std::vector<PaintedLayer>> painted_layers(const RouteContext& context, std::int64_t table_id, Role seen_by) {
+  auto layers = context.store.layers_of_table(table_id, seen_by);
   if (!layers) return tl::unexpected(layers.error());
   std::vector<PaintedLayer> painted;
   for (Layer& layer : *layers) {
     if (layer.sequence == 0) continue;  // nothing was ever painted there
-    auto room = context.rooms.open(std::to_string(layer.model_id));
+    auto room = context.rooms.open(std::to_string(layer.model_id), seen_by);
     if (!room) return tl::unexpected(room.error());
     auto areas = (*room)->key_areas(layer.slug);
     if (!areas && areas.error().status == 404) continue;  // deleted meanwhile
@@ -106,7 +106,7 @@ Result<void> records_from_legend(const RouteContext& context, const Layer& layer
   if (keys.empty() || !layer.table || !lists_values(layer.palette)) return {};
   const auto missing = context.store.missing_records(*layer.table, keys);
   if (!missing) return tl::unexpected(missing.error());
-  auto table = context.store.table(std::to_string(*layer.table));
+  auto table = context.store.table(std::to_string(*layer.table), author.role);
   if (!table) return tl::unexpected(table.error());
   const auto text = std::find_if(table->columns.begin(), table->columns.end(),
                                  [](const Column& column) { return column.kind == ColumnKind::text; });

@@ -14,8 +14,9 @@ struct PaintedLayer {
   Layer layer;
   std::map<std::int64_t, query::KeyArea> areas;  // by key
 };
-// All layers of the table.
-Result<std::vector<PaintedLayer>> painted_layers(const RouteContext& context, std::int64_t table_id);
+// The layers of the table that the role sees. On the others keys may stay behind whose records are gone, as after an undo: who deletes a
+// record hears nothing of them, and changes nothing there.
+Result<std::vector<PaintedLayer>> painted_layers(const RouteContext& context, std::int64_t table_id, Role seen_by);
 
 // Those where one of the keys is painted, as they are named to a person: "12.5 cm² on Units of Trench 1"; empty where there are none.
 std::string where_painted(const std::vector<PaintedLayer>& layers, const std::vector<std::int64_t>& keys);

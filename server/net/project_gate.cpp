@@ -35,20 +35,20 @@ constexpr Place kPlaces[] = {
     kProject,
     {"model",
      [](const RouteContext& context, const std::string& ref) { return project_id_of(context.store.model(ref)); }},
-    {"table",
-     [](const RouteContext& context, const std::string& ref) { return project_id_of(context.store.table(ref)); }},
+    {"table", [](const RouteContext& context,
+                 const std::string& ref) { return project_id_of(context.store.table(ref, Role::owner)); }},
     {"attachment",
      [](const RouteContext& context, const std::string& ref) {
        return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
-         const auto attachment = context.store.attachment(id);
+         const auto attachment = context.store.attachment(id, {{}, Role::owner});
          if (!attachment) return tl::unexpected(attachment.error());
-         return project_id_of(context.store.table(std::to_string(attachment->table_id)));
+         return project_id_of(context.store.table(std::to_string(attachment->table_id), Role::owner));
        });
      }},
     {"comment",
      [](const RouteContext& context, const std::string& ref) {
        return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
-         const auto comment = context.store.comments().comment(id);
+         const auto comment = context.store.comments().comment(id, Role::owner);
          if (!comment) return tl::unexpected(comment.error());
          return project_id_of(context.store.model(std::to_string(comment->model_id)));
        });

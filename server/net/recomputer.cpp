@@ -74,7 +74,7 @@ void Recomputer::attempt(const Layer& layer, const char* what,
   const auto now = std::chrono::steady_clock::now();
   const auto failed = failures_.find(layer.id);
   if (failed != failures_.end() && now < failed->second.again) return;
-  auto room = context_.rooms.open(std::to_string(layer.model_id));
+  auto room = context_.rooms.open(std::to_string(layer.model_id), kAuthor.role);
   if (room && !is_quiet(**room, layer.id)) return;
   const Result<void> done = room ? work(*room) : tl::unexpected(room.error());
   if (done) {

@@ -13,7 +13,7 @@ Result<RecordMeasures> RecordMeasures::of_place(const RouteContext& context, con
     measures.has_area_ = true;
     measures.names_.emplace_back("area_m2");
     if (place.layer->sequence > 0) {  // otherwise nothing was ever painted there
-      auto room = context.rooms.open(std::to_string(place.model->id));
+      auto room = context.rooms.open(std::to_string(place.model->id), Role::owner);
       if (!room) return tl::unexpected(room.error());
       auto areas = (*room)->key_areas(place.layer->slug);
       if (!areas) return tl::unexpected(areas.error());

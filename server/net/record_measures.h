@@ -14,7 +14,7 @@ namespace strata::net {
 // are there.
 class RecordMeasures {
  public:
-  // `columns`: those of the records that will be asked for. May open a room, and blocks.
+  // `columns`: those of the records that will be asked for; a layer of the place is one that who asks sees. May open a room, and blocks.
   static Result<RecordMeasures> of_place(const RouteContext& context, const RecordPlace& place,
                                          const std::vector<Column>& columns);
 

@@ -104,6 +104,13 @@ std::vector<std::string> split_list(const std::string& text) {
   return parts;
 }
 
+Result<void> check_source_download(const Request& request, const Model& model) {
+  if (request.role() >= model.source_download) return {};
+  return fail(403, "Source not for download",
+              "Files of this scan are for the role " + std::string(name(model.source_download)) +
+                  " and above in its project; a curator may change that (`source_download`).");
+}
+
 Response job_response(const RouteContext& context, std::int64_t job) {
   const auto status = context.jobs.status(job);
   return json_response(status ? to_json(*status)

@@ -41,12 +41,14 @@ void add_auth_routes(Router& router, const RouteContext& context);
 void add_people_routes(Router& router, const RouteContext& context);
 void add_project_routes(Router& router, const RouteContext& context);
 void add_member_routes(Router& router, const RouteContext& context);
+void add_activity_routes(Router& router, const RouteContext& context);
 void add_model_routes(Router& router, const RouteContext& context);
 void add_import_routes(Router& router, const RouteContext& context);
 void add_job_routes(Router& router, const RouteContext& context);
 void add_layer_routes(Router& router, const RouteContext& context);
 void add_look_routes(Router& router, const RouteContext& context);
 void add_comment_routes(Router& router, const RouteContext& context);
+void add_view_routes(Router& router, const RouteContext& context);
 void add_tool_routes(Router& router, const RouteContext& context);
 void add_table_routes(Router& router, const RouteContext& context);
 void add_term_routes(Router& router, const RouteContext& context);
@@ -106,6 +108,9 @@ Result<Response> signed_in(const RouteContext& context, const Request& request, 
 Result<void> check_no_script(const Request& request);
 // What the browser calls itself, for its person to know the session by.
 std::string agent_of(const Request& request);
+
+// 403: the role is less than the model's `source_download`, which guards the scan's files and what is as good as they are.
+Result<void> check_source_download(const Request& request, const Model& model);
 
 // 202 with the job and its address.
 Response job_response(const RouteContext& context, std::int64_t job);

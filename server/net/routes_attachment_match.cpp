@@ -33,7 +33,8 @@ class Values {
 // Names of the files that records have.
 using Names = std::map<std::int64_t, std::set<std::string>>;
 
-Result<Names> attached_names(const RouteContext& context, const Table& table, const std::vector<Record>& records) {
+Result<Names> attached_names(const RouteContext& context, const Author& who, const Table& table,
+                             const std::vector<Record>& records) {
   std::map<std::int64_t, std::vector<std::int64_t>> holders;
   std::vector<std::int64_t> ids;
   for (const Record& record : records)
@@ -46,7 +47,7 @@ Result<Names> attached_names(const RouteContext& context, const Table& table, co
         ids.push_back(id.get<std::int64_t>());
       }
     }
-  auto found = context.store.attachments(table.id, ids);
+  auto found = context.store.attachments(table.id, who, ids);
   if (!found) return tl::unexpected(found.error());
   Names names;
   for (const Attachment& attachment : *found)
@@ -59,7 +60,7 @@ Result<Response> match(const RouteContext& context, const Request& request) {
   if (!asked) return tl::unexpected(asked.error());
   auto pattern = NamePattern::parse(asked->pattern, "pattern");
   if (!pattern) return tl::unexpected(pattern.error());
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   const Column* column = find_column(table->columns, asked->column);
   if (!column && asked->column != kKey)
@@ -70,7 +71,7 @@ Result<Response> match(const RouteContext& context, const Request& request) {
                 "The pattern has no `{" + word + "}`, which says which record a file is of.", "pattern");
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
-  auto page = context.store.records(table->id, query);
+  auto page = context.store.records(table->id, request.role(), query);
   if (!page) return tl::unexpected(page.error());
   Values values;
   for (const Record& record : page->records) {
@@ -78,7 +79,7 @@ Result<Response> match(const RouteContext& context, const Request& request) {
     const auto cell = column ? record.values.find(column->id) : record.values.end();
     if (cell != record.values.end()) values.add(print_value(*column, cell->second), record.key);
   }
-  auto names = attached_names(context, page->table, page->records);
+  auto names = attached_names(context, request.author(), page->table, page->records);
   if (!names) return tl::unexpected(names.error());
 
   nlohmann::json matched = nlohmann::json::array(), unmatched = nlohmann::json::array(),

@@ -98,16 +98,21 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
   const std::string name = request.query_or("name", {});
   if (!name.empty() && uploads->size() > 1)
     return fail(422, "Name of several files", "`name` is for one file; those of a form bring theirs.", "name");
+  const auto visibility = parse_visibility(request.query_or("visibility", "public"));
+  if (!visibility) return fail(422, "Unknown visibility", "`visibility` is public, team or private.", "visibility");
   std::vector<NewAttachment> files;
-  for (const Upload& upload : *uploads) files.push_back(inspected(upload, name));
-  const auto answer = [](const Attached& attached) {
+  for (const Upload& upload : *uploads) {
+    files.push_back(inspected(upload, name));
+    files.back().visibility = *visibility;
+  }
+  const auto answer = [role = request.role()](const Attached& attached) {
     auto body = list_json(attached.attachments);
-    body["record"] = to_json(attached.change.records.front(), attached.change.table.columns);
+    body["record"] = to_json(attached.change.records.front(), seen_by(attached.change.table, role).columns);
     return json_response(body, 201)
         .with("Location", "/api/v1/attachments/" + std::to_string(attached.attachments.front().id))
         .with("ETag", etag_of(attached.change.records.front().version));
   };
-  auto attached = context.store.attach(place->table.id, *key, column_id, files, *version, request.user(),
+  auto attached = context.store.attach(place->table.id, *key, column_id, files, *version, request.author(),
                                        first_answer<Attached>(request, answer));
   if (!attached) return tl::unexpected(attached.error());
   tell_change(context, attached->change, request.user());
@@ -127,7 +132,7 @@ Result<Response> list_attachments(const RouteContext& context, const Request& re
     at = *sequence;
   }
   Table then;
-  auto record = stored_record(context, place->table, *key, at, &then);
+  auto record = stored_record(context, place->table, request.role(), *key, at, &then);
   if (!record) return tl::unexpected(record.error());
   std::vector<std::pair<std::int64_t, const Column*>> ids;
   std::vector<std::int64_t> wanted;
@@ -140,7 +145,7 @@ Result<Response> list_attachments(const RouteContext& context, const Request& re
       wanted.push_back(id.get<std::int64_t>());
     }
   }
-  auto found = context.store.attachments(then.id, wanted);
+  auto found = context.store.attachments(then.id, request.author(), wanted);
   if (!found) return tl::unexpected(found.error());
   nlohmann::json list = nlohmann::json::array();
   for (const auto& [id, column] : ids)
@@ -227,7 +232,7 @@ Result<Response> content(const RouteContext& context, const Attachment& attachme
 Result<Response> read_attachment(const RouteContext& context, const Request& request) {
   auto id = attachment_id(request);
   if (!id) return tl::unexpected(id.error());
-  auto attachment = context.store.attachment(*id);
+  auto attachment = context.store.attachment(*id, request.author());
   if (!attachment) return tl::unexpected(attachment.error());
   const bool small = request.query.contains("thumbnail");
   int side = 0;
@@ -261,9 +266,27 @@ Result<Response> read_attachment(const RouteContext& context, const Request& req
   return response;
 }
 
+Result<Response> change_attachment(const RouteContext& context, const Request& request) {
+  auto id = attachment_id(request);
+  if (!id) return tl::unexpected(id.error());
+  auto attachment = context.store.attachment(*id, request.author());
+  if (!attachment) return tl::unexpected(attachment.error());
+  if (request.role() < Role::curator && request.user() != attachment->user)
+    return fail(403, "Not allowed", "Who sees a file is said by curators and by who attached it.");
+  auto asked = body_of<protocol::AttachmentPatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto answer = [](const Attachment& now) { return json_response(to_json(now)); };
+  auto now = context.store.show_attachment(*id, asked->visibility, first_answer<Attachment>(request, answer));
+  if (!now) return tl::unexpected(now.error());
+  if (auto table = context.store.table(std::to_string(now->table_id), Role::owner))
+    tell_table(context, protocol::TableEventEvent::changed, *table, request.user());
+  return answer(*now);
+}
+
 Result<Response> detach(const RouteContext& context, const Request& request) {
   auto id = attachment_id(request);
   if (!id) return tl::unexpected(id.error());
+  if (auto seen = context.store.attachment(*id, request.author()); !seen) return tl::unexpected(seen.error());
   const auto answer = [](const store::TableChange&) { return empty_response(204); };
   auto change = context.store.detach(*id, request.user(), first_answer<store::TableChange>(request, answer));
   if (!change) return tl::unexpected(change.error());
@@ -284,7 +307,7 @@ void add_attachment_routes(Router& router, const RouteContext& context) {
                 .pattern = attachments,
                 .handler = answering([&context](const Request& request) { return attach(context, request); }),
                 .role = Role::annotator,
-                .query = {"name", "column"},
+                .query = {"name", "column", "visibility"},
                 .body = BodyKind::file,
                 .max_body = context.options.max_upload_bytes,
                 .keeps_answer = true});
@@ -294,6 +317,13 @@ void add_attachment_routes(Router& router, const RouteContext& context) {
               .pattern = attachment,
               .handler = answering([&context](const Request& request) { return read_attachment(context, request); }),
               .query = {"thumbnail"}});
+  router.add({.method = Method::patch,
+              .pattern = attachment,
+              .handler = answering([&context](const Request& request) { return change_attachment(context, request); }),
+              .role = Role::annotator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true});
   router.add({.method = Method::remove,
               .pattern = attachment,
               .handler = answering([&context](const Request& request) { return detach(context, request); }),

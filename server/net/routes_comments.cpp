@@ -1,6 +1,11 @@
 // Threads of comments on a model. Everybody reads them, annotators write; what one wrote one changes oneself, and curators may delete it.
+#include <set>
+
+#include "core/log.h"
 #include "core/timestamp.h"
+#include "net/annotated_routes.h"
 #include "net/answer_book.h"
+#include "net/comment_events.h"
 #include "net/routes.h"
 #include "net/wire.h"
 #include "store/comments.h"
@@ -51,13 +56,13 @@ void tell(const RouteContext& context, CommentEventEvent event, const Comment& c
   message.comment_id = comment.id;
   message.comment = to_json(comment);
   message.user = user;
-  context.live_sockets.tell_model(comment.model_id, message);
+  context.live_sockets.tell_model(comment.model_id, comment.visibility, message);
 }
 
 Result<Comment> stored_comment(const RouteContext& context, const Request& request) {
   const auto id = parse_integer(request.param("comment"), 1, INT64_MAX, "comment");
   if (!id) return fail(404, "Not found", "Comments have whole numbers as ids.");
-  return context.store.comments().comment(*id);
+  return context.store.comments().comment(*id, request.role());
 }
 
 Result<Response> list_comments(const RouteContext& context, const Request& request) {
@@ -78,7 +83,7 @@ Result<Response> list_comments(const RouteContext& context, const Request& reque
   }
   const auto model = context.store.model(request.param("model"));
   if (!model) return tl::unexpected(model.error());
-  const auto found = context.store.comments().of_model(model->id, query);
+  const auto found = context.store.comments().of_model(model->id, request.role(), query);
   if (!found) return tl::unexpected(found.error());
   return page_response(request, "comments", *found, *page);
 }
@@ -88,7 +93,7 @@ Result<Response> list_replies(const RouteContext& context, const Request& reques
   if (!page) return tl::unexpected(page.error());
   const auto thread = stored_comment(context, request);
   if (!thread) return tl::unexpected(thread.error());
-  const auto found = context.store.comments().replies(thread->id, page->limit, page->offset);
+  const auto found = context.store.comments().replies(thread->id, request.role(), page->limit, page->offset);
   if (!found) return tl::unexpected(found.error());
   return page_response(request, "replies", *found, *page);
 }
@@ -145,7 +150,7 @@ Result<Response> write(const RouteContext& context, const Request& request, cons
 Result<Response> create_comment(const RouteContext& context, const Request& request) {
   const auto asked = body_of<protocol::CommentCreate>(request);
   if (!asked) return tl::unexpected(asked.error());
-  const auto room = context.rooms.open(request.param("model"));
+  const auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const auto place = place_on(**room, asked->position);
   if (!place) return tl::unexpected(place.error());
@@ -222,38 +227,43 @@ Result<Response> delete_comment(const RouteContext& context, const Request& requ
 
 }  // namespace
 
+void tell_threads(const RouteContext& context, const Layer& layer, Visibility before, const std::string& user) {
+  if (layer.visibility == before) return;
+  Comments::Query all;
+  all.limit = static_cast<int>(Comments::kMostComments);
+  const auto found = context.store.comments().of_model(layer.model_id, Role::owner, all);
+  if (!found) return log::warning("threads about layer " + std::to_string(layer.id) + ": " + found.error().detail);
+  std::set<std::int64_t> threads;
+  for (const Comment& comment : found->comments)
+    if (comment.layer_id == layer.id) threads.insert(comment.id);
+  for (const Comment& comment : found->comments) {
+    if (!threads.contains(comment.thread.value_or(comment.id))) continue;
+    protocol::CommentEvent message;
+    message.comment_id = comment.id;
+    message.user = user;
+    const bool is_seen_by_more = layer.visibility < before;
+    message.event = is_seen_by_more ? CommentEventEvent::changed : CommentEventEvent::deleted;
+    if (is_seen_by_more) message.comment = to_json(comment);
+    const auto is_meant = [&](Role role) { return sees(role, before) != sees(role, layer.visibility); };
+    for (const Visibility sight : {Visibility::everyone, Visibility::team, Visibility::curators})
+      if (is_meant(least_role(sight))) context.live_sockets.tell_sight(layer.model_id, sight, message);
+  }
+}
+
 void add_comment_routes(Router& router, const RouteContext& context) {
-  using Answer = Result<Response> (*)(const RouteContext&, const Request&);
-  const auto add_read = [&](std::string pattern, Answer answer, std::vector<std::string> query) {
-    router.add({.method = Method::get,
-                .pattern = std::move(pattern),
-                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
-                .query = std::move(query)});
-  };
-  const auto add_change = [&](Method method, std::string pattern, Answer answer) {
-    const bool has_body = method != Method::remove;
-    router.add({.method = method,
-                .pattern = std::move(pattern),
-                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
-                .role = Role::annotator,
-                .body = has_body ? BodyKind::memory : BodyKind::none,
-                .max_body = has_body ? context.options.max_json_bytes : 0,
-                .keeps_answer = true});
-  };
+  AnnotatedRoutes routes(router, context);
   const std::string of_model = "/api/v1/models/{model}/comments", comment = "/api/v1/comments/{comment}";
-  add_read(of_model, list_comments, {"state", "since", "limit", "offset"});
-  add_change(Method::post, of_model, create_comment);
-  add_read(comment,
-           [](const RouteContext& of, const Request& request) -> Result<Response> {
-             const auto found = stored_comment(of, request);
-             if (!found) return tl::unexpected(found.error());
-             return with_etag(json_response(to_json(*found)), request, found->version);
-           },
-           {});
-  add_change(Method::patch, comment, change_comment);
-  add_change(Method::remove, comment, delete_comment);
-  add_read(comment + "/replies", list_replies, {"limit", "offset"});
-  add_change(Method::post, comment + "/replies", create_reply);
+  routes.read(of_model, list_comments, {"state", "since", "limit", "offset"});
+  routes.change(Method::post, of_model, create_comment);
+  routes.read(comment, [](const RouteContext& of, const Request& request) -> Result<Response> {
+    const auto found = stored_comment(of, request);
+    if (!found) return tl::unexpected(found.error());
+    return with_etag(json_response(to_json(*found)), request, found->version);
+  });
+  routes.change(Method::patch, comment, change_comment);
+  routes.change(Method::remove, comment, delete_comment);
+  routes.read(comment + "/replies", list_replies, {"limit", "offset"});
+  routes.change(Method::post, comment + "/replies", create_reply);
 }
 
 }  // namespace strata::net

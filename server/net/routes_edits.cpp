@@ -1,4 +1,5 @@
 #include "net/routes.h"
+#include "net/show_through.h"
 #include "net/wire.h"
 
 namespace strata::net {
@@ -9,12 +10,21 @@ Result<Response> history(const RouteContext& context, const Request& request) {
   if (!page) return tl::unexpected(page.error());
   auto model = context.store.model(request.param("model"));
   if (!model) return tl::unexpected(model.error());
-  auto layer = context.store.layer(model->id, request.param("layer"));
+  auto layer = context.store.layer(model->id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());
   auto rows = context.store.history(layer->id, page->limit, page->offset);
   if (!rows) return tl::unexpected(rows.error());
   nlohmann::json list = nlohmann::json::array();
-  for (const auto& row : rows->rows) list.push_back(to_json(row));
+  for (const auto& row : rows->rows) {
+    nlohmann::json told = to_json(row);
+    // An expression of then may name what fewer people see now.
+    if (told.contains("expression")) {
+      const auto seen = sees_all_of(context, request.role(), model->id, told.at("expression").get<std::string>());
+      if (!seen) return tl::unexpected(seen.error());
+      if (!*seen) told.erase("expression");
+    }
+    list.push_back(std::move(told));
+  }
   Response response = json_response({{"edits", list}, {"total", rows->total}});
   add_page_links(response, request, *page, rows->total);
   return response;
@@ -26,7 +36,7 @@ struct Target {
 };
 
 Result<Target> target_of(const RouteContext& context, const Request& request) {
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());

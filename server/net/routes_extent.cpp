@@ -9,13 +9,13 @@ namespace {
 Result<Response> extent(const RouteContext& context, const Request& request) {
   auto asked = body_of<protocol::Highlight>(request);
   if (!asked) return tl::unexpected(asked.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
   auto highlight = highlight_of(*asked, *layer, "");
   if (!highlight) return tl::unexpected(highlight.error());
-  auto keys = room::highlighted_keys(context.store, *layer->table, *highlight, "filter");
+  auto keys = room::highlighted_keys(context.store, *layer->table, request.role(), *highlight, "filter");
   if (!keys) return tl::unexpected(keys.error());
   auto areas = (*room)->key_areas(layer->slug);
   if (!areas) return tl::unexpected(areas.error());

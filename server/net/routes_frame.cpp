@@ -11,7 +11,7 @@ constexpr int kJpegQuality = 90;  // one picture for keeps, not a frame of many
 Result<Response> frame(const RouteContext& context, const Request& request) {
   auto asked = body_of<protocol::FrameRequest>(request);
   if (!asked) return tl::unexpected(asked.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   room::PictureRequest wanted;
   wanted.camera = asked->camera;

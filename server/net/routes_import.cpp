@@ -107,9 +107,11 @@ Result<Response> start_import(const RouteContext& context, JobBook& book, const 
   if (asked->files.size() == 1 && !named.empty()) asked->files[0].filename = named;
   if (auto good = jobs::check(*asked); !good) return tl::unexpected(good.error());
 
-  const store::FirstAnswer<Model> answer{scoped_key(request), [print = fingerprint(request)](const Model& model) {
+  const store::FirstAnswer<Model> answer{scoped_key(request),
+                                         [print = fingerprint(request)](const Model& model) {
                                            return nlohmann::json{{"request", print}, {"model", model.id}};
-                                         }};
+                                         },
+                                         request.user()};
   const auto project = context.store.project(asked->project);
   if (!project) return tl::unexpected(project.error());
   auto job = context.jobs.add(project->id,

@@ -11,6 +11,16 @@ Result<jobs::JobStatus> find_job(const RouteContext& context, const Request& req
   return *status;
 }
 
+// What a job reports, or why it failed, may name layers that only curators see, who start such jobs.
+nlohmann::json job_json(jobs::JobStatus job, const Principal& who) {
+  if (!sees(who.roles.in(job.project), Visibility::curators)) {
+    if (job.result) job.result->report = nullptr;
+    if (job.problem)
+      job.problem = Problem{job.problem->status, job.problem->title, "Curators of the project read why.", {}};
+  }
+  return to_json(job);
+}
+
 bool is_over(const jobs::JobStatus& job) {
   return job.state != jobs::JobState::queued && job.state != jobs::JobState::running;
 }
@@ -28,7 +38,7 @@ void add_job_routes(Router& router, const RouteContext& context) {
                 nlohmann::json list = nlohmann::json::array();
                 const int total = static_cast<int>(all.size());
                 for (int i = page->offset; i < total && i < page->offset + page->limit; ++i)
-                  list.push_back(to_json(all[i]));
+                  list.push_back(job_json(all[i], *request.principal));
                 Response response = json_response({{"jobs", list}, {"total", total}});
                 add_page_links(response, request, *page, total);
                 return response;
@@ -40,7 +50,7 @@ void add_job_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context](const Request& request) -> Result<Response> {
                 auto job = find_job(context, request);
                 if (!job) return tl::unexpected(job.error());
-                return json_response(to_json(*job));
+                return json_response(job_json(*job, *request.principal));
               })});
   router.add({.method = Method::remove,
               .pattern = "/api/v1/jobs/{job}",
@@ -50,7 +60,7 @@ void add_job_routes(Router& router, const RouteContext& context) {
                 if (is_over(*job) || !context.jobs.cancel(job->id))
                   return fail(409, "Job is over", "The job has ended; there is nothing to cancel.", "job");
                 auto now = context.jobs.status(job->id);
-                return json_response(to_json(now.value_or(*job)));
+                return json_response(job_json(now.value_or(*job), *request.principal));
               }),
               .role = Role::curator});
 }

@@ -2,10 +2,12 @@
 
 #include "core/term_list.h"
 #include "net/answer_book.h"
+#include "net/comment_events.h"
 #include "net/computed_layers.h"
 #include "net/formula_layers.h"
 #include "net/layer_jobs.h"
 #include "net/routes.h"
+#include "net/show_through.h"
 #include "net/table_wire.h"
 
 namespace strata::net {
@@ -14,7 +16,7 @@ namespace {
 Result<Layer> stored_layer(const RouteContext& context, const Request& request) {
   auto model = context.store.model(request.param("model"));
   if (!model) return tl::unexpected(model.error());
-  return context.store.layer(model->id, request.param("layer"));
+  return context.store.layer(model->id, request.param("layer"), request.role());
 }
 
 Result<Response> list_layers(const RouteContext& context, const Request& request) {
@@ -22,7 +24,7 @@ Result<Response> list_layers(const RouteContext& context, const Request& request
   if (!page) return tl::unexpected(page.error());
   auto model = context.store.model(request.param("model"));
   if (!model) return tl::unexpected(model.error());
-  auto layers = context.store.layers(model->id);
+  auto layers = context.store.layers(model->id, request.role());
   if (!layers) return tl::unexpected(layers.error());
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(layers->size());
@@ -76,6 +78,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
   layer.opacity = asked.opacity;
   layer.visible = asked.visible;
   layer.locked = asked.locked;
+  layer.visibility = asked.visibility.value_or(Visibility::everyone);
   layer.order = asked.order.value_or(order_on_top(others));
   return layer;
 }
@@ -83,7 +86,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
 Result<Response> create_layer(const RouteContext& context, JobBook& book, const Request& request) {
   auto asked = body_of<protocol::LayerCreate>(request);
   if (!asked) return tl::unexpected(asked.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const Model model = (*room)->model();
   auto layer = new_layer(*asked, model, (*room)->layers());
@@ -101,10 +104,11 @@ Result<Response> create_layer(const RouteContext& context, JobBook& book, const 
   if (!columns) return tl::unexpected(columns.error());
   if (asked->compute) return start_computing(context, book, request, *room, *asked, std::move(*layer));
   if (asked->expression) {
-    auto formula = read_formula(**room, *asked->expression, is_automatic(asked->recompute));
+    auto formula = read_formula(**room, *asked->expression, is_automatic(asked->recompute), layer->visibility);
     if (!formula) return tl::unexpected(formula.error());
     layer->formula = std::move(*formula);
   }
+  if (auto good = check_shows_nothing(context, *layer, {}); !good) return tl::unexpected(good.error());
   const auto answer = [model_slug = model.slug](const Layer& made) {
     return json_response(to_json(made), 201)
         .with("Location", "/api/v1/models/" + model_slug + "/layers/" + made.slug)
@@ -117,9 +121,11 @@ Result<Response> create_layer(const RouteContext& context, JobBook& book, const 
   return answer(*created);
 }
 
-// An expression makes a numeric layer a computed one; an empty one makes it a layer like others, with the values that it has.
-Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& asked, Layer& layer) {
-  if (!asked.expression && !asked.recompute) return {};
+// An expression makes a numeric layer a computed one; an empty one makes it a layer like others, with the values that it has. `before`: who
+// saw the layer, which must see nothing more through it.
+Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& asked, Visibility before, Layer& layer) {
+  const bool is_seen_by_more = layer.formula && layer.visibility < before;
+  if (!asked.expression && !asked.recompute && !is_seen_by_more) return {};
   if (layer.kind != LayerKind::numeric)
     return fail(422, "Kind not usable", "What is computed is numeric.", "expression");
   if (asked.expression && asked.expression->empty()) {
@@ -129,17 +135,17 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& ask
   if (!asked.expression && !layer.formula)
     return fail(422, "No expression", "`recompute` is for layers with an `expression`.", "recompute");
   const bool automatic = asked.recompute ? is_automatic(asked.recompute) : layer.formula && layer.formula->automatic;
-  auto formula =
-      read_formula(room, asked.expression ? *asked.expression : layer.formula->expression, automatic, layer.id);
+  auto formula = read_formula(room, asked.expression ? *asked.expression : layer.formula->expression, automatic,
+                              layer.visibility, layer.id);
   if (!formula) return tl::unexpected(formula.error());
   layer.formula = std::move(*formula);
   return {};
 }
 
 Result<Response> compute(const RouteContext& context, const Request& request) {
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
-  auto layer = context.store.layer((*room)->model().id, request.param("layer"));
+  auto layer = context.store.layer((*room)->model().id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());
   Progress progress;
   auto computed = compute_layer(context, *room, *layer, request.author(), progress);
@@ -150,10 +156,10 @@ Result<Response> compute(const RouteContext& context, const Request& request) {
 Result<Response> change_layer(const RouteContext& context, const Request& request) {
   auto asked = body_of<protocol::LayerPatch>(request);
   if (!asked) return tl::unexpected(asked.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   // As it is stored: what is open may be a moment behind.
-  auto layer = context.store.layer((*room)->model().id, request.param("layer"));
+  auto layer = context.store.layer((*room)->model().id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());
   if (auto fresh = check_if_match(request, layer->version); !fresh) return tl::unexpected(fresh.error());
   const auto answer = [](const Layer& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
@@ -177,15 +183,19 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   if (asked->opacity) layer->opacity = *asked->opacity;
   if (asked->visible) layer->visible = *asked->visible;
   if (asked->locked) layer->locked = *asked->locked;
+  const Visibility before = layer->visibility;
+  if (asked->visibility) layer->visibility = *asked->visibility;
   if (asked->order) layer->order = *asked->order;
-  if (auto set = set_formula(**room, *asked, *layer); !set) return tl::unexpected(set.error());
+  if (auto set = set_formula(**room, *asked, before, *layer); !set) return tl::unexpected(set.error());
+  if (auto good = check_shows_nothing(context, *layer, (*room)->layers()); !good) return tl::unexpected(good.error());
   auto changed = (*room)->update_layer(std::move(*layer), first_answer<Layer>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
+  tell_threads(context, *changed, before, request.user());
   return answer(*changed);
 }
 
 Result<Response> delete_layer(const RouteContext& context, const Request& request) {
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());

@@ -54,7 +54,7 @@ Result<Response> create_look(const RouteContext& context, const Request& request
   look->width = decoded->width;
   look->height = decoded->height;
   decoded->rgba = {};
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const auto looks = (*room)->looks();
   look->order = looks.empty() ? 0 : looks.back().order + 1;
@@ -73,7 +73,7 @@ Result<Response> change_look(const RouteContext& context, const Request& request
   if (!asked) return tl::unexpected(asked.error());
   auto look = stored_look(context, request);
   if (!look) return tl::unexpected(look.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   if (auto fresh = check_if_match(request, look->version); !fresh) return tl::unexpected(fresh.error());
   if (asked->name) look->name = *asked->name;
@@ -90,7 +90,7 @@ Result<Response> change_look(const RouteContext& context, const Request& request
 Result<Response> delete_look(const RouteContext& context, const Request& request) {
   auto look = stored_look(context, request);
   if (!look) return tl::unexpected(look.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   if (auto fresh = check_if_match(request, look->version); !fresh) return tl::unexpected(fresh.error());
   auto gone = (*room)->delete_look(look->id, first_answer<>(request, [] { return empty_response(204); }));
@@ -99,7 +99,9 @@ Result<Response> delete_look(const RouteContext& context, const Request& request
 }
 
 Result<Response> look_picture(const RouteContext& context, const Request& request) {
-  auto look = stored_look(context, request);
+  auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  auto look = context.store.look(model->id, request.param("look"));
   if (!look) return tl::unexpected(look.error());
   std::optional<int> side;
   if (const std::string text = request.query_or("thumbnail", {}); !text.empty()) {
@@ -107,6 +109,9 @@ Result<Response> look_picture(const RouteContext& context, const Request& reques
     if (!number) return tl::unexpected(number.error());
     side = static_cast<int>(*number);
   }
+  // In full the pictures of a scan are as good as its files.
+  if (!side)
+    if (auto may = check_source_download(request, *model); !may) return tl::unexpected(may.error());
   auto bytes = context.store.look_picture(look->id);
   if (!bytes) return tl::unexpected(bytes.error());
   if (!side) return bytes_response(std::move(*bytes), look->media_type);

@@ -31,7 +31,7 @@ struct Target {
 template <class Paint>
 Handler painting(const RouteContext& context, std::string op, Paint paint) {
   return [&context, op = std::move(op), paint](const Request& request, const Respond& respond) {
-    auto room = context.rooms.open(request.param("model"));
+    auto room = context.rooms.open(request.param("model"), request.role());
     if (!room) return respond(room.error());
     auto layer = (*room)->layer(request.param("layer"));
     if (!layer) return respond(layer.error());
@@ -85,7 +85,7 @@ Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeV
   if (!files) return tl::unexpected(files.error());
   MapTarget map_target{*target.room, target.layer};
   if (target.layer.table) {
-    auto page = context.store.records(*target.layer.table, {{}, {}, {}, store::kMostRecords, 0});
+    auto page = context.store.records(*target.layer.table, request.role(), {{}, {}, {}, store::kMostRecords, 0});
     if (!page) return tl::unexpected(page.error());
     for (const Record& record : page->records) map_target.records.insert(static_cast<double>(record.key));
   }

@@ -1,4 +1,6 @@
-// Who may do more in a project than everywhere.
+// Who may do more in a project than everywhere, and who sees it.
+#include <set>
+
 #include "net/routes.h"
 #include "net/wire.h"
 
@@ -29,6 +31,31 @@ Result<Response> list_members(const RouteContext& context, const Request& reques
   return response;
 }
 
+// Those who may not sign in see nothing.
+Result<Response> list_people(const RouteContext& context, const Request& request) {
+  const auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  const auto project = project_of(context, request);
+  if (!project) return tl::unexpected(project.error());
+  const auto members = context.store.members(project->id);
+  if (!members) return tl::unexpected(members.error());
+  const auto people = context.store.people();
+  if (!people) return tl::unexpected(people.error());
+  std::set<std::int64_t> with_role;
+  for (const auto& member : *members) with_role.insert(member.person.id);
+  nlohmann::json list = nlohmann::json::array();
+  int total = 0;
+  for (const store::Person& person : *people) {
+    if (person.disabled || (person.role < Role::viewer && !with_role.contains(person.id))) continue;
+    if (total >= page->offset && total < page->offset + page->limit)
+      list.push_back({{"user", person.name}, {"full_name", person.full_name}});
+    ++total;
+  }
+  Response response = json_response({{"people", std::move(list)}, {"total", total}});
+  add_page_links(response, request, *page, total);
+  return response;
+}
+
 // Those of theirs that are open come back by themselves, with what they may do now.
 void roles_changed(const RouteContext& context, const std::string& user) {
   context.auth.forget();
@@ -41,7 +68,7 @@ Result<Response> put_member(const RouteContext& context, const Request& request)
   const auto project = project_of(context, request);
   if (!project) return tl::unexpected(project.error());
   const Role role = parse_role(protocol::name(asked->role)).value_or(Role::viewer);
-  const auto member = context.store.put_member(project->id, request.param("user"), role);
+  const auto member = context.store.put_member(project->id, request.param("user"), role, request.user());
   if (!member) return tl::unexpected(member.error());
   roles_changed(context, member->person.name);
   return json_response(to_json(*member));
@@ -52,7 +79,8 @@ Result<Response> remove_member(const RouteContext& context, const Request& reque
   if (!project) return tl::unexpected(project.error());
   const auto person = context.store.person(request.param("user"));
   if (!person) return tl::unexpected(person.error());
-  if (auto gone = context.store.remove_member(project->id, person->name); !gone) return tl::unexpected(gone.error());
+  if (auto gone = context.store.remove_member(project->id, person->name, request.user()); !gone)
+    return tl::unexpected(gone.error());
   roles_changed(context, person->name);
   return empty_response(204);
 }
@@ -65,6 +93,11 @@ void add_member_routes(Router& router, const RouteContext& context) {
               .pattern = members,
               .handler = answering([&context](const Request& request) { return list_members(context, request); }),
               .role = Role::curator,
+              .query = {"limit", "offset"}});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/projects/{project}/people",
+              .handler = answering([&context](const Request& request) { return list_people(context, request); }),
+              .role = Role::annotator,
               .query = {"limit", "offset"}});
   router.add({.method = Method::put,
               .pattern = members + "/{user}",

@@ -74,6 +74,7 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
   set(model.processing, patch.processing);
   set(model.rights_uri, patch.rights_uri);
   set(model.credit, patch.credit);
+  if (patch.source_download) model.source_download = *parse_role(protocol::name(*patch.source_download));
   return {};
 }
 
@@ -81,7 +82,7 @@ Result<Response> change_model(const RouteContext& context, const Request& reques
   auto asked = body_of<protocol::ModelPatch>(request);
   if (!asked) return tl::unexpected(asked.error());
   // Through the room: those who look at the model are told.
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   Model model = (*room)->model();
   if (auto fresh = check_if_match(request, model.version); !fresh) return tl::unexpected(fresh.error());
@@ -99,6 +100,7 @@ Result<Response> change_model(const RouteContext& context, const Request& reques
 Result<Response> source(const RouteContext& context, const Request& request) {
   auto model = context.store.model(request.param("model"));
   if (!model) return tl::unexpected(model.error());
+  if (auto may = check_source_download(request, *model); !may) return tl::unexpected(may.error());
   const std::string& wanted = request.param("name");
   for (const auto& file : model->source_files) {
     if (file.name != wanted) continue;

@@ -82,7 +82,7 @@ Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, By
   if (*known) return std::move(job_response(context, **known).with("Idempotency-Replayed", "true"));
   auto wish = wish_of(request);
   if (!wish) return tl::unexpected(wish.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const Model model = (*room)->model();
   if (wish->resolution != 0 && wish->resolution < model.atlas.lowest_resolution)
@@ -97,9 +97,11 @@ Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, By
   if (wish->resolution == 0) wish->resolution = jobs::orthophoto_resolution(model, map->world);
 
   const store::FirstAnswer<Look> answer{
-      scoped_key(request), [print = fingerprint(request), model = model.id](const Look& look) {
+      scoped_key(request),
+      [print = fingerprint(request), model = model.id](const Look& look) {
         return nlohmann::json{{"request", print}, {"model", model}, {"look", look.id}};
-      }};
+      },
+      request.user()};
   auto job = context.jobs.add(
       model.project_id,
       [room = *room, wish = std::move(*wish), answer,

@@ -15,12 +15,13 @@ namespace {
 using Names = std::map<std::int64_t, std::string>;  // of records, by key; those that are there, also without a name
 
 // Terms by their labels in `language`.
-Result<Names> record_names(const RouteContext& context, std::int64_t table_id, std::vector<std::int64_t> keys,
-                           std::optional<std::int64_t> at, const std::string& language) {
+Result<Names> record_names(const RouteContext& context, std::int64_t table_id, Role seen_by,
+                           std::vector<std::int64_t> keys, std::optional<std::int64_t> at,
+                           const std::string& language) {
   store::Store::RecordQuery query;
   query.keys = std::move(keys);
   query.at = at;
-  auto page = context.store.records(table_id, query);
+  auto page = context.store.records(table_id, seen_by, query);
   if (!page) return tl::unexpected(page.error());
   Names names;
   if (const auto columns = term_columns(page->table)) {
@@ -50,14 +51,14 @@ struct OfMarks {
 };
 
 // `model`: only those on it.
-Result<OfMarks> marks_of(const RouteContext& context, const Table& table, const std::optional<Model>& model,
-                         std::optional<std::int64_t> at) {
+Result<OfMarks> marks_of(const RouteContext& context, const Table& table, Role seen_by,
+                         const std::optional<Model>& model, std::optional<std::int64_t> at) {
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
   query.at = at;
   if (std::ranges::none_of(table.columns, [](const Column& column) { return holds_marks(column.kind); }))
     return OfMarks{};
-  const auto page = context.store.records(table.id, query);
+  const auto page = context.store.records(table.id, seen_by, query);
   if (!page) return tl::unexpected(page.error());
   const auto measures = RecordMeasures::of_place(context, {page->table, model, {}}, page->table.columns);
   if (!measures) return tl::unexpected(measures.error());
@@ -185,7 +186,7 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
   if (!separator) return tl::unexpected(separator.error());
   const auto language = asked_language(request);
   if (!language) return tl::unexpected(language.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
@@ -203,15 +204,15 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
       if (!found) return tl::unexpected(found.error());
       records_at = *found;
     }
-    const auto table = context.store.table(std::to_string(*layer->table));
+    const auto table = context.store.table(std::to_string(*layer->table), request.role());
     if (!table) return tl::unexpected(table.error());
-    auto marked = marks_of(context, *table, (*room)->model(), records_at);
+    auto marked = marks_of(context, *table, request.role(), (*room)->model(), records_at);
     if (!marked) return tl::unexpected(marked.error());
     marks = std::move(*marked);
     add_classes(*all, marks);
     std::vector<std::int64_t> keys;
     for (const query::Quantity& quantity : all->classes) keys.push_back(static_cast<std::int64_t>(*quantity.value));
-    auto found = record_names(context, *layer->table, std::move(keys), records_at, *language);
+    auto found = record_names(context, *layer->table, request.role(), std::move(keys), records_at, *language);
     if (!found) return tl::unexpected(found.error());
     names = std::move(*found);
   }
@@ -233,13 +234,13 @@ struct OfLayer {
   std::map<std::int64_t, query::Quantity> of_key;
 };
 
-Result<std::vector<OfLayer>> of_layers(const RouteContext& context, std::int64_t table_id) {
-  auto layers = context.store.layers_of_table(table_id);
+Result<std::vector<OfLayer>> of_layers(const RouteContext& context, std::int64_t table_id, Role seen_by) {
+  auto layers = context.store.layers_of_table(table_id, seen_by);
   if (!layers) return tl::unexpected(layers.error());
   std::vector<OfLayer> found;
   for (Layer& layer : *layers) {
     if (layer.sequence == 0) continue;  // nothing was ever painted there
-    auto room = context.rooms.open(std::to_string(layer.model_id));
+    auto room = context.rooms.open(std::to_string(layer.model_id), seen_by);
     if (!room) return tl::unexpected(room.error());
     auto all = (*room)->quantities(layer.slug);
     if (!all && all.error().status == 404) continue;  // deleted meanwhile
@@ -266,9 +267,9 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   if (!separator) return tl::unexpected(separator.error());
   const auto language = asked_language(request);
   if (!language) return tl::unexpected(language.error());
-  const auto table = context.store.table(request.param("table"));
+  const auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
-  const auto layers = of_layers(context, table->id);
+  const auto layers = of_layers(context, table->id, request.role());
   if (!layers) return tl::unexpected(layers.error());
   std::map<std::int64_t, query::Quantity> of_key;
   query::Quantity sum;
@@ -277,12 +278,12 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
       add(of_key[key], quantity);
       add(sum, quantity);
     }
-  const auto marks = marks_of(context, *table, {}, {});
+  const auto marks = marks_of(context, *table, request.role(), {}, {});
   if (!marks) return tl::unexpected(marks.error());
   for (const auto& [key, values] : marks->of_key) of_key.try_emplace(key);
   std::vector<std::int64_t> keys;
   for (const auto& [key, quantity] : of_key) keys.push_back(key);
-  const auto names = record_names(context, table->id, keys, {}, *language);
+  const auto names = record_names(context, table->id, request.role(), keys, {}, *language);
   if (!names) return tl::unexpected(names.error());
   const auto text_of = [&](std::int64_t key) {
     const auto name = names->find(key);

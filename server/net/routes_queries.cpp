@@ -28,7 +28,7 @@ Result<Response> position(const RouteContext& context, const Request& request) {
   const std::string format = request.query_or("f", "json");
   if (format != "json" && format != "covjson" && format != "csv")
     return fail(406, "Unknown format", "`f` is json, covjson or csv.", "f");
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   std::vector<Layer> layers = (*room)->layers();
   if (auto named = request.query.find("parameter-name"); named != request.query.end()) {
@@ -60,7 +60,7 @@ Result<Response> position(const RouteContext& context, const Request& request) {
 Result<Response> positions(const RouteContext& context, const Request& request) {
   auto asked = body_of<protocol::PositionsRequest>(request, context.options.max_positions_bytes);
   if (!asked) return tl::unexpected(asked.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const auto layers = asked_layers(**room, asked->layers);
   if (!layers) return tl::unexpected(layers.error());
@@ -87,7 +87,7 @@ Result<Response> positions(const RouteContext& context, const Request& request) 
 Result<Response> profile(const RouteContext& context, const Request& request) {
   const auto asked = body_of<protocol::ProfileRequest>(request);
   if (!asked) return tl::unexpected(asked.error());
-  const auto room = context.rooms.open(request.param("model"));
+  const auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const auto layers = asked_layers(**room, asked->layers);
   if (!layers) return tl::unexpected(layers.error());
@@ -113,7 +113,7 @@ Result<Response> profile(const RouteContext& context, const Request& request) {
 Result<Response> pick(const RouteContext& context, const Request& request) {
   auto asked = body_of<protocol::PickRequest>(request);
   if (!asked) return tl::unexpected(asked.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const auto at = find_sequence(context, **room, asked->at);
   if (!at) return tl::unexpected(at.error());

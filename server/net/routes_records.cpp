@@ -36,14 +36,14 @@ std::vector<std::pair<std::string, bool>> order_of(const std::string& text) {
 
 // Sorted by what they measure, such as the area that they have on the layer: all other order is the database's.
 Result<store::Store::RecordPage> page_by_measure(const RouteContext& context, const RecordPlace& place,
-                                                 const RecordMeasures& measures, std::size_t measure,
+                                                 const RecordMeasures& measures, std::size_t measure, Role seen_by,
                                                  store::Store::RecordQuery query) {
   const bool descending = query.order.front().second;
   const auto limit = query.limit, offset = query.offset;
   query.order.erase(query.order.begin());
   query.limit = store::kMostRecords;
   query.offset = 0;
-  auto page = context.store.records(place.table.id, query);
+  auto page = context.store.records(place.table.id, seen_by, query);
   if (!page) return page;
   std::vector<std::pair<double, Record>> by_value;  // worked out once: a line may have thousands of places
   by_value.reserve(page->records.size());
@@ -109,9 +109,10 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   if (!measures) return tl::unexpected(measures.error());
   const auto& names = measures->names();
   const auto measure = query.order.empty() ? names.end() : std::ranges::find(names, query.order.front().first);
-  auto records = measure == names.end() ? context.store.records(place->table.id, query)
-                                        : page_by_measure(context, *place, *measures,
-                                                          static_cast<std::size_t>(measure - names.begin()), query);
+  auto records = measure == names.end()
+                     ? context.store.records(place->table.id, request.role(), query)
+                     : page_by_measure(context, *place, *measures, static_cast<std::size_t>(measure - names.begin()),
+                                       request.role(), query);
   if (!records) return tl::unexpected(records.error());
   Response response;
   if (*format == SheetFormat::xlsx) {
@@ -151,7 +152,7 @@ Result<Response> read_record(const RouteContext& context, const Request& request
     at = *sequence;
   }
   Table then;
-  auto record = stored_record(context, place->table, *key, at, &then);
+  auto record = stored_record(context, place->table, request.role(), *key, at, &then);
   if (!record) return tl::unexpected(record.error());
   nlohmann::json json = to_json(*record, then.columns);
   const auto measures = RecordMeasures::of_place(context, *place, then.columns);
@@ -189,15 +190,16 @@ Result<Response> create_from_json(const RouteContext& context, const Request& re
     if (!values) return tl::unexpected(values.error());
     write.records.push_back({inputs[i].key, std::move(*values)});
   }
-  const auto answer = [is_list](const TableChange& change) {
+  const auto answer = [is_list, role = request.role()](const TableChange& change) {
+    const Table seen = seen_by(change.table, role);
     if (!is_list) {
       const Record& record = change.records.front();
-      return json_response(to_json(record, change.table.columns), 201)
+      return json_response(to_json(record, seen.columns), 201)
           .with("Location", "/api/v1/tables/" + change.table.slug + "/records/" + std::to_string(record.key))
           .with("ETag", etag_of(record.version));
     }
     nlohmann::json list = nlohmann::json::array();
-    for (const Record& record : change.records) list.push_back(to_json(record, change.table.columns));
+    for (const Record& record : change.records) list.push_back(to_json(record, seen.columns));
     const std::size_t total = list.size();
     return json_response({{"records", std::move(list)}, {"total", total}}, 201);
   };
@@ -293,16 +295,17 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
   store::WriteRecords write;
   write.may_create = false;
   write.records.push_back({*key, std::move(*values), *version ? *version : asked->version});
-  const auto answer = [](const TableChange& change) {
+  const auto answer = [role = request.role()](const TableChange& change) {
     const Record& record = change.records.front();
-    return json_response(to_json(record, change.table.columns)).with("ETag", etag_of(record.version));
+    return json_response(to_json(record, seen_by(change.table, role).columns)).with("ETag", etag_of(record.version));
   };
   // What stays the same is no entry, and no record comes with it.
   std::optional<Record> same;
-  if (auto now = stored_record(context, place->table, *key, {})) same = std::move(*now);
+  if (auto now = stored_record(context, place->table, request.role(), *key, {})) same = std::move(*now);
   const auto keep = [&](const TableChange& change) {
     if (!change.records.empty() || !same) return answer(change);
-    return json_response(to_json(*same, change.table.columns)).with("ETag", etag_of(same->version));
+    return json_response(to_json(*same, seen_by(change.table, request.role()).columns))
+        .with("ETag", etag_of(same->version));
   };
   auto change =
       context.store.write_records(place->table.id, write, request.user(), first_answer<TableChange>(request, keep));
@@ -316,7 +319,7 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
 Result<Response> delete_retired(const RouteContext& context, const Request& request, const Table& table,
                                 std::int64_t key, std::optional<std::int64_t> version, const std::string& texels,
                                 std::optional<std::int64_t> to) {
-  auto painted = painted_layers(context, table.id);
+  auto painted = painted_layers(context, table.id, request.role());
   if (!painted) return tl::unexpected(painted.error());
   const std::string where = where_painted(*painted, {key});
   if (!where.empty() && texels == "refuse")

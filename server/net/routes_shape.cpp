@@ -14,19 +14,19 @@ namespace {
 constexpr std::size_t kMostProperties = 10000;
 constexpr std::uint64_t kMaxCsvBytes = 1ull << 30;
 
-Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& source, const Model& target,
+Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& source, Role seen_by, const Model& target,
                                          const std::optional<std::vector<std::string>>& refs) {
   std::vector<Layer> layers;
   if (refs) {
     for (const std::string& ref : *refs) {
-      auto layer = store.layer(source.id, ref);
+      auto layer = store.layer(source.id, ref, seen_by);
       if (!layer && layer.error().status == 404)
         return fail(422, "No such layer", source.name + " has no layer \"" + ref + "\".", "layers");
       if (!layer) return tl::unexpected(layer.error());
       layers.push_back(std::move(*layer));
     }
   } else {
-    auto all = store.layers(source.id);
+    auto all = store.layers(source.id, seen_by);
     if (!all) return tl::unexpected(all.error());
     layers = std::move(*all);
   }
@@ -53,7 +53,7 @@ Result<jobs::TransferRequest> transfer_request(store::Store& store, const protoc
                 "This model lies in " + target.crs + ", the other one in " + source->crs +
                     "; bring both into one coordinate system before importing them.",
                 "from");
-  auto layers = chosen_layers(store, *source, target, asked.layers);
+  auto layers = chosen_layers(store, *source, who.roles.in(source->project_id), target, asked.layers);
   if (!layers) return tl::unexpected(layers.error());
   return jobs::TransferRequest{std::move(*source), std::move(*layers), asked.tolerance_mm, asked.max_angle};
 }
@@ -115,7 +115,7 @@ Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room, c
 Result<Response> start_transfer(const RouteContext& context, JobBook& book, const Request& request) {
   auto asked = body_of<protocol::Transfer>(request);
   if (!asked) return tl::unexpected(asked.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   auto wish = transfer_request(context.store, *asked, (*room)->model(), *request.principal);
   if (!wish) return tl::unexpected(wish.error());
@@ -160,7 +160,7 @@ Result<std::string> scan_of(const Model& model, const std::string& wanted) {
 }
 
 void write_vertices(const RouteContext& context, const Request& request, const Respond& respond) {
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return respond(room.error());
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return respond(layer.error());

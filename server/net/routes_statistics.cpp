@@ -44,7 +44,7 @@ Result<Response> statistics(const RouteContext& context, const Request& request)
       return fail(422, "Unknown part", "`include` takes pieces, perimeter and quantiles, with commas between.",
                   "include");
   }
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
@@ -85,7 +85,7 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
 void select(const RouteContext& context, const Request& request, const Respond& respond) {
   const auto asked = body_of<protocol::SelectRequest>(request);
   if (!asked) return respond(asked.error());
-  const auto room = context.rooms.open(request.param("model"));
+  const auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return respond(room.error());
   std::vector<std::string> refs, slugs;
   for (const auto& ref : asked->layers.value_or(std::vector<protocol::LayerRef>{}))
@@ -124,7 +124,7 @@ void select(const RouteContext& context, const Request& request, const Respond& 
 Result<Response> cross_table(const RouteContext& context, const Request& request) {
   const auto asked = body_of<protocol::CrossTableRequest>(request);
   if (!asked) return tl::unexpected(asked.error());
-  const auto room = context.rooms.open(request.param("model"));
+  const auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const auto rows = find_layers(**room, {protocol::to_ref(asked->rows)}, "rows");
   if (!rows) return tl::unexpected(rows.error());

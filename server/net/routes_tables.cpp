@@ -7,6 +7,7 @@
 #include "net/answer_book.h"
 #include "net/painted_keys.h"
 #include "net/routes.h"
+#include "net/show_through.h"
 #include "net/table_events.h"
 #include "net/table_wire.h"
 
@@ -20,7 +21,7 @@ Result<Response> list_tables(const RouteContext& context, const Request& request
   if (!page) return tl::unexpected(page.error());
   auto project = context.store.project(request.param("project"));
   if (!project) return tl::unexpected(project.error());
-  auto tables = context.store.tables(project->id);
+  auto tables = context.store.tables(project->id, request.role());
   if (!tables) return tl::unexpected(tables.error());
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(tables->size());
@@ -60,7 +61,7 @@ Result<Response> create_table(const RouteContext& context, const Request& reques
 }
 
 Result<Response> change_table(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
   auto asked = body_of<protocol::TablePatch>(request);
@@ -76,7 +77,7 @@ Result<Response> change_table(const RouteContext& context, const Request& reques
 }
 
 Result<Response> delete_table(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
   auto gone = context.store.delete_table(table->id, first_answer<>(request, [] { return empty_response(204); }));
@@ -108,7 +109,7 @@ nlohmann::json column_json(const TableChange& change, std::int64_t id) {
 }
 
 Result<Response> list_columns(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   nlohmann::json list = nlohmann::json::array();
   for (const Column& column : table->columns) list.push_back(to_json(column));
@@ -119,7 +120,7 @@ Result<Response> list_columns(const RouteContext& context, const Request& reques
 Result<Response> create_column(const RouteContext& context, const Request& request) {
   auto asked = body_of<protocol::ColumnCreate>(request);
   if (!asked) return tl::unexpected(asked.error());
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
   auto column = new_column(context.store, table->project_id, *asked);
@@ -139,19 +140,18 @@ Result<Response> create_column(const RouteContext& context, const Request& reque
 }
 
 // Null takes a default or a limit away, which the typed body cannot tell from a member that is absent.
-Result<void> change(const RouteContext& context, const Request& request, const Table& table, Column& column) {
-  auto asked = body_of<protocol::ColumnPatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
+Result<void> change(const RouteContext& context, const Request& request, const protocol::ColumnPatch& asked,
+                    const Table& table, Column& column) {
   const auto body = nlohmann::json::parse(request.body);
-  if (asked->name) column.name = *asked->name;
-  if (asked->slug) {
-    auto slug = slug_of(asked->slug, column.name);
+  if (asked.name) column.name = *asked.name;
+  if (asked.slug) {
+    auto slug = slug_of(asked.slug, column.name);
     if (!slug) return tl::unexpected(slug.error());
     column.slug = *slug;
   }
-  if (asked->labels) column.labels = *asked->labels;
-  if (asked->kind) {
-    column.kind = *parse_column_kind(protocol::name(*asked->kind));
+  if (asked.labels) column.labels = *asked.labels;
+  if (asked.kind) {
+    column.kind = *parse_column_kind(protocol::name(*asked.kind));
     // What the new kind has no use for goes with the old one, unless it is asked for.
     const bool is_number = column.kind == ColumnKind::integer || column.kind == ColumnKind::numeric;
     if (!is_number) column.unit.clear(), column.minimum.reset(), column.maximum.reset();
@@ -159,31 +159,57 @@ Result<void> change(const RouteContext& context, const Request& request, const T
     if (column.kind != ColumnKind::term && column.kind != ColumnKind::relation) column.target.reset();
     if (!body.contains("default")) column.default_value = nullptr;
   }
-  if (asked->unit) column.unit = *asked->unit;
-  if (asked->required) column.required = *asked->required;
-  if (asked->unique) column.unique = *asked->unique;
+  if (asked.unit) column.unit = *asked.unit;
+  if (asked.required) column.required = *asked.required;
+  if (asked.unique) column.unique = *asked.unique;
   if (body.contains("default")) column.default_value = body.at("default");
-  if (asked->comment) column.comment = *asked->comment;
-  if (asked->choices) column.choices = *asked->choices;
-  if (asked->target) {
-    auto target = table_of_project(context.store, table.project_id, *asked->target, "target");
+  if (asked.comment) column.comment = *asked.comment;
+  if (asked.choices) column.choices = *asked.choices;
+  if (asked.target) {
+    auto target = table_of_project(context.store, table.project_id, *asked.target, "target");
     if (!target) return tl::unexpected(target.error());
     column.target = target->id;
   }
-  if (body.contains("minimum")) column.minimum = asked->minimum;
-  if (body.contains("maximum")) column.maximum = asked->maximum;
-  if (asked->order) column.order = *asked->order;
+  if (body.contains("minimum")) column.minimum = asked.minimum;
+  if (body.contains("maximum")) column.maximum = asked.maximum;
+  if (asked.order) column.order = *asked.order;
   return {};
 }
 
+Result<Response> show_column(const RouteContext& context, const Request& request, const Table& table,
+                             const Column& column, Visibility visibility) {
+  if (auto good = check_shows_nothing(context, table, column, visibility); !good) return tl::unexpected(good.error());
+  const auto answer = [id = column.id](const Table& now) {
+    TableChange shown;
+    shown.table = now;
+    return json_response(column_json(shown, id)).with("ETag", etag_of(now.version));
+  };
+  auto now =
+      context.store.show_column(table.id, column.id, visibility, table.version, first_answer<Table>(request, answer));
+  if (!now) return tl::unexpected(now.error());
+  // Colours, lines and points that are drawn from it are others for who does not see it any more.
+  context.rooms.records_changed(now->id);
+  tell_table(context, protocol::TableEventEvent::changed, *now, request.user());
+  return answer(*now);
+}
+
 Result<Response> change_column(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   auto found = column_of(*table, request);
   if (!found) return tl::unexpected(found.error());
   if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
+  auto asked = body_of<protocol::ColumnPatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  if (asked->visibility) {
+    protocol::ColumnPatch alone;
+    alone.visibility = asked->visibility;
+    if (!(*asked == alone))
+      return fail(422, "Visibility with other changes", "Say who sees a column in a call of its own.", "visibility");
+    return show_column(context, request, *table, **found, *asked->visibility);
+  }
   Column column = **found;
-  if (auto good = change(context, request, *table, column); !good) return tl::unexpected(good.error());
+  if (auto good = change(context, request, *asked, *table, column); !good) return tl::unexpected(good.error());
   const auto answer = [id = column.id](const TableChange& done) {
     const auto now = done.record.is_object() ? done.record.value("column", id) : id;
     return json_response(column_json(done, now)).with("ETag", etag_of(done.table.version));
@@ -196,7 +222,7 @@ Result<Response> change_column(const RouteContext& context, const Request& reque
 }
 
 Result<Response> drop_column(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   auto column = column_of(*table, request);
   if (!column) return tl::unexpected(column.error());
@@ -211,7 +237,7 @@ Result<Response> drop_column(const RouteContext& context, const Request& request
 
 // A record that lies above itself cannot be: told, not refused, since excavation drawings have such things to be found.
 Result<Response> cycles(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   auto column = column_of(*table, request);
   if (!column) return tl::unexpected(column.error());
@@ -220,7 +246,7 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
                 "Cycles are those of a relation or term that names records of its own table.", "column");
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
-  auto page = context.store.records(table->id, query);
+  auto page = context.store.records(table->id, request.role(), query);
   if (!page) return tl::unexpected(page.error());
   Relation relation;
   for (const Record& record : page->records)
@@ -234,7 +260,7 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
 // --- history
 
 Result<Response> classes(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   auto column = column_of(*table, request);
   if (!column) return tl::unexpected(column.error());
@@ -252,7 +278,7 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
   nlohmann::json list = nlohmann::json::array();
   std::uint64_t with_value = 0, classified = 0;
   if (unique) {
-    auto cells = context.store.record_texts(table->id, (*column)->slug, "column");
+    auto cells = context.store.record_texts(table->id, request.role(), (*column)->slug, "column");
     if (!cells) return tl::unexpected(cells.error());
     std::vector<std::string> values;
     for (KeyText& cell : *cells) values.push_back(std::move(cell.text));
@@ -269,7 +295,7 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
     Expression number;
     number.op = Expression::Op::column;
     number.path = {(*column)->slug};
-    auto cells = context.store.record_numbers(table->id, number, std::nullopt, "column");
+    auto cells = context.store.record_numbers(table->id, request.role(), number, std::nullopt, "column");
     if (!cells) return tl::unexpected(cells.error());
     std::vector<double> values;
     for (const KeyNumber& cell : *cells) values.push_back(cell.number);
@@ -289,7 +315,7 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
 Result<Response> history(const RouteContext& context, const Request& request) {
   auto page = page_of(request);
   if (!page) return tl::unexpected(page.error());
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   std::optional<std::int64_t> key;
   if (const std::string text = request.query_or("key", {}); !text.empty()) {
@@ -297,7 +323,7 @@ Result<Response> history(const RouteContext& context, const Request& request) {
     if (!number) return tl::unexpected(number.error());
     key = *number;
   }
-  auto rows = context.store.table_history(table->id, key, page->limit, page->offset);
+  auto rows = context.store.table_history(table->id, request.role(), key, page->limit, page->offset);
   if (!rows) return tl::unexpected(rows.error());
   nlohmann::json list = nlohmann::json::array();
   for (const auto& row : rows->rows) list.push_back(to_json(row));
@@ -309,12 +335,12 @@ Result<Response> history(const RouteContext& context, const Request& request) {
 Result<Response> undo(const RouteContext& context, const Request& request, bool redo) {
   if (!request.body.empty())
     if (auto empty = body_of<protocol::Empty>(request); !empty) return tl::unexpected(empty.error());
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   auto plan = context.store.plan_table_undo(table->id, request.user(), redo);
   if (!plan) return tl::unexpected(plan.error());
   if (!plan->vanishing.empty()) {
-    auto painted = painted_layers(context, table->id);
+    auto painted = painted_layers(context, table->id, request.role());
     if (!painted) return tl::unexpected(painted.error());
     if (const std::string where = where_painted(*painted, plan->vanishing); !where.empty())
       return fail(409, "Record is painted",
@@ -338,9 +364,9 @@ Result<Response> undo(const RouteContext& context, const Request& request, bool 
 // --- surface of its keys
 
 Result<Response> areas(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
-  auto painted = painted_layers(context, table->id);
+  auto painted = painted_layers(context, table->id, request.role());
   if (!painted) return tl::unexpected(painted.error());
   struct Sum {
     double area_m2 = 0;
@@ -396,7 +422,7 @@ void add_table_routes(Router& router, const RouteContext& context) {
   read(tables, list_tables, {"limit", "offset"});
   write(Method::post, tables, create_table);
   read(table, [](const RouteContext& c, const Request& request) -> Result<Response> {
-    auto found = c.store.table(request.param("table"));
+    auto found = c.store.table(request.param("table"), request.role());
     if (!found) return tl::unexpected(found.error());
     return with_etag(json_response(to_json(*found)), request, found->version);
   });

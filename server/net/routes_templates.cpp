@@ -120,7 +120,7 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
   std::shared_ptr<room::Room> room;
   std::vector<WishedLayer> wished;
   if (asked->model) {
-    auto opened = context.rooms.open(*asked->model);
+    auto opened = context.rooms.open(*asked->model, request.role());
     if (!opened && opened.error().status != 404) return tl::unexpected(opened.error());
     if (!opened || (*opened)->model().project_id != project->id)
       return fail(422, "No such model", "The project has no model `" + *asked->model + "`.", "model");
@@ -135,10 +135,11 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
     for (const auto& change : changes) all.push_back(change.table);
     return answer_with(all, {});
   };
-  auto changes =
-      context.store.create_tables(*tables, false, request.user(), "template",
-                                  wished.empty() ? first_answer<std::vector<store::TableChange>>(request, tables_alone)
-                                                 : store::FirstAnswer<std::vector<store::TableChange>>{});
+  auto changes = context.store.create_tables(
+      *tables, false, request.user(), "template",
+      wished.empty()
+          ? first_answer<std::vector<store::TableChange>>(request, tables_alone)
+          : store::FirstAnswer<std::vector<store::TableChange>>{.key = {}, .make = {}, .user = request.user()});
   if (!changes) return tl::unexpected(changes.error());
   std::vector<Table> made;
   for (const auto& change : *changes) {

@@ -113,7 +113,7 @@ Result<Response> create_terms(const RouteContext& context, const Request& reques
 Result<Response> import_terms(const RouteContext& context, const Request& request) {
   auto dry_run = is_dry_run(request);
   if (!dry_run) return tl::unexpected(dry_run.error());
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   auto list = read_terms(request);
   if (!list) return tl::unexpected(list.error());
@@ -196,13 +196,13 @@ Result<Response> list_terms_of(const RouteContext& context, const Request& reque
   if (!shown) return tl::unexpected(shown.error());
   const auto language = asked_language(request);
   if (!language) return tl::unexpected(language.error());
-  auto table = context.store.table(request.param("table"));
+  auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   if (!term_columns(*table))
     return fail(409, "No list of terms", table->name + " is a table of records. Read `/records` of it.");
   store::Store::RecordQuery all;
   all.limit = store::kMostRecords;
-  auto page = context.store.records(table->id, all);
+  auto page = context.store.records(table->id, request.role(), all);
   if (!page) return tl::unexpected(page.error());
   const auto columns = term_columns(page->table);
   if (!columns) return fail(409, "No list of terms", table->name + " was changed meanwhile.");

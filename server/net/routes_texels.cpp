@@ -42,7 +42,7 @@ std::uint64_t raster_bytes(const Layer& layer) {
 Result<Response> read_texels(const RouteContext& context, ByteBudget& budget, const Request& request) {
   auto format = format_of(request);
   if (!format) return tl::unexpected(format.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
@@ -73,7 +73,7 @@ Result<void> check_raster(const RouteContext& context, const Request& request) {
   if (!format) return tl::unexpected(format.error());
   auto model = context.store.model(request.param("model"));
   if (!model) return tl::unexpected(model.error());
-  auto layer = context.store.layer(model->id, request.param("layer"));
+  auto layer = context.store.layer(model->id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());
   const std::string_view length = request.header("content-length");
   if (length.empty()) return {};
@@ -85,7 +85,7 @@ Result<void> check_raster(const RouteContext& context, const Request& request) {
 void write_texels(const RouteContext& context, ByteBudget& budget, const Request& request, const Respond& respond) {
   auto format = format_of(request);
   if (!format) return respond(format.error());
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return respond(room.error());
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return respond(layer.error());
@@ -122,7 +122,7 @@ std::vector<std::int64_t> keys_of(const query::SurfaceTexels& texels) {
 }
 
 // Columns of the records behind the keys, with what they were at `at`.
-Result<void> add_columns(const RouteContext& context, const std::vector<std::string>& wanted,
+Result<void> add_columns(const RouteContext& context, Role seen_by, const std::vector<std::string>& wanted,
                          const query::SurfaceTexels& texels, std::optional<std::int64_t> at, TexelCsv& csv) {
   const Layer& layer = texels.view.layer;
   if (!layer.table)
@@ -135,7 +135,7 @@ Result<void> add_columns(const RouteContext& context, const std::vector<std::str
     if (!then) return tl::unexpected(then.error());
     query.at = *then;
   }
-  auto page = context.store.records(*layer.table, query);
+  auto page = context.store.records(*layer.table, seen_by, query);
   if (!page) return tl::unexpected(page.error());
   std::vector<Column> columns;
   for (const std::string& ref : wanted) {
@@ -163,7 +163,7 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
     if (!condition) return tl::unexpected(condition.error());
     selection.where = std::move(*condition);
   }
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
@@ -175,7 +175,8 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
   const auto texels = std::make_shared<const query::SurfaceTexels>(std::move(*found));
   auto csv = std::make_shared<TexelCsv>((*room)->model().unit, *separator);
   if (const auto wanted = split_list(request.query_or("columns", {})); !wanted.empty())
-    if (auto added = add_columns(context, wanted, *texels, *at, *csv); !added) return tl::unexpected(added.error());
+    if (auto added = add_columns(context, request.role(), wanted, *texels, *at, *csv); !added)
+      return tl::unexpected(added.error());
   std::shared_ptr<std::vector<query::TexelSample>> cells;
   if (cell_m) {
     auto summed = query::samples_by_cell(*texels, *cell_m / texels->metres_per_unit);

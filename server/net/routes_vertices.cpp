@@ -7,8 +7,9 @@ namespace strata::net {
 namespace {
 
 Result<Response> read_vertices(const RouteContext& context, const Request& request) {
-  auto room = context.rooms.open(request.param("model"));
+  auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
+  if (auto may = check_source_download(request, (*room)->model()); !may) return tl::unexpected(may.error());
   std::vector<Layer> layers = (*room)->layers();
   if (const auto named = request.query.find("layers"); named != request.query.end()) {
     auto found = find_layers(**room, split_list(named->second), "layers");

@@ -6,6 +6,7 @@ namespace strata::net {
 namespace {
 
 constexpr std::size_t kMostTold = 100;  // records; more are told as a change of the table
+constexpr Visibility kSights[] = {Visibility::everyone, Visibility::team, Visibility::curators};
 
 }  // namespace
 
@@ -14,9 +15,11 @@ void tell_table(const RouteContext& context, protocol::TableEventEvent event, co
   protocol::TableEvent message;
   message.event = event;
   message.table_id = table.id;
-  if (event != protocol::TableEventEvent::deleted) message.table = to_json(table);
   message.user = user;
-  context.live_sockets.tell_project(table.project_id, message);
+  for (const Visibility sight : kSights) {
+    if (event != protocol::TableEventEvent::deleted) message.table = to_json(seen_by(table, least_role(sight)));
+    context.live_sockets.tell_project(table.project_id, sight, message);
+  }
 }
 
 void tell_change(const RouteContext& context, const store::TableChange& change, const std::string& user) {
@@ -32,8 +35,10 @@ void tell_change(const RouteContext& context, const store::TableChange& change, 
     const bool is_new = std::find(change.created.begin(), change.created.end(), record.key) != change.created.end();
     message.event = is_new ? protocol::RecordEventEvent::created : protocol::RecordEventEvent::changed;
     message.key = record.key;
-    message.record = to_json(record, change.table.columns);
-    context.live_sockets.tell_project(change.table.project_id, message);
+    for (const Visibility sight : kSights) {
+      message.record = to_json(record, seen_by(change.table, least_role(sight)).columns);
+      context.live_sockets.tell_project(change.table.project_id, sight, message);
+    }
   }
   message.event = protocol::RecordEventEvent::deleted;
   message.record.reset();

@@ -10,7 +10,7 @@ namespace strata::net {
 Result<Table> table_of_project(store::Store& store, std::int64_t project_id, const protocol::TableRef& ref,
                                const std::string& field) {
   const std::string name = protocol::to_ref(ref);
-  auto table = store.table(name);
+  auto table = store.table(name, Role::curator);
   if (!table && table.error().status != 404) return table;
   if (!table || table->project_id != project_id)
     return fail(422, "No such table", "The project has no table `" + name + "`.", field);
@@ -37,6 +37,7 @@ Result<Column> new_column(store::Store& store, std::int64_t project_id, const pr
   }
   column.minimum = asked.minimum;
   column.maximum = asked.maximum;
+  column.visibility = asked.visibility.value_or(Visibility::everyone);
   return column;
 }
 
@@ -79,10 +80,15 @@ nlohmann::json to_json(const store::TableEditRow& row) {
 }
 
 nlohmann::json to_json(const Attachment& attachment) {
-  nlohmann::json json{{"id", attachment.id},       {"table", attachment.table_id},
-                      {"name", attachment.name},   {"media_type", attachment.media_type},
-                      {"bytes", attachment.bytes}, {"sha256", attachment.sha256},
-                      {"user", attachment.user},   {"time", utc_text(attachment.time)}};
+  nlohmann::json json{{"id", attachment.id},
+                      {"table", attachment.table_id},
+                      {"name", attachment.name},
+                      {"media_type", attachment.media_type},
+                      {"bytes", attachment.bytes},
+                      {"sha256", attachment.sha256},
+                      {"user", attachment.user},
+                      {"time", utc_text(attachment.time)},
+                      {"visibility", name(attachment.visibility)}};
   if (attachment.width) json["width"] = *attachment.width;
   if (attachment.height) json["height"] = *attachment.height;
   return json;

@@ -9,7 +9,7 @@
 // Between the protocol's tables and the domain's.
 namespace strata::net {
 
-// The project's table that `ref` names; 422 with `field` where it has none.
+// The project's table that `ref` names, as curators see it; 422 with `field` where it has none.
 Result<Table> table_of_project(store::Store& store, std::int64_t project_id, const protocol::TableRef& ref,
                                const std::string& field);
 

@@ -66,10 +66,12 @@ Result<ComputedEdit> only_changes(Result<std::vector<TileChange>> changes) {
 Result<TileMap> computed_content(const ComputeEdit& compute, const Layer& layer, const RegionContext& context) {
   std::vector<query::LayerView> layers = context.layers;
   layers.insert(layers.end(), compute.shapes.begin(), compute.shapes.end());
-  const auto bound = bind_expression(compute.expression, layers, context.store, std::nullopt, "expression");
+  const auto bound =
+      bind_for_layer(compute.expression, layers, context.store, context.author, layer.visibility, "expression");
   if (!bound) return tl::unexpected(bound.error());
-  return query::compute_tiles(*bound, layers, context.map, {context.surface.geometry().origin, context.metres},
-                              layer.type, "expression", mesh::background_threads());
+  return query::compute_tiles(bound->expression, bound->layers, context.map,
+                              {context.surface.geometry().origin, context.metres}, layer.type, "expression",
+                              mesh::background_threads());
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id,
   auto last = store.last_sequence(model_id);
   if (!last) return tl::unexpected(last.error());
   contents.last_sequence = *last;
-  auto layers = store.layers(model_id);
+  auto layers = store.layers(model_id, Role::owner);
   if (!layers) return tl::unexpected(layers.error());
   for (Layer& layer : *layers) {
     auto tiles = store.load_tiles(layer);

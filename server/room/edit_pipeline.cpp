@@ -204,7 +204,8 @@ bool EditPipeline::start_front() {
   }
   if (front.lookup != Waiting::Lookup::is_new) return false;
   const LayerState* layer = host_->find_layer(front.request.layer_id);
-  if (!layer) {
+  // Who does not see the layer any more hears what is heard when it was deleted.
+  if (!layer || !sees(front.request.author.role, layer->layer.visibility)) {
     Waiting item = take();
     refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
     return true;
@@ -300,7 +301,8 @@ void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
           Result<ComputedEdit>(fail(503, "GPU lost", "The graphics context is being restored; send the edit again.")));
     try {
       done(compute_edit(item->request, meta,
-                        {*map, tiles, layers, metres, parts_.store, *parts_.surface, parts_.renderer, model}));
+                        {*map, tiles, layers, metres, parts_.store, *parts_.surface, parts_.renderer, model,
+                         meta.visibility, item->request.author.role}));
     } catch (const std::bad_alloc&) {
       done(Result<ComputedEdit>(
           fail(503, "Out of memory", "The server lacks the memory for this edit at the moment; try again later.")));

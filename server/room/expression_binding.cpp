@@ -52,9 +52,16 @@ std::vector<std::string> shapes_read(const Expression& expression, const std::ve
   return shapes;
 }
 
+std::vector<query::LayerView> layers_seen_by(const std::vector<query::LayerView>& layers, Role role) {
+  std::vector<query::LayerView> seen;
+  std::ranges::copy_if(layers, std::back_inserter(seen),
+                       [role](const query::LayerView& view) { return sees(role, view.layer.visibility); });
+  return seen;
+}
+
 Result<query::BoundExpression> bind_expression(const Expression& expression,
                                                const std::vector<query::LayerView>& layers, store::Store& store,
-                                               std::optional<std::int64_t> at, const std::string& field) {
+                                               Role seen_by, std::optional<std::int64_t> at, const std::string& field) {
   auto split = query::split_records(expression, field);
   if (!split) return tl::unexpected(split.error());
   query::BoundExpression bound{std::move(split->expression), {}};
@@ -75,11 +82,27 @@ Result<query::BoundExpression> bind_expression(const Expression& expression,
       if (!sequence) return tl::unexpected(sequence.error());
       then = *sequence;
     }
-    auto numbers = store.record_numbers(*layer.table, part.expression, then, field);
+    auto numbers = store.record_numbers(*layer.table, seen_by, part.expression, then, field);
     if (!numbers) return tl::unexpected(numbers.error());
     bound.records.emplace_back(*numbers);
   }
   return bound;
+}
+
+Result<BoundForLayer> bind_for_layer(const Expression& expression, const std::vector<query::LayerView>& layers,
+                                     store::Store& store, Role author, Visibility layer, const std::string& field) {
+  const Role reader = least_role(layer);
+  std::vector<query::LayerView> readable = layers_seen_by(layers, reader);
+  auto bound = bind_expression(expression, readable, store, reader, std::nullopt, field);
+  if (bound) return BoundForLayer{std::move(*bound), std::move(readable)};
+  if (sight_of(author) == layer) return tl::unexpected(bound.error());
+  const auto by_author =
+      bind_expression(expression, layers_seen_by(layers, author), store, author, std::nullopt, field);
+  if (!by_author) return tl::unexpected(by_author.error());
+  return fail(422, "Would show through",
+              "This reads layers or columns that fewer people see than the layer it is for, which is " +
+                  std::string(name(layer)) + ". Let fewer see that layer, or leave out what they do not see.",
+              field);
 }
 
 }  // namespace strata::room

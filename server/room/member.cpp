@@ -4,10 +4,10 @@
 
 namespace strata::room {
 
-RoomMember::RoomMember(std::shared_ptr<OpenRoom> room, std::string user, std::string full_name, std::string color,
+RoomMember::RoomMember(std::shared_ptr<OpenRoom> room, Author who, std::string full_name, std::string color,
                        Listener* listener, stream::Viewer::Send send)
     : room_(std::move(room)),
-      user_(std::move(user)),
+      who_(std::move(who)),
       full_name_(std::move(full_name)),
       color_(std::move(color)),
       listener_(listener),
@@ -41,6 +41,7 @@ render::ViewStyle RoomMember::style(std::uint32_t view_id, View& view) const {
   style.unit_mm = room_->model().metres() * 1000;
   std::vector<LayerMarks> marked;
   for (const auto& state : room_->layer_states()) {
+    if (!sees(role(), state.layer.visibility)) continue;
     auto own = view.overrides.find(state.layer.id);
     const LayerView none;
     const LayerView& mine = own == view.overrides.end() ? none : own->second;
@@ -48,7 +49,7 @@ render::ViewStyle RoomMember::style(std::uint32_t view_id, View& view) const {
     style.layers.push_back(
         {state.handle, palette(view_id, view, state), static_cast<float>(mine.opacity.value_or(state.layer.opacity))});
     if (!state.layer.table) continue;
-    if (auto marks = room_->record_marks().find(*state.layer.table))
+    if (auto marks = room_->record_marks().find(*state.layer.table, sight_of(role())))
       marked.push_back({std::move(marks), style.layers.back().palette, style.layers.back().opacity});
   }
   if (marked != view.marked) {
@@ -71,7 +72,7 @@ std::shared_ptr<const Palette> RoomMember::palette(std::uint32_t view_id, View& 
     view.by_record.erase(id);
     return palette;
   }
-  const auto found = room_->record_colors().find({*state.layer.table, palette, highlight});
+  const auto found = room_->record_colors().find({*state.layer.table, sight_of(role()), palette, highlight});
   if (found.problem && view.told.insert(found.problem).second && listener_)
     listener_->view_refused(view_id, *found.problem);
   if (found.palette) view.by_record[id] = found.palette;
@@ -142,12 +143,13 @@ Result<void> RoomMember::look_together(bool leading, const std::optional<Uuid>& 
 
 Presence RoomMember::presence() const {
   std::lock_guard lock(mutex_);
-  return {session_, user_, full_name_, color_, pointer_, leading_, std::nullopt, camera_};
+  return {session_, who_.user, full_name_, color_, pointer_, leading_, std::nullopt, camera_};
 }
 
 void RoomMember::content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,
                                  std::int64_t sequence) {
   const auto state = room_->layer_state(layer_id);
+  if (state && !sees(role(), state->layer.visibility)) return;
   std::lock_guard lock(mutex_);
   for (auto& [id, view] : views_) {
     auto own = view.overrides.find(layer_id);

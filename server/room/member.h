@@ -17,8 +17,8 @@ struct LayerState;
 // A connection of one person: the views they look through and what they show in each.
 class RoomMember final : public Member {
  public:
-  RoomMember(std::shared_ptr<OpenRoom> room, std::string user, std::string full_name, std::string color,
-             Listener* listener, stream::Viewer::Send send);
+  RoomMember(std::shared_ptr<OpenRoom> room, Author who, std::string full_name, std::string color, Listener* listener,
+             stream::Viewer::Send send);
   ~RoomMember() override;
 
   Uuid session() const override { return session_; }
@@ -29,7 +29,8 @@ class RoomMember final : public Member {
   Result<void> look_together(bool leading, const std::optional<Uuid>& follow) override;
 
   Listener* listener() const { return listener_; }
-  const std::string& user() const { return user_; }
+  const std::string& user() const { return who_.user; }
+  Role role() const { return who_.role; }  // what they see follows from it
   const std::string& color() const { return color_; }
   Presence presence() const;  // whom they follow is the room's to say
   // Called by the room.
@@ -59,7 +60,8 @@ class RoomMember final : public Member {
 
   const std::shared_ptr<OpenRoom> room_;
   const Uuid session_ = random_uuid();
-  const std::string user_, full_name_, color_;
+  const Author who_;
+  const std::string full_name_, color_;
   Listener* const listener_;
   const stream::Viewer::Send send_;
   mutable std::mutex mutex_;

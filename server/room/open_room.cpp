@@ -9,6 +9,7 @@
 #include "core/slug.h"
 #include "room/expression_binding.h"
 #include "room/gpu_problem.h"
+#include "room/seen_room.h"
 #include "room/tile_changes.h"
 
 namespace strata::room {
@@ -140,7 +141,7 @@ Result<LayerState> OpenRoom::state(const std::string& ref) const {
   std::lock_guard lock(mutex_);
   for (const auto& [id, state] : layers_)
     if (is_all_digits(ref) ? std::to_string(id) == ref : state.layer.slug == ref) return state;
-  return fail(404, "No such layer", "This model has no layer \"" + ref + "\".", "layer");
+  return no_such_layer(ref);
 }
 
 std::optional<LayerState> OpenRoom::layer_state(std::int64_t id) const {
@@ -198,7 +199,7 @@ Result<Layer> OpenRoom::create_layer(Layer layer, const store::FirstAnswer<Layer
         std::lock_guard lock(mutex_);
         layers_.emplace(made->id, LayerState{*made, *handle, mirror, std::make_shared<const Palette>(made->palette)});
       }
-      tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::created, *made); });
+      tell_layer(std::nullopt, *made);
       sort_layers_changed();
     });
     return made;
@@ -227,16 +228,18 @@ Result<Layer> OpenRoom::update_layer(Layer layer, const store::FirstAnswer<Layer
 
 Layer OpenRoom::replace_layer(const Layer& stored) {
   Layer now = stored;
+  Visibility before = now.visibility;
   {
     std::lock_guard lock(mutex_);
     auto found = layers_.find(now.id);
     if (found == layers_.end()) return now;
     if (found->second.layer.version > now.version) return now;  // a later change came by first
+    before = found->second.layer.visibility;
     now.sequence = found->second.layer.sequence;
     found->second.layer = now;
     found->second.palette = std::make_shared<const Palette>(now.palette);
   }
-  tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::changed, now); });
+  tell_layer(before, now);
   sort_layers_changed();
   return now;
 }
@@ -258,7 +261,7 @@ void OpenRoom::outdate(const std::function<bool(const LayerFormula&)>& reads) {
       stale.push_back(state.layer);
     }
   }
-  for (const Layer& layer : stale) tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::changed, layer); });
+  for (const Layer& layer : stale) tell_layer(layer.visibility, layer);
 }
 
 void OpenRoom::records_changed(std::int64_t table_id) {
@@ -268,7 +271,7 @@ void OpenRoom::records_changed(std::int64_t table_id) {
   for (const Layer& layer : layers()) {
     if (!layer.palette_of_terms || layer.table != table_id) continue;
     // One that is gone meanwhile, or cannot be read now, keeps the colours that it has.
-    if (auto stored = parts_.store.layer(model_id_, std::to_string(layer.id)))
+    if (auto stored = parts_.store.layer(model_id_, std::to_string(layer.id), Role::owner))
       on_strand([&] { return replace_layer(*stored); });
   }
   on_strand([&] {
@@ -278,14 +281,15 @@ void OpenRoom::records_changed(std::int64_t table_id) {
   });
 }
 
-Result<void> OpenRoom::check_expression(const Expression& expression, const std::string& field) const {
+Result<void> OpenRoom::check_expression(const Expression& expression, const std::string& field,
+                                        Visibility layer) const {
   std::vector<query::LayerView> views;
   for (const Layer& layer : layers()) views.push_back({layer, {}});
   for (const std::string& shape : shapes_read(expression, views)) {
     views.emplace_back();
     views.back().layer.slug = std::string(kShapePrefix) + shape;
   }
-  const auto bound = bind_expression(expression, views, parts_.store, std::nullopt, field);
+  const auto bound = bind_for_layer(expression, views, parts_.store, Role::owner, layer, field);
   return bound ? Result<void>{} : tl::unexpected(bound.error());
 }
 
@@ -344,7 +348,7 @@ Result<void> OpenRoom::delete_layer(std::int64_t id, const store::FirstAnswer<>&
         mirrors_share_.recount(mirror_bytes());
       }
       parts_.renderer.remove_layer(gone.handle);
-      tell([&](Listener& l) { l.layer_changed(Listener::LayerChange::deleted, gone.layer); });
+      tell_seen(gone.layer, [&](Listener& l) { l.layer_changed(Listener::LayerChange::deleted, gone.layer); });
       outdate([&](const LayerFormula& formula) {
         return std::ranges::any_of(formula.inputs, [&](const auto& input) { return input.layer == id; });
       });
@@ -481,7 +485,8 @@ void OpenRoom::content_changed(const LayerState& layer, const std::optional<rend
 
 void OpenRoom::edit_applied(const Listener::Edit& edit) {
   sequence_ = edit.sequence;
-  tell([&](Listener& l) { l.edit_applied(edit); });
+  if (const auto state = layer_state(edit.layer_id))
+    tell_seen(state->layer, [&](Listener& l) { l.edit_applied(edit); });
 }
 
 void OpenRoom::edit_saved(const Listener::Edit& edit) {
@@ -494,18 +499,26 @@ void OpenRoom::edit_saved(const Listener::Edit& edit) {
 
 void OpenRoom::edits_unsaved(const std::vector<Listener::Edit>& edits, const Problem& why) {
   sequence_ = pipeline_->sequence();
-  tell([&](Listener& l) { l.edits_unsaved(edits, why); });
+  std::lock_guard lock(members_mutex_);
+  for (const RoomMember* member : members_) {
+    if (!member->listener()) continue;
+    std::vector<Listener::Edit> seen;
+    for (const Listener::Edit& edit : edits)
+      if (const auto state = layer_state(edit.layer_id); state && sees(member->role(), state->layer.visibility))
+        seen.push_back(edit);
+    if (!seen.empty()) member->listener()->edits_unsaved(seen, why);
+  }
 }
 
 // ------------------------------------------------------------------------------------------------------ people
 
-std::unique_ptr<Member> OpenRoom::join(std::string user, std::string full_name, Listener* listener,
+std::unique_ptr<Member> OpenRoom::join(Author who, std::string full_name, Listener* listener,
                                        stream::Viewer::Send send) {
   std::unique_ptr<RoomMember> member;
   {
     std::lock_guard lock(members_mutex_);
-    std::string color = color_for(user);
-    member = std::make_unique<RoomMember>(shared_from_this(), std::move(user), std::move(full_name), std::move(color),
+    std::string color = color_for(who.user);
+    member = std::make_unique<RoomMember>(shared_from_this(), std::move(who), std::move(full_name), std::move(color),
                                           listener, std::move(send));
     members_.push_back(member.get());
   }
@@ -527,6 +540,22 @@ void OpenRoom::tell(const std::function<void(Listener&)>& tell) {
   std::lock_guard lock(members_mutex_);
   for (RoomMember* member : members_)
     if (member->listener()) tell(*member->listener());
+}
+
+void OpenRoom::tell_seen(const Layer& layer, const std::function<void(Listener&)>& tell) {
+  std::lock_guard lock(members_mutex_);
+  for (RoomMember* member : members_)
+    if (member->listener() && sees(member->role(), layer.visibility)) tell(*member->listener());
+}
+
+void OpenRoom::tell_layer(std::optional<Visibility> before, const Layer& layer) {
+  using Change = Listener::LayerChange;
+  std::lock_guard lock(members_mutex_);
+  for (RoomMember* member : members_) {
+    const bool saw = before && sees(member->role(), *before), sees_now = sees(member->role(), layer.visibility);
+    if (!member->listener() || (!saw && !sees_now)) continue;
+    member->listener()->layer_changed(!sees_now ? Change::deleted : saw ? Change::changed : Change::created, layer);
+  }
 }
 
 void OpenRoom::leave(RoomMember* member) {

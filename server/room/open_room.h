@@ -46,7 +46,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   std::int64_t sequence() const override;
   std::int64_t durable_sequence() const override;
   void edit(EditRequest request, Applied applied, Saved saved) override;
-  std::unique_ptr<Member> join(std::string user, std::string full_name, Listener* listener,
+  std::unique_ptr<Member> join(Author who, std::string full_name, Listener* listener,
                                stream::Viewer::Send send) override;
   std::vector<Presence> presence(const Uuid& receiver) const override;
   Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer,
@@ -57,7 +57,8 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   Result<Layer> layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
                                const std::map<std::int64_t, std::int64_t>& tables) override;
   void records_changed(std::int64_t table_id) override;
-  Result<void> check_expression(const Expression& expression, const std::string& field) const override;
+  Result<void> check_expression(const Expression& expression, const std::string& field,
+                                Visibility layer) const override;
   Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer) override;
   Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers, At at) override;
   Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
@@ -135,7 +136,10 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   template <class Work>
   auto on_strand(Work work) const;                        // runs there and waits for the result
   void tell(const std::function<void(Listener&)>& tell);  // every listener
-  std::string color_for(const std::string& user) const;   // their own, or the one that the fewest have
+  void tell_seen(const Layer& layer, const std::function<void(Listener&)>& tell);  // of who sees the layer
+  // Who begins to see the layer hears that it was made, who ends that it was deleted. `before`: nothing, where it is new.
+  void tell_layer(std::optional<Visibility> before, const Layer& layer);
+  std::string color_for(const std::string& user) const;  // their own, or the one that the fewest have
   // Runs `work` on a worker when every edit before it is durable. No edit starts meanwhile, and no recovery. Blocks.
   template <class T>
   Result<T> exclusively(std::function<Result<T>()> work);

@@ -21,6 +21,7 @@ struct Borrowed {
 
 Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
   touch();
+  const Visibility sight = sight_of(asked.seen_by);
   std::vector<LayerState> shown;
   if (asked.layers) {
     for (const auto& ref : *asked.layers) {
@@ -57,14 +58,14 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
     const auto highlight =
         asked_for == asked.highlights.end() ? nullptr : std::make_shared<const Highlight>(asked_for->second);
     if (item.layer.table && RecordColors::needs_records(*palette, highlight)) {
-      auto made = record_colors_->make({*item.layer.table, palette, highlight});
+      auto made = record_colors_->make({*item.layer.table, sight, palette, highlight});
       if (!made) return tl::unexpected(made.error());
       palette = std::move(*made);
     }
     request.layers.push_back({handle, std::move(palette), static_cast<float>(item.layer.opacity)});
     if (!item.layer.table) continue;
-    auto marks =
-        asked.at ? record_marks_->when(*item.layer.table, *asked.at) : record_marks_->newest(*item.layer.table);
+    auto marks = asked.at ? record_marks_->when(*item.layer.table, sight, *asked.at)
+                          : record_marks_->newest(*item.layer.table, sight);
     if (!marks) return tl::unexpected(marks.error());
     if (*marks) marked.push_back({std::move(*marks), request.layers.back().palette, request.layers.back().opacity});
   }

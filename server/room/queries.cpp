@@ -93,13 +93,15 @@ Result<std::optional<query::TexelSelection>> OpenRoom::select_texels(const Selec
   std::optional<query::TexelSelection> selected;
   if (selection.where) {
     std::vector<std::string> slugs;
-    for (const auto& layer : layers()) slugs.push_back(layer.slug);
+    for (const auto& layer : layers())
+      if (sees(selection.seen_by, layer.visibility)) slugs.push_back(layer.slug);
     const std::vector<std::string> named = layers_of(*selection.where);
     // Those that are not there are refused by the evaluator, with the field.
     std::erase_if(slugs, [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
     const auto views = layer_views(slugs, selection.at);
     if (!views) return tl::unexpected(views.error());
-    const auto bound = bind_expression(*selection.where, *views, parts_.store, selection.at, "where");
+    const auto bound =
+        bind_expression(*selection.where, *views, parts_.store, selection.seen_by, selection.at, "where");
     if (!bound) return tl::unexpected(bound.error());
     auto holds = query::select_where(*bound, *views, map, "where", mesh::background_threads(),
                                      {geometry_->origin, model().metres()});

@@ -17,8 +17,8 @@ Expression column_of(const std::string& slug) {
 
 bool holds_numbers(ColumnKind kind) { return kind == ColumnKind::integer || kind == ColumnKind::numeric; }
 
-Result<Palette> by_column(store::Store& store, std::int64_t table_id, const Palette& palette) {
-  auto table = store.table(std::to_string(table_id));
+Result<Palette> by_column(store::Store& store, std::int64_t table_id, Role seen_by, const Palette& palette) {
+  auto table = store.table(std::to_string(table_id), seen_by);
   if (!table) return tl::unexpected(table.error());
   const Column* column = find_column(table->columns, palette.column);
   if (!column)
@@ -27,7 +27,7 @@ Result<Palette> by_column(store::Store& store, std::int64_t table_id, const Pale
                     "' no longer has. Choose another one.",
                 "palette.column");
   if (holds_numbers(column->kind)) {
-    auto numbers = store.record_numbers(table_id, column_of(column->slug), std::nullopt, "palette.column");
+    auto numbers = store.record_numbers(table_id, seen_by, column_of(column->slug), std::nullopt, "palette.column");
     if (!numbers) return tl::unexpected(numbers.error());
     return colors_of_numbers(palette, *numbers);
   }
@@ -35,17 +35,17 @@ Result<Palette> by_column(store::Store& store, std::int64_t table_id, const Pale
     return fail(422, "Column holds no numbers",
                 "'" + column->name + "' holds no numbers: only a categorical palette can colour by it.",
                 "palette.column");
-  auto texts = store.record_texts(table_id, column->slug, "palette.column");
+  auto texts = store.record_texts(table_id, seen_by, column->slug, "palette.column");
   if (!texts) return tl::unexpected(texts.error());
   return colors_of_texts(palette, *texts);
 }
 
 }  // namespace
 
-Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::int64_t table_id,
+Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::int64_t table_id, Role seen_by,
                                                     const Highlight& highlight, const std::string& field) {
   if (const auto* keys = std::get_if<std::vector<std::uint32_t>>(&highlight.records)) return *keys;
-  auto truths = store.record_numbers(table_id, std::get<Expression>(highlight.records), std::nullopt, field);
+  auto truths = store.record_numbers(table_id, seen_by, std::get<Expression>(highlight.records), std::nullopt, field);
   if (!truths) return tl::unexpected(truths.error());
   std::vector<std::uint32_t> keys;
   for (const KeyNumber& truth : *truths)
@@ -59,13 +59,14 @@ RecordColors::RecordColors(store::Store& store, boost::asio::thread_pool& worker
 
 Result<std::shared_ptr<const Palette>> RecordColors::make(const Wanted& wanted) const {
   Palette by_key = *wanted.palette;
+  const Role seen_by = least_role(wanted.sight);
   if (!by_key.column.empty()) {
-    auto colored = by_column(store_, wanted.table, by_key);
+    auto colored = by_column(store_, wanted.table, seen_by, by_key);
     if (!colored) return tl::unexpected(colored.error());
     by_key = std::move(*colored);
   }
   if (wanted.highlight) {
-    const auto keys = highlighted_keys(store_, wanted.table, *wanted.highlight, "highlight.filter");
+    const auto keys = highlighted_keys(store_, wanted.table, seen_by, *wanted.highlight, "highlight.filter");
     if (!keys) return tl::unexpected(keys.error());
     by_key = highlighted_colors(by_key, *keys, wanted.highlight->isolate);
   }
@@ -81,7 +82,8 @@ RecordColors::Found RecordColors::find(const Wanted& wanted) {
   });
   const auto known = std::ranges::find_if(entries_, [&](const auto& entry) {
     const Wanted& kept = entry->wanted;
-    return kept.table == wanted.table && kept.palette == wanted.palette && kept.highlight == wanted.highlight;
+    return kept.table == wanted.table && kept.sight == wanted.sight && kept.palette == wanted.palette &&
+           kept.highlight == wanted.highlight;
   });
   const auto entry =
       known != entries_.end() ? *known : entries_.emplace_back(std::make_shared<Entry>(Entry{wanted, {}}));

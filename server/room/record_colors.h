@@ -14,7 +14,7 @@
 namespace strata::room {
 
 // The keys that are meant, ascending. Refused (422 at `field`): what the columns do not fit.
-Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::int64_t table_id,
+Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::int64_t table_id, Role seen_by,
                                                     const Highlight& highlight, const std::string& field);
 
 // Palettes by key of an open model's database layers, where what a layer is drawn with depends on its records: colours by a
@@ -27,6 +27,7 @@ class RecordColors : public std::enable_shared_from_this<RecordColors> {
   // What is asked for, told apart by the objects: nothing of it may change.
   struct Wanted {
     std::int64_t table = 0;
+    Visibility sight = Visibility::everyone;  // the least seen of the columns that may be read
     std::shared_ptr<const Palette> palette;
     std::shared_ptr<const Highlight> highlight;  // null: none
   };

@@ -12,35 +12,37 @@ RecordMarks::RecordMarks(store::Store& store, boost::asio::thread_pool& workers,
                          std::function<void()> ready)
     : store_(store), workers_(workers), model_id_(model_id), ready_(std::move(ready)) {}
 
-Result<RecordMarks::Marks> RecordMarks::read(std::int64_t table_id, std::optional<std::int64_t> at) const {
-  auto marks = store_.marks(table_id, model_id_, at);
+Result<RecordMarks::Marks> RecordMarks::read(const Wanted& wanted, std::optional<std::int64_t> at) const {
+  auto marks = store_.marks(wanted.first, least_role(wanted.second), model_id_, at);
   if (!marks) return tl::unexpected(marks.error());
   return marks->empty() ? nullptr : std::make_shared<const std::vector<KeyMark>>(std::move(*marks));
 }
 
-Result<RecordMarks::Marks> RecordMarks::when(std::int64_t table_id, std::int64_t sequence) const {
+Result<RecordMarks::Marks> RecordMarks::when(std::int64_t table_id, Visibility sight, std::int64_t sequence) const {
   const auto at = store_.table_sequence_when(table_id, model_id_, sequence);
   if (!at) return tl::unexpected(at.error());
-  return read(table_id, *at);
+  return read({table_id, sight}, *at);
 }
 
-RecordMarks::Marks RecordMarks::find(std::int64_t table_id) {
+RecordMarks::Marks RecordMarks::find(std::int64_t table_id, Visibility sight) {
+  const Wanted wanted{table_id, sight};
   std::lock_guard lock(mutex_);
-  Entry& entry = entries_[table_id];
-  start(table_id, entry);
+  Entry& entry = entries_[wanted];
+  start(wanted, entry);
   return entry.marks;
 }
 
-Result<RecordMarks::Marks> RecordMarks::newest(std::int64_t table_id) {
+Result<RecordMarks::Marks> RecordMarks::newest(std::int64_t table_id, Visibility sight) {
+  const Wanted wanted{table_id, sight};
   {
     std::lock_guard lock(mutex_);
-    Entry& entry = entries_[table_id];
+    Entry& entry = entries_[wanted];
     if (entry.known && !entry.outdated && !entry.reading) return entry.marks;
     if (!entry.known) entry.outdated = false;  // records that change from now on make it so again
   }
-  auto marks = read(table_id);
+  auto marks = read(wanted);
   std::lock_guard lock(mutex_);
-  Entry& entry = entries_[table_id];
+  Entry& entry = entries_[wanted];
   if (!marks) {
     entry.outdated = true;
     return entry.known ? Result<Marks>(entry.marks) : marks;
@@ -53,21 +55,21 @@ Result<RecordMarks::Marks> RecordMarks::newest(std::int64_t table_id) {
   return marks;
 }
 
-void RecordMarks::start(std::int64_t table_id, Entry& entry) {
+void RecordMarks::start(const Wanted& wanted, Entry& entry) {
   if (stopped_ || entry.reading || !entry.outdated) return;
   entry.reading = true;
   entry.outdated = false;
-  boost::asio::post(workers_, [self = shared_from_this(), table_id] { self->run(table_id); });
+  boost::asio::post(workers_, [self = shared_from_this(), wanted] { self->run(wanted); });
 }
 
-void RecordMarks::run(std::int64_t table_id) {
-  auto marks = read(table_id);
-  if (!marks) log::warning("lines and points of table " + std::to_string(table_id) + ": " + marks.error().detail);
+void RecordMarks::run(const Wanted& wanted) {
+  auto marks = read(wanted);
+  if (!marks) log::warning("lines and points of table " + std::to_string(wanted.first) + ": " + marks.error().detail);
   bool differ = false;
   {
     std::lock_guard lock(mutex_);
     if (stopped_) return;
-    Entry& entry = entries_[table_id];
+    Entry& entry = entries_[wanted];
     entry.reading = false;
     // What cannot be read stays as it was, until records change again.
     entry.known |= marks.has_value();
@@ -75,17 +77,18 @@ void RecordMarks::run(std::int64_t table_id) {
       entry.marks = std::move(*marks);
       differ = true;
     }
-    start(table_id, entry);
+    start(wanted, entry);
   }
   if (differ && ready_) ready_();
 }
 
 void RecordMarks::records_changed(std::int64_t table_id) {
   std::lock_guard lock(mutex_);
-  const auto entry = entries_.find(table_id);
-  if (entry == entries_.end()) return;
-  entry->second.outdated = true;
-  start(table_id, entry->second);
+  for (auto& [wanted, entry] : entries_) {
+    if (wanted.first != table_id) continue;
+    entry.outdated = true;
+    start(wanted, entry);
+  }
 }
 
 void RecordMarks::stop() {

@@ -13,7 +13,7 @@
 
 namespace strata::room {
 
-// The lines and points that records have on an open model, by table. They are read on a worker when a view first needs them, and anew
+// The lines and points that records have on an open model, by table and by the least seen of the columns that are looked at (`sight`). They are read on a worker when a view first needs them, and anew
 // when records change. Thread-safe.
 class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
  public:
@@ -24,11 +24,11 @@ class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
               std::function<void()> ready);
 
   // The newest that are there; null: none are, as far as is known.
-  Marks find(std::int64_t table_id);
+  Marks find(std::int64_t table_id, Visibility sight);
   // Those of now, read on the calling thread where they are not known. While the database is away, the last that were. Blocks.
-  Result<Marks> newest(std::int64_t table_id);
+  Result<Marks> newest(std::int64_t table_id, Visibility sight);
   // Those of when an edit of the model was made. Blocks.
-  Result<Marks> when(std::int64_t table_id, std::int64_t sequence) const;
+  Result<Marks> when(std::int64_t table_id, Visibility sight, std::int64_t sequence) const;
   void records_changed(std::int64_t table_id);
   void stop();  // nothing more is read, and `ready` not called
 
@@ -39,16 +39,17 @@ class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
     bool reading = false;
     bool outdated = true;
   };
-  void start(std::int64_t table_id, Entry& entry);  // with the mutex held
-  void run(std::int64_t table_id);
-  Result<Marks> read(std::int64_t table_id, std::optional<std::int64_t> at = {}) const;  // `at` of the table
+  using Wanted = std::pair<std::int64_t, Visibility>;
+  void start(const Wanted& wanted, Entry& entry);  // with the mutex held
+  void run(const Wanted& wanted);
+  Result<Marks> read(const Wanted& wanted, std::optional<std::int64_t> at = {}) const;  // `at` of the table
 
   store::Store& store_;
   boost::asio::thread_pool& workers_;
   const std::int64_t model_id_;
   const std::function<void()> ready_;
   std::mutex mutex_;
-  std::map<std::int64_t, Entry> entries_;
+  std::map<Wanted, Entry> entries_;
   bool stopped_ = false;
 };
 

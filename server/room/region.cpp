@@ -77,10 +77,10 @@ Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType typ
                           return fill_everywhere(context.tiles, type, context.map, value);
                         },
                         [&](const FillEdit::Where& where) -> Changes {
-                          const auto bound =
-                              bind_expression(where.condition, context.layers, context.store, std::nullopt, "where");
+                          const auto bound = bind_for_layer(where.condition, context.layers, context.store,
+                                                            context.author, context.visibility, "where");
                           if (!bound) return tl::unexpected(bound.error());
-                          return selected(query::select_where(*bound, context.layers, context.map, "where", 2,
+                          return selected(query::select_where(bound->expression, bound->layers, context.map, "where", 2,
                                                               {context.surface.geometry().origin, context.metres}));
                         },
                         [&](const FillEdit::Island& island) {

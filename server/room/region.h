@@ -20,7 +20,9 @@ struct RegionContext {
   store::Store& store;
   SurfaceLookup& surface;
   render::Renderer& renderer;
-  render::ModelHandle model = 0;
+  render::ModelHandle model;
+  Visibility visibility;  // of the edited layer
+  Role author;
 };
 
 // A place as a surface texel (numbered as in mesh::TexelGraph) and a point in model space. Refused (422 at `field`) where there is none.

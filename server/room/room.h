@@ -120,6 +120,7 @@ struct Selection {
   };
   std::optional<std::variant<Around, Outline>> within{};
   std::optional<std::int64_t> at{};  // layers as they were after that sequence; absent: as they are
+  Role seen_by = Role::owner;        // what this role does not see `where` cannot name
 };
 struct StatisticsWanted {  // that takes longer
   bool quantiles = false, pieces = false, perimeter = false;
@@ -149,9 +150,10 @@ struct PictureRequest {
   std::map<std::string, Highlight> highlights{};     // by slug
   Light light{};
   std::optional<std::int64_t> at{};  // layers as they were after that sequence
+  Role seen_by = Role::owner;        // columns that it does not see neither draw nor colour
 };
 
-// One open model. The only place that joins store, renderer, streams and queries: keeps the order of edits, the tile mirrors,
+// One open model, as somebody sees it: layers that they do not see are not there. The only place that joins store, renderer, streams and queries: keeps the order of edits, the tile mirrors,
 // undo, the journal and who is there. All methods are thread-safe; callbacks run on the room's strand.
 class Room {
  public:
@@ -169,8 +171,8 @@ class Room {
   using Saved = std::function<void(Result<EditAnswer>)>;
   virtual void edit(EditRequest request, Applied applied, Saved saved) = 0;
 
-  // `full_name` may be empty.
-  virtual std::unique_ptr<Member> join(std::string user, std::string full_name, Listener* listener,
+  // Frames and what the listener hears are of layers and columns that they see, from one moment to the next. `full_name` may be empty.
+  virtual std::unique_ptr<Member> join(Author who, std::string full_name, Listener* listener,
                                        stream::Viewer::Send send) = 0;
   // Everyone, as told to one of the sessions: of all cameras only that of whom it follows.
   virtual std::vector<Presence> presence(const Uuid& receiver) const = 0;
@@ -191,8 +193,9 @@ class Room {
                                        const std::map<std::int64_t, std::int64_t>& tables) = 0;
   // Records of a table have changed: layers that are computed from them are stale, those that take their colours from its terms others.
   virtual void records_changed(std::int64_t table_id) = 0;
-  // Whether a formula for a computed layer can be evaluated here. Refused (422 at `field`) as by bind_expression.
-  virtual Result<void> check_expression(const Expression& expression, const std::string& field) const = 0;
+  // Whether a formula for a computed layer can be evaluated here. Refused (422 at `field`) as by bind_for_layer.
+  virtual Result<void> check_expression(const Expression& expression, const std::string& field,
+                                        Visibility layer) const = 0;
   virtual Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer = {}) = 0;
 
   // Queries; may take a while the first time (search tree, surface map), so call from a worker thread. Values of the given
@@ -267,8 +270,8 @@ class Rooms {
   Rooms(store::Store& store, render::Renderer& renderer, stream::StreamContext stream, RoomOptions options);
   ~Rooms();
   // Blocking: loads the model (geometry and layers) when it is not open. Where memory is used up, rooms that nobody is in are
-  // closed for it.
-  Result<std::shared_ptr<Room>> open(const std::string& model_ref);
+  // closed for it. `seen_by`: what they may do in the project; the server itself sees all, as its owner.
+  Result<std::shared_ptr<Room>> open(const std::string& model_ref, Role seen_by);
   void records_changed(std::int64_t table_id);  // in the models that are open (Room::records_changed)
   // From now on edits that would paint the key of the table are refused (409). Those that were let in are durable when it returns; of a
   // Problem this is not known, and the key is retired all the same. Blocks.

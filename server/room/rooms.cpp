@@ -11,6 +11,7 @@
 #include "core/log.h"
 #include "core/slug.h"
 #include "room/open_room.h"
+#include "room/seen_room.h"
 
 namespace strata::room {
 namespace {
@@ -78,6 +79,8 @@ struct Rooms::Impl {
       }
     return nullptr;
   }
+
+  Result<std::shared_ptr<OpenRoom>> open(const std::string& model_ref);
 
   // Lets go of rooms that nobody has been in for a while.
   void sweep() {
@@ -158,41 +161,45 @@ Rooms::Rooms(store::Store& store, render::Renderer& renderer, stream::StreamCont
 
 Rooms::~Rooms() = default;
 
-Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref) {
+Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref, Role seen_by) {
+  auto room = impl_->open(model_ref);
+  if (!room) return tl::unexpected(room.error());
+  return seen_as(std::move(*room), seen_by);
+}
+
+Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref) {
   // An open room is found without the database, so that viewing goes on when that is away.
-  if (auto room = impl_->find(model_ref)) return room;
-  auto model = impl_->parts.store.model(model_ref);
+  if (auto room = find(model_ref)) return room;
+  auto model = parts.store.model(model_ref);
   if (!model) return tl::unexpected(model.error());
-  const int losses_before = impl_->context_losses;
+  const int losses_before = context_losses;
   {
-    std::unique_lock lock(impl_->mutex);
+    std::unique_lock lock(mutex);
     // One at a time loads a model; the others wait for it.
-    impl_->changed.wait(lock,
-                        [&] { return impl_->stopping || impl_->draining || !impl_->opening.contains(model->id); });
-    if (impl_->stopping || impl_->draining) return tl::unexpected(kStopping);
-    if (auto found = impl_->rooms.find(model->id); found != impl_->rooms.end()) {
+    changed.wait(lock, [&] { return stopping || draining || !opening.contains(model->id); });
+    if (stopping || draining) return tl::unexpected(kStopping);
+    if (auto found = rooms.find(model->id); found != rooms.end()) {
       found->second->touch();
       return found->second;
     }
-    impl_->opening.insert(model->id);
+    opening.insert(model->id);
   }
-  auto room = OpenRoom::open(impl_->parts, std::to_string(model->id));
-  if (!room && is_used_up(room.error()) && impl_->close_empty_rooms())
-    room = OpenRoom::open(impl_->parts, std::to_string(model->id));
-  std::unique_lock lock(impl_->mutex);
-  impl_->opening.erase(model->id);
-  impl_->changed.notify_all();
-  const bool deleted = impl_->deleted_meanwhile.erase(model->id) > 0;
+  auto room = OpenRoom::open(parts, std::to_string(model->id));
+  if (!room && is_used_up(room.error()) && close_empty_rooms()) room = OpenRoom::open(parts, std::to_string(model->id));
+  std::unique_lock lock(mutex);
+  opening.erase(model->id);
+  changed.notify_all();
+  const bool deleted = deleted_meanwhile.erase(model->id) > 0;
   if (!room) return tl::unexpected(room.error());
-  if (deleted || impl_->draining) {
+  if (deleted || draining) {
     lock.unlock();
     (*room)->shut(kClosing);
     if (!deleted) return tl::unexpected(kStopping);
     return fail(404, "Not found", "The model was deleted.");
   }
-  impl_->rooms[model->id] = *room;
-  if (impl_->context_losses != losses_before) (*room)->gpu_lost();  // it was filled in vain
-  return std::static_pointer_cast<Room>(*room);
+  rooms[model->id] = *room;
+  if (context_losses != losses_before) (*room)->gpu_lost();  // it was filled in vain
+  return room;
 }
 
 void Rooms::records_changed(std::int64_t table_id) {

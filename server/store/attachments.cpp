@@ -12,7 +12,7 @@ namespace {
 
 #define STRATA_ATTACHMENT_COLUMNS                                                       \
   "a.id, a.table_id, a.name, a.media_type, b.bytes, encode(a.sha256, 'hex'), a.width, " \
-  "a.height, a.user_name, a.time"
+  "a.height, a.user_name, a.time, a.visibility"
 
 std::optional<int> side_of(const PgResult& rows, int row, int column) {
   return rows.null(row, column) ? std::nullopt : std::optional(static_cast<int>(rows.integer(row, column)));
@@ -28,7 +28,8 @@ Attachment read_attachment_row(const PgResult& rows, int i) {
           side_of(rows, i, 6),
           side_of(rows, i, 7),
           rows.text(i, 8),
-          rows.time(i, 9)};
+          rows.time(i, 9),
+          parse_visibility(rows.text(i, 10)).value_or(Visibility::curators)};
 }
 
 Result<std::vector<Attachment>> rows_of_ids(PgConnection& connection, std::int64_t table_id,
@@ -92,8 +93,8 @@ Result<Attachment> insert_attachment(PgConnection& connection, std::int64_t tabl
                                      const Sha256& hash, const std::string& user) {
   const auto side = [](std::optional<int> value) { return value ? std::optional<std::int64_t>(*value) : std::nullopt; };
   auto row = connection.query(
-      "INSERT INTO attachments (table_id, sha256, name, media_type, width, height, user_name) "
-      "VALUES ($1, $2, $3, $4, $5, $6, $7) RETURNING id",
+      "INSERT INTO attachments (table_id, sha256, name, media_type, width, height, user_name, visibility) "
+      "VALUES ($1, $2, $3, $4, $5, $6, $7, $8) RETURNING id",
       Params()
           .integer(table_id)
           .bytes(hash)
@@ -101,7 +102,8 @@ Result<Attachment> insert_attachment(PgConnection& connection, std::int64_t tabl
           .text(file.media_type)
           .optional_integer(side(file.width))
           .optional_integer(side(file.height))
-          .text(user));
+          .text(user)
+          .text(name(file.visibility)));
   if (!row) return tl::unexpected(row.error());
   auto made = rows_of_ids(connection, table_id, std::vector{row->integer(0, 0)});
   if (!made) return tl::unexpected(made.error());
@@ -117,8 +119,8 @@ Result<TableChange> without_problems(Result<TableChange> change) {
 
 Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key, std::optional<std::int64_t> column_id,
                                       const std::vector<NewAttachment>& files, std::optional<std::int64_t> version,
-                                      const std::string& user, const FirstAnswer<Attached>& answer) {
-  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+                                      const Author& who, const FirstAnswer<Attached>& answer) {
+  if (auto good = check_text(who.user, "user"); !good) return tl::unexpected(good.error());
   std::vector<Content> contents;
   for (const NewAttachment& file : files) {
     if (auto good = check_name(file.name); !good) return tl::unexpected(good.error());
@@ -132,7 +134,7 @@ Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key, s
   // What cannot be is told before gigabytes are kept for it; said for certain once the table is locked, which others wait for. Not in one
   // transaction: having read the rows it would keep them from who deletes the table, and waits for them with the table locked.
   auto may = impl_->pool.read([&](PgConnection& connection) -> Result<void> {
-    auto open = read_table(connection, table_id);
+    auto open = read_table(connection, table_id, who.role);
     if (!open) return tl::unexpected(open.error());
     if (auto there = record_of(connection, *open, key, version); !there) {
       // Deleted between the two looks.
@@ -150,12 +152,13 @@ Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key, s
     if (!open) return tl::unexpected(open.error());
     auto record = record_of(connection, *open, key, version);
     if (!record) return tl::unexpected(record.error());
-    auto column = column_for(open->table, column_id, files);
+    const Table seen = seen_by(open->table, who.role);
+    auto column = column_for(seen, column_id, files);
     if (!column) return tl::unexpected(column.error());
     Attached attached;
     nlohmann::json cell = cell_of(*record, **column), ids = nlohmann::json::array();
     for (std::size_t i = 0; i < files.size(); ++i) {
-      auto made = insert_attachment(connection, table_id, files[i], contents[i].hash, user);
+      auto made = insert_attachment(connection, table_id, files[i], contents[i].hash, who.user);
       if (!made) return tl::unexpected(made.error());
       cell.push_back(made->id);
       ids.push_back(made->id);
@@ -164,7 +167,7 @@ Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key, s
     auto value = check_value(**column, cell, "column");
     if (!value) return tl::unexpected(value.error());
     TableEdit edit{
-        user, "attach", {{"records", 1}, {"keys", nlohmann::json::array({key})}, {"attachments", ids}}, {}, {}};
+        who.user, "attach", {{"records", 1}, {"keys", nlohmann::json::array({key})}, {"attachments", ids}}, {}, {}};
     edit.records[key][std::to_string((*column)->id)] = std::move(*value);
     auto change = without_problems(apply_edit(connection, *open, std::move(edit)));
     if (!change) return tl::unexpected(change.error());
@@ -207,19 +210,37 @@ Result<TableChange> Store::detach(std::int64_t attachment_id, const std::string&
   });
 }
 
-Result<Attachment> Store::attachment(std::int64_t id) {
+Result<Attachment> Store::attachment(std::int64_t id, const Author& seen_by) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<Attachment> {
     auto row = connection.query("SELECT " STRATA_ATTACHMENT_COLUMNS
                                 " FROM attachments a JOIN blobs b USING (sha256) WHERE a.id = $1",
                                 Params().integer(id));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() == 0) return not_found("attachment", std::to_string(id));
-    return read_attachment_row(*row, 0);
+    Attachment found = read_attachment_row(*row, 0);
+    if (!sees(seen_by, found)) return not_found("attachment", std::to_string(id));
+    return found;
   });
 }
 
-Result<std::vector<Attachment>> Store::attachments(std::int64_t table_id, std::span<const std::int64_t> ids) {
-  return impl_->pool.read([&](PgConnection& connection) { return rows_of_ids(connection, table_id, ids); });
+Result<std::vector<Attachment>> Store::attachments(std::int64_t table_id, const Author& seen_by,
+                                                   std::span<const std::int64_t> ids) {
+  auto found = impl_->pool.read([&](PgConnection& connection) { return rows_of_ids(connection, table_id, ids); });
+  if (found) std::erase_if(*found, [&](const Attachment& attachment) { return !sees(seen_by, attachment); });
+  return found;
+}
+
+Result<Attachment> Store::show_attachment(std::int64_t id, Visibility visibility,
+                                          const FirstAnswer<Attachment>& answer) {
+  return impl_->change(answer, [&](PgConnection& connection) -> Result<Attachment> {
+    auto row = connection.query(
+        "WITH a AS (UPDATE attachments SET visibility = $2 WHERE id = $1 RETURNING *) SELECT " STRATA_ATTACHMENT_COLUMNS
+        " FROM a JOIN blobs b USING (sha256)",
+        Params().integer(id).text(name(visibility)));
+    if (!row) return tl::unexpected(row.error());
+    if (row->rows() == 0) return not_found("attachment", std::to_string(id));
+    return read_attachment_row(*row, 0);
+  });
 }
 
 Result<void> Store::read_attachment(const Attachment& attachment, std::uint64_t begin, std::uint64_t end,

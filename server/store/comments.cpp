@@ -11,9 +11,14 @@ namespace {
 
 constexpr std::size_t kLongestText = 10'000;  // characters
 
+// Who sees the layer that the thread is about sees the thread. Also of a comment that a statement has just made.
+#define STRATA_COMMENT_VISIBILITY                                                                                     \
+  "CASE WHEN c.thread_id IS NULL THEN coalesce((SELECT visibility FROM layers WHERE id = c.layer_id), c.visibility) " \
+  "ELSE (SELECT coalesce(l.visibility, f.visibility) FROM comments f LEFT JOIN layers l ON l.id = f.layer_id "        \
+  "WHERE f.id = c.thread_id) END"
 #define STRATA_COMMENT_COLUMNS                                                                          \
   "c.id, c.model_id, c.thread_id, c.position, c.normal, c.layer_id, c.table_id, c.record_key, c.text, " \
-  "c.user_name, c.time, c.edited, c.deleted IS NOT NULL, c.resolved, c.resolved_by, c.version"
+  "c.user_name, c.time, c.edited, c.deleted IS NOT NULL, c.resolved, c.resolved_by, c.version, " STRATA_COMMENT_VISIBILITY
 
 std::optional<std::int64_t> id_at(const PgResult& rows, int row, int column) {
   return rows.null(row, column) ? std::nullopt : std::optional(rows.integer(row, column));
@@ -41,6 +46,8 @@ Comment read_comment(const PgResult& rows, int i) {
   comment.deleted = rows.boolean(i, 12);
   if (!rows.null(i, 13)) comment.resolved = {rows.text(i, 14), rows.time(i, 13)};
   comment.version = rows.integer(i, 15);
+  // What cannot be told is not shown.
+  comment.visibility = parse_visibility(rows.text(i, 16)).value_or(Visibility::curators);
   return comment;
 }
 
@@ -91,32 +98,39 @@ Result<Comments::Page> page_of(Result<PgResult> total, Result<PgResult> rows) {
 
 }  // namespace
 
-Result<Comments::Page> Comments::of_model(std::int64_t model_id, const Query& query) {
+Result<Comments::Page> Comments::of_model(std::int64_t model_id, Role seen_by, const Query& query) {
 // Times are told in milliseconds: one that was read counts what was changed then.
 #define STRATA_ASKED_COMMENTS                                                                            \
   " FROM comments c JOIN comments first ON first.id = coalesce(c.thread_id, c.id) WHERE c.model_id = $1" \
   " AND ($2::text IS NULL OR ($2 = 'resolved') = (first.resolved IS NOT NULL))"                          \
-  " AND ($3::text IS NULL OR date_trunc('milliseconds', c.changed) >= $3::timestamptz)"
+  " AND ($3::text IS NULL OR date_trunc('milliseconds', c.changed) >= $3::timestamptz)"                  \
+  " AND " STRATA_COMMENT_VISIBILITY " = any($4)"
   std::optional<std::string> state;
   if (query.resolved) state = *query.resolved ? "resolved" : "open";
   return pool_.read([&](PgConnection& connection) {
-    auto total = connection.query("SELECT count(*)" STRATA_ASKED_COMMENTS,
-                                  Params().integer(model_id).optional_text(state).optional_text(query.since));
+    auto total = connection.query("SELECT count(*)" STRATA_ASKED_COMMENTS, Params()
+                                                                               .integer(model_id)
+                                                                               .optional_text(state)
+                                                                               .optional_text(query.since)
+                                                                               .array(visibilities_seen_by(seen_by)));
     auto rows =
-        connection.query("SELECT " STRATA_COMMENT_COLUMNS STRATA_ASKED_COMMENTS " ORDER BY c.id LIMIT $4 OFFSET $5",
+        connection.query("SELECT " STRATA_COMMENT_COLUMNS STRATA_ASKED_COMMENTS " ORDER BY c.id LIMIT $5 OFFSET $6",
                          Params()
                              .integer(model_id)
                              .optional_text(state)
                              .optional_text(query.since)
+                             .array(visibilities_seen_by(seen_by))
                              .integer(query.limit)
                              .integer(query.offset));
     return page_of(std::move(total), std::move(rows));
   });
 }
 
-Result<Comments::Page> Comments::replies(std::int64_t thread, int limit, int offset) {
+Result<Comments::Page> Comments::replies(std::int64_t thread, Role seen_by, int limit, int offset) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
-    if (auto first = load_thread(connection, thread, Lock::none); !first) return tl::unexpected(first.error());
+    auto first = load_thread(connection, thread, Lock::none);
+    if (first && !sees(seen_by, first->visibility)) return not_found("comment", std::to_string(thread));
+    if (!first) return tl::unexpected(first.error());
     auto total = connection.query("SELECT count(*) FROM comments WHERE thread_id = $1", Params().integer(thread));
     auto rows = connection.query("SELECT " STRATA_COMMENT_COLUMNS
                                  " FROM comments c WHERE thread_id = $1 ORDER BY id LIMIT $2 OFFSET $3",
@@ -125,8 +139,10 @@ Result<Comments::Page> Comments::replies(std::int64_t thread, int limit, int off
   });
 }
 
-Result<Comment> Comments::comment(std::int64_t id) {
-  return pool_.read([&](PgConnection& connection) { return load(connection, id, Lock::none); });
+Result<Comment> Comments::comment(std::int64_t id, Role seen_by) {
+  auto found = pool_.read([&](PgConnection& connection) { return load(connection, id, Lock::none); });
+  if (found && !sees(seen_by, found->visibility)) return not_found("comment", std::to_string(id));
+  return found;
 }
 
 Result<Comment> Comments::create(const Comment& comment, const FirstAnswer<Comment>& answer) {

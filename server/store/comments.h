@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/problem.h"
+#include "core/visibility.h"
 #include "store/first_answer.h"
 
 namespace strata::store {
@@ -36,6 +37,7 @@ struct Comment {
   std::optional<std::chrono::system_clock::time_point> edited;  // its text
   bool deleted = false;                                         // stands there for its replies
   std::int64_t version = 1;
+  Visibility visibility = Visibility::everyone;  // of the layer that its thread is about, or was when that was deleted
 };
 
 // Threads of comments; of a Store, and as thread-safe and blocking as that, with the same Problems for what is not there, stale or away.
@@ -54,9 +56,11 @@ class Comments {
     std::vector<Comment> comments;  // by id
     std::int64_t total = 0;
   };
-  Result<Page> of_model(std::int64_t model_id, const Query& query);
-  Result<Page> replies(std::int64_t thread, int limit, int offset);  // 422: the comment is a reply itself
-  Result<Comment> comment(std::int64_t id);
+  // Those that the role sees; one that it does not see is not found.
+  Result<Page> of_model(std::int64_t model_id, Role seen_by, const Query& query);
+  // 422: the comment is a reply itself.
+  Result<Page> replies(std::int64_t thread, Role seen_by, int limit, int offset);
+  Result<Comment> comment(std::int64_t id, Role seen_by);
 
   // Id, times and version are given here; of a reply the model is that of its thread. Refused: text that is blank or too long (422), a
   // reply to a reply (422), one comment too many (409).

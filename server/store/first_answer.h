@@ -12,6 +12,9 @@ template <class... Effect>
 struct FirstAnswer {
   std::string key;  // empty: none is kept
   std::function<nlohmann::json(const Effect&...)> make;
+  // Who asked, for the project's activity; empty: nobody, so that what is changed is not told there, and what is made or deleted is by no
+  // name. (Entries of journals have names of their own.)
+  std::string user{};
 };
 
 }  // namespace strata::store

@@ -15,6 +15,9 @@ struct DatabaseState {
   std::int64_t known_version = 0;   // of the newest migration here
   std::uint64_t bytes = 0;
 };
+// The newest version of the schema that there is a migration to.
+Result<std::int64_t> newest_migration(const std::filesystem::path& migrations_dir);
+
 Result<DatabaseState> inspect_database(const std::string& dsn, const std::filesystem::path& migrations_dir);
 
 }  // namespace strata::store

@@ -16,7 +16,7 @@ namespace {
   "(SELECT coalesce(jsonb_agg(jsonb_build_object('slug', i.slug, 'layer', i.input_id, 'table', i.table_id) "           \
   "ORDER BY i.slug), '[]') FROM layer_inputs i WHERE i.layer_id = layers.id), "                                        \
   "EXISTS (SELECT 1 FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND "   \
-  "t.sequence > i.table_sequence), " STRATA_LAYER_STALE ", locked"
+  "t.sequence > i.table_sequence), " STRATA_LAYER_STALE ", locked, visibility"
 
 // A palette without points is that of the terms, where the layer's table is a list of such.
 Result<void> take_term_colors(PgConnection& connection, Layer& layer) {
@@ -58,6 +58,8 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.sequence = rows.integer(i, 14);
   layer.version = rows.integer(i, 15);
   layer.locked = rows.boolean(i, 22);
+  // What cannot be told is not shown.
+  layer.visibility = parse_visibility(rows.text(i, 23)).value_or(Visibility::curators);
   if (rows.null(i, 16)) return layer;
   LayerFormula formula{rows.text(i, 16),   rows.boolean(i, 17), rows.integer(i, 18), rows.boolean(i, 20), {},
                        rows.boolean(i, 21)};
@@ -151,7 +153,7 @@ Result<void> find_table(PgConnection& connection, Layer& layer, std::int64_t pro
 
 }  // namespace
 
-Result<std::vector<Layer>> Store::layers(std::int64_t model_id) {
+Result<std::vector<Layer>> Store::layers(std::int64_t model_id, Role seen_by) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
     auto known = connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id));
     if (!known) return tl::unexpected(known.error());
@@ -164,13 +166,13 @@ Result<std::vector<Layer>> Store::layers(std::int64_t model_id) {
     for (int i = 0; i < rows->rows(); ++i) {
       auto layer = read_layer(connection, *rows, i);
       if (!layer) return tl::unexpected(layer.error());
-      layers.push_back(std::move(*layer));
+      if (sees(seen_by, layer->visibility)) layers.push_back(std::move(*layer));
     }
     return layers;
   });
 }
 
-Result<Layer> Store::layer(std::int64_t model_id, const std::string& ref) {
+Result<Layer> Store::layer(std::int64_t model_id, const std::string& ref, Role seen_by) {
   if (!check_text(ref, "layer")) return not_found("layer", ref);
   return impl_->pool.read([&](PgConnection& connection) -> Result<Layer> {
     const auto id = id_of(ref);
@@ -180,7 +182,9 @@ Result<Layer> Store::layer(std::int64_t model_id, const std::string& ref) {
                                       Params().integer(model_id).text(ref));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0) return not_found("layer", ref);
-    return read_layer(connection, *rows, 0);
+    auto layer = read_layer(connection, *rows, 0);
+    if (layer && !sees(seen_by, layer->visibility)) return not_found("layer", ref);
+    return layer;
   });
 }
 
@@ -199,7 +203,7 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
         layer.slug.empty() ? layer.name : layer.slug, [&](const std::string& slug) {
           return connection.query(
               "INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
-              "draw_order, table_id, locked) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14) "
+              "draw_order, table_id, locked, visibility) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15) "
               "ON CONFLICT (model_id, slug) DO NOTHING RETURNING " STRATA_LAYER_COLUMNS,
               Params()
                   .integer(layer.model_id)
@@ -215,7 +219,8 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
                   .boolean(layer.visible)
                   .integer(layer.order)
                   .optional_integer(layer.table)
-                  .boolean(layer.locked));
+                  .boolean(layer.locked)
+                  .text(name(layer.visibility)));
         });
     if (!row || !layer.formula) return row ? read_layer(connection, *row, 0) : tl::unexpected(row.error());
     layer.id = row->integer(0, 0);
@@ -229,7 +234,7 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = connection.query(
         "UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
-        "draw_order = $10, locked = $11, version = version + 1 WHERE id = $1 AND version = $2 "
+        "draw_order = $10, locked = $11, visibility = $12, version = version + 1 WHERE id = $1 AND version = $2 "
         "RETURNING " STRATA_LAYER_COLUMNS,
         Params()
             .integer(layer.id)
@@ -242,7 +247,8 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
             .real(layer.opacity)
             .boolean(layer.visible)
             .integer(layer.order)
-            .boolean(layer.locked));
+            .boolean(layer.locked)
+            .text(name(layer.visibility)));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) {
       auto now = read_layer(connection, *row, 0);
@@ -364,6 +370,11 @@ Result<Layer> Store::widen_layer(const Layer& layer, ValueType type, const First
 
 Result<void> Store::delete_layer(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
+    // What was written about it is seen by no more people than before.
+    auto kept = connection.query(
+        "UPDATE comments c SET visibility = l.visibility FROM layers l WHERE l.id = $1 AND c.layer_id = l.id",
+        Params().integer(id));
+    if (!kept) return tl::unexpected(kept.error());
     auto done = connection.query("DELETE FROM layers WHERE id = $1", Params().integer(id));
     if (!done) return tl::unexpected(done.error());
     return done->affected() > 0 ? Result<void>{} : not_found("layer", std::to_string(id));

@@ -12,7 +12,7 @@ constexpr const char* kSelectModels =
     "SELECT m.id, m.project_id, m.name, m.slug::text, m.unit, m.unit_assumed, m.scale_verified, m.up, m.north, m.crs, "
     "m.origin, m.bounds_min, m.bounds_max, m.triangles, m.vertices, m.area, m.atlas, m.repairs, m.default_resolution, "
     "m.inventory_number, m.owner, m.creator, m.captured, m.method, m.accuracy, m.processing, m.rights_uri, m.credit, "
-    "m.sequence, m.version, "
+    "m.source_download, m.sequence, m.version, "
     "(SELECT coalesce(jsonb_agg(jsonb_build_object('name', s.name, 'sha256', encode(s.sha256, 'hex'), 'bytes', b.bytes) "
     "ORDER BY s.position), '[]') FROM model_sources s JOIN blobs b USING (sha256) WHERE s.model_id = m.id) "
     "FROM models m ";
@@ -48,6 +48,8 @@ Model read_model(const PgResult& rows, int i) {
   for (std::string* text : {&m.inventory_number, &m.owner, &m.creator, &m.captured, &m.method, &m.accuracy,
                             &m.processing, &m.rights_uri, &m.credit})
     *text = rows.text(i, c++);
+  // What cannot be told is not given away.
+  m.source_download = parse_role(rows.text(i, c++)).value_or(Role::curator);
   m.sequence = rows.integer(i, c++);
   m.version = rows.integer(i, c++);
   for (const auto& file : rows.json(i, c++))
@@ -76,7 +78,7 @@ Result<void> check(const Model& m) {
                       {&m.atlas.source, "atlas"}});
 }
 
-// What can be changed later: $1 name, $2 slug, … $19 credit.
+// What can be changed later: $1 name, $2 slug, … $20 source_download.
 Params metadata(const Model& m, const std::string& slug) {
   Params params;
   params.text(m.name)
@@ -97,7 +99,8 @@ Params metadata(const Model& m, const std::string& slug) {
       .text(m.accuracy)
       .text(m.processing)
       .text(m.rights_uri)
-      .text(m.credit);
+      .text(m.credit)
+      .text(name(m.source_download));
   return params;
 }
 
@@ -125,10 +128,10 @@ Result<PgResult> insert_model(PgConnection& connection, const Model& m, const st
       .bytes(geometry);
   return connection.query(
       "INSERT INTO models (name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, "
-      "inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, "
+      "inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download, "
       "origin, bounds_min, bounds_max, triangles, vertices, area, atlas, repairs, geometry) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20, $21, $22, $23, $24, "
-      "$25, $26, $27, $28) ON CONFLICT (slug) DO NOTHING RETURNING id",
+      "$25, $26, $27, $28, $29) ON CONFLICT (slug) DO NOTHING RETURNING id",
       params);
 }
 
@@ -245,8 +248,8 @@ Result<Model> Store::update_model(Model m, const FirstAnswer<Model>& answer) {
     auto row = connection.query(
         "UPDATE models SET name = $1, slug = $2, project_id = $3, unit = $4, unit_assumed = $5, scale_verified = $6, up = $7, "
         "north = $8, crs = $9, default_resolution = $10, inventory_number = $11, owner = $12, creator = $13, captured = $14, "
-        "method = $15, accuracy = $16, processing = $17, rights_uri = $18, credit = $19, version = version + 1 "
-        "WHERE id = $20 AND version = $21 RETURNING id",
+        "method = $15, accuracy = $16, processing = $17, rights_uri = $18, credit = $19, source_download = $20, "
+        "version = version + 1 WHERE id = $21 AND version = $22 RETURNING id",
         metadata(m, m.slug).integer(m.id).integer(m.version));
     if (!row) return tl::unexpected(row.error());
     auto now = model_by_id(connection, m.id);

@@ -253,9 +253,11 @@ Result<void> Store::delete_person(const std::string& name) {
          {"UPDATE users SET name = $2, full_name = '', password = NULL, deleted = now() WHERE name = $1",
           "UPDATE edits SET user_name = $2 WHERE user_name = $1",
           "UPDATE table_edits SET user_name = $2 WHERE user_name = $1",
-          "UPDATE attachments SET user_name = $2 WHERE user_name = $1"})
+          "UPDATE attachments SET user_name = $2 WHERE user_name = $1",
+          "UPDATE views SET user_name = $2 WHERE user_name = $1"})
       if (auto done = run(connection, sql, Params().text(person->name).text(former)); !done) return done;
     if (auto done = rename_in_comments(connection, person->name, former); !done) return done;
+    if (auto done = rename_in_activity(connection, person->name, former); !done) return done;
     // Answers that are kept for calls that come again may tell it, as the name of somebody or in what is said to them; names hold
     // nothing that JSON writes otherwise.
     return run(connection,
@@ -280,7 +282,8 @@ Result<std::vector<Membership>> Store::members(std::int64_t project_id) {
   });
 }
 
-Result<Membership> Store::put_member(std::int64_t project_id, const std::string& user, Role role) {
+Result<Membership> Store::put_member(std::int64_t project_id, const std::string& user, Role role,
+                                     const std::string& by) {
   if (role < Role::viewer || role > Role::curator)
     return fail(422, "No role in a project", "In a project people are viewer, annotator or curator.", "role");
   return impl_->pool.write([&](PgConnection& connection) -> Result<Membership> {
@@ -289,6 +292,7 @@ Result<Membership> Store::put_member(std::int64_t project_id, const std::string&
     auto project = connection.query("SELECT 1 FROM projects WHERE id = $1 FOR KEY SHARE", Params().integer(project_id));
     if (!project) return tl::unexpected(project.error());
     if (project->rows() == 0) return not_found("project", std::to_string(project_id));
+    if (auto named = act_as(connection, by); !named) return tl::unexpected(named.error());
     auto put = run(connection,
                    "INSERT INTO project_members (project_id, user_id, role) VALUES ($1, $2, $3) "
                    "ON CONFLICT (project_id, user_id) DO UPDATE SET role = excluded.role",
@@ -298,10 +302,11 @@ Result<Membership> Store::put_member(std::int64_t project_id, const std::string&
   });
 }
 
-Result<void> Store::remove_member(std::int64_t project_id, const std::string& user) {
+Result<void> Store::remove_member(std::int64_t project_id, const std::string& user, const std::string& by) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
     auto person = lock_person(connection, user);
     if (!person) return tl::unexpected(person.error());
+    if (auto named = act_as(connection, by); !named) return named;
     auto gone = connection.query("DELETE FROM project_members WHERE project_id = $1 AND user_id = $2 RETURNING 1",
                                  Params().integer(project_id).integer(person->id));
     if (!gone) return tl::unexpected(gone.error());

@@ -66,8 +66,8 @@ std::string of_two(const std::string& a, const std::string& b, const std::string
 
 class Writer {
  public:
-  Writer(const Table& table, PgConnection& connection, Params& params, const std::string& field)
-      : table_(table), connection_(connection), params_(params), field_(field) {}
+  Writer(const OpenTable& open, PgConnection& connection, Params& params, const std::string& field)
+      : table_(open.table), seen_by_(open.seen_by), connection_(connection), params_(params), field_(field) {}
 
   Result<std::string> write(const Expression& expression, Kind wanted) {
     const std::string sql = wanted == Kind::truth ? condition(expression) : number(expression);
@@ -99,7 +99,7 @@ class Writer {
   const Table* target_of(const Column& column) {
     const auto [found, is_new] = targets_.try_emplace(*column.target);
     if (is_new) {
-      auto open = read_table(connection_, *column.target);
+      auto open = read_table(connection_, *column.target, seen_by_);
       if (!open) {
         if (!problem_) problem_ = open.error();
         return nullptr;
@@ -421,6 +421,7 @@ class Writer {
   }
 
   const Table& table_;
+  const Role seen_by_;
   PgConnection& connection_;
   Params& params_;
   const std::string& field_;
@@ -431,14 +432,14 @@ class Writer {
 
 }  // namespace
 
-Result<std::string> condition_sql(const Expression& condition, const Table& table, PgConnection& connection,
+Result<std::string> condition_sql(const Expression& condition, const OpenTable& open, PgConnection& connection,
                                   Params& params, const std::string& field) {
-  return Writer(table, connection, params, field).write(condition, Kind::truth);
+  return Writer(open, connection, params, field).write(condition, Kind::truth);
 }
 
-Result<std::string> number_sql(const Expression& number, const Table& table, PgConnection& connection, Params& params,
-                               const std::string& field) {
-  return Writer(table, connection, params, field).write(number, Kind::number);
+Result<std::string> number_sql(const Expression& number, const OpenTable& open, PgConnection& connection,
+                               Params& params, const std::string& field) {
+  return Writer(open, connection, params, field).write(number, Kind::number);
 }
 
 Problem unanswerable(const PgConnection& connection, Problem problem, const std::string& field) {

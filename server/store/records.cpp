@@ -213,18 +213,18 @@ Result<TableChange> Store::delete_record(std::int64_t table_id, std::int64_t key
   return done;
 }
 
-Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, const Expression& expression,
+Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, Role seen_by, const Expression& expression,
                                                      std::optional<std::int64_t> at, const std::string& field) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyNumber>> {
     auto transaction = Transaction::begin_reading(connection);
     if (!transaction) return tl::unexpected(transaction.error());
-    auto open = read_table(connection, table_id);
+    auto open = read_table(connection, table_id, seen_by);
     if (!open) return tl::unexpected(open.error());
     auto past = rows_if_past(connection, *open, at);
     if (!past) return tl::unexpected(past.error());
     Params params;
-    auto sql = expression.is_condition() ? condition_sql(expression, open->table, connection, params, field)
-                                         : number_sql(expression, open->table, connection, params, field);
+    auto sql = expression.is_condition() ? condition_sql(expression, *open, connection, params, field)
+                                         : number_sql(expression, *open, connection, params, field);
     if (!sql) return tl::unexpected(sql.error());
     auto numbers = load_numbers(connection, table_id, open->table.columns, *past,
                                 expression.is_condition() ? "(" + *sql + ")::integer" : *sql, std::move(params));
@@ -234,10 +234,10 @@ Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, cons
   });
 }
 
-Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, const std::string& ref,
+Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, Role seen_by, const std::string& ref,
                                                  const std::string& field) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyText>> {
-    auto open = read_table(connection, table_id);
+    auto open = read_table(connection, table_id, seen_by);
     if (!open) return tl::unexpected(open.error());
     const Column* column = find_column(open->table.columns, ref);
     if (!column)
@@ -256,12 +256,12 @@ Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, const st
   });
 }
 
-Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, std::int64_t model_id,
+Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, Role seen_by, std::int64_t model_id,
                                           std::optional<std::int64_t> at) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyMark>> {
     auto transaction = Transaction::begin_reading(connection);
     if (!transaction) return tl::unexpected(transaction.error());
-    auto open = read_table(connection, table_id);
+    auto open = read_table(connection, table_id, seen_by);
     if (!open) return tl::unexpected(open.error());
     auto past = rows_if_past(connection, *open, at);
     if (!past) return tl::unexpected(past.error());
@@ -282,11 +282,11 @@ Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, std::int64_t mo
   });
 }
 
-Result<Store::RecordPage> Store::records(std::int64_t table_id, const RecordQuery& query) {
+Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by, const RecordQuery& query) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<RecordPage> {
     auto transaction = Transaction::begin_reading(connection);
     if (!transaction) return tl::unexpected(transaction.error());
-    auto open = read_table(connection, table_id);
+    auto open = read_table(connection, table_id, seen_by);
     if (!open) return tl::unexpected(open.error());
     RecordPage page;
     auto past = rows_if_past(connection, *open, query.at);
@@ -319,7 +319,7 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, const RecordQuer
       Params params;
       std::string where;
       if (query.filter) {
-        auto sql = condition_sql(*query.filter, open->table, connection, params, "filter");
+        auto sql = condition_sql(*query.filter, *open, connection, params, "filter");
         if (!sql) return tl::unexpected(sql.error());
         where = std::move(*sql);
       }
@@ -361,10 +361,10 @@ Result<std::int64_t> Store::table_sequence_when(std::int64_t table_id, std::int6
   });
 }
 
-Result<Store::TableHistory> Store::table_history(std::int64_t table_id, std::optional<std::int64_t> key, int limit,
-                                                 int offset) {
+Result<Store::TableHistory> Store::table_history(std::int64_t table_id, Role seen_by, std::optional<std::int64_t> key,
+                                                 int limit, int offset) {
   return impl_->pool.read(
-      [&](PgConnection& connection) { return read_history(connection, table_id, key, limit, offset); });
+      [&](PgConnection& connection) { return read_history(connection, table_id, seen_by, key, limit, offset); });
 }
 
 Result<UndoPlan> Store::plan_table_undo(std::int64_t table_id, const std::string& user, bool redo) {

@@ -29,6 +29,7 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options, const std::file
 }
 
 Comments& Store::comments() { return impl_->comments; }
+Views& Store::views() { return impl_->views; }
 
 Result<StoreInfo> Store::info() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {
@@ -79,6 +80,13 @@ Result<void> check_json(const nlohmann::json& json, const std::string& field) {
 std::optional<std::int64_t> id_of(const std::string& ref) {
   if (!is_all_digits(ref)) return std::nullopt;
   return ref.size() > 18 ? 0 : std::stoll(ref);
+}
+
+PgArray visibilities_seen_by(Role role) {
+  PgArray names(oid::kText);
+  for (const Visibility each : {Visibility::everyone, Visibility::team, Visibility::curators})
+    if (sees(role, each)) names.add(name(each));
+  return names;
 }
 
 std::string free_slug(const std::string& wished, const PgResult& taken) {

@@ -22,6 +22,7 @@
 #include "core/term.h"
 #include "core/tile_mirror.h"
 #include "core/tool.h"
+#include "store/activity.h"
 #include "store/first_answer.h"
 #include "store/journal.h"
 #include "store/people.h"
@@ -31,6 +32,7 @@
 namespace strata::store {
 
 class Comments;
+class Views;
 
 struct StoreOptions {
   std::string dsn;      // libpq connection string
@@ -66,6 +68,9 @@ class Store {
   Result<Project> update_project(Project project, const FirstAnswer<Project>& answer = {});
   Result<void> delete_project(
       std::int64_t id, const FirstAnswer<>& answer = {});  // refused (409) while it has models, and for `default`
+  // What was done in it, but for what is about layers that the role does not see; a page costs the same however long its history is. An
+  // unknown project or model has none.
+  Result<ActivityPage> activity(std::int64_t project_id, Role seen_by, const ActivityQuery& query);
 
   // --- models
   struct NewModel {
@@ -108,6 +113,7 @@ class Store {
   Result<std::vector<std::uint8_t>> look_picture(std::int64_t id);
 
   Comments& comments();  // threads on models (store/comments.h); lives as long as this
+  Views& views();        // named views of models (store/views.h); the same
 
   // --- tools: shapes for the brush, of the whole site
   static constexpr int kMostTools = 200;  // that are not deleted
@@ -120,8 +126,9 @@ class Store {
   Result<ShapeBits> tool_shape(std::int64_t id);  // deleted or not
 
   // --- layers
-  Result<std::vector<Layer>> layers(std::int64_t model_id);  // by order
-  Result<Layer> layer(std::int64_t model_id, const std::string& ref);
+  // Those that the role sees, by order; one that it does not see is not found.
+  Result<std::vector<Layer>> layers(std::int64_t model_id, Role seen_by);
+  Result<Layer> layer(std::int64_t model_id, const std::string& ref, Role seen_by);
   // A database layer that names no table gets one of its own name with `columns`.
   Result<Layer> create_layer(Layer layer, const FirstAnswer<Layer>& answer = {}, std::vector<Column> columns = {});
   Result<Layer> update_layer(Layer layer, const FirstAnswer<Layer>& answer = {});
@@ -138,13 +145,14 @@ class Store {
   Result<std::vector<Layer>> layers_to_recompute();
 
   // --- tables of a project, by id or slug. Changes of columns and records are entries of the table's journal, of one person each.
-  Result<std::vector<Table>> tables(std::int64_t project_id);  // by name
-  Result<Table> table(const std::string& ref);
+  // With the columns that the role sees: to it the others are not there, neither by name nor in the past. A TableChange has all.
+  Result<std::vector<Table>> tables(std::int64_t project_id, Role seen_by);  // by name
+  Result<Table> table(const std::string& ref, Role seen_by);
   Result<Table> create_table(const Table& table, const FirstAnswer<Table>& answer = {});  // with its columns
   Result<Table> update_table(const Table& table, const FirstAnswer<Table>& answer = {});  // name, labels, description
   Result<void> delete_table(std::int64_t id,
                             const FirstAnswer<>& answer = {});  // refused (409) while something names it
-  Result<std::vector<Layer>> layers_of_table(std::int64_t table_id);
+  Result<std::vector<Layer>> layers_of_table(std::int64_t table_id, Role seen_by);
   // Several tables and the terms of those that are lists, all or none: where one of the changes has problems, nothing was made. 409: the
   // project has a table of that name. Terms are the first entry of their table's journal.
   struct NewTable {
@@ -166,6 +174,10 @@ class Store {
                                     const FirstAnswer<TableChange>& answer = {});
   Result<TableChange> update_column(std::int64_t table_id, const Column& column, std::optional<std::int64_t> version,
                                     const std::string& user, const FirstAnswer<TableChange>& answer = {});
+  // Who sees the column, now and in the past: no entry of the journal, so that nothing is seen again by undo. Where version equals.
+  // Refused (422): a list of terms lives by the column, or who writes records would not see it and must fill it.
+  Result<Table> show_column(std::int64_t table_id, std::int64_t column_id, Visibility visibility, std::int64_t version,
+                            const FirstAnswer<Table>& answer = {});
   Result<TableChange> drop_column(std::int64_t table_id, std::int64_t column_id, std::optional<std::int64_t> version,
                                   const std::string& user, const FirstAnswer<TableChange>& answer = {});
 
@@ -182,16 +194,18 @@ class Store {
     std::vector<Record> records;
     std::int64_t total = 0;
   };
-  Result<RecordPage> records(std::int64_t table_id, const RecordQuery& query);
+  Result<RecordPage> records(std::int64_t table_id, Role seen_by, const RecordQuery& query);
   // What a number or a condition over columns is for each record, where it is known; after sequence `at` of the table, or now.
   // Refused (422 at `field`): what the columns do not fit.
-  Result<std::vector<KeyNumber>> record_numbers(std::int64_t table_id, const Expression& expression,
+  Result<std::vector<KeyNumber>> record_numbers(std::int64_t table_id, Role seen_by, const Expression& expression,
                                                 std::optional<std::int64_t> at, const std::string& field);
   // What a column holds for each record that has a value there, now: as text, canonical (of a term, its key). Refused (422 at
   // `field`): a column that is not there or holds lists.
-  Result<std::vector<KeyText>> record_texts(std::int64_t table_id, const std::string& column, const std::string& field);
+  Result<std::vector<KeyText>> record_texts(std::int64_t table_id, Role seen_by, const std::string& column,
+                                            const std::string& field);
   // The lines and points that records of a table have on a model, by key; after sequence `at` of the table, or now.
-  Result<std::vector<KeyMark>> marks(std::int64_t table_id, std::int64_t model_id, std::optional<std::int64_t> at = {});
+  Result<std::vector<KeyMark>> marks(std::int64_t table_id, Role seen_by, std::int64_t model_id,
+                                     std::optional<std::int64_t> at = {});
   // All or none: where the change has problems, nothing was written.
   Result<TableChange> write_records(std::int64_t table_id, const WriteRecords& asked, const std::string& user,
                                     const FirstAnswer<TableChange>& answer = {});
@@ -207,7 +221,9 @@ class Store {
     std::vector<TableEditRow> rows;
     std::int64_t total = 0;
   };
-  Result<TableHistory> table_history(std::int64_t table_id, std::optional<std::int64_t> key, int limit, int offset);
+  // What was done to cells that the role does not see is left out, and what the entries say of themselves with it.
+  Result<TableHistory> table_history(std::int64_t table_id, Role seen_by, std::optional<std::int64_t> key, int limit,
+                                     int offset);
   // The person's newest entry in force, or the one that was undone last; 409 where there is none. Done where the table is as it was
   // when it was planned (412).
   Result<UndoPlan> plan_table_undo(std::int64_t table_id, const std::string& user, bool redo);
@@ -220,6 +236,7 @@ class Store {
     std::filesystem::path file;
     std::string media_type;
     std::optional<int> width, height;
+    Visibility visibility = Visibility::everyone;
   };
   struct Attached {
     TableChange change;
@@ -229,13 +246,17 @@ class Store {
   // all of them are that, otherwise the first one of documents.
   Result<Attached> attach(std::int64_t table_id, std::int64_t key, std::optional<std::int64_t> column_id,
                           const std::vector<NewAttachment>& files, std::optional<std::int64_t> version,
-                          const std::string& user, const FirstAnswer<Attached>& answer = {});
+                          const Author& who, const FirstAnswer<Attached>& answer = {});
   // Takes it out of all cells that list it; 404 where none does. It stays for undo and for reading the past.
   Result<TableChange> detach(std::int64_t attachment_id, const std::string& user,
                              const FirstAnswer<TableChange>& answer = {});
-  Result<Attachment> attachment(std::int64_t id);
-  // Those of the ids that the table has, by id.
-  Result<std::vector<Attachment>> attachments(std::int64_t table_id, std::span<const std::int64_t> ids);
+  // One that they do not see is not found.
+  Result<Attachment> attachment(std::int64_t id, const Author& seen_by);
+  // Those of the ids that the table has and they see, by id.
+  Result<std::vector<Attachment>> attachments(std::int64_t table_id, const Author& seen_by,
+                                              std::span<const std::int64_t> ids);
+  Result<Attachment> show_attachment(std::int64_t id, Visibility visibility,
+                                     const FirstAnswer<Attachment>& answer = {});
   // The bytes from `begin` to before `end`, in pieces ≤ 1 MiB; `sink` returns false to stop.
   Result<void> read_attachment(const Attachment& attachment, std::uint64_t begin, std::uint64_t end,
                                const std::function<bool(std::span<const std::uint8_t>)>& sink);
@@ -296,9 +317,11 @@ class Store {
   // Who has a role in the project beside the one they have everywhere, by name.
   Result<std::vector<Membership>> members(std::int64_t project_id);
   // Gives the role (viewer, annotator or curator) in place of the one they had there. 404: the project or the person is not there.
-  Result<Membership> put_member(std::int64_t project_id, const std::string& user, Role role);
+  // `by`: who asked, for the project's activity; empty: it is not told there.
+  Result<Membership> put_member(std::int64_t project_id, const std::string& user, Role role,
+                                const std::string& by = {});
   // 404: the person has no role of their own there.
-  Result<void> remove_member(std::int64_t project_id, const std::string& user);
+  Result<void> remove_member(std::int64_t project_id, const std::string& user, const std::string& by = {});
   // The hash (store/password.h); empty where there is none, or nobody of the name who may sign in. In whatever case.
   Result<std::string> password_of(const std::string& name);
   // Ends all sessions but `kept`, and makes all links worthless.

@@ -7,11 +7,16 @@
 #include "store/comments.h"
 #include "store/pool.h"
 #include "store/store.h"
+#include "store/views.h"
 
 namespace strata::store {
 
 // In the transaction at hand; 409 where a call with this key was answered already.
 Result<void> insert_answer(PgConnection& connection, const std::string& key, const nlohmann::json& answer);
+
+// In the transaction at hand: what it changes is told as this person's doing (db/migrations/000018_activity.sql). Empty: as nobody's.
+Result<void> act_as(PgConnection& connection, const std::string& user);
+Result<void> rename_in_activity(PgConnection& connection, const std::string& name, const std::string& former);
 
 template <class T>
 Result<void> keep(PgConnection& connection, const FirstAnswer<T>& answer, const Result<T>& effect) {
@@ -26,6 +31,8 @@ template <class Answer, class Work>
 auto change(Pool& pool, const Answer& answer, Work&& work, const PgLimits& limits = kRequestLimits)
     -> std::invoke_result_t<Work, PgConnection&> {
   return pool.write_within(limits, [&](PgConnection& connection) {
+    if (auto named = act_as(connection, answer.user); !named)
+      return std::invoke_result_t<Work, PgConnection&>(tl::unexpected(named.error()));
     auto effect = work(connection);
     if (effect)
       if (auto kept = keep(connection, answer, effect); !kept) effect = tl::unexpected(kept.error());
@@ -39,6 +46,7 @@ struct Store::Impl {
   const StoreOptions options;
   Pool pool;
   Comments comments{pool};
+  Views views{pool};
   std::int64_t schema_version = 0;
 
   template <class Answer, class Work>
@@ -52,6 +60,9 @@ struct Store::Impl {
   std::optional<PgConnection> probe;
   std::atomic<bool> was_ready = true;
 };
+
+// Of what the role sees, for `= any($n)`.
+PgArray visibilities_seen_by(Role role);
 
 inline constexpr std::size_t kLongestName = 255;
 

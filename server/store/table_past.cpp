@@ -56,6 +56,35 @@ Result<std::map<std::int64_t, Cells>> resolve(PgConnection& connection, std::int
   return resolved;
 }
 
+Result<std::set<std::int64_t>> unseen_columns(PgConnection& connection, std::int64_t table_id, Role role) {
+  auto open = read_table(connection, table_id);
+  if (!open) return tl::unexpected(open.error());
+  std::set<std::int64_t> unseen;
+  for (const Column& column : open->all)
+    if (!sees(role, column.visibility)) unseen.insert(column.id);
+  return unseen;
+}
+
+void leave_out(TableEditRow& row, const std::set<std::int64_t>& columns) {
+  if (columns.empty()) return;
+  const auto names = [&](const char* member) {
+    const auto named = row.record.find(member);
+    return named != row.record.end() && named->is_number_integer() && columns.contains(named->get<std::int64_t>());
+  };
+  if (row.record.is_object() && (names("column") || names("from"))) row.record = nlohmann::json::object();
+  for (TableEditRow::Change& change : row.changes) {
+    if (change.is_column) continue;
+    for (const std::int64_t column : columns) {
+      change.before.erase(std::to_string(column));
+      change.after.erase(std::to_string(column));
+    }
+  }
+  const auto gone = std::erase_if(row.changes, [&](const TableEditRow::Change& change) {
+    return change.is_column ? columns.contains(change.id) : change.before.empty() && change.after.empty();
+  });
+  row.total_changes -= static_cast<std::int64_t>(gone);
+}
+
 }  // namespace
 
 Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open, std::int64_t sequence) {
@@ -111,7 +140,7 @@ Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open, s
   return past;
 }
 
-Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t table_id,
+Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t table_id, Role seen_by,
                                          std::optional<std::int64_t> key, int limit, int offset) {
   auto total = connection.query(
       "SELECT count(*) FROM table_edits e WHERE table_id = $1 AND ($2::bigint IS NULL OR EXISTS (SELECT 1 FROM table_changes c "
@@ -126,6 +155,8 @@ Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t 
       "ORDER BY sequence DESC LIMIT $3 OFFSET $4",
       Params().integer(table_id).optional_integer(key).integer(limit).integer(offset));
   if (!rows) return tl::unexpected(rows.error());
+  auto unseen = unseen_columns(connection, table_id, seen_by);
+  if (!unseen) return tl::unexpected(unseen.error());
   Store::TableHistory history;
   history.total = total->integer(0, 0);
   for (int i = 0; i < rows->rows(); ++i) {
@@ -145,6 +176,7 @@ Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t 
     for (int c = 0; c < changes->rows(); ++c)
       row.changes.push_back({changes->boolean(c, 0), changes->integer(c, 1), cells_from(changes->json(c, 2)),
                              cells_from(changes->json(c, 3))});
+    leave_out(row, *unseen);
     history.rows.push_back(std::move(row));
   }
   return history;

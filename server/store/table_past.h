@@ -9,7 +9,7 @@ namespace strata::store {
 // The records after a sequence, by key; `open` gets the columns of then.
 Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open, std::int64_t sequence);
 
-Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t table_id,
+Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t table_id, Role seen_by,
                                          std::optional<std::int64_t> key, int limit, int offset);
 
 struct PlannedUndo {

@@ -55,7 +55,7 @@ void set_properties(Column& column, const nlohmann::json& properties) {
 void show_columns(OpenTable& open) {
   open.table.columns.clear();
   for (const Column& column : open.all)
-    if (!column.hidden) open.table.columns.push_back(column);
+    if (!column.hidden && sees(open.seen_by, column.visibility)) open.table.columns.push_back(column);
   std::stable_sort(open.table.columns.begin(), open.table.columns.end(),
                    [](const Column& a, const Column& b) { return a.order < b.order; });
 }
@@ -451,7 +451,7 @@ void put_cells(OpenTable& open, const std::map<std::int64_t, Cells>& columns) {
   show_columns(open);
 }
 
-Result<OpenTable> read_table(PgConnection& connection, std::int64_t id) {
+Result<OpenTable> read_table(PgConnection& connection, std::int64_t id, Role seen_by) {
   auto row = connection.query(
       "SELECT id, project_id, name, slug::text, labels, description, records, sequence, version, next_key "
       "FROM record_tables WHERE id = $1",
@@ -459,6 +459,7 @@ Result<OpenTable> read_table(PgConnection& connection, std::int64_t id) {
   if (!row) return tl::unexpected(row.error());
   if (row->rows() == 0) return not_found("table", std::to_string(id));
   OpenTable open;
+  open.seen_by = seen_by;
   open.table.id = row->integer(0, 0);
   open.table.project_id = row->integer(0, 1);
   open.table.name = row->text(0, 2);
@@ -470,7 +471,7 @@ Result<OpenTable> read_table(PgConnection& connection, std::int64_t id) {
   open.table.version = row->integer(0, 8);
   open.next_key = row->integer(0, 9);
   auto columns = connection.query(
-      "SELECT id, kind, target, properties, hidden FROM record_columns WHERE table_id = $1 ORDER BY id",
+      "SELECT id, kind, target, properties, hidden, visibility FROM record_columns WHERE table_id = $1 ORDER BY id",
       Params().integer(id));
   if (!columns) return tl::unexpected(columns.error());
   for (int i = 0; i < columns->rows(); ++i) {
@@ -482,6 +483,8 @@ Result<OpenTable> read_table(PgConnection& connection, std::int64_t id) {
     if (!columns->null(i, 2)) column.target = columns->integer(i, 2);
     set_properties(column, columns->json(i, 3));
     column.hidden = columns->boolean(i, 4);
+    // What cannot be told is not shown.
+    column.visibility = parse_visibility(columns->text(i, 5)).value_or(Visibility::curators);
     open.all.push_back(std::move(column));
   }
   show_columns(open);
@@ -534,12 +537,14 @@ Result<Column> insert_column(PgConnection& connection, const OpenTable& open, Co
         "A table has at most " + std::to_string(kMostColumns) + " columns, those that were dropped among them.");
   column.hidden = true;
   auto row = connection.query(
-      "INSERT INTO record_columns (table_id, kind, target, properties, hidden) VALUES ($1, $2, $3, $4, true) RETURNING id",
+      "INSERT INTO record_columns (table_id, kind, target, properties, hidden, visibility) VALUES ($1, $2, $3, $4, true, $5) "
+      "RETURNING id",
       Params()
           .integer(open.table.id)
           .text(name(column.kind))
           .optional_integer(column.target)
-          .json(properties_of(column)));
+          .json(properties_of(column))
+          .text(name(column.visibility)));
   if (!row) return tl::unexpected(row.error());
   column.id = row->integer(0, 0);
   if (auto added = add_rows_column(connection, open.table.id, column); !added) return tl::unexpected(added.error());

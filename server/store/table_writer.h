@@ -16,10 +16,11 @@ struct OpenTable {
   Table table;              // `columns`: those that are not hidden
   std::vector<Column> all;  // hidden ones, too, by id
   std::int64_t next_key = 1;
+  Role seen_by = Role::owner;  // `table.columns` are those that it sees
 };
 // 404 where there is none. Locked: until the transaction ends nobody else changes any table of the project, so that keys which
 // other tables name stay.
-Result<OpenTable> read_table(PgConnection& connection, std::int64_t id);
+Result<OpenTable> read_table(PgConnection& connection, std::int64_t id, Role seen_by = Role::owner);
 Result<OpenTable> lock_table(PgConnection& connection, std::int64_t id);
 
 // The columns' cells: properties by name, and `hidden`.

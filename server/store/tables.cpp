@@ -1,4 +1,7 @@
+#include <set>
+
 #include "core/column_value.h"
+#include "core/term_list.h"
 #include "store/store_impl.h"
 #include "store/table_rows.h"
 #include "store/table_writer.h"
@@ -6,8 +9,8 @@
 namespace strata::store {
 namespace {
 
-Result<Table> table_of(PgConnection& connection, std::int64_t id) {
-  auto open = read_table(connection, id);
+Result<Table> table_of(PgConnection& connection, std::int64_t id, Role seen_by = Role::owner) {
+  auto open = read_table(connection, id, seen_by);
   if (!open) return tl::unexpected(open.error());
   return std::move(open->table);
 }
@@ -60,14 +63,14 @@ Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Colu
 
 }  // namespace
 
-Result<std::vector<Table>> Store::tables(std::int64_t project_id) {
+Result<std::vector<Table>> Store::tables(std::int64_t project_id, Role seen_by) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Table>> {
     auto rows = connection.query("SELECT id FROM record_tables WHERE project_id = $1 ORDER BY lower(name), id",
                                  Params().integer(project_id));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Table> tables;
     for (int i = 0; i < rows->rows(); ++i) {
-      auto table = table_of(connection, rows->integer(i, 0));
+      auto table = table_of(connection, rows->integer(i, 0), seen_by);
       if (!table && table.error().status == 404) continue;  // deleted meanwhile
       if (!table) return tl::unexpected(table.error());
       tables.push_back(std::move(*table));
@@ -76,14 +79,14 @@ Result<std::vector<Table>> Store::tables(std::int64_t project_id) {
   });
 }
 
-Result<Table> Store::table(const std::string& ref) {
+Result<Table> Store::table(const std::string& ref, Role seen_by) {
   if (!check_text(ref, "table")) return not_found("table", ref);
   return impl_->pool.read([&](PgConnection& connection) -> Result<Table> {
-    if (const auto id = id_of(ref)) return table_of(connection, *id);
+    if (const auto id = id_of(ref)) return table_of(connection, *id, seen_by);
     auto row = connection.query("SELECT id FROM record_tables WHERE slug = $1", Params().text(ref));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() == 0) return not_found("table", ref);
-    return table_of(connection, row->integer(0, 0));
+    return table_of(connection, row->integer(0, 0), seen_by);
   });
 }
 
@@ -134,7 +137,7 @@ Result<void> Store::delete_table(std::int64_t id, const FirstAnswer<>& answer) {
   return gone;
 }
 
-Result<std::vector<Layer>> Store::layers_of_table(std::int64_t table_id) {
+Result<std::vector<Layer>> Store::layers_of_table(std::int64_t table_id, Role seen_by) {
   auto refs = impl_->pool.read([&](PgConnection& connection) {
     return connection.query("SELECT model_id, id FROM layers WHERE table_id = $1 ORDER BY model_id, draw_order, id",
                             Params().integer(table_id));
@@ -142,8 +145,8 @@ Result<std::vector<Layer>> Store::layers_of_table(std::int64_t table_id) {
   if (!refs) return tl::unexpected(refs.error());
   std::vector<Layer> layers;
   for (int i = 0; i < refs->rows(); ++i) {
-    auto found = layer(refs->integer(i, 0), std::to_string(refs->integer(i, 1)));
-    if (!found && found.error().status == 404) continue;  // deleted meanwhile
+    auto found = layer(refs->integer(i, 0), std::to_string(refs->integer(i, 1)), seen_by);
+    if (!found && found.error().status == 404) continue;  // deleted meanwhile, or not seen
     if (!found) return tl::unexpected(found.error());
     layers.push_back(std::move(*found));
   }
@@ -199,6 +202,34 @@ Result<TableChange> Store::update_column(std::int64_t table_id, const Column& co
     return refused_by_records(apply_edit(connection, *open, std::move(edit)));
   };
   return impl_->change(answer, work, kBulkLimits);
+}
+
+Result<Table> Store::show_column(std::int64_t table_id, std::int64_t column_id, Visibility visibility,
+                                 std::int64_t version, const FirstAnswer<Table>& answer) {
+  return impl_->change(answer, [&](PgConnection& connection) -> Result<Table> {
+    auto open = lock_table(connection, table_id);
+    if (!open) return tl::unexpected(open.error());
+    auto found = shown_column(*open, column_id, version);
+    if (!found) return tl::unexpected(found.error());
+    Column column = **found;
+    column.visibility = visibility;
+    if (auto good = check_column(column); !good) return tl::unexpected(good.error());
+    if (const auto terms = term_columns(open->table); terms && visibility != Visibility::everyone) {
+      std::set<const Column*> used{terms->code, terms->label, terms->parent, terms->definition,
+                                   terms->uri,  terms->color, terms->pattern};
+      for (const auto& [language, label] : terms->labels) used.insert(label);
+      if (used.contains(*found))
+        return fail(422, "Column of a list of terms",
+                    "What terms are is seen by everybody who sees records that name them.", "visibility");
+    }
+    auto row = connection.query("UPDATE record_columns SET visibility = $2 WHERE id = $1",
+                                Params().integer(column_id).text(name(visibility)));
+    if (!row) return tl::unexpected(row.error());
+    auto counted =
+        connection.query("UPDATE record_tables SET version = version + 1 WHERE id = $1", Params().integer(table_id));
+    if (!counted) return tl::unexpected(counted.error());
+    return table_of(connection, table_id);
+  });
 }
 
 Result<TableChange> Store::drop_column(std::int64_t table_id, std::int64_t column_id,

@@ -284,7 +284,8 @@ Result<TableChange> Store::import_terms(std::int64_t table_id, const TermList& l
 }
 
 Result<std::optional<Palette>> term_palette_of(PgConnection& connection, std::int64_t table_id) {
-  auto open = read_table(connection, table_id);
+  // Everybody who sees the layer sees its palette.
+  auto open = read_table(connection, table_id, least_role(Visibility::everyone));
   if (!open) return tl::unexpected(open.error());
   const auto columns = term_columns(open->table);
   if (!columns) return std::optional<Palette>();

@@ -93,7 +93,7 @@ Result<std::vector<Layer>> Store::layers_to_sum() {
   if (!ids) return tl::unexpected(ids.error());
   std::vector<Layer> layers;
   for (const auto& [model, id] : *ids)
-    if (auto found = layer(model, std::to_string(id))) layers.push_back(std::move(*found));
+    if (auto found = layer(model, std::to_string(id), Role::owner)) layers.push_back(std::move(*found));
   return layers;
 }
 

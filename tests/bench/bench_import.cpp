@@ -18,7 +18,7 @@ struct Options {
 
 // From around, at full detail: what a camera that stands still shows.
 render::Frame frame(Site& site, const std::string& model, glm::dvec3 from) {
-  auto room = must(site.rooms->open(model));
+  auto room = must(site.rooms->open(model, Role::owner));
   const Model info = room->model();
   mesh::Geometry box;
   box.origin = (info.bounds_min + info.bounds_max) * 0.5;
@@ -31,7 +31,7 @@ render::Frame first_frame(Site& site, const std::string& model) { return frame(s
 // Every camera is new, so the mesh is drawn for each.
 Samples full_frames(Site& site, const std::string& model) {
   Samples samples;
-  auto room = must(site.rooms->open(model));  // stays open
+  auto room = must(site.rooms->open(model, Role::owner));  // stays open
   first_frame(site, model);
   for (int i = 0; i < 8; ++i) {
     const double angle = glm::radians(45.0 * i + 10);
@@ -57,7 +57,7 @@ int run(const Options& options) {
   const double import_to_frame_ms = now_ms() - start;
 
   // Paint every layer, so that a restart has something to load.
-  auto room = must(site.rooms->open(model.slug));
+  auto room = must(site.rooms->open(model.slug, Role::owner));
   for (int i = 0; i < options.layers; ++i) {
     Layer layer;
     layer.name = layer.slug = "layer-" + std::to_string(i);
@@ -77,7 +77,7 @@ int run(const Options& options) {
   start = now_ms();
   site.restart();
   const double ready_ms = now_ms() - start;
-  room = must(site.rooms->open(model.slug));
+  room = must(site.rooms->open(model.slug, Role::owner));
   const double open_ms = now_ms() - start;
   first_frame(site, model.slug);
   const double restart_ms = now_ms() - start;

@@ -78,7 +78,7 @@ class Queries {
     request.files = must(mesh_files(options.model, options.cache));
     Progress progress;
     model_ = must(jobs::import_model(*site_.store, request, progress));
-    room_ = must(site_.rooms->open(model_.slug));
+    room_ = must(site_.rooms->open(model_.slug, Role::owner));
     make_layer("moisture", ValueType::f32, 0.5);
     make_layer("units", ValueType::u16, 7);
     make_layer("salt", ValueType::f32, 0.1);
@@ -142,8 +142,8 @@ class Queries {
   void light_up() {
     make_parts();
     FrameClient viewer;
-    auto member =
-        room_->join("bench", "", nullptr, [&](stream::FrameBytes frame) { viewer.receive(std::move(frame)); });
+    auto member = room_->join({"bench", Role::owner}, "", nullptr,
+                              [&](stream::FrameBytes frame) { viewer.receive(std::move(frame)); });
     const auto show = [&](const char* filter) {
       room::LayerView parts{layers_.at("parts").id, true, {}, {}, {}};
       if (filter)
@@ -179,7 +179,7 @@ class Queries {
     thickness.name = thickness.slug = "thickness", thickness.kind = ColumnKind::numeric;
     state.name = state.slug = "state", state.kind = ColumnKind::enumeration, state.choices = {"loose", "firm"};
     const Layer made = layers_["parts"] = must(room_->create_layer(layer, {}, {thickness, state}));
-    const Table table = must(site_.store->table(std::to_string(*made.table)));
+    const Table table = must(site_.store->table(std::to_string(*made.table), Role::owner));
     store::WriteRecords records;
     for (int i = 0; i < kParts; ++i)
       records.records.push_back(

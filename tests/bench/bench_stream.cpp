@@ -37,9 +37,10 @@ class Stream {
     made.model.area = bench_.area;
     made.geometry = mesh::encode_geometry(*bench_.geometry);
     model_ = must(site_.store->create_model(made, [] { return false; }));
-    room_ = must(site_.rooms->open(model_.slug));
+    room_ = must(site_.rooms->open(model_.slug, Role::owner));
     for (int i = 0; i < options.layers; ++i) add_filled_layer(i);
-    member_ = room_->join("bench", "", nullptr, [&](stream::FrameBytes frame) { client_.receive(std::move(frame)); });
+    member_ = room_->join({"bench", Role::owner}, "", nullptr,
+                          [&](stream::FrameBytes frame) { client_.receive(std::move(frame)); });
     member_->camera(0, ++camera_number_, still_, false);
     client_.wait_for(*member_,
                      [&](const auto& a) { return a.header.still && a.header.camera_seq == camera_number_.load(); });

@@ -268,7 +268,7 @@ TEST_F(Import, the_demo_has_its_two_layers_and_asking_twice_makes_one) {
   EXPECT_EQ(demo->project_id, project->id);
   EXPECT_EQ(demo->sequence, 2);
 
-  const auto layers = store_->layers(demo->id);
+  const auto layers = store_->layers(demo->id, Role::owner);
   ASSERT_TRUE(layers);
   ASSERT_EQ(layers->size(), 2u);
   EXPECT_EQ((*layers)[0].slug, "pieces");

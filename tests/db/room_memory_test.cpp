@@ -45,7 +45,7 @@ TEST_F(RoomMemory, counts_what_a_model_holds_and_gives_it_back) {
 
 TEST_F(RoomMemory, that_a_model_does_not_fit_into_is_a_refusal_that_says_what_to_do) {
   restart_with(100'000);
-  const auto room = rooms_->open("pot");
+  const auto room = rooms_->open("pot", Role::owner);
   ASSERT_FALSE(room);
   EXPECT_TRUE(is_used_up(room.error()));
   EXPECT_NE(room.error().detail.find("--memory"), std::string::npos) << room.error().detail;
@@ -92,11 +92,11 @@ TEST_F(RoomMemory, of_a_model_that_nobody_is_in_serves_another) {
   room();
   const auto one = rooms_->memory_bytes_used();
   restart_with(one + one / 2);
-  ASSERT_TRUE(rooms_->open("pot"));
-  ASSERT_TRUE(rooms_->open("copy"));
+  ASSERT_TRUE(rooms_->open("pot", Role::owner));
+  ASSERT_TRUE(rooms_->open("copy", Role::owner));
   EXPECT_EQ(rooms_->open_rooms(), 1u);
-  const auto held = rooms_->open("copy");
-  const auto refused = rooms_->open("pot");
+  const auto held = rooms_->open("copy", Role::owner);
+  const auto refused = rooms_->open("pot", Role::owner);
   ASSERT_FALSE(refused) << "the other is in use";
   EXPECT_TRUE(is_used_up(refused.error()));
 }

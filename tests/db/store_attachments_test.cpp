@@ -51,10 +51,10 @@ class Attachments : public ::testing::Test {
   }
   Result<Store::Attached> attach(std::int64_t key, const std::vector<Store::NewAttachment>& files,
                                  std::optional<std::int64_t> column = {}) {
-    return store_->attach(table_.id, key, column, files, {}, "ana");
+    return store_->attach(table_.id, key, column, files, {}, {"ana", Role::owner});
   }
   json cell(std::int64_t key, const std::string& slug, std::optional<std::int64_t> at = {}) {
-    const auto page = store_->records(table_.id, {{}, std::vector{key}, at, 10, 0}).value();
+    const auto page = store_->records(table_.id, Role::owner, {{}, std::vector{key}, at, 10, 0}).value();
     return to_json(page.records.at(0), page.table.columns).at("values").at(slug);
   }
   Result<TableChange> patch(std::int64_t key, const std::string& slug, json value) {
@@ -106,7 +106,7 @@ TEST_F(Attachments, files_are_kept_bit_for_bit_and_listed_in_their_cell) {
   EXPECT_EQ(content(north), large);
   EXPECT_EQ(content(north, 1'048'575, 1'048'578), large.substr(1'048'575, 3)) << "across two chunks";
   EXPECT_EQ(content(north, 2'999'999), large.substr(2'999'999));
-  EXPECT_EQ(store_->attachment(north.id)->sha256, north.sha256);
+  EXPECT_EQ(store_->attachment(north.id, {"", Role::owner})->sha256, north.sha256);
 }
 
 TEST_F(Attachments, equal_contents_are_kept_once) {
@@ -134,7 +134,7 @@ TEST_F(Attachments, what_does_not_fit_is_refused_and_leaves_nothing) {
   EXPECT_EQ(attach(1, {file("a.jpg", "a")}, column_id("code")).error().field, "column");
   EXPECT_EQ(attach(9, {file("a.jpg", "a")}).error().status, 404);
   EXPECT_EQ(attach(1, {file("", "a")}).error().status, 400);
-  EXPECT_EQ(store_->attach(table_.id, 1, {}, {file("a.jpg", "a")}, 77, "ana").error().status, 412);
+  EXPECT_EQ(store_->attach(table_.id, 1, {}, {file("a.jpg", "a")}, 77, {"ana", Role::owner}).error().status, 412);
   EXPECT_EQ(count("attachments") + count("blobs") + count("blob_chunks"), 0);
   EXPECT_EQ(cell(1, "photos"), json());
 }
@@ -151,7 +151,7 @@ TEST_F(Attachments, undo_and_the_past_have_them_as_they_were) {
   ASSERT_TRUE(removed) << removed.error().detail;
   EXPECT_EQ(cell(1, "photos"), json({b}));
   EXPECT_EQ(cell(1, "photos", first->change.sequence), json({a}));
-  EXPECT_EQ(content(*store_->attachment(a)), "a") << "the past shows it";
+  EXPECT_EQ(content(*store_->attachment(a, {"", Role::owner})), "a") << "the past shows it";
   EXPECT_EQ(store_->detach(a, "ana").error().status, 404);
   undo();
   EXPECT_EQ(cell(1, "photos"), json({a, b}));
@@ -233,7 +233,7 @@ TEST_F(Attachments, those_who_attach_and_delete_at_once_leave_nothing_half) {
   for (const auto& each : files)
     threads.emplace_back([&, each] {
       for (int n = 0; n < 5; ++n) {
-        const auto done = store_->attach(units.id, 1 + n % 2, {}, {each}, {}, "ana");
+        const auto done = store_->attach(units.id, 1 + n % 2, {}, {each}, {}, {"ana", Role::owner});
         if (!done) {
           EXPECT_EQ(done.error().status, 404) << done.error().detail;
         }

@@ -55,18 +55,18 @@ TEST_F(CommentsOfAModel, what_was_written_comes_back) {
   EXPECT_EQ(answer.model_id, model_);
   EXPECT_EQ(answer.thread, first.id);
   EXPECT_FALSE(answer.place);
-  const auto all = comments_.of_model(model_, {}).value();
+  const auto all = comments_.of_model(model_, Role::owner, {}).value();
   ASSERT_EQ(all.total, 2);
   EXPECT_EQ(all.comments[0].id, first.id);
   EXPECT_EQ(all.comments[1].text, "Yes");
-  const auto second = comments_.of_model(model_, {{}, {}, 1, 1}).value();
+  const auto second = comments_.of_model(model_, Role::owner, {{}, {}, 1, 1}).value();
   EXPECT_EQ(second.total, 2);
   ASSERT_EQ(second.comments.size(), 1u);
   EXPECT_EQ(second.comments[0].id, answer.id);
-  EXPECT_EQ(comments_.replies(first.id, 10, 0)->comments.at(0).id, answer.id);
-  EXPECT_EQ(comments_.replies(answer.id, 10, 0).error().status, 422);
-  EXPECT_EQ(comments_.comment(answer.id + 1).error().status, 404);
-  EXPECT_EQ(comments_.of_model(model_ + 1, {})->total, 0);
+  EXPECT_EQ(comments_.replies(first.id, Role::owner, 10, 0)->comments.at(0).id, answer.id);
+  EXPECT_EQ(comments_.replies(answer.id, Role::owner, 10, 0).error().status, 422);
+  EXPECT_EQ(comments_.comment(answer.id + 1, Role::owner).error().status, 404);
+  EXPECT_EQ(comments_.of_model(model_ + 1, Role::owner, {})->total, 0);
 }
 
 TEST_F(CommentsOfAModel, texts_that_are_none_are_refused) {
@@ -120,11 +120,11 @@ TEST_F(CommentsOfAModel, a_thread_is_resolved_by_the_first_who_says_so_until_it_
   comment = comments_.update(comment).value();
   EXPECT_EQ(comment.resolved->user, "bob");
   EXPECT_EQ(comment.resolved->time, when);
-  EXPECT_EQ(comments_.of_model(model_, {true, {}})->total, 2) << "the thread with its reply";
-  EXPECT_EQ(comments_.of_model(model_, {false, {}})->total, 1);
+  EXPECT_EQ(comments_.of_model(model_, Role::owner, {true, {}})->total, 2) << "the thread with its reply";
+  EXPECT_EQ(comments_.of_model(model_, Role::owner, {false, {}})->total, 1);
   comment.resolved.reset();
   EXPECT_FALSE(comments_.update(comment)->resolved);
-  EXPECT_EQ(comments_.of_model(model_, {false, {}})->total, 3);
+  EXPECT_EQ(comments_.of_model(model_, Role::owner, {false, {}})->total, 3);
 }
 
 TEST_F(CommentsOfAModel, those_that_changed_since_a_time_are_found) {
@@ -136,11 +136,11 @@ TEST_F(CommentsOfAModel, those_that_changed_since_a_time_are_found) {
       connection_
           ->query("SELECT to_char(now() AT TIME ZONE 'UTC' - interval '1 day', 'YYYY-MM-DD\"T\"HH24:MI:SS\"Z\"')")
           ->text(0, 0);
-  EXPECT_EQ(comments_.of_model(model_, {{}, day_ago})->total, 1);
+  EXPECT_EQ(comments_.of_model(model_, Role::owner, {{}, day_ago})->total, 1);
   auto resolved = old;
   resolved.resolved = {"ada", {}};
   ASSERT_TRUE(comments_.update(resolved));
-  EXPECT_EQ(comments_.of_model(model_, {{}, day_ago})->total, 2);
+  EXPECT_EQ(comments_.of_model(model_, Role::owner, {{}, day_ago})->total, 2);
 }
 
 TEST_F(CommentsOfAModel, the_first_one_stays_without_its_text_while_there_are_replies) {
@@ -156,7 +156,7 @@ TEST_F(CommentsOfAModel, the_first_one_stays_without_its_text_while_there_are_re
   EXPECT_EQ(comments_.remove(first).error().status, 412);
   EXPECT_EQ(comments_.remove(*removal.left).error().status, 409);
   EXPECT_TRUE(comments_.create(reply(first.id, "Three"))) << "it can be talked about";
-  const auto three = comments_.replies(first.id, 10, 2)->comments.at(0);
+  const auto three = comments_.replies(first.id, Role::owner, 10, 2)->comments.at(0);
   EXPECT_EQ(comments_.remove(one)->gone, std::vector{one.id});
   EXPECT_EQ(comments_.remove(three)->gone, std::vector{three.id});
   EXPECT_EQ(comments_.remove(two)->gone, (std::vector{two.id, first.id})) << "nothing is left of the thread";
@@ -213,12 +213,12 @@ TEST_F(CommentsOfAModel, they_go_with_the_model_and_stay_without_layer_and_table
   EXPECT_EQ(comment.record, 3);
   ASSERT_TRUE(comments_.create(reply(comment.id, "Yes")));
   ASSERT_TRUE(store_->delete_layer(layer.id));
-  comment = comments_.comment(comment.id).value();
+  comment = comments_.comment(comment.id, Role::owner).value();
   EXPECT_FALSE(comment.layer_id);
   EXPECT_EQ(comment.table_id, layer.table);
   EXPECT_EQ(comment.record, 3);
   ASSERT_TRUE(store_->delete_table(*layer.table));
-  comment = comments_.comment(comment.id).value();
+  comment = comments_.comment(comment.id, Role::owner).value();
   EXPECT_FALSE(comment.table_id || comment.record);
   ASSERT_TRUE(store_->delete_model(model_));
   EXPECT_EQ(count(), 0);
@@ -234,13 +234,13 @@ TEST_F(CommentsOfAModel, of_who_is_deleted_no_name_is_left_in_them) {
   const FirstAnswer<Comment> answer{"k", [](const Comment& made) { return nlohmann::json{{"body", made.text}}; }};
   ASSERT_TRUE(comments_.create(reply(settled.id, "For @ada.l only"), answer));
   ASSERT_TRUE(store_->delete_person("ada.l"));
-  EXPECT_EQ(comments_.comment(hers.id)->user, former);
-  settled = comments_.comment(settled.id).value();
+  EXPECT_EQ(comments_.comment(hers.id, Role::owner)->user, former);
+  settled = comments_.comment(settled.id, Role::owner).value();
   EXPECT_EQ(settled.resolved->user, former);
   EXPECT_EQ(settled.user, "bob");
   EXPECT_EQ(settled.text, "@" + former + ", look. (@" + former + ") x@ada.l @ada.lovelace @adaxl @" + former)
       << "addresses of mail and other people's names stay";
-  EXPECT_EQ(comments_.replies(settled.id, 1, 0)->comments.at(0).text, "For @" + former + " only");
+  EXPECT_EQ(comments_.replies(settled.id, Role::owner, 1, 0)->comments.at(0).text, "For @" + former + " only");
   EXPECT_FALSE(store_->find_answer("k").value()) << "what was said to them is not told again either";
 }
 

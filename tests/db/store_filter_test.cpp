@@ -62,7 +62,7 @@ class Filter : public ::testing::Test {
     query.limit = 10'000;
     query.at = at;
     query.filter = std::move(*condition);
-    auto page = store_->records(table.id, query);
+    auto page = store_->records(table.id, Role::owner, query);
     if (!page) return tl::unexpected(page.error());
     EXPECT_EQ(page->total, static_cast<std::int64_t>(page->records.size()));
     std::vector<std::int64_t> found;
@@ -269,7 +269,7 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
     }
 
   // Of another time: the same, by the rows as they were.
-  const auto then = store_->table(std::to_string(table.id))->sequence;
+  const auto then = store_->table(std::to_string(table.id), Role::owner)->sequence;
   const auto before = keys(table, "depth > 1 and t_during(period, '15XX')");
   WriteRecords clear;
   for (const auto& [key, row] : rows)

@@ -63,8 +63,8 @@ TEST_F(Journal, layers_of_a_model_share_its_sequence_and_keep_their_own_state) {
   JournalWriter writer(*store_, {});
   for (int i = 1; i <= 20; ++i) ASSERT_TRUE(save(writer, (i % 3 ? one : two).paint(i, 2, 4)));
   EXPECT_EQ(store_->last_sequence(model_.id).value(), 20);
-  EXPECT_EQ(store_->layer(model_.id, "one")->sequence, 20);
-  EXPECT_EQ(store_->layer(model_.id, "two")->sequence, 18);
+  EXPECT_EQ(store_->layer(model_.id, "one", Role::owner)->sequence, 20);
+  EXPECT_EQ(store_->layer(model_.id, "two", Role::owner)->sequence, 18);
   EXPECT_TRUE(content_of(store_->load_tiles(one.layer()).value()) == one.content());
   EXPECT_TRUE(content_of(store_->load_tiles(two.layer()).value()) == two.content());
   EXPECT_EQ(store_->load_tiles(two.layer())->sequence, 18);

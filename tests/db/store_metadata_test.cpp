@@ -196,16 +196,16 @@ TEST(Layers, they_come_in_drawing_order_with_every_field) {
   top.palette.points = {{0.1, {1, 2, 3, 4}, "crack"}, {2, {5, 6, 7, 255}, "sält"}};
   top = store->create_layer(top).value();
   const auto bottom = store->create_layer(new_layer(model.id, "Bottom")).value();
-  const auto list = store->layers(model.id).value();
+  const auto list = store->layers(model.id, Role::owner).value();
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0].id, bottom.id);
   EXPECT_EQ(to_json(list[1]), to_json(top));
-  EXPECT_EQ(store->table(std::to_string(list[1].table.value()))->name, "Top");
+  EXPECT_EQ(store->table(std::to_string(list[1].table.value()), Role::owner)->name, "Top");
   EXPECT_EQ(list[1].palette.points[0].label, "crack");
   EXPECT_EQ(list[1].opacity, 0.3);
-  EXPECT_EQ(store->layer(model.id, "top")->id, top.id);
-  EXPECT_EQ(store->layer(model.id, std::to_string(top.id))->slug, "top");
-  EXPECT_EQ(store->layer(model.id + 1, "top").error().status, 404);
+  EXPECT_EQ(store->layer(model.id, "top", Role::owner)->id, top.id);
+  EXPECT_EQ(store->layer(model.id, std::to_string(top.id), Role::owner)->slug, "top");
+  EXPECT_EQ(store->layer(model.id + 1, "top", Role::owner).error().status, 404);
 }
 
 TEST(Layers, slugs_are_unique_in_their_model_only) {
@@ -216,7 +216,7 @@ TEST(Layers, slugs_are_unique_in_their_model_only) {
   EXPECT_EQ(store->create_layer(new_layer(one.id, "Cracks"))->slug, "cracks-2");
   EXPECT_EQ(store->create_layer(new_layer(two.id, "Cracks"))->slug, "cracks");
   EXPECT_EQ(store->create_layer(new_layer(99, "Cracks")).error().status, 404);
-  EXPECT_EQ(store->layers(99).error().status, 404);
+  EXPECT_EQ(store->layers(99, Role::owner).error().status, 404);
 }
 
 TEST(Layers, changes_need_the_version_and_keep_to_the_rules) {
@@ -255,7 +255,7 @@ TEST(Layers, a_lock_is_kept_until_it_is_taken_away) {
   layer = store->update_layer(layer).value();
   EXPECT_TRUE(layer.locked);
   EXPECT_TRUE(store->widen_layer(layer, ValueType::u16)->locked);
-  layer = store->layers(model.id)->front();
+  layer = store->layers(model.id, Role::owner)->front();
   EXPECT_TRUE(layer.locked);
   layer.locked = false;
   EXPECT_FALSE(store->update_layer(layer)->locked);

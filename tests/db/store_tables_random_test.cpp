@@ -109,14 +109,14 @@ class RandomWork {
     past_.resize(static_cast<std::size_t>(oracle_.sequence()) + 1, expected);
     const auto at = random_() % past_.size();
     ASSERT_EQ(content(static_cast<std::int64_t>(at)), past_[at]) << "at " << at;
-    const Table table = store_->table(std::to_string(table_)).value();
+    const Table table = store_->table(std::to_string(table_), Role::owner).value();
     ASSERT_EQ(table.sequence, oracle_.sequence());
     ASSERT_EQ(table.records, static_cast<std::int64_t>(expected.size()));
   }
 
  private:
   json content(std::optional<std::int64_t> at) {
-    auto page = store_->records(table_, {{}, {}, at, 1000, 0});
+    auto page = store_->records(table_, Role::owner, {{}, {}, at, 1000, 0});
     EXPECT_TRUE(page) << page.error().detail;
     json all = json::object();
     if (!page) return all;

@@ -35,7 +35,7 @@ class Tables : public ::testing::Test {
                           const std::map<std::string, json>& values, const std::string& user = "ana",
                           std::optional<std::int64_t> version = {}) {
     RecordInput input{key, {}, version};
-    const Table now = store_->table(std::to_string(table.id)).value();
+    const Table now = store_->table(std::to_string(table.id), Role::owner).value();
     for (const auto& [slug, value] : values) input.values[find_column(now.columns, slug)->id] = value;
     WriteRecords asked;
     asked.records = {input};
@@ -50,7 +50,7 @@ class Tables : public ::testing::Test {
   }
   // {key: {slug: value}} without what is null.
   json content(const Table& table, std::optional<std::int64_t> at = {}) {
-    auto page = store_->records(table.id, {{}, {}, at, 1000, 0});
+    auto page = store_->records(table.id, Role::owner, {{}, {}, at, 1000, 0});
     EXPECT_TRUE(page) << page.error().detail;
     json all = json::object();
     if (page)
@@ -64,12 +64,12 @@ class Tables : public ::testing::Test {
   }
   std::vector<std::int64_t> keys(const Table& table, std::vector<std::pair<std::string, bool>> order) {
     std::vector<std::int64_t> found;
-    auto page = store_->records(table.id, {std::move(order), {}, {}, 1000, 0});
+    auto page = store_->records(table.id, Role::owner, {std::move(order), {}, {}, 1000, 0});
     EXPECT_TRUE(page) << page.error().detail;
     for (const Record& record : page->records) found.push_back(record.key);
     return found;
   }
-  Table now(const Table& table) { return store_->table(std::to_string(table.id)).value(); }
+  Table now(const Table& table) { return store_->table(std::to_string(table.id), Role::owner).value(); }
 
   const std::string dsn_ = test::fresh_database();
   std::unique_ptr<Store> store_ = test::open_store(dsn_);
@@ -129,8 +129,8 @@ TEST_F(Tables, a_catalogue_keeps_names_in_any_language) {
   EXPECT_EQ(renamed->version, made->version + 1);
   EXPECT_EQ(renamed->labels.at("de"), "Einheiten");
   EXPECT_EQ(store_->update_table(*made).error().status, 412);
-  EXPECT_EQ(store_->tables(1)->size(), 1u);
-  EXPECT_EQ(store_->table("units").error().status, 404);
+  EXPECT_EQ(store_->tables(1, Role::owner)->size(), 1u);
+  EXPECT_EQ(store_->table("units", Role::owner).error().status, 404);
 }
 
 TEST_F(Tables, keys_are_never_given_again) {
@@ -216,7 +216,7 @@ TEST_F(Tables, terms_and_relations_name_records_that_are_there) {
   EXPECT_EQ(store_->delete_table(terms.id).error().title, "Table in use");
   ASSERT_TRUE(store_->delete_table(units.id));
   ASSERT_TRUE(store_->delete_table(terms.id));
-  EXPECT_EQ(store_->tables(1)->size(), 0u);
+  EXPECT_EQ(store_->tables(1, Role::owner)->size(), 0u);
   Column foreign = column("x", ColumnKind::term);
   foreign.target = terms.id;
   EXPECT_EQ(store_->create_column(make("New", {}).id, foreign, "ana").error().field, "target");
@@ -263,15 +263,15 @@ TEST_F(Tables, the_past_is_read_with_the_columns_of_then) {
   EXPECT_EQ(content(table, 5), (json{{"2", {{"depth", 3.0}}}}));
   EXPECT_EQ(content(table, 6), content(table, 4));
   EXPECT_EQ(content(table), content(table, 6));
-  EXPECT_EQ(store_->records(table.id, {{}, {}, 7, 10, 0}).error().field, "at");
+  EXPECT_EQ(store_->records(table.id, Role::owner, {{}, {}, 7, 10, 0}).error().field, "at");
   EXPECT_EQ(store_->table_sequence_at(table.id, "9999-12-31T23:59:59.999Z").value(), 6);
   EXPECT_EQ(store_->table_sequence_at(table.id, "0001-01-01T00:00:00.000Z").value(), 0);
-  const auto history = store_->table_history(table.id, {}, 10, 0).value();
+  const auto history = store_->table_history(table.id, Role::owner, {}, 10, 0).value();
   ASSERT_EQ(history.total, 6);
   EXPECT_EQ(history.rows[0].op, "undo");
   EXPECT_FALSE(history.rows[1].in_force);
   EXPECT_EQ(history.rows[5].changes.at(0).after.at("exists"), true);
-  EXPECT_EQ(store_->table_history(table.id, 2, 10, 0)->total, 1);
+  EXPECT_EQ(store_->table_history(table.id, Role::owner, 2, 10, 0)->total, 1);
 }
 
 TEST_F(Tables, a_dropped_column_comes_back_with_its_values) {
@@ -385,13 +385,13 @@ TEST_F(Tables, records_are_sorted_by_what_they_mean) {
   EXPECT_EQ(keys(table, {{"depth", false}}), (std::vector<std::int64_t>{2, 1, 3}));
   EXPECT_EQ(keys(table, {{"depth", true}}), (std::vector<std::int64_t>{1, 2, 3}));
   EXPECT_EQ(keys(table, {{"key", true}}), (std::vector<std::int64_t>{3, 2, 1}));
-  EXPECT_EQ(store_->records(table.id, {{{"none", false}}, {}, {}, 10, 0}).error().field, "sortby");
-  const auto page = store_->records(table.id, {{{"depth", false}}, {}, {}, 1, 1}).value();
+  EXPECT_EQ(store_->records(table.id, Role::owner, {{{"none", false}}, {}, {}, 10, 0}).error().field, "sortby");
+  const auto page = store_->records(table.id, Role::owner, {{{"depth", false}}, {}, {}, 1, 1}).value();
   EXPECT_EQ(page.total, 3);
   EXPECT_EQ(page.records.at(0).key, 1);
   // The past is sorted the same way.
   ASSERT_TRUE(store_->delete_record(table.id, 1, {}, "ana"));
-  const auto past = store_->records(table.id, {{{"name", false}}, {}, 3, 2, 1}).value();
+  const auto past = store_->records(table.id, Role::owner, {{{"name", false}}, {}, 3, 2, 1}).value();
   EXPECT_EQ(past.total, 3);
   EXPECT_EQ(past.records.at(0).key, 3);
   EXPECT_EQ(past.records.at(1).key, 1);
@@ -424,13 +424,13 @@ TEST_F(Tables, layers_of_several_models_share_a_table) {
   layer.name = "Units";
   layer.kind = LayerKind::database;
   const auto own = store_->create_layer(layer, {}, {column("Name")}).value();
-  const Table table = store_->table("units").value();
+  const Table table = store_->table("units", Role::owner).value();
   EXPECT_EQ(own.table, table.id);
   EXPECT_EQ(table.columns.at(0).name, "Name");
   layer.table = table.id;
   layer.name = "Second";
   ASSERT_TRUE(store_->create_layer(layer));
-  EXPECT_EQ(store_->layers_of_table(table.id)->size(), 2u);
+  EXPECT_EQ(store_->layers_of_table(table.id, Role::owner)->size(), 2u);
   EXPECT_EQ(store_->delete_table(table.id).error().title, "Table in use");
   Project project;
   project.name = project.slug = "elsewhere";
@@ -475,15 +475,15 @@ TEST(TablesMigration, database_layers_get_tables_with_the_keys_that_they_hold) {
          FROM layers WHERE slug = 'units')");
   ASSERT_TRUE(migrate(connection, all));
   auto store = test::open_store(dsn);
-  const auto tables = store->tables(1).value();
+  const auto tables = store->tables(1, Role::owner).value();
   ASSERT_EQ(tables.size(), 2u);
   EXPECT_EQ(tables[0].name, "12");
   EXPECT_EQ(tables[0].slug, "n-12");
   EXPECT_EQ(tables[1].name, "SU");
   EXPECT_EQ(tables[1].slug, "su");
   EXPECT_EQ(tables[1].records, 3);
-  EXPECT_EQ(store->layers_of_table(tables[1].id)->size(), 2u);
-  const auto page = store->records(tables[1].id, {}).value();
+  EXPECT_EQ(store->layers_of_table(tables[1].id, Role::owner)->size(), 2u);
+  const auto page = store->records(tables[1].id, Role::owner, {}).value();
   ASSERT_EQ(page.records.size(), 3u);
   EXPECT_EQ(to_json(page.records[0], page.table.columns),
             json({{"key", 5}, {"version", 0}, {"values", {{"name", "pit"}}}}));

@@ -46,7 +46,7 @@ class Terms : public ::testing::Test {
   std::vector<std::string> content(const Table& table) {
     Store::RecordQuery all;
     all.limit = 1000;
-    auto page = store_->records(table.id, all);
+    auto page = store_->records(table.id, Role::owner, all);
     EXPECT_TRUE(page);
     std::vector<std::string> out;
     for (const ListedTerm& listed : list_terms(*term_columns(page->table), page->records))
@@ -82,12 +82,12 @@ TEST_F(Terms, an_import_keeps_the_keys_and_what_the_text_does_not_have) {
   EXPECT_THAT(change->created, ElementsAre(3));
   EXPECT_TRUE(change->columns_changed);
   EXPECT_THAT(content(table), ElementsAre("1 /alpha Alpha", "2 alpha/b Bee", "3 /c C"));
-  auto record = store_->records(table.id, {});
+  auto record = store_->records(table.id, Role::owner, {});
   ASSERT_TRUE(record);
   EXPECT_EQ(record->records[0].values.at(term_columns(record->table)->color->id), "#112233");
   ASSERT_TRUE(undo(table));
   EXPECT_THAT(content(table), ElementsAre("1 /a A", "2 a/b B"));
-  EXPECT_FALSE(term_columns(*store_->table(table.slug))->labels.contains("de"));
+  EXPECT_FALSE(term_columns(*store_->table(table.slug, Role::owner))->labels.contains("de"));
 }
 
 TEST_F(Terms, the_same_again_is_no_entry) {
@@ -120,7 +120,7 @@ TEST_F(Terms, circles_and_unknown_parents_are_told_and_nothing_is_written) {
   EXPECT_EQ(stranger->problems[0].problem.title, "No such parent");
   EXPECT_EQ(stranger->problems[1].problem.title, "Terms in a circle");
   EXPECT_EQ(content(table).size(), 3u);
-  EXPECT_EQ(store_->table(table.slug)->sequence, 1);
+  EXPECT_EQ(store_->table(table.slug, Role::owner)->sequence, 1);
 }
 
 TEST_F(Terms, one_term_named_by_its_uri_and_by_its_code_is_refused) {
@@ -149,7 +149,7 @@ TEST_F(Terms, a_dry_run_tells_and_keeps_nothing) {
   ASSERT_TRUE(change);
   EXPECT_THAT(change->created, ElementsAre(2));
   EXPECT_THAT(content(table), ElementsAre("1 /a A"));
-  EXPECT_FALSE(term_columns(*store_->table(table.slug))->labels.contains("de"));
+  EXPECT_FALSE(term_columns(*store_->table(table.slug, Role::owner))->labels.contains("de"));
 }
 
 TEST_F(Terms, only_a_list_takes_terms_and_names_are_not_given_twice) {
@@ -160,7 +160,7 @@ TEST_F(Terms, only_a_list_takes_terms_and_names_are_not_given_twice) {
   ASSERT_TRUE(made);
   EXPECT_EQ(import(*made, "code\na\n").error().title, "No list of terms");
   EXPECT_EQ(create(*read_terms_csv("code\na\n"), "UNITS").error().status, 409);
-  EXPECT_EQ(store_->tables(1)->size(), 1u);
+  EXPECT_EQ(store_->tables(1, Role::owner)->size(), 1u);
 }
 
 TEST_F(Terms, tables_come_all_or_none_and_name_each_other) {
@@ -193,7 +193,7 @@ TEST_F(Terms, tables_come_all_or_none_and_name_each_other) {
   auto refused = store_->create_tables({terms, units}, false, "ana", "template");
   ASSERT_TRUE(refused);
   EXPECT_FALSE(refused->front().problems.empty());
-  EXPECT_EQ(store_->tables(1)->size(), 2u);
+  EXPECT_EQ(store_->tables(1, Role::owner)->size(), 2u);
 }
 
 }  // namespace

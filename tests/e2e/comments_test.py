@@ -220,6 +220,31 @@ def live(site):
         assert elsewhere.receive_until("comment")["comment_id"] == there["id"], "the first that is heard there"
 
 
+def names(site):
+    """Whom one may name: who may sign in and sees the project."""
+    people = "/projects/default/people"
+    told(site.request("vera", "GET", people), status=403)
+    assert site.server.request("GET", people, token=False).status == 401
+    told(site.request("bob", "GET", "/projects/nowhere/people"), status=404)
+
+    def listed(query=""):
+        return [person["user"] for person in site.ok("bob", "GET", people + query).json()["people"]]
+
+    everybody = ["Ada.L", "bob", "carl", "owner", "vera"]
+    assert listed() == everybody, listed()
+    site.server.ok("POST", "/users", {"user": "gus", "full_name": "Gustav G.", "role": "guest"})
+    site.server.ok("POST", "/users", {"user": "dora", "role": "viewer"})
+    site.server.ok("PATCH", "/users/dora", {"disabled": True})
+    assert listed() == everybody, "guests of other projects and who may not sign in are none"
+    site.server.ok("PUT", "/projects/default/members/gus", {"role": "viewer"})
+    assert listed() == ["Ada.L", "bob", "carl", "gus", "owner", "vera"]
+    page = site.ok("bob", "GET", people + "?limit=2&offset=3")
+    assert page.json() == {"people": [{"user": "gus", "full_name": "Gustav G."}, {"user": "owner", "full_name": ""}], "total": 6}, page
+    assert 'rel="next"' in page.headers["Link"]
+    for user in ("gus", "dora"):
+        site.server.ok("DELETE", f"/users/{user}")
+
+
 def people_and_models(site):
     """Of who is deleted the name goes, in what others say to them, too; a model's comments go with it."""
     person = next(user for user in site.server.ok("GET", "/users").json()["users"] if user["user"] == "Ada.L")
@@ -246,7 +271,7 @@ def people_and_models(site):
 def main():
     with StrataServer() as server:
         site = Site(server)
-        for test in (writing, malformed, roles, deleting, repeats_and_races, lists, live, people_and_models):
+        for test in (writing, malformed, roles, deleting, repeats_and_races, lists, live, names, people_and_models):
             test(site)
             print(f"ok: {test.__doc__}", flush=True)
         assert server.stop() == 0

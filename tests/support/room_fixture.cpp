@@ -90,7 +90,7 @@ void RoomTest::restart(std::uint64_t gpu_memory) {
 }
 
 std::shared_ptr<room::Room> RoomTest::room() {
-  auto room = rooms_->open("pot");
+  auto room = rooms_->open("pot", Role::owner);
   EXPECT_TRUE(room) << (room ? "" : room.error().detail);
   return *room;
 }
@@ -171,7 +171,7 @@ void RoomTest::expect_picture_of_journal() {
   Result<render::Frame> expected = fail(503, "", "");
   {
     room::Rooms rooms(*store_, **renderer, stream::StreamContext{renderer->get(), encoder_.get()}, {});
-    auto fresh = rooms.open("pot");
+    auto fresh = rooms.open("pot", Role::owner);
     ASSERT_TRUE(fresh) << fresh.error().detail;
     expected = (*fresh)->picture({camera({0.3, -1, 0.4})});
   }

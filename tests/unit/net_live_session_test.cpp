@@ -86,7 +86,7 @@ class FakeRoom final : public room::Room {
   void edit(room::EditRequest request, Applied applied, Saved saved) override {
     edits.push_back({std::move(request), std::move(applied), std::move(saved)});
   }
-  std::unique_ptr<room::Member> join(std::string, std::string full_name, room::Listener* listener,
+  std::unique_ptr<room::Member> join(Author, std::string full_name, room::Listener* listener,
                                      stream::Viewer::Send send) override {
     listeners.push_back(listener);
     sends.push_back(std::move(send));
@@ -110,7 +110,7 @@ class FakeRoom final : public room::Room {
     return fail(500, "Not here", "");
   }
   void records_changed(std::int64_t) override {}
-  Result<void> check_expression(const Expression&, const std::string&) const override { return {}; }
+  Result<void> check_expression(const Expression&, const std::string&, Visibility) const override { return {}; }
   Result<Model> update_model(Model model, const store::FirstAnswer<Model>&) override { return model; }
   Result<TileMap> dabs(const Layer&, const std::vector<PlacedValue>&, double, double) override { return TileMap{}; }
   Result<TileMap> project(const Layer&, const glm::dvec3&, const ValueAt&) override { return TileMap{}; }

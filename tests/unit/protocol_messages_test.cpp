@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <random>
 #include <sstream>
 #include <thread>
 
+#include "protocol/fast_json.h"
 #include "protocol/parse.h"
 
 namespace strata::protocol {
@@ -234,6 +236,47 @@ TEST(ProtocolMessages, invalid_utf_8_is_refused) {
   const auto parsed = parse_json("{\"op\":\"\xC3\x28\"}");
   ASSERT_FALSE(parsed);
   EXPECT_EQ(parsed.error().status, 400);
+}
+
+TEST(ProtocolMessages, what_only_the_careful_reader_takes_is_still_taken) {
+  EXPECT_EQ(parse_json("[100000000000000000000]"), json::array({1e20}));  // as JavaScript writes it
+  EXPECT_EQ(parse_json("\xEF\xBB\xBF{}"), json::object());
+}
+
+TEST(ProtocolMessages, the_fast_reader_leaves_what_is_wrong_to_the_careful_one) {
+  for (const std::string text : {"", "[1,]", "{\"a\":1,\"a\":2}", "[\"\\u0000\"]", "{\"\\u0000\":1}", "[1e999]",
+                                 "[1] 2", "[[[]]]", "\"\\ud800\"", "\"\xC3\x28\""})
+    EXPECT_FALSE(read_json_fast(text, 2)) << text;
+  const auto problem = parse_json("{\"a\":[1,}");
+  ASSERT_FALSE(problem);
+  EXPECT_NE(problem.error().detail.find("byte 9"), std::string::npos) << problem.error().detail;
+}
+
+// Bytes of the fixtures are changed at random: what the fast reader takes is JSON, and the value that nlohmann-json reads.
+TEST(ProtocolMessages, the_fast_reader_reads_what_the_careful_one_would) {
+  std::vector<std::string> texts{
+      "[0,-0,-0.0,1,-1,18446744073709551615,9223372036854775808,-9223372036854775808,1.5e-310,0.1,"
+      "123456789.123456789,1E+2,true,false,null,\"\\u00e9\\ud83d\\ude00\\n\\/\",{\"\":{}}]"};
+  for (const char* folder : {"valid", "invalid"})
+    for (const auto& f : fixtures(folder))
+      if (const std::string text = f.text(); !text.empty()) texts.push_back(text);
+  constexpr std::string_view kBytes = "0123456789-+.eE\"\\{}[],:utfn \x80\xC3";
+  std::mt19937 random(7);
+  int taken = 0;
+  for (const std::string& original : texts) {
+    for (int change = 0; change < 200; ++change) {
+      std::string text = original;
+      for (int i = 0; i < change % 4; ++i) text[random() % text.size()] = kBytes[random() % kBytes.size()];
+      const auto fast = read_json_fast(text, 32);
+      if (!fast) continue;
+      ++taken;
+      ASSERT_TRUE(json::accept(text)) << text;
+      const json careful = json::parse(text);
+      ASSERT_EQ(*fast, careful) << text;
+      ASSERT_EQ(fast->dump(), careful.dump()) << text;
+    }
+  }
+  EXPECT_GT(taken, 1000);
 }
 
 TEST(ProtocolMessages, every_schema_can_be_built) {

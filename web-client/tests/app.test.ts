@@ -14,7 +14,7 @@ import type { Layer, Palette, ValueType } from "../src/core/types";
 
 const layer = (type: ValueType, palette: Palette, unit = ""): Layer => ({
   id: 7, model: 1, name: "L", slug: "l", kind: "numeric", type, resolution: 2048, unit, description: "", palette,
-  opacity: 1, visible: true, locked: false, order: 0, sequence: 0,
+  opacity: 1, visible: true, locked: false, visibility: "public", order: 0, sequence: 0,
 }); // prettier-ignore
 const classes = class_palette([
   { at: 2, label: "Plaster", color: "#ffffffff" },
@@ -77,10 +77,11 @@ describe("records", () => {
 
 describe("a changed layer", () => {
   const old = layer("u8", classes);
-  const same = { name: "L", unit: "", description: "", palette: class_palette(classes.points as never) };
+  const same = { name: "L", unit: "", description: "", palette: class_palette(classes.points as never), visibility: "public" as const };
   it("sends only what was changed", () => {
     expect(layer_changes(old, same)).toEqual({});
     expect(layer_changes(old, { ...same, description: "by eye" })).toEqual({ description: "by eye" });
+    expect(layer_changes(old, { ...same, visibility: "team" })).toEqual({ visibility: "team" });
     const palette = class_palette([{ at: 2, label: "Lime", color: "#ffffffff" }]);
     expect(layer_changes(old, { ...same, name: "M", palette })).toEqual({ name: "M", palette });
   });

@@ -6,6 +6,7 @@ import { kMostLooked, PinSight, type PinPlace } from "../src/app/pin-sight";
 import { comment_of, hash_of_comment } from "../src/app/routes";
 import { Api } from "../src/core/api";
 import { OrbitCamera } from "../src/core/camera";
+import { mention_begun, people_like } from "../src/core/mentions";
 import { color_of_person, find_threads, is_unread, mentions, text_parts, threads_of, with_thread_read } from "../src/core/comments";
 import type { Point } from "../src/core/connection";
 import type { Comment } from "../src/core/protocol.gen";
@@ -210,6 +211,35 @@ class FakeStorage {
   setItem = (name: string, value: string): void => void this.kept.set(name, value);
 }
 
+describe("names behind an @", () => {
+  const people = [
+    { user: "ada", full_name: "Ada Lovelace" },
+    { user: "Adam.B", full_name: "" },
+    { user: "bob", full_name: "Robert Ádám" },
+    { user: "carl", full_name: "" },
+  ];
+  const found = (word: string): string[] => people_like(people, word).map(({ user }) => user);
+
+  it("are begun where the caret stands behind one, and not in an address of a mail", () => {
+    expect(mention_begun("see @ad", 7)).toEqual({ at: 4, word: "ad" });
+    expect(mention_begun("see @ad now", 7)).toEqual({ at: 4, word: "ad" });
+    expect(mention_begun("@", 1)).toEqual({ at: 0, word: "" });
+    expect(mention_begun("see @ad now", 9)).toBeNull();
+    expect(mention_begun("bob@ad", 6)).toBeNull();
+    expect(mention_begun("see ad", 6)).toBeNull();
+  });
+
+  it("are found by how they begin, then by parts of them and of full names, in any case and without accents", () => {
+    expect(found("")).toEqual(["ada", "Adam.B", "bob", "carl"]);
+    expect(found("AD")).toEqual(["ada", "Adam.B", "bob"]);
+    expect(found("love")).toEqual(["ada"]);
+    expect(found("b")).toEqual(["bob", "Adam.B"]);
+    expect(found("zoe")).toEqual([]);
+    const many = Array.from({ length: 50 }, (_, n) => ({ user: `p${n}`, full_name: "" }));
+    expect(people_like(many, "p")).toHaveLength(6);
+  });
+});
+
 describe("the comments of a model", () => {
   let answers: Map<string, () => [status: number, body: unknown]>;
   let calls: { call: string; body: unknown; key: string | null }[];
@@ -232,7 +262,7 @@ describe("the comments of a model", () => {
       layers: { all: [], selected: null },
       tables: {},
       here: () => [],
-      model: () => null,
+      model: () => ({ id: 1, project: 7 }),
       began: () => {},
       changed: () => {},
     } as unknown as CommentsHost);
@@ -263,6 +293,18 @@ describe("the comments of a model", () => {
     comments.pins_shown = false;
     expect(pins()).toEqual([3]);
     expect(comments.open_count).toBe(1);
+  });
+
+  it("may name the people of the project, who are asked for once, and again where that failed", async () => {
+    expect(await comments.load_people()).toEqual([]);
+    const dora = { user: "dora", full_name: "Dora D." };
+    answers.set("GET /api/v1/projects/7/people?limit=1000&offset=0", () => [200, { people: [{ user: "ada", full_name: "" }, dora], total: 2 }]);
+    const asked = (): number => calls.filter(({ call }) => call.includes("/people")).length;
+    expect(asked()).toBe(1);
+    expect(await Promise.all([comments.load_people(), comments.load_people()])).toEqual([[dora], [dora]]);
+    await comments.load_people();
+    expect(asked()).toBe(2);
+    expect(comments.people.has("dora")).toBe(true);
   });
 
   it("follow what others do", () => {

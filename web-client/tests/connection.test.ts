@@ -49,6 +49,7 @@ beforeEach(() => {
     table: vi.fn(),
     editors: vi.fn(),
     comment: vi.fn(),
+    view: vi.fn(),
     presence: vi.fn(),
     picked: vi.fn(),
     problem: vi.fn(),

@@ -167,7 +167,7 @@ describe("records that were looked at", () => {
 
 describe("what a card tells of a record", () => {
   const column = (id: number, slug: string, kind: ColumnKind = "text"): Column => ({
-    id, name: slug, slug, labels: {}, kind, required: false, unique: false, comment: "", order: id,
+    id, name: slug, slug, labels: {}, kind, required: false, unique: false, comment: "", order: id, visibility: "public",
   }); // prettier-ignore
   const table = {
     kind: "records" as const,

@@ -11,7 +11,7 @@ import type { CellValue, Column, ColumnKind, Mark, Picked, Table, TableRecord } 
 import type { Layer } from "../src/core/types";
 
 const column = (id: number, slug: string, kind: ColumnKind = "text", more: Partial<Column> = {}): Column => ({
-  id, name: slug, slug, labels: {}, kind, required: false, unique: false, comment: "", order: id, ...more,
+  id, name: slug, slug, labels: {}, kind, required: false, unique: false, comment: "", order: id, visibility: "public", ...more,
 }); // prettier-ignore
 const table = (...columns: Column[]): Table => ({
   id: 3, project: 1, name: "Units", slug: "units", kind: "records", labels: {}, description: "", columns, records: 0, sequence: 0,

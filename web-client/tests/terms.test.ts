@@ -172,7 +172,7 @@ describe("the terms of a list", () => {
 
 describe("terms", () => {
   const text = (id: number, slug: string, more: Partial<Column> = {}): Column => ({
-    id, name: slug, slug, labels: {}, kind: "text", required: false, unique: false, comment: "", order: id, ...more,
+    id, name: slug, slug, labels: {}, kind: "text", required: false, unique: false, comment: "", order: id, visibility: "public", ...more,
   }); // prettier-ignore
   const columns = [text(1, "code", { required: true, unique: true }), text(2, "label"), text(3, "label-es"), text(4, "label-pt-br")];
   const name = (values: Record<string, string>, languages: string[]): string => label_of_record({ kind: "terms", columns }, { values }, languages);

@@ -14,7 +14,7 @@ const bounds = { min: [0, 0, 0], max: [100, 100, 100] } as const;
 const model = { id: 1, name: "Pot", unit: "mm", up: "z", scale_verified: true, bounds } as unknown as Welcome["model"];
 const layer = {
   id: 7, model: 1, name: "L", slug: "l", kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "",
-  palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, locked: false, order: 0, sequence: 0,
+  palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, locked: false, visibility: "public", order: 0, sequence: 0,
 } as unknown as Welcome["layers"][number]; // prettier-ignore
 const words = texts.together;
 
@@ -56,7 +56,8 @@ beforeEach(async () => {
   vi.stubGlobal("cancelAnimationFrame", (id: ReturnType<typeof setTimeout>) => clearTimeout(id));
   sockets = [];
   const api = new Api(async (path) => {
-    const body = String(path).includes("/comments?") ? { comments: [], total: 0 } : model;
+    const [, list] = /\/(comments|views)\?/.exec(String(path)) ?? [];
+    const body = list ? { [list]: [], total: 0 } : model;
     return new Response(JSON.stringify(body), { status: 200, headers: { ETag: '"1"' } });
   });
   session = new ModelSession(api, "1", (url, protocol) => {

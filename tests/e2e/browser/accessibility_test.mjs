@@ -179,6 +179,29 @@ function screens_of({ page }, w, site) {
       await page.getByRole("radio", exact(w.view.lights.raking)).click();
       await page.getByRole("radio", exact(w.view.sections.box)).click();
     } },
+    { name: "keep a view", start: async () => {
+      await page.locator("strata-view-list").getByText(w.kept_views.none).waitFor();
+      await open(button(w.kept_views.keep));
+      await page.getByRole("textbox", exact(w.kept_views.name)).fill("Inscription beside the handle, upper register");
+      await page.getByRole("textbox", exact(w.kept_views.text)).fill("Read in raking light.\nCompare https://example.org/a-very-long-address/that-does-not-break/anywhere/in-it");
+    }, keyboard: true },
+    { name: "views", start: async () => {
+      await page.locator("strata-view-dialog").getByRole("button", exact(w.kept_views.keep_yes)).click();
+      await page.locator("strata-view-list").getByRole("listitem").waitFor();
+      await page.locator("strata-view-list").getByRole("listitem").getByRole("button").first().click();
+      await page.locator("strata-view-list").evaluate((list) => list.scrollIntoView());
+    }, keyboard: true },
+    { name: "menu of a view", start: () => button(w.layers.options("Inscription beside the handle, upper register")).click(), end: escape },
+    { name: "view with a section of its own", start: async () => {
+      const [view] = (await server.json("GET", `/models/${site.model}/views`)).views;
+      await server.json("PATCH", `/models/${site.model}/views/${view.id}`, { camera: { ...view.camera, section: [[0.6, 0.6, 0.5, 0]] } });
+      await page.locator("strata-view-list").getByRole("listitem").getByRole("button").first().click();
+      await page.locator("strata-view-panel").getByText(w.view.section_of_view(1)).waitFor();
+    }, end: async () => {
+      for (const { id } of (await server.json("GET", `/models/${site.model}/views`)).views) await server.request("DELETE", `/models/${site.model}/views/${id}`);
+      await page.locator("strata-view-list").getByText(w.kept_views.none).waitFor();
+      await page.locator("strata-view-list").getByRole("button", exact(w.kept_views.back)).click();
+    } },
     { name: "orthophoto", start: async () => {
       await from_menu(w.view.look_more, w.orthophoto.open)();
     }, end: close_dialog },
@@ -273,6 +296,13 @@ function screens_of({ page }, w, site) {
       await page.locator("strata-comment-panel").evaluate((panel) => panel.scrollIntoView());
     }, end: async () => {
       for (const { id } of (await server.json("GET", `/models/${site.model}/comments`)).comments) await server.request("DELETE", `/comments/${id}`);
+    }, keyboard: true },
+    { name: "activity", start: async () => {
+      const panel = page.locator("strata-activity-panel");
+      await panel.getByRole("button", { name: w.activity.title, expanded: false }).click();
+      await panel.getByRole("radio", exact(w.activity.of_project)).click();
+      await panel.getByRole("listitem").first().waitFor();
+      await panel.evaluate((all) => all.scrollIntoView());
     }, keyboard: true },
   ];
 }

@@ -115,6 +115,35 @@ try {
   await article(ada, "<b>it</b> has grown.").waitFor();
   await shot(bea, "reply");
 
+  say("names are completed behind an @, by keys and by the mouse");
+  const writing = card(bea).locator("textarea");
+  const names = card(bea).getByRole("listbox", { name: "People whom you may name" });
+  await writing.focus();
+  await bea.page.keyboard.type("Ask @ca");
+  await names.getByRole("option", { name: "carl" }).waitFor();
+  await card(bea).getByRole("combobox", { name: "Reply" }).waitFor();
+  assert.equal(await names.getByRole("option").count(), 1, "bea herself is not among them");
+  await shot(bea, "names");
+  await bea.page.keyboard.press("Escape");
+  await gone(names);
+  assert.equal(await writing.inputValue(), "Ask @ca", "the card stays open");
+  await bea.page.keyboard.press("Backspace");
+  await bea.page.keyboard.press("Backspace");
+  await names.getByRole("option", { name: "owner" }).waitFor();
+  assert.deepEqual((await names.getByRole("option").allInnerTexts()).map((text) => text.trim().split("\n").at(-1)), ["ada", "carl", "owner"]);
+  assert.equal(await names.getByRole("option", { selected: true }).innerText().then((text) => text.split("\n").at(-1)), "ada");
+  await bea.page.keyboard.press("ArrowDown");
+  assert.equal(await writing.getAttribute("aria-activedescendant"), await names.getByRole("option", { selected: true }).getAttribute("id"));
+  await bea.page.keyboard.press("Enter");
+  await gone(names);
+  assert.equal(await writing.inputValue(), "Ask @carl ");
+  await bea.page.keyboard.type("and @o");
+  await names.getByRole("option", { name: "owner" }).click();
+  await gone(names);
+  assert.equal(await writing.inputValue(), "Ask @carl and @owner ");
+  assert.equal(await card(bea).getByRole("combobox").count(), 0, "it is a plain field again");
+  await writing.fill("");
+
   say("pins are hidden behind the surface: on the far side, and inside where the wall stands before them");
   await bea.page.keyboard.press("Escape");
   await bea.page.keyboard.press("c");

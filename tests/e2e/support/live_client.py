@@ -39,6 +39,8 @@ class LiveClient:
         self.socket.settimeout(LONG_S)
         self.socket.connect((server.host, port))
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        if server.tls:
+            self.socket = server.tls.wrap_socket(self.socket, server_hostname=server.host)
         self.buffer = b""
         lines = [f"GET /api/v1/models/{model}/live HTTP/1.1", f"Host: {server.host}:{port}", "Upgrade: websocket",
                  "Connection: Upgrade", "Sec-WebSocket-Version: 13",

@@ -155,6 +155,7 @@ export class Site {
     await server.json("POST", "/models/wall/layers", { name: "Units", kind: "database", type: "u16", table: "units", resolution: 2048 });
     const { id } = await server.json("POST", "/models/wall/comments", { text: "Since when?", position: [10, 10, 0], layer: "units", record: 1 });
     await server.json("POST", `/comments/${id}/replies`, { text: "Since 2019." });
+    await this.#view("West");
     for (const [layer, value, where] of [
       ["cracks", 3, "x < 30"],
       ["moisture", 0.5, "y < 50"],
@@ -176,6 +177,12 @@ export class Site {
   }
 
   /** A layer and a table of which there is something to redo. */
+  #view(name) {
+    // prettier-ignore
+    const camera = { view: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1], projection: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.1, -1, 0, 0, -21, 0], width: 400, height: 400 };
+    return this.server.json("POST", "/models/wall/views", { name, text: "The west.", camera, layers: [{ layer: "cracks", opacity: 0.5 }] });
+  }
+
   async #undo() {
     const { server } = this;
     await server.json("POST", "/models/wall-2/layers", { name: "Undone", type: "u8", resolution: 2048 });
@@ -216,6 +223,8 @@ export class Site {
           (await this.#post(`/tables/units/records/2/attachments?name=${encodeURIComponent(`${name}.txt`)}`, "letter.txt")).attachments[0]
             .id,
         );
+      case "view":
+        return (await this.#view(name)).slug;
       case "comment":
         return String((await server.json("POST", "/models/wall/comments", { text: name, position: [50, 50, 0] })).id);
       case "user":

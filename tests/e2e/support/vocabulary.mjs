@@ -119,6 +119,7 @@ export const path_words = {
   model: mostly("wall", "wall", "wall-2"),
   layer: mostly(...kLayers),
   look: mostly("infrared", "1"),
+  view: mostly("west", "1"),
   tool: mostly("leaf", "1"),
   table: mostly("units", "damage", "scratch"),
   column: mostly(...kColumnSlugs),
@@ -227,6 +228,8 @@ export const particulars = {
   delete_layer_record: { path: { model: one("wall"), layer: one("units"), ...spare("key", "1") }, queries: what_of_texels },
   delete_attachment: { path: spare("attachment") },
   delete_comment: { path: spare("comment") },
+  delete_view: { path: { model: one("wall"), ...spare("view") } },
+  change_view: { path: { model: one("wall"), ...spare("view", "west") } },
   change_comment: { path: spare("comment", "2") },
   create_comment: {
     path: { model: one("wall", "wall", "wall", "nothing") },

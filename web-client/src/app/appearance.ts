@@ -1,9 +1,10 @@
-// How this person sees the model: its looks, the light and the section. Nothing of it is kept, and others see it their way.
+// How this person sees the model: its looks, the light and the section. Nothing of it is kept but by named views, and others see it their way.
 
 import type { Api } from "../core/api";
 import type { Bounds } from "../core/camera";
 import type { Light, Look, LookEvent, LookShown, Plane } from "../core/protocol.gen";
-import { no_section, section_planes, type SectionChoice, type SectionMode } from "../core/section";
+import { no_section, section_choice, section_planes, type SectionChoice, type SectionMode } from "../core/section";
+import { looks_of_view, type LookSettings } from "../core/views";
 import { notices } from "./notices";
 import { reorder } from "./reorder";
 import { texts } from "./texts";
@@ -23,17 +24,13 @@ const kLightModes: readonly Light["mode"][] = ["museum", "headlight", "raking", 
 const kCuts: readonly SectionMode[] = ["off", "x", "y", "z"];
 const after = <T>(all: readonly T[], one: T): T => all[(all.indexOf(one) + 1) % all.length]!;
 
-interface Override {
-  visible?: boolean;
-  opacity?: number;
-}
-
 export class Appearance {
   looks: Look[] = []; // by order: the last is on top
   light: Required<Light> = { mode: "museum", direction: kFirstRaking };
   section: SectionChoice = no_section();
 
-  private readonly overrides_ = new Map<number, Override>();
+  private overrides_ = new Map<number, LookSettings>();
+  private stack_: number[] = []; // looks of a named view, bottom to top; others lie above them in their own order
 
   constructor(
     private readonly api_: Api,
@@ -99,12 +96,14 @@ export class Appearance {
       if (visible !== look.visible || opacity !== look.opacity)
         this.put(await this.api_.change_look(this.model_id_, look.id, { visible, opacity }));
     }
-    this.overrides_.clear();
+    this.forget_own_looks();
     this.send();
   }
 
   get has_look_overrides(): boolean {
-    return this.looks.some((look) => this.visible(look) !== look.visible || Math.abs(this.opacity(look) - look.opacity) > 1e-6);
+    const is_own = (look: Look): boolean => this.visible(look) !== look.visible || Math.abs(this.opacity(look) - look.opacity) > 1e-6;
+    const visible = this.looks.filter((look) => this.visible(look));
+    return this.looks.some(is_own) || this.stacked(visible).some((look, place) => look !== visible[place]);
   }
 
   take_looks(looks: Look[]): void {
@@ -149,25 +148,60 @@ export class Appearance {
     return this.light.mode === "museum" && this.section.mode === "off" && !this.has_look_overrides;
   }
 
+  // ── named views ───────────────────────────────────────────────────────────────────────────────────────────────────
+
+  /** What a named view keeps of all this, apart from the section, which is the camera's. */
+  to_keep(): { looks: LookShown[]; light: Light } {
+    return { looks: this.shown_looks(), light: this.light };
+  }
+
+  /** As a named view has it. Returns the way back. */
+  show_view(view: { camera: { section?: Plane[] }; looks?: LookShown[]; light: Light }): () => void {
+    const { overrides_, stack_, light, section } = this;
+    const { settings, stack } = looks_of_view(view, this.looks);
+    const bounds = this.host_.bounds();
+    const of_view = bounds ? section_choice(view.camera.section ?? [], bounds) : section;
+    this.take({ overrides_: settings, stack_: stack, light: { direction: kFirstRaking, ...view.light }, section: of_view });
+    return () => this.take({ overrides_, stack_, light, section });
+  }
+  private take(all: { overrides_: Map<number, LookSettings>; stack_: number[]; light: Required<Light>; section: SectionChoice }): void {
+    Object.assign(this, all);
+    this.send();
+    this.send_section();
+  }
+
   reset(): void {
-    this.overrides_.clear();
+    this.forget_own_looks();
     this.light = { mode: "museum", direction: kFirstRaking };
     this.section = no_section();
     this.send();
     this.send_section();
   }
 
-  private override(look: Look, change: Override): void {
+  private forget_own_looks(): void {
+    this.overrides_ = new Map();
+    this.stack_ = [];
+  }
+
+  private override(look: Look, change: LookSettings): void {
     this.overrides_.set(look.id, { ...this.overrides_.get(look.id), ...change });
     this.send();
   }
 
   private send(): void {
-    const shown = this.looks
-      .filter((look) => this.visible(look))
-      .map((look): LookShown => ({ look: look.id, opacity: this.opacity(look) }));
-    this.host_.send(this.has_look_overrides ? shown.slice(-kMostLooksShown) : null, this.light);
+    this.host_.send(this.has_look_overrides ? this.shown_looks() : null, this.light);
     this.host_.changed();
+  }
+
+  private shown_looks(): LookShown[] {
+    const shown = this.stacked(this.looks.filter((look) => this.visible(look))).slice(-kMostLooksShown);
+    return shown.map((look) => ({ look: look.id, opacity: this.opacity(look) }));
+  }
+
+  /** Bottom to top. */
+  private stacked(looks: Look[]): Look[] {
+    const place = ({ id }: Look): number => (this.stack_.includes(id) ? this.stack_.indexOf(id) : this.stack_.length);
+    return [...looks].sort((a, b) => place(a) - place(b) || looks.indexOf(a) - looks.indexOf(b));
   }
 
   private put(look: Look): void {

@@ -5,7 +5,7 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
 import { cell_text, label_of, parse_cell } from "../core/cells";
 import { format_list } from "../core/locale";
-import type { Column, ColumnChanged, ColumnCreate, ColumnKind, Table } from "../core/protocol.gen";
+import type { Column, ColumnChanged, ColumnCreate, ColumnKind, Table, Visibility } from "../core/protocol.gen";
 import { column_changes, has_limits, has_target, kColumnKinds, of_kind, type ColumnWanted } from "./column-changes";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
@@ -14,6 +14,7 @@ import type { StrataLabelsField } from "./labels-field";
 import type { ModelSession } from "./model-session";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
+import { visibility_choice } from "./visibility";
 
 const words = texts.column_dialog;
 const kNoLabels = {};
@@ -25,6 +26,7 @@ export class StrataColumnDialog extends LitElement {
   /** Null: a new one. */
   @property({ attribute: false }) column: Column | null = null;
   @state() private kind_: ColumnKind = "text";
+  @state() private visibility_: Visibility = "public";
   @state() private tables_: Table[] = [];
   @state() private problem_ = "";
   @state() private busy_ = false;
@@ -55,6 +57,7 @@ export class StrataColumnDialog extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     this.kind_ = this.column?.kind ?? "text";
+    this.visibility_ = this.column?.visibility ?? "public";
     void this.session.tables.all().then(
       (tables) => (this.tables_ = tables),
       (error: unknown) => (this.problem_ = error instanceof ApiError ? error.message : texts.problems.unexpected),
@@ -133,6 +136,7 @@ export class StrataColumnDialog extends LitElement {
         <span>${words.comment}</span>
         <textarea name="comment" rows="2" maxlength="2000" placeholder=${words.comment_hint} .value=${column?.comment ?? ""}></textarea>
       </label>
+      ${visibility_choice(this.visibility_, (visibility) => (this.visibility_ = visibility))}
     </form>`;
   }
 
@@ -183,8 +187,10 @@ export class StrataColumnDialog extends LitElement {
     const { column, table, session } = this;
     await this.work(async () => {
       if (!column) {
-        await session.api.create_column(table.id, of_kind(wanted) as ColumnCreate);
+        await session.api.create_column(table.id, { ...of_kind(wanted), visibility: this.visibility_ } as ColumnCreate);
       } else {
+        // In a call of its own, which is no entry of the journal; the first, so that what follows is seen by none who should not.
+        if (this.visibility_ !== column.visibility) await session.api.change_column(table.id, column.id, { visibility: this.visibility_ });
         const change = column_changes(column, wanted);
         const outcome = Object.keys(change).length > 0 ? await session.api.change_column(table.id, column.id, change) : null;
         if (outcome?.lost) this.outcome_ = outcome;

@@ -13,6 +13,7 @@ import { ask } from "./dialog";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
+import { NameCompletion, name_completion_styles } from "./name-completion";
 import { person_mark, person_mark_styles } from "./person-mark";
 import { hash_of_comment } from "./routes";
 import { shared_styles } from "./styles";
@@ -33,6 +34,7 @@ export class StrataCommentCard extends LitElement {
   @query("section") private section_!: HTMLElement | null;
   private shown_: number | "new" | null = null;
   private opener_: HTMLElement | null = null; // had the keyboard before
+  private readonly names_ = new NameCompletion(this, () => this.session.comments.load_people());
 
   constructor() {
     super();
@@ -43,6 +45,7 @@ export class StrataCommentCard extends LitElement {
     shared_styles,
     person_mark_styles,
     comment_text_styles,
+    name_completion_styles,
     css`
       section {
         position: absolute;
@@ -399,15 +402,32 @@ export class StrataCommentCard extends LitElement {
 
   private field(of: DraftOf, label: string, hint: string, text = ""): TemplateResult {
     const { comments } = this.session;
+    const offers = this.names_.offers_in(of);
+    const look = (event: Event): void => void this.names_.look(event.target as HTMLTextAreaElement);
     return html`<textarea
-      name=${of}
-      aria-label=${label}
-      placeholder=${hint}
-      rows="2"
-      dir="auto"
-      .value=${comments.draft(of)?.text ?? text}
-      @input=${(event: Event) => comments.set_draft(of, { text: (event.target as HTMLTextAreaElement).value })}
-    ></textarea>`;
+        name=${of}
+        aria-label=${label}
+        placeholder=${hint}
+        rows="2"
+        dir="auto"
+        role=${offers ? "combobox" : nothing}
+        aria-autocomplete=${offers ? "list" : nothing}
+        aria-expanded=${offers ? "true" : nothing}
+        aria-controls=${offers ? "names" : nothing}
+        aria-activedescendant=${offers ? this.names_.active : nothing}
+        .value=${comments.draft(of)?.text ?? text}
+        @input=${(event: Event) => {
+          comments.set_draft(of, { text: (event.target as HTMLTextAreaElement).value });
+          look(event);
+        }}
+        @click=${look}
+        @keydown=${(event: KeyboardEvent) => this.names_.on_key(event)}
+        @keyup=${({ key, target }: KeyboardEvent) => {
+          if (/^(Arrow(Left|Right)|Home|End)$/.test(key)) void this.names_.look(target as HTMLTextAreaElement);
+        }}
+        @blur=${() => this.names_.close()}
+      ></textarea>
+      ${offers ? this.names_.list() : nothing}`;
   }
 
   private problem(of: DraftOf | "thread"): TemplateResult | typeof nothing {

@@ -14,7 +14,7 @@ import {
   type Thread,
   type ThreadState,
 } from "../core/comments";
-import type { Comment, CommentEvent, PresenceUser, SurfacePoint } from "../core/protocol.gen";
+import type { Comment, CommentEvent, PresenceUser, ProjectPerson, SurfacePoint } from "../core/protocol.gen";
 import type { Layer, Model } from "../core/types";
 import type { Vec3 } from "../core/vector";
 import { Kept } from "./kept";
@@ -81,6 +81,8 @@ export class Comments {
   private known_ = new Map<number, Comment>();
   private threads_: Thread[] = [];
   private reading_: { gone: Set<number>; come: Set<number> } | null = null; // what happens meanwhile
+  private people_: readonly ProjectPerson[] = [];
+  private asking_: Promise<ProjectPerson[]> | null = null; // for them
   private drafts_: Kept<Marks> | null = null;
   private reads_: Kept<ReadMarks> | null = null;
   private readonly shown_ = new Kept(() => globalThis.localStorage, "strata.comment_pins", true);
@@ -130,12 +132,30 @@ export class Comments {
     this.look_again();
   }
 
-  /** Those that are here, or wrote something. */
+  /** Those that are here, or wrote something, or were asked for. */
   get people(): ReadonlySet<string> {
     const names = new Set(this.host_.here().map(({ name }) => name));
     names.add(this.me_);
     for (const { user } of this.known_.values()) names.add(user);
+    for (const { user } of this.people_) names.add(user);
     return names;
+  }
+
+  /** Whom one may name: the people of the project but oneself. They are asked for once a page, and again where that failed. */
+  async load_people(): Promise<readonly ProjectPerson[]> {
+    const model = this.host_.model();
+    if (this.people_.length === 0 && model) {
+      this.asking_ ??= this.api_.project_people(model.project);
+      try {
+        this.people_ = (await this.asking_).filter(({ user }) => user !== this.me_);
+        this.host_.changed();
+      } catch (error) {
+        if (!(error instanceof ApiError)) throw error; // one still writes what one likes
+      } finally {
+        this.asking_ = null;
+      }
+    }
+    return this.people_;
   }
 
   /** The server said who this is; what happened before, nobody told this page. */

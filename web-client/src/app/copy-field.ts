@@ -41,13 +41,21 @@ export class StrataCopyField extends LitElement {
   }
 
   private async copy(): Promise<void> {
-    this.input_.select(); // for who copies by hand, and for the way that also works where the page came by plain HTTP
-    const copied = navigator.clipboard
-      ? await navigator.clipboard.writeText(this.text).then(
-          () => true,
-          () => document.execCommand("copy"),
-        )
-      : document.execCommand("copy");
+    const copied = await copy_text(this.text, () => {
+      this.input_.select();
+      return () => {}; // it stays selected for who copies by hand
+    });
     this.told_ = copied ? texts.copy.copied : texts.copy.by_hand;
   }
+}
+
+/** Returns whether the browser took it. `select`: selects the text in the page, which also works where the page came by plain HTTP; returns what lets go of it. */
+export async function copy_text(text: string, select: () => () => void): Promise<boolean> {
+  const by_selection = (): boolean => {
+    const let_go = select();
+    const copied = document.execCommand("copy");
+    let_go();
+    return copied;
+  };
+  return navigator.clipboard ? navigator.clipboard.writeText(text).then(() => true, by_selection) : by_selection();
 }

@@ -1,17 +1,18 @@
 // <strata-files-field>: the pictures or documents of a record in its form. Files that are added wait until the form is saved.
 
-import { css, html, LitElement, type PropertyValues, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
 import { label_of } from "../core/cells";
 import { format_bytes } from "../core/measure";
-import type { Attachment, Column } from "../core/protocol.gen";
+import type { Attachment, Column, Visibility } from "../core/protocol.gen";
 import { dropped_files } from "./drop";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
+import { kVisibilities } from "./visibility";
 
 const words = texts.files;
 
@@ -26,6 +27,7 @@ export class StrataFilesField extends LitElement {
   @property({ attribute: false }) ids: number[] = [];
   @state() private pending_: File[] = [];
   @state() private known_ = new Map<number, Attachment>();
+  @state() private is_known_ = false; // which of the files this person sees
   @state() private over_ = false;
   @query("input") private input_!: HTMLInputElement;
 
@@ -53,7 +55,7 @@ export class StrataFilesField extends LitElement {
       figure {
         position: relative;
         display: grid;
-        grid-template-rows: 72px auto;
+        grid-template-rows: 72px auto auto;
         gap: 3px;
         width: 104px;
         margin: 0;
@@ -72,6 +74,11 @@ export class StrataFilesField extends LitElement {
         width: 100%;
         height: 100%;
         object-fit: cover;
+      }
+      figure select {
+        min-height: 28px;
+        padding: 0 4px;
+        font-size: 0.76rem;
       }
       figure.waits {
         opacity: 0.6;
@@ -110,6 +117,7 @@ export class StrataFilesField extends LitElement {
     try {
       const files = await this.session.api.attachments(this.table, this.record!);
       this.known_ = new Map(files.map((file) => [file.id, file]));
+      this.is_known_ = true;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       notices.error(error);
@@ -122,7 +130,7 @@ export class StrataFilesField extends LitElement {
 
   override render(): TemplateResult {
     return html`<div class="field ${this.over_ ? "over" : ""}" role="group" aria-label=${label_of(this.column)} @dragover=${this.on_over} @dragleave=${() => (this.over_ = false)} @drop=${this.on_drop}>
-      ${this.ids.map((id) => this.kept(id))} ${this.pending_.map((file) => this.waiting(file))}
+      ${this.ids.filter((id) => !this.is_known_ || this.known_.has(id)).map((id) => this.kept(id))} ${this.pending_.map((file) => this.waiting(file))}
       <button type="button" class="add" @click=${() => this.input_.click()}>${icon("plus")}${this.is_pictures ? words.add_pictures : words.add_documents}</button>
       <input type="file" multiple tabindex="-1" aria-label=${words.choose} accept=${this.is_pictures ? "image/*" : ""} @change=${this.on_chosen} />
     </div>`;
@@ -136,6 +144,7 @@ export class StrataFilesField extends LitElement {
         ${this.is_pictures ? html`<img src=${this.session.api.attachment_url(id, 256)} alt=${name} loading="lazy" />` : icon("document")}
       </a>
       <figcaption class="ellipsis">${name}</figcaption>
+      ${file ? this.seen_by(file) : nothing}
       <button
         type="button"
         class="icon quiet"
@@ -146,6 +155,31 @@ export class StrataFilesField extends LitElement {
         ${icon("close")}
       </button>
     </figure>`;
+  }
+
+  /** Counts at once, as the file is there already. */
+  private seen_by(file: Attachment): TemplateResult | typeof nothing {
+    const { session } = this;
+    if (!session.can_curate && file.user !== session.user) return nothing;
+    const says = texts.visibility;
+    return html`<select
+      aria-label=${says.of(file.name)}
+      title=${says.says[file.visibility]}
+      @change=${(event: Event) => void this.show_to(file, event.target as HTMLSelectElement)}
+    >
+      ${kVisibilities.map((each) => html`<option value=${each} ?selected=${each === file.visibility}>${says.names[each]}</option>`)}
+    </select>`;
+  }
+
+  private async show_to(file: Attachment, choice: HTMLSelectElement): Promise<void> {
+    try {
+      const now = await this.session.api.show_attachment(file.id, choice.value as Visibility);
+      this.known_ = new Map(this.known_).set(file.id, now);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      choice.value = file.visibility;
+      notices.error(error);
+    }
   }
 
   private waiting(file: File): TemplateResult {

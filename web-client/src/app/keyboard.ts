@@ -63,7 +63,7 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
   const { width, height } = session.view.camera;
   switch (key) {
     case "Escape":
-      if (!session.together.followed) return false;
+      if (!session.together.followed) return session.comments.close();
       session.together.stop_following();
       return true;
     case "+":
@@ -97,12 +97,14 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
     case "X":
       session.appearance.next_section();
       return true;
+    case "n":
+    case "N":
+      session.views.step(event.shiftKey ? -1 : 1);
+      return true;
     case "t":
     case "T":
       session.toggle_table();
       return true;
-    case "Escape":
-      return session.comments.close();
     case "?":
       show_help();
       return true;

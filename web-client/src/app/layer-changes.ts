@@ -1,6 +1,7 @@
 // What somebody changed in the dialog of a layer.
 
 import { same_palette } from "../core/palette";
+import type { Visibility } from "../core/protocol.gen";
 import type { Layer, LayerPatch, Palette } from "../core/types";
 
 export interface LayerWanted {
@@ -8,17 +9,19 @@ export interface LayerWanted {
   unit: string;
   description: string;
   palette: Palette;
+  visibility: Visibility;
   expression?: string; // of a computed layer
   recompute?: "manual" | "automatic";
 }
 
 /** Only what differs: what this person left alone is not theirs to set. */
-export function layer_changes(layer: Layer, { name, unit, description, palette, expression, recompute }: LayerWanted): LayerPatch {
+export function layer_changes(layer: Layer, { name, unit, description, palette, visibility, expression, recompute }: LayerWanted): LayerPatch {
   const change: LayerPatch = {};
   if (name !== layer.name) change.name = name;
   if (unit !== layer.unit) change.unit = unit;
   if (description !== layer.description) change.description = description;
   if (!same_palette(palette, layer.palette)) change.palette = palette;
+  if (visibility !== layer.visibility) change.visibility = visibility;
   if (expression !== undefined && expression !== layer.expression) change.expression = expression;
   if (recompute !== undefined && recompute !== layer.recompute) change.recompute = recompute;
   return change;

@@ -19,7 +19,7 @@ import {
 import type { Layer, LayerCreate, Palette, Resolution, ValueType } from "../core/types";
 import { ApiError } from "../core/api";
 import { label_of } from "../core/cells";
-import type { Table } from "../core/protocol.gen";
+import type { Table, Visibility } from "../core/protocol.gen";
 import "./dialog";
 import "./expression-field";
 import type { StrataExpressionField } from "./expression-field";
@@ -34,6 +34,7 @@ import "./shape-fields";
 import type { StrataShapeFields } from "./shape-fields";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
+import { visibility_choice } from "./visibility";
 
 interface ClassRow {
   at: number;
@@ -62,6 +63,7 @@ export class StrataLayerDialog extends LitElement {
   @state() private stepped_ = false;
   @state() private tables_: Table[] = []; // whose records a layer may show
   @state() private table_: Table | null = null; // null: one of the layer's own
+  @state() private visibility_: Visibility = "public";
   @state() private problem_ = "";
   @state() private problem_field_ = "";
   @state() private busy_ = false;
@@ -188,6 +190,7 @@ export class StrataLayerDialog extends LitElement {
       this.purpose_ = purpose === "presence" ? "classes" : purpose; // it can have a second class one day
       this.classes_ = value.palette.points.map(({ at, label, color }) => ({ at, label: label ?? "", color }));
       this.stepped_ = value.palette.mode === "step";
+      this.visibility_ = value.visibility;
       this.base_ = { layer: value, etag };
       this.stale_ = false;
     } catch (error) {
@@ -262,6 +265,7 @@ export class StrataLayerDialog extends LitElement {
           <span>${words.description}</span>
           <textarea name="description" maxlength="10000" placeholder=${words.description_hint} .value=${layer?.description ?? ""}></textarea>
         </label>
+        ${visibility_choice(this.visibility_, (visibility) => (this.visibility_ = visibility))}
       </form>`,
     );
   }
@@ -437,12 +441,12 @@ export class StrataLayerDialog extends LitElement {
     if (!name) return this.refuse("name", words.name_missing);
     const formula = this.expression_ ? this.wanted_formula(form) : {};
     if (!formula) return this.refuse("expression", words.expression_missing);
-    if (!this.layer && formula.expression !== undefined) return this.create_computed({ name, description: text("description"), ...formula });
+    if (!this.layer && formula.expression !== undefined) return this.create_computed({ name, description: text("description"), visibility: this.visibility_, ...formula });
     const palette = this.palette(name, read_number(text("min")), read_number(text("max")));
     if (!palette) return;
     await this.attempt(async () => {
       const unit = this.purpose_ === "measurement" ? text("unit") : (this.base_?.layer.unit ?? "");
-      await this.send({ name, unit, description: text("description"), palette, ...formula });
+      await this.send({ name, unit, description: text("description"), palette, visibility: this.visibility_, ...formula });
     });
   }
 
@@ -472,7 +476,7 @@ export class StrataLayerDialog extends LitElement {
     if ("problem" in compute) return this.refuse(compute.field, compute.problem);
     const { session } = this;
     await this.attempt(async () => {
-      const { done } = await session.jobs.compute({ name, description, compute, ...this.resolution() });
+      const { done } = await session.jobs.compute({ name, description, compute, visibility: this.visibility_, ...this.resolution() });
       void done.then((made) => session.show_made(made));
       notices.show("success", texts.shape.started(name));
     });

@@ -2,17 +2,12 @@
 
 import type { Api } from "../core/api";
 import { same_palette } from "../core/palette";
+import { layers_of_view, layers_to_keep, type LayerShown } from "../core/views";
 import type { Highlight, LayerEvent, LayerOverride } from "../core/protocol.gen";
 import { complete_layer, type Layer, type LayerPatch, type Palette } from "../core/types";
 import { notices } from "./notices";
 import { reorder } from "./reorder";
 import { texts } from "./texts";
-
-interface Override {
-  visible?: boolean;
-  opacity?: number;
-  palette?: Palette;
-}
 
 export interface LayerListHost {
   send_overrides(overrides: LayerOverride[]): void;
@@ -23,8 +18,8 @@ export class LayerList {
   all: Layer[] = []; // by order: the last is on top
   selected_id: number | null = null;
 
-  private readonly overrides_ = new Map<number, Override>();
-  /** Records that are looked at just now. */
+  private overrides_ = new Map<number, LayerShown>();
+  /** Records that are looked at just now, before those of a view. */
   private readonly highlights_ = new Map<number, Highlight>();
 
   constructor(
@@ -64,7 +59,8 @@ export class LayerList {
       (layer) =>
         this.visible(layer) !== layer.visible ||
         Math.abs(this.opacity(layer) - layer.opacity) > 1e-6 ||
-        !same_palette(this.palette(layer), layer.palette),
+        !same_palette(this.palette(layer), layer.palette) ||
+        this.overrides_.get(layer.id)?.highlight !== undefined,
     );
   }
 
@@ -89,6 +85,24 @@ export class LayerList {
   reset_overrides(): void {
     this.overrides_.clear();
     this.send_overrides();
+  }
+
+  /** What a named view keeps of all this. */
+  to_keep(): LayerOverride[] {
+    return layers_to_keep(this.all, ({ id }) => this.shown(id));
+  }
+  /** As a named view has it, and no records before those of the view; layers that it does not name as everyone sees them at first. Returns the way back, without
+   *  the records that were looked at. */
+  show_view(view: { layers: LayerOverride[] }): () => void {
+    const overrides = this.overrides_;
+    this.overrides_ = layers_of_view(view, this.all);
+    this.highlights_.clear();
+    this.send_overrides();
+    return () => {
+      this.overrides_ = overrides;
+      this.forget_unknown();
+      this.send_overrides();
+    };
   }
 
   async save_overrides_as_default(): Promise<void> {
@@ -129,8 +143,7 @@ export class LayerList {
   /** What the server says on joining: what is known of other layers is forgotten. */
   take_all(layers: Layer[]): void {
     this.put_all(layers);
-    const known = new Set(this.all.map((layer) => layer.id));
-    for (const kept of [this.overrides_, this.highlights_]) for (const id of kept.keys()) if (!known.has(id)) kept.delete(id);
+    this.forget_unknown();
     if (!this.selected) this.select_top();
   }
 
@@ -150,18 +163,25 @@ export class LayerList {
     this.host_.changed();
   }
 
-  private override(layer: Layer, change: Override): void {
+  private shown(id: number): LayerShown {
+    const highlight = this.highlights_.get(id);
+    return { ...this.overrides_.get(id), ...(highlight ? { highlight } : {}) };
+  }
+
+  /** One unknown layer, and the server refuses what is said of all. */
+  private forget_unknown(): void {
+    const known = new Set(this.all.map((layer) => layer.id));
+    for (const kept of [this.overrides_, this.highlights_]) for (const id of kept.keys()) if (!known.has(id)) kept.delete(id);
+  }
+
+  private override(layer: Layer, change: LayerShown): void {
     this.overrides_.set(layer.id, { ...this.overrides_.get(layer.id), ...change });
     this.send_overrides();
   }
 
   private send_overrides(): void {
     const ids = new Set([...this.overrides_.keys(), ...this.highlights_.keys()]);
-    const overrides = [...ids].map((layer) => {
-      const highlight = this.highlights_.get(layer);
-      return { layer, ...this.overrides_.get(layer), ...(highlight ? { highlight } : {}) };
-    });
-    this.host_.send_overrides(overrides);
+    this.host_.send_overrides([...ids].map((layer) => ({ layer, ...this.shown(layer) })));
     this.host_.changed();
   }
 

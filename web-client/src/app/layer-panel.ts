@@ -17,6 +17,7 @@ import { shared_styles } from "./styles";
 import { choose_raster, formats_of, save_raster } from "./raster-files";
 import type { TermsRequest } from "./terms-dialog";
 import { texts } from "./texts";
+import { visibility_badge } from "./visibility";
 
 export type LayerPanelRequest =
   | TermsRequest
@@ -110,7 +111,8 @@ export class StrataLayerPanel extends LitElement {
       .selected .name {
         font-weight: 600;
       }
-      .lock {
+      .lock,
+      .seen-by {
         display: grid;
         place-items: center;
         width: 22px;
@@ -288,6 +290,7 @@ export class StrataLayerPanel extends LitElement {
         >
           ${layer_chip(session.layers.palette(layer))}<span class="ellipsis">${layer.name}</span>
         </button>
+        ${visibility_badge(layer.visibility)}
         ${layer.locked ? html`<span class="lock" role="img" aria-label=${this.who_is_locked(layer)} title=${this.who_is_locked(layer)}>${icon("lock")}</span>` : nothing}
         <strata-menu label=${words.options(layer.name)}>
           ${session.can_curate

@@ -6,7 +6,7 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { ApiError, type Api } from "../core/api";
 import { label_of } from "../core/cells";
-import type { Column, Layer, Me, Role } from "../core/types";
+import type { Column, Layer, Me, Model, Role } from "../core/types";
 import { kPaintingTools } from "../tools/tool";
 import "./account-menu";
 import "./blank";
@@ -17,6 +17,7 @@ import "./column-dialog";
 import "./comment-card";
 import "./comment-panel";
 import "./comment-pins";
+import "./activity-panel";
 import "./csv-dialog";
 import "./delete-record-dialog";
 import { ask, modal_is_open } from "./dialog";
@@ -35,7 +36,7 @@ import "./record-card";
 import "./people-menu";
 import "./photos-dialog";
 import "./record-dialog";
-import { comment_of, follow, hash_of_comment, put_hash } from "./routes";
+import { comment_of, follow, hash_of_comment, hash_of_view, put_hash, view_of } from "./routes";
 import "./scale-dialog";
 import "./sheets";
 import "./stage";
@@ -53,10 +54,12 @@ import "./together-bar";
 import "./tool-rail";
 import "./transfer-dialog";
 import "./value-readout";
+import "./view-dialog";
+import type { ViewRequest } from "./view-list";
 import "./view-panel";
 import "./where-dialog";
 
-type OpenDialog = LayerPanelRequest | TablePanelRequest | WhereRequest | { dialog: "scale" | "help" | "about" | "orthophoto" } | null;
+type OpenDialog = LayerPanelRequest | TablePanelRequest | ViewRequest | WhereRequest | { dialog: "scale" | "help" | "about" | "orthophoto" } | null;
 
 const kPanelWidth = { least: 270, first: 330, most: 620 };
 const kPanelKey = "strata.panel_width";
@@ -79,6 +82,7 @@ export class StrataModelPage extends LitElement {
   private asked_scale_ = false;
   private role_: Role | null = null; // of the newest welcome
   private wanted_comment_: number | null = null; // by the address
+  private wanted_view_: string | null = null;
 
   static override styles = [shared_styles, model_styles];
 
@@ -107,7 +111,7 @@ export class StrataModelPage extends LitElement {
     this.session_ = new ModelSession(this.api, this.model_id);
     this.missing_ = null;
     this.asked_scale_ = false;
-    this.wanted_comment_ = comment_of(location.hash);
+    this.read_address();
     void this.open(this.session_);
   }
 
@@ -156,18 +160,32 @@ export class StrataModelPage extends LitElement {
   }
 
   private readonly on_hash = (): void => {
-    this.wanted_comment_ = comment_of(location.hash);
+    this.read_address();
     if (this.session_) this.follow_address(this.session_);
   };
 
-  /** To the comment that the address names, once it can be gone to; from then on the address names the one that is looked at. */
+  private read_address(): void {
+    this.wanted_comment_ = comment_of(location.hash);
+    this.wanted_view_ = view_of(location.hash);
+  }
+
+  /** To the comment or view that the address names, once it can be gone to; from then on the address names what is looked at. */
   private follow_address(session: ModelSession): void {
-    const { comments, view } = session;
-    if (!comments.loaded || view.frames_drawn === 0) return;
-    const wanted = this.wanted_comment_;
-    this.wanted_comment_ = null;
-    if (wanted !== null) comments.go_to(wanted);
-    put_hash(typeof comments.card === "number" ? hash_of_comment(comments.card) : "");
+    const { comments, view, views } = session;
+    if (view.frames_drawn === 0) return;
+    const [comment, kept] = [this.wanted_comment_, this.wanted_view_];
+    if (comment !== null && comments.loaded) {
+      this.wanted_comment_ = null;
+      comments.go_to(comment);
+    }
+    if (kept !== null && (views.loaded || views.failed)) {
+      this.wanted_view_ = null;
+      if (views.loaded) views.follow(kept);
+      else notices.show("problem", texts.kept_views.failed);
+    }
+    if (this.wanted_comment_ !== null || this.wanted_view_ !== null) return;
+    const seen = views.current;
+    put_hash(typeof comments.card === "number" ? hash_of_comment(comments.card) : seen ? hash_of_view(seen.slug) : "");
   }
 
   override render(): TemplateResult {
@@ -306,10 +324,12 @@ export class StrataModelPage extends LitElement {
           ></strata-layer-panel>
         </section>
         <section><strata-comment-panel .session=${session}></strata-comment-panel></section>
+        <section><strata-activity-panel .session=${session}></strata-activity-panel></section>
         <section>
           <strata-view-panel
             .session=${session}
             @orthophoto=${() => (this.dialog_ = { dialog: "orthophoto" })}
+            @request=${(event: CustomEvent<ViewRequest>) => (this.dialog_ = event.detail)}
           ></strata-view-panel>
         </section>
       </div>
@@ -402,6 +422,8 @@ export class StrataModelPage extends LitElement {
           .layer=${newest(session, dialog.layer)}
           @closed=${closed}
         ></strata-map-dialog>`;
+      case "view":
+        return html`<strata-view-dialog .session=${session} .view=${dialog.view} @closed=${closed}></strata-view-dialog>`;
       case "orthophoto":
         return html`<strata-orthophoto-dialog .session=${session} @closed=${closed}></strata-orthophoto-dialog>`;
       case "scale":
@@ -412,11 +434,22 @@ export class StrataModelPage extends LitElement {
         return session.model
           ? html`<strata-about-sheet
               .model=${session.model}
+              .viewer=${session.role}
               .correctable=${session.can_curate}
+              @download-for=${(event: CustomEvent<Model["source_download"]>) => void this.say_who_downloads(event.detail)}
               @closed=${closed}
               @correct=${() => (this.dialog_ = { dialog: "scale" })}
             ></strata-about-sheet>`
           : html``;
+    }
+  }
+
+  private async say_who_downloads(source_download: Model["source_download"]): Promise<void> {
+    try {
+      await this.session_?.change_model({ source_download });
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      notices.error(error);
     }
   }
 

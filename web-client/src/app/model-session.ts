@@ -1,7 +1,7 @@
 // One open model on this page: its life, and the messages between its parts. `view` is the camera, `layers` what is painted on,
 // `tables` the records that layers hold the keys of, `comments` what people wrote on the surface, `hovered` the one that the mouse rests
 // on, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits, `together` who
-// else is here and whose view this is, `cursors` where they point. Elements subscribe and draw themselves from their state; they change it
+// else is here and whose view this is, `cursors` where they point, `views` what was kept to come back to. Elements subscribe and draw themselves from their state; they change it
 // only through their methods.
 
 import { Api, ApiError, type Versioned } from "../core/api";
@@ -13,6 +13,7 @@ import { complete_layer, may_curate, may_paint, type Column, type Layer, type Mo
 import { BrushTool } from "../tools/brush";
 import { BucketTool } from "../tools/bucket";
 import { CommentTool } from "../tools/comment";
+import { Activities } from "./activity";
 import { LineTool } from "../tools/line";
 import { OrbitTool, PanTool } from "../tools/navigate";
 import { LassoTool, PolygonTool } from "../tools/outline";
@@ -37,12 +38,14 @@ import { texts } from "./texts";
 import { Together, type Shown } from "./together";
 import { ToolShapes } from "./tool-shapes";
 import { ViewControl, wants_less_motion } from "./view-control";
+import { Views } from "./views";
 
 export class ModelSession {
   model: Model | null = null;
   deleted = false;
   signed_out = false; // the server no longer knows who this is
   role: Role = "viewer";
+  user = ""; // the name of who looks
   session = "";
   connection_state: ConnectionState = "connecting";
   saving: SavingState = { waiting: 0, failing: false };
@@ -58,9 +61,11 @@ export class ModelSession {
   readonly editors: RecordEditors;
   readonly marks: MarkDrawing;
   readonly comments: Comments;
+  readonly activity: Activities;
   readonly hovered: RecordHover;
   readonly together: Together;
   readonly cursors: PeopleCursors;
+  readonly views: Views;
   readonly tools: ToolManager;
   /** Set by the stage. */
   on_frame: (part: FrameMessage) => void = () => {};
@@ -163,6 +168,14 @@ export class ModelSession {
       began: () => this.tools.choose("orbit"),
       changed,
     });
+    this.activity = new Activities(api, {
+      view: this.view,
+      layers: this.layers,
+      tables: this.tables,
+      comments: this.comments,
+      model: () => this.model,
+      changed,
+    });
     this.hovered = new RecordHover({
       here: () => this.record_here(),
       settled: () => this.pointer.settled,
@@ -182,6 +195,15 @@ export class ModelSession {
       ready: () => this.connection_state === "open",
       ask: (id, x, y, camera) => this.connection_.pick(id, x, y, camera),
       wants_less_motion,
+    });
+    this.views = new Views(api, model_id, {
+      view: this.view,
+      layers: this.layers,
+      appearance: this.appearance,
+      tables: this.tables,
+      when_free: (action) => this.painting.when_free(action),
+      can_curate: () => this.can_curate,
+      changed,
     });
     this.tools = this.make_tools();
   }
@@ -217,14 +239,30 @@ export class ModelSession {
           this.painting.on_applied(message);
           this.pointer.ask_again();
         },
-        saved: () => this.tables.refresh_areas(), // with the areas that this person's own strokes leave
+        saved: () => {
+          this.tables.refresh_areas(); // with the areas that this person's own strokes leave
+          this.activity.outdated();
+        },
         layer: (event) => this.on_layer(event),
-        look: (event) => this.appearance.on_event(event),
+        look: (event) => {
+          this.appearance.on_event(event);
+          this.activity.outdated();
+        },
         tool: (event) => this.shapes.on_event(event),
         model: (event) => this.on_model(event),
-        record: (event) => this.tables.on_record(event),
-        table: (event) => this.tables.on_table(event),
-        comment: (event) => this.comments.on_event(event),
+        record: (event) => {
+          this.tables.on_record(event);
+          this.activity.outdated();
+        },
+        table: (event) => {
+          this.tables.on_table(event);
+          this.activity.outdated();
+        },
+        comment: (event) => {
+          this.comments.on_event(event);
+          this.activity.outdated();
+        },
+        view: (event) => this.views.on_event(event),
         editors: (message) => this.editors.on_message(message),
         presence: ({ users }) => {
           if (this.closed_) return;
@@ -311,6 +349,7 @@ export class ModelSession {
     this.together.stop();
     this.cursors.stop();
     this.hovered.end();
+    this.activity.close();
     this.tables.close();
     this.listeners_.clear();
     this.on_frame = this.on_reset_frames = () => {};
@@ -542,6 +581,7 @@ export class ModelSession {
     }
     this.was_open_ = true;
     this.signed_out = false;
+    this.user = message.user;
     this.role = message.role;
     if (!this.can_paint && kChangingTools.includes(this.tools.active)) this.tools.choose("orbit");
     this.session = message.session;
@@ -553,6 +593,8 @@ export class ModelSession {
     this.tables.refresh();
     this.together.connected();
     this.comments.welcome(message.user);
+    this.activity.outdated();
+    this.views.welcome(message.user);
   }
 
   /** The brush is told as large as it is on the surface. */
@@ -567,6 +609,7 @@ export class ModelSession {
 
   private on_layer(event: LayerEvent): void {
     this.layers.on_event(event);
+    this.activity.outdated();
     if (event.event === "edited") {
       this.pointer.ask_again();
       this.tables.on_layer_edited(event.layer_id);
@@ -576,6 +619,7 @@ export class ModelSession {
   }
 
   private on_model(event: ModelEvent): void {
+    this.activity.outdated();
     if (event.event === "deleted") this.on_deleted();
     else this.painting.when_free(() => this.reload_after_change());
   }

@@ -23,6 +23,17 @@ export function comment_of(hash: string): number | null {
 }
 export const hash_of_comment = (id: number): string => `#comment=${id}`;
 
+/** The named view that an address leads to: its slug or id. */
+export function view_of(hash: string): string | null {
+  const found = /^#view=([^&]{1,400})$/.exec(hash);
+  try {
+    return found ? decodeURIComponent(found[1]!) : null;
+  } catch {
+    return null;
+  }
+}
+export const hash_of_view = (slug: string): string => `#view=${encodeURIComponent(slug)}`;
+
 /** The address tells what is looked at; nobody has to go there. */
 export function put_hash(hash: string): void {
   if (hash !== location.hash) history.replaceState(history.state, "", `${location.pathname}${location.search}${hash}`);

@@ -4,7 +4,7 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { format_count } from "../core/locale";
 import { detail_choices, format_area, format_bytes, format_length, format_size, metres_per } from "../core/measure";
-import type { Model } from "../core/types";
+import { may_download, type Model, type Role } from "../core/types";
 import "./dialog";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -57,10 +57,13 @@ export class StrataHelpSheet extends LitElement {
   }
 }
 
+const kDownloaders = ["viewer", "annotator", "curator"] as const;
+
 @customElement("strata-about-sheet")
 export class StrataAboutSheet extends LitElement {
   @property({ attribute: false }) model!: Model;
-  /** This person may correct the model's unit and up direction. */
+  @property() viewer: Role = "guest"; // what this person may do
+  /** This person may correct the model's unit and up direction, and say who gets its files. */
   @property({ type: Boolean }) correctable = false;
 
   static override styles = [shared_styles, sheet_styles];
@@ -89,18 +92,20 @@ export class StrataAboutSheet extends LitElement {
     return html`<strata-dialog wide prose heading=${model.name} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <dl>
         ${rows.map(([name, value]) => (value ? html`<dt>${name}</dt><dd class="numeric">${value}</dd>` : nothing))}
-        ${model.source_files.length > 0
+        ${model.source_files.length > 0 || this.correctable
           ? html`<dt>${words.files}</dt>
               <dd>
                 ${model.source_files.map(
                   (file) =>
                     html`<div>
-                      <a class="text" href="/api/v1/models/${model.id}/source/${encodeURIComponent(file.name)}" download=${file.name}
-                        >${file.name}</a
-                      >
+                      ${may_download(this.viewer, model)
+                        ? html`<a class="text" href="/api/v1/models/${model.id}/source/${encodeURIComponent(file.name)}" download=${file.name}>${file.name}</a>`
+                        : file.name}
                       <span class="hint numeric">${format_bytes(file.bytes)}</span>
                     </div>`,
                 )}
+                ${may_download(this.viewer, model) || model.source_files.length === 0 ? nothing : html`<p class="hint">${texts.visibility.no_download}</p>`}
+                ${this.correctable ? this.download_choice() : nothing}
               </dd>`
           : nothing}
       </dl>
@@ -110,5 +115,15 @@ export class StrataAboutSheet extends LitElement {
           </button>`
         : nothing}
     </strata-dialog>`;
+  }
+
+  private download_choice(): TemplateResult {
+    const words = texts.visibility;
+    return html`<label class="field">
+      <span>${words.download}</span>
+      <select @change=${(event: Event) => this.dispatchEvent(new CustomEvent("download-for", { detail: (event.target as HTMLSelectElement).value }))}>
+        ${kDownloaders.map((role) => html`<option value=${role} ?selected=${role === this.model.source_download}>${words.download_roles[role]}</option>`)}
+      </select>
+    </label>`;
   }
 }

@@ -11,6 +11,13 @@ import { texts } from "./texts";
 
 const kMostPictures = 4; // in a cell
 
+/** A file that this person does not see has no picture either. */
+const show_whether =
+  (is_there: boolean) =>
+  (event: Event): void => {
+    (event.target as HTMLElement).hidden = !is_there;
+  };
+
 /** For a template; records are called by their names. */
 export function shown_value(session: ModelSession, column: Column, value: CellValue): unknown {
   if (value === null) return "";
@@ -23,7 +30,7 @@ export function shown_value(session: ModelSession, column: Column, value: CellVa
   if (column.kind === "picture") {
     const ids = named_keys(value);
     return html`${ids.slice(0, kMostPictures).map(
-      (id) => html`<img class="thumbnail" src=${session.api.attachment_url(id, 64)} alt=${texts.files.file(id)} loading="lazy" height="24" />`,
+      (id) => html`<img class="thumbnail" src=${session.api.attachment_url(id, 64)} alt=${texts.files.file(id)} loading="lazy" height="24" @load=${show_whether(true)} @error=${show_whether(false)} />`,
     )}${ids.length > kMostPictures ? ` +${ids.length - kMostPictures}` : ""}`;
   }
   if (column.kind === "boolean") return value ? texts.tables.yes : texts.tables.no;

@@ -215,6 +215,11 @@ export const shared_styles = css`
     box-shadow: 0 0 0 1px var(--line-strong);
     font-weight: 600;
   }
+  .visibility {
+    display: grid;
+    gap: 6px;
+    justify-items: start;
+  }
   .visually-hidden {
     position: absolute;
     width: 1px;

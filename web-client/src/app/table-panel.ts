@@ -30,6 +30,7 @@ import type { TableView } from "./table-view";
 import type { TermsRequest } from "./terms-dialog";
 import { terms_type } from "./terms-files";
 import { texts } from "./texts";
+import { visibility_badge } from "./visibility";
 import { told_clock } from "./times";
 
 export type TablePanelRequest =
@@ -361,7 +362,7 @@ export class StrataTablePanel extends LitElement {
             ? html`<span class="required" title=${words.required}> *</span>`
             : nothing}</span
         >
-        ${sorted === "none" ? nothing : icon(sorted === "ascending" ? "up" : "down")}
+        ${column ? visibility_badge(column.visibility) : nothing} ${sorted === "none" ? nothing : icon(sorted === "ascending" ? "up" : "down")}
       </button>
       ${column && this.session.can_curate
         ? html`<strata-menu label=${words.column_menu(label)} small>

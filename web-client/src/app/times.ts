@@ -6,13 +6,15 @@ const time_of = (at: Date): string => at.toLocaleTimeString(page_locale(), { hou
 const day_of = (days: number): string => new Intl.RelativeTimeFormat(page_locale(), { numeric: "auto" }).format(days, "day");
 const date_of = (at: Date): string => at.toLocaleDateString(page_locale(), { day: "numeric", month: "short", year: "numeric" });
 
-/** "today, 14:05", "yesterday, 9:30" or "4 May 2026, 14:05". */
-export function told_time(iso: string, now = new Date()): string {
-  const at = new Date(iso);
+/** "today", "yesterday" or "4 May 2026". */
+export function told_day(iso: string, now = new Date()): string {
+  const date = date_of(new Date(iso));
   const yesterday = new Date(now.getFullYear(), now.getMonth(), now.getDate() - 1);
-  const day = date_of(at) === date_of(now) ? day_of(0) : date_of(at) === date_of(yesterday) ? day_of(-1) : date_of(at);
-  return `${day}, ${time_of(at)}`;
+  return date === date_of(now) ? day_of(0) : date === date_of(yesterday) ? day_of(-1) : date;
 }
+
+/** "today, 14:05", "yesterday, 9:30" or "4 May 2026, 14:05". */
+export const told_time = (iso: string, now = new Date()): string => `${told_day(iso, now)}, ${time_of(new Date(iso))}`;
 
 /** "14:05". */
 export const told_clock = (iso: string): string => time_of(new Date(iso));

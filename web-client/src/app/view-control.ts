@@ -1,6 +1,6 @@
 // The camera of this page's view: it moves while nothing is painted, and the server hears of every move.
 
-import { between, OrbitCamera, place_of, type Bounds, type CameraMessage, type StandardView } from "../core/camera";
+import { between, OrbitCamera, place_of, type Bounds, type CameraMessage, type Place, type StandardView } from "../core/camera";
 import { has_arrived, place_like } from "../core/look-along";
 import type { Plane } from "../core/protocol.gen";
 import type { Model } from "../core/types";
@@ -31,6 +31,7 @@ export class ViewControl {
   private fitted_ = false;
   private still_timer_: ReturnType<typeof setTimeout> | null = null;
   private flight_ = 0; // of requestAnimationFrame; 0: none
+  private flight_to_: Place | null = null;
   private beside_: { camera: CameraMessage; heard_ms: number; ease_ms: number; glided_ms: number } | null = null; // whom it looks along with
   private glide_ = 0; // of requestAnimationFrame; 0: none
 
@@ -74,29 +75,39 @@ export class ViewControl {
     this.move(() => this.camera.orbit(-angle, 0));
   }
   standard_view(view: StandardView): void {
-    this.move(() => this.camera.standard_view(view), false);
+    this.move_in_usual_field(() => this.camera.standard_view(view));
   }
   fit(): void {
-    this.move(() => this.camera.fit(), false);
+    this.move_in_usual_field(() => this.camera.fit());
   }
-  /** To a part of the model, in a moment; at once for people who want less motion. Any other move ends the flight. */
+  /** To a part of the model, as `fly`. */
   fly_to(box: Bounds, normal?: Vec3): void {
+    if (this.host_.is_painting()) return;
+    const from = place_of(this.camera);
+    this.camera.reset_field();
+    this.camera.look_at(box, normal);
+    const to = place_of(this.camera);
+    Object.assign(this.camera, from);
+    this.fly(to);
+  }
+  /** To where a camera stands, in a moment; at once for people who want less motion. Any other move ends the flight. */
+  fly(to: Place): void {
     if (this.host_.is_painting()) return;
     this.go_own_way();
     this.end_flight();
-    const from = place_of(this.camera);
-    this.camera.look_at(box, normal);
-    const to = place_of(this.camera);
     if (wants_less_motion()) {
+      Object.assign(this.camera, to);
       this.moved(false);
       return;
     }
-    Object.assign(this.camera, from);
+    const from = place_of(this.camera);
+    this.flight_to_ = to;
     const start = performance.now();
     const step = (): void => {
       const share = Math.min(1, (performance.now() - start) / kFlight_ms);
-      Object.assign(this.camera, between(from, to, share * share * (3 - 2 * share)));
-      this.flight_ = share < 1 && !this.host_.is_painting() ? requestAnimationFrame(step) : 0;
+      Object.assign(this.camera, share < 1 ? between(from, to, share * share * (3 - 2 * share)) : to);
+      if (share < 1 && !this.host_.is_painting()) this.flight_ = requestAnimationFrame(step);
+      else this.end_flight();
       this.moved(this.flight_ !== 0);
     };
     this.flight_ = requestAnimationFrame(step);
@@ -104,6 +115,12 @@ export class ViewControl {
   private end_flight(): void {
     if (this.flight_) cancelAnimationFrame(this.flight_);
     this.flight_ = 0;
+    this.flight_to_ = null;
+  }
+
+  /** Where it stands, or flies to. */
+  get place(): Place {
+    return this.flight_to_ ?? place_of(this.camera);
   }
 
   /** To where somebody's newest camera is, and along with it until `look_alone`. Strokes are waited for. */
@@ -177,7 +194,7 @@ export class ViewControl {
   }
 
   set_perspective(perspective: boolean): void {
-    this.move(() => (this.camera.perspective = perspective), false);
+    this.move_in_usual_field(() => (this.camera.perspective = perspective));
   }
 
   /** What the planes cut away is not there: for the picture, the brush and the pointer alike. */
@@ -210,6 +227,14 @@ export class ViewControl {
     this.fitted_ = true;
     this.camera.first_view();
     this.moved(false);
+  }
+
+  /** A kept view of another window may have brought another field. Small moves go on with it. */
+  private move_in_usual_field(change: () => void): void {
+    this.move(() => {
+      this.camera.reset_field();
+      change();
+    }, false);
   }
 
   private move(change: () => void, moving = true): void {

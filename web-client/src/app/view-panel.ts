@@ -1,4 +1,4 @@
-// <strata-view-panel>: how this person sees the model: looks, light, section.
+// <strata-view-panel>: how this person sees the model: the views that were kept, looks, light, section.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -15,9 +15,11 @@ import type { ModelSession } from "./model-session";
 import { radio_group } from "./radio-group";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
+import type { ViewRequest } from "./view-list";
+import "./view-list";
 
 const kLights: readonly LightMode[] = ["museum", "headlight", "raking", "unlit"];
-const kSections: readonly SectionMode[] = ["off", "x", "y", "z", "box"];
+const kSections: readonly Exclude<SectionMode, "planes">[] = ["off", "x", "y", "z", "box"];
 const kSteps = 1000; // of a section's slider
 
 @customElement("strata-view-panel")
@@ -104,12 +106,19 @@ export class StrataViewPanel extends LitElement {
           ? html`<button class="link" @click=${() => appearance.reset()}>${words.reset}</button>`
           : nothing}
       </div>
-      <div id="parts" class="parts" ?hidden=${!open}>${open ? [this.looks(), this.light(), this.section()] : nothing}</div>`;
+      <div id="parts" class="parts" ?hidden=${!open}>${open ? [this.views(), this.looks(), this.light(), this.section()] : nothing}</div>`;
   }
 
   private toggle(): void {
     this.open_.value = !this.open_.value;
     this.requestUpdate();
+  }
+
+  private views(): TemplateResult {
+    return html`<strata-view-list
+      .session=${this.session}
+      @request=${(event: CustomEvent<ViewRequest>) => this.dispatchEvent(new CustomEvent("request", { detail: event.detail }))}
+    ></strata-view-list>`;
   }
 
   private looks(): TemplateResult {
@@ -155,7 +164,19 @@ export class StrataViewPanel extends LitElement {
         chosen: mode,
         choose: (value) => appearance.set_section({ mode: value }),
       })}
-      ${mode === "off" ? nothing : mode === "box" ? this.box() : this.cut(kAxes.indexOf(mode))}
+      ${this.section_of(mode)}
+    </div>`;
+  }
+
+  private section_of(mode: SectionMode): TemplateResult | typeof nothing {
+    const { appearance } = this.session;
+    const words = texts.view;
+    if (mode === "off") return nothing;
+    if (mode === "box") return this.box();
+    if (mode !== "planes") return this.cut(kAxes.indexOf(mode));
+    return html`<div class="row">
+      <span class="hint" role="status">${words.section_of_view(appearance.section.planes.length)}</span>
+      <button class="link" @click=${() => appearance.set_section({ mode: "off" })}>${words.section_remove}</button>
     </div>`;
   }
 

@@ -260,6 +260,22 @@ export class Api {
   async delete_look(model: Id, look: Id): Promise<void> {
     await this.request("DELETE", look_path(model, look));
   }
+  /** What was done in a project, newest first; `before`: `next` of the page before. */
+  async activity(project: Id, { model, before, limit }: { model: Id | undefined; before: string | undefined; limit: number }): Promise<wire.ActivityList> {
+    const query = new URLSearchParams({ limit: `${limit}` });
+    if (model !== undefined) query.set("model", `${model}`);
+    if (before !== undefined) query.set("before", before);
+    return this.json("GET", `${project_path(project)}/activity?${query}`);
+  }
+  /** Who sees the project, by name. */
+  async project_people(project: Id): Promise<wire.ProjectPerson[]> {
+    const people: wire.ProjectPerson[] = [];
+    for (;;) {
+      const page = await this.json<wire.ProjectPersonList>("GET", `${project_path(project)}/people?limit=1000&offset=${people.length}`);
+      people.push(...page.people);
+      if (people.length >= page.total || page.people.length === 0) return people;
+    }
+  }
   /** Of a model, with replies, by id. */
   async comments(model: Id): Promise<wire.Comment[]> {
     const comments: wire.Comment[] = [];
@@ -285,6 +301,25 @@ export class Api {
   }
   async delete_comment(id: number, version: number): Promise<void> {
     await this.request("DELETE", comment_path(id), undefined, { "If-Match": etag_of(version) });
+  }
+
+  /** All named views of a model. */
+  async views(model: Id): Promise<wire.View[]> {
+    return (await this.json<wire.ViewList>("GET", `${views_path(model)}?limit=1000`)).views; // it has no more
+  }
+  async view(model: Id, view: Id): Promise<wire.View> {
+    return this.json("GET", view_path(model, view));
+  }
+  /** `key`: the same for each attempt at one view. */
+  async create_view(model: Id, view: wire.ViewCreate, key: string): Promise<wire.View> {
+    return this.parsed(await this.request("POST", views_path(model), view, { "Idempotency-Key": key }));
+  }
+  /** Where nobody changed it since `version`. */
+  async change_view(model: Id, view: Id, change: wire.ViewPatch, version: number): Promise<wire.View> {
+    return (await this.versioned<wire.View>("PATCH", view_path(model, view), change, etag_of(version))).value;
+  }
+  async delete_view(model: Id, view: Id, version: number): Promise<void> {
+    await this.request("DELETE", view_path(model, view), undefined, { "If-Match": etag_of(version) });
   }
   async tables(project: Id): Promise<wire.Table[]> {
     return (await this.json<wire.TableList>("GET", `${project_path(project)}/tables?limit=1000`)).tables;
@@ -350,6 +385,9 @@ export class Api {
   async attach(table: Id, key: number, column: string, file: File): Promise<void> {
     const query = new URLSearchParams({ name: file.name, column });
     await this.request_raw("POST", `${records_path({ table })}/${key}/attachments?${query}`, file, { "Content-Type": "application/octet-stream" });
+  }
+  async show_attachment(id: number, visibility: wire.Visibility): Promise<wire.Attachment> {
+    return this.json("PATCH", `/attachments/${id}`, { visibility });
   }
   /** Which records files are of, by their names. */
   async match_attachments(table: Id, match: wire.AttachmentMatch): Promise<wire.AttachmentMatches> {
@@ -580,6 +618,9 @@ const records_path = (place: RecordPlace): string =>
   `${"table" in place ? table_path(place.table) : layer_path(place.model, place.layer)}/records`;
 
 const comment_path = (id: number): string => `/comments/${id}`;
+
+const views_path = (model: Id): string => `/models/${encodeURIComponent(model)}/views`;
+const view_path = (model: Id, view: Id): string => `${views_path(model)}/${encodeURIComponent(view)}`;
 
 const etag_of = (version: number): string => `"v${version}"`;
 

@@ -49,7 +49,8 @@ export class OrbitCamera {
   azimuth = 0; // radians around up; 0 looks at the front
   elevation = 0; // radians above the horizon, −π/2…π/2
   perspective = true;
-  /** Tangent of half the vertical field of view; another than the usual one while this camera sees what somebody else sees. */
+  /** Tangent of half the vertical field of view; another than the usual one while this camera sees what somebody else sees, or what was kept in
+   *  another window. */
   half_field = kHalfFieldTangent;
   width = 1; // window pixels
   height = 1;

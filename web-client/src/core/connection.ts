@@ -30,6 +30,7 @@ import {
   type TableEvent,
   type ToolEvent,
   type ToolShape,
+  type ViewEvent,
   type Welcome,
 } from "./protocol.gen";
 
@@ -70,6 +71,7 @@ export interface ConnectionCallbacks {
   table(message: TableEvent): void;
   editors(message: RecordEditors): void;
   comment(message: CommentEvent): void;
+  view(message: ViewEvent): void;
   presence(message: Presence): void;
   picked(message: Picked): void;
   /** A refusal. What was refused for good is no longer waiting. */
@@ -372,6 +374,8 @@ export class Connection {
         return this.callbacks_.editors(message);
       case "comment":
         return this.callbacks_.comment(message);
+      case "view":
+        return this.callbacks_.view(message);
       case "presence":
         return this.callbacks_.presence(message);
       case "picked":

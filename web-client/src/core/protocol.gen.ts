@@ -43,6 +43,9 @@ export interface Mark {
 /** Values by column. By the slug of the column, or its id. */
 export type CellValues = Record<string, CellValue>;
 
+/** Who sees it, of those who see the project. public: all; team: annotators and above; private: curators and above. To the others it is not there. */
+export type Visibility = "public" | "team" | "private";
+
 /** Column of a table. */
 export interface Column {
   id: number;
@@ -61,6 +64,7 @@ export interface Column {
   minimum?: number;
   maximum?: number;
   order: number;
+  visibility: Visibility;
 }
 
 /** Table of a project. What the keys of its database layers stand for. */
@@ -291,6 +295,7 @@ export interface Layer {
   visible: boolean;
   /** Nobody below curator changes its texels: 403. */
   locked: boolean;
+  visibility: Visibility;
   /** Drawn ascending: higher is on top. */
   order: number;
   /** Database layers: id of the project's table whose keys the texels hold. */
@@ -349,6 +354,36 @@ export interface Light {
   mode: LightMode;
   /** Of raking light: towards the light, in the eye's axes (x right, y up, z towards the viewer). */
   direction?: Point3;
+}
+
+/** How a view shows a layer. An absent member is the layer's own default. */
+export interface LayerOverride {
+  layer: LayerRef;
+  visible?: boolean;
+  opacity?: number;
+  palette?: Palette;
+  highlight?: Highlight;
+}
+
+/** Named view of a model. Where from, and what is shown how. Layers and looks that are gone are left out. */
+export interface View {
+  id: number;
+  /** Stays when the view gets another name. */
+  slug: string;
+  name: string;
+  /** Plain text. */
+  text: string;
+  camera: Camera;
+  /** By id; layers not listed show their defaults. */
+  layers: LayerOverride[];
+  /** By id, exactly these, bottom to top; absent: those visible by default. */
+  looks?: LookShown[];
+  light: Light;
+  /** Who made it. */
+  user: string;
+  /** UTC, RFC 3339. */
+  time: string;
+  version: number;
 }
 
 /** Unit of length. */
@@ -435,6 +470,8 @@ export interface Model {
   processing: string;
   rights_uri: string;
   credit: string;
+  /** The least role that gets the scan's files, the pictures of its looks and its mesh. */
+  source_download: "viewer" | "annotator" | "curator";
   /** Of the last change in the model. */
   sequence: number;
 }
@@ -477,15 +514,6 @@ export interface CameraUpdate {
   section?: Section;
   /** More cameras will follow at once: speed before quality. Default: false. */
   moving?: boolean;
-}
-
-/** How this viewer shows a layer. An absent member is the layer's own default. */
-export interface LayerOverride {
-  layer: LayerRef;
-  visible?: boolean;
-  opacity?: number;
-  palette?: Palette;
-  highlight?: Highlight;
 }
 
 /** What a view shows, for this viewer. Replaces all that was said before of the view; layers not listed show their defaults. */
@@ -751,6 +779,15 @@ export interface CommentEvent {
   event: "created" | "changed" | "deleted";
   comment_id: number;
   comment?: Comment;
+  user?: string;
+}
+
+/** A named view was made, changed or deleted. Of the model; who shows views asks for it anew. */
+export interface ViewEvent {
+  op: "view";
+  event: "created" | "changed" | "deleted";
+  /** Its id. */
+  view: number;
   user?: string;
 }
 
@@ -1025,6 +1062,66 @@ export interface MemberPut {
   role: ProjectRole;
 }
 
+/** Somebody who sees the project. */
+export interface ProjectPerson {
+  user: string;
+  full_name: string;
+}
+
+/** Who sees the project. */
+export interface ProjectPersonList {
+  people: ProjectPerson[];
+  total: number;
+}
+
+/** What something was done to. */
+export type ActivityKind = "edit" | "layer" | "look" | "model" | "table" | "columns" | "records" | "comment" | "member" | "project";
+
+/** What was changed of something. */
+export type ChangedProperty = string;
+
+/** What one person did to one thing, each time within ten minutes of the last one. */
+export interface Activity {
+  id: number;
+  /** The last time */
+  time: string;
+  /** The first time */
+  begun: string;
+  /** Absent: the server itself, by its command line */
+  user?: string;
+  kind: ActivityKind;
+  /** Of an edit or of records and columns as in their history; of layers, looks, models, tables and the project created, changed, deleted; of comments written, replied, resolved, reopened; of members added, changed, removed */
+  op: string;
+  /** Of the layer, look, model, table or project, as it is called now or was last */
+  name?: string;
+  /** This and the other ids: where it is still there */
+  model?: number;
+  model_name?: string;
+  layer?: number;
+  table?: number;
+  /** The key, where all of it was done to this record, which may be deleted */
+  record?: number;
+  comment?: number;
+  /** How the comment begins */
+  text?: string;
+  /** Whose role in the project it is */
+  person?: string;
+  role?: ProjectRole;
+  /** Strokes and other edits, records or columns written, changes */
+  count: number;
+  /** That edits changed, one after the other */
+  texels?: number;
+  area_m2?: number;
+  changed?: ChangedProperty[];
+}
+
+/** What was done in a project, newest first. */
+export interface ActivityList {
+  activity: Activity[];
+  /** `before` of the page that follows; absent: there is none */
+  next?: string;
+}
+
 /** Projects. */
 export interface ProjectList {
   projects: Project[];
@@ -1071,6 +1168,8 @@ export interface ModelPatch {
   processing?: string;
   rights_uri?: string;
   credit?: string;
+  /** The least role that gets the scan's files, the pictures of its looks and its mesh. */
+  source_download?: "viewer" | "annotator" | "curator";
 }
 
 /** One layer of a transfer. */
@@ -1210,6 +1309,8 @@ export interface ColumnCreate {
   target?: TableRef;
   minimum?: number | null;
   maximum?: number | null;
+  /** Absent: public. */
+  visibility?: Visibility;
 }
 
 /** Changes to a column. Another kind or target makes a new column in its place, which takes over what it can hold. */
@@ -1233,6 +1334,8 @@ export interface ColumnPatch {
   maximum?: number | null;
   /** Ascending from left to right. */
   order?: number;
+  /** Alone. Counts for the past, too, and is no entry of the table's journal: no undo shows the column again. */
+  visibility?: Visibility;
 }
 
 /** Columns of a table, by order. */
@@ -1268,8 +1371,15 @@ export interface Attachment {
   height?: number;
   user: string;
   time: string;
+  /** Who attached it sees it whatever this says. */
+  visibility: Visibility;
   /** In a record's list: slug of the column. */
   column?: string;
+}
+
+/** Changes to a file of a record. */
+export interface AttachmentPatch {
+  visibility: Visibility;
 }
 
 /** Files of a record, column by column. */
@@ -1472,7 +1582,7 @@ export interface TableChanged {
 }
 
 /** Cells before or after a change. Of a record: `exists`, and values by column id; of a column: `hidden`, and its properties. */
-export type ChangedCells = Record<string, string | number | boolean | null | (number | string)[] | Record<string, string>>;
+export type ChangedCells = Record<string, string | number | boolean | null | (number | string)[] | Mark[] | Record<string, string>>;
 
 /** What an entry did to one record or column. */
 export interface TableCellChange {
@@ -1657,6 +1767,8 @@ export interface LayerCreate {
   visible?: boolean;
   /** Nobody below curator changes its texels. Default: false. */
   locked?: boolean;
+  /** Absent: public. What it reads and is coloured by must be seen by all who see it. */
+  visibility?: Visibility;
   /** Absent: on top. */
   order?: number;
   /** Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own name. */
@@ -1741,6 +1853,42 @@ export interface CommentPatch {
   state?: CommentState;
 }
 
+/** Named views of a model, in the order in which they were made. */
+export interface ViewList {
+  views: View[];
+  total: number;
+}
+
+/** A view to keep. */
+export interface ViewCreate {
+  name: string;
+  /** Plain text. */
+  text?: string;
+  /** With its section. */
+  camera: Camera;
+  /** Layers not listed show their defaults. */
+  layers?: LayerOverride[];
+  /** Exactly these, bottom to top; absent: those visible by default. */
+  looks?: LookShown[];
+  /** Absent: museum. */
+  light?: Light;
+}
+
+/** Changes to a view. What is shown is changed as a whole: with `camera`, absent `layers`, `looks` and `light` mean the defaults. */
+export interface ViewPatch {
+  name?: string;
+  /** Plain text. */
+  text?: string;
+  /** With its section. */
+  camera?: Camera;
+  /** Layers not listed show their defaults. */
+  layers?: LayerOverride[];
+  /** Exactly these, bottom to top; absent: those visible by default. */
+  looks?: LookShown[];
+  /** Absent: museum. */
+  light?: Light;
+}
+
 /** Tools of the site, by name. */
 export interface ToolList {
   tools: Tool[];
@@ -1771,6 +1919,8 @@ export interface LayerPatch {
   visible?: boolean;
   /** true: from the answer on nobody below curator changes its texels, until it is unlocked. */
   locked?: boolean;
+  /** Counts at once, for open pages too. */
+  visibility?: Visibility;
   order?: number;
   /** Alone: a layer of u8 or u16 gets room for larger keys or values (u16, u32), its history too. */
   type?: ValueType;
@@ -2093,6 +2243,7 @@ export type ServerMessage =
   | RecordEditors
   | TableEvent
   | CommentEvent
+  | ViewEvent
   | Presence
   | Picked
   | ProblemMessage;
@@ -2112,6 +2263,7 @@ const SERVER_OPS: ReadonlySet<string> = new Set<ServerMessage["op"]>([
   "record.editors",
   "table",
   "comment",
+  "view",
   "presence",
   "picked",
   "problem",

@@ -72,6 +72,9 @@ export const kRoles: readonly wire.Role[] = ["guest", "viewer", "annotator", "cu
 /** What people may be in one project, ascending. */
 export const kProjectRoles: readonly wire.ProjectRole[] = ["viewer", "annotator", "curator"];
 
+/** Who gets the files of a model's scan, and what is as good as they are. */
+export const may_download = (role: wire.Role, { source_download }: Pick<wire.Model, "source_download">): boolean =>
+  kRoles.indexOf(role) >= kRoles.indexOf(source_download);
 /** Who may change what layers hold. */
 export const may_paint = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("annotator");
 /** Who may change what layers and models there are, and what they are called. */

@@ -301,6 +301,24 @@ void read(const nlohmann::json& json, CommentEventEvent& value) {
 
 nlohmann::json to_json(const CommentEventEvent& value) { return name(value); }
 
+std::string_view name(ViewEventEvent value) {
+  switch (value) {
+    case ViewEventEvent::created: return "created";
+    case ViewEventEvent::changed: return "changed";
+    case ViewEventEvent::deleted: return "deleted";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ViewEventEvent& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "created") value = ViewEventEvent::created;
+  if (text == "changed") value = ViewEventEvent::changed;
+  if (text == "deleted") value = ViewEventEvent::deleted;
+}
+
+nlohmann::json to_json(const ViewEventEvent& value) { return name(value); }
+
 std::string_view name(PersonState value) {
   switch (value) {
     case PersonState::invited: return "invited";
@@ -336,6 +354,56 @@ void read(const nlohmann::json& json, ProjectRole& value) {
 }
 
 nlohmann::json to_json(const ProjectRole& value) { return name(value); }
+
+std::string_view name(ActivityKind value) {
+  switch (value) {
+    case ActivityKind::edit: return "edit";
+    case ActivityKind::layer: return "layer";
+    case ActivityKind::look: return "look";
+    case ActivityKind::model: return "model";
+    case ActivityKind::table: return "table";
+    case ActivityKind::columns: return "columns";
+    case ActivityKind::records: return "records";
+    case ActivityKind::comment: return "comment";
+    case ActivityKind::member: return "member";
+    case ActivityKind::project: return "project";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ActivityKind& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "edit") value = ActivityKind::edit;
+  if (text == "layer") value = ActivityKind::layer;
+  if (text == "look") value = ActivityKind::look;
+  if (text == "model") value = ActivityKind::model;
+  if (text == "table") value = ActivityKind::table;
+  if (text == "columns") value = ActivityKind::columns;
+  if (text == "records") value = ActivityKind::records;
+  if (text == "comment") value = ActivityKind::comment;
+  if (text == "member") value = ActivityKind::member;
+  if (text == "project") value = ActivityKind::project;
+}
+
+nlohmann::json to_json(const ActivityKind& value) { return name(value); }
+
+std::string_view name(ModelPatchSourceDownload value) {
+  switch (value) {
+    case ModelPatchSourceDownload::viewer: return "viewer";
+    case ModelPatchSourceDownload::annotator: return "annotator";
+    case ModelPatchSourceDownload::curator: return "curator";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ModelPatchSourceDownload& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "viewer") value = ModelPatchSourceDownload::viewer;
+  if (text == "annotator") value = ModelPatchSourceDownload::annotator;
+  if (text == "curator") value = ModelPatchSourceDownload::curator;
+}
+
+nlohmann::json to_json(const ModelPatchSourceDownload& value) { return name(value); }
 
 std::string_view name(JobState value) {
   switch (value) {
@@ -670,6 +738,24 @@ nlohmann::json to_json(const LookShown& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, LayerOverride& value) {
+  read_member(json, "layer", value.layer);
+  read_optional_member(json, "visible", value.visible);
+  read_optional_member(json, "opacity", value.opacity);
+  read_optional_member(json, "palette", value.palette);
+  read_optional_member(json, "highlight", value.highlight);
+}
+
+nlohmann::json to_json(const LayerOverride& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "layer", value.layer);
+  write_optional_member(json, "visible", value.visible);
+  write_optional_member(json, "opacity", value.opacity);
+  write_optional_member(json, "palette", value.palette);
+  write_optional_member(json, "highlight", value.highlight);
+  return json;
+}
+
 void read(const nlohmann::json& json, Bounds& value) {
   read_member(json, "min", value.min);
   read_member(json, "max", value.max);
@@ -806,24 +892,6 @@ strata::Camera camera_of(const CameraUpdate& value) {
 
 Result<void> check(const CameraUpdate& value, const std::string& field) {
   return named_in_message(strata::validate(camera_of(value), ""), field);
-}
-
-void read(const nlohmann::json& json, LayerOverride& value) {
-  read_member(json, "layer", value.layer);
-  read_optional_member(json, "visible", value.visible);
-  read_optional_member(json, "opacity", value.opacity);
-  read_optional_member(json, "palette", value.palette);
-  read_optional_member(json, "highlight", value.highlight);
-}
-
-nlohmann::json to_json(const LayerOverride& value) {
-  nlohmann::json json = nlohmann::json::object();
-  write_member(json, "layer", value.layer);
-  write_optional_member(json, "visible", value.visible);
-  write_optional_member(json, "opacity", value.opacity);
-  write_optional_member(json, "palette", value.palette);
-  write_optional_member(json, "highlight", value.highlight);
-  return json;
 }
 
 void read(const nlohmann::json& json, LayersUpdate& value) {
@@ -1286,6 +1354,21 @@ nlohmann::json to_json(const CommentEvent& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, ViewEvent& value) {
+  read_member(json, "event", value.event);
+  read_member(json, "view", value.view);
+  read_optional_member(json, "user", value.user);
+}
+
+nlohmann::json to_json(const ViewEvent& value) {
+  nlohmann::json json = nlohmann::json::object();
+  json["op"] = "view";
+  write_member(json, "event", value.event);
+  write_member(json, "view", value.view);
+  write_optional_member(json, "user", value.user);
+  return json;
+}
+
 void read(const nlohmann::json& json, PresencePointer& value) {
   read_member(json, "position", value.position);
   read_optional_member(json, "radius", value.radius);
@@ -1543,6 +1626,7 @@ void read(const nlohmann::json& json, ModelPatch& value) {
   read_optional_member(json, "processing", value.processing);
   read_optional_member(json, "rights_uri", value.rights_uri);
   read_optional_member(json, "credit", value.credit);
+  read_optional_member(json, "source_download", value.source_download);
 }
 
 nlohmann::json to_json(const ModelPatch& value) {
@@ -1563,6 +1647,7 @@ nlohmann::json to_json(const ModelPatch& value) {
   write_optional_member(json, "processing", value.processing);
   write_optional_member(json, "rights_uri", value.rights_uri);
   write_optional_member(json, "credit", value.credit);
+  write_optional_member(json, "source_download", value.source_download);
   return json;
 }
 
@@ -1674,6 +1759,7 @@ void read(const nlohmann::json& json, ColumnCreate& value) {
   read_optional_member(json, "target", value.target);
   read_optional_member(json, "minimum", value.minimum);
   read_optional_member(json, "maximum", value.maximum);
+  read_optional_member(json, "visibility", value.visibility);
 }
 
 nlohmann::json to_json(const ColumnCreate& value) {
@@ -1691,6 +1777,7 @@ nlohmann::json to_json(const ColumnCreate& value) {
   write_optional_member(json, "target", value.target);
   write_optional_member(json, "minimum", value.minimum);
   write_optional_member(json, "maximum", value.maximum);
+  write_optional_member(json, "visibility", value.visibility);
   return json;
 }
 
@@ -1709,6 +1796,7 @@ void read(const nlohmann::json& json, ColumnPatch& value) {
   read_optional_member(json, "minimum", value.minimum);
   read_optional_member(json, "maximum", value.maximum);
   read_optional_member(json, "order", value.order);
+  read_optional_member(json, "visibility", value.visibility);
 }
 
 nlohmann::json to_json(const ColumnPatch& value) {
@@ -1727,6 +1815,17 @@ nlohmann::json to_json(const ColumnPatch& value) {
   write_optional_member(json, "minimum", value.minimum);
   write_optional_member(json, "maximum", value.maximum);
   write_optional_member(json, "order", value.order);
+  write_optional_member(json, "visibility", value.visibility);
+  return json;
+}
+
+void read(const nlohmann::json& json, AttachmentPatch& value) {
+  read_member(json, "visibility", value.visibility);
+}
+
+nlohmann::json to_json(const AttachmentPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "visibility", value.visibility);
   return json;
 }
 
@@ -1940,6 +2039,7 @@ void read(const nlohmann::json& json, LayerCreate& value) {
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "visible", value.visible);
   read_optional_member(json, "locked", value.locked);
+  read_optional_member(json, "visibility", value.visibility);
   read_optional_member(json, "order", value.order);
   read_optional_member(json, "table", value.table);
   read_optional_member(json, "columns", value.columns);
@@ -1961,6 +2061,7 @@ nlohmann::json to_json(const LayerCreate& value) {
   write_member(json, "opacity", value.opacity);
   write_member(json, "visible", value.visible);
   write_member(json, "locked", value.locked);
+  write_optional_member(json, "visibility", value.visibility);
   write_optional_member(json, "order", value.order);
   write_optional_member(json, "table", value.table);
   write_optional_member(json, "columns", value.columns);
@@ -2032,6 +2133,56 @@ nlohmann::json to_json(const CommentPatch& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, ViewCreate& value) {
+  read_member(json, "name", value.name);
+  read_optional_member(json, "text", value.text);
+  read_member(json, "camera", value.camera);
+  read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "looks", value.looks);
+  read_optional_member(json, "light", value.light);
+}
+
+nlohmann::json to_json(const ViewCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_optional_member(json, "text", value.text);
+  write_member(json, "camera", value.camera);
+  write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "looks", value.looks);
+  write_optional_member(json, "light", value.light);
+  return json;
+}
+
+Result<void> check(const ViewCreate& value, const std::string& field) {
+  if (auto ok = strata::validate(value.camera, join_field(field, "camera")); !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, ViewPatch& value) {
+  read_optional_member(json, "name", value.name);
+  read_optional_member(json, "text", value.text);
+  read_optional_member(json, "camera", value.camera);
+  read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "looks", value.looks);
+  read_optional_member(json, "light", value.light);
+}
+
+nlohmann::json to_json(const ViewPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "name", value.name);
+  write_optional_member(json, "text", value.text);
+  write_optional_member(json, "camera", value.camera);
+  write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "looks", value.looks);
+  write_optional_member(json, "light", value.light);
+  return json;
+}
+
+Result<void> check(const ViewPatch& value, const std::string& field) {
+  if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
+  return {};
+}
+
 void read(const nlohmann::json& json, ToolPatch& value) {
   read_member(json, "name", value.name);
 }
@@ -2068,6 +2219,7 @@ void read(const nlohmann::json& json, LayerPatch& value) {
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "visible", value.visible);
   read_optional_member(json, "locked", value.locked);
+  read_optional_member(json, "visibility", value.visibility);
   read_optional_member(json, "order", value.order);
   read_optional_member(json, "type", value.type);
   read_optional_member(json, "expression", value.expression);
@@ -2083,6 +2235,7 @@ nlohmann::json to_json(const LayerPatch& value) {
   write_optional_member(json, "opacity", value.opacity);
   write_optional_member(json, "visible", value.visible);
   write_optional_member(json, "locked", value.locked);
+  write_optional_member(json, "visibility", value.visibility);
   write_optional_member(json, "order", value.order);
   write_optional_member(json, "type", value.type);
   write_optional_member(json, "expression", value.expression);
@@ -2689,6 +2842,7 @@ std::optional<Schema> server_message_schema(std::string_view op) {
   if (op == RecordEditors::kOp) return Schema::RecordEditors;
   if (op == TableEvent::kOp) return Schema::TableEvent;
   if (op == CommentEvent::kOp) return Schema::CommentEvent;
+  if (op == ViewEvent::kOp) return Schema::ViewEvent;
   if (op == Presence::kOp) return Schema::Presence;
   if (op == Picked::kOp) return Schema::Picked;
   if (op == ProblemMessage::kOp) return Schema::ProblemMessage;
@@ -2743,6 +2897,10 @@ void read(const nlohmann::json& json, ServerMessage& value) {
   }
   if (op == CommentEvent::kOp) {
     read(json, value.emplace<CommentEvent>());
+    return;
+  }
+  if (op == ViewEvent::kOp) {
+    read(json, value.emplace<ViewEvent>());
     return;
   }
   if (op == Presence::kOp) {

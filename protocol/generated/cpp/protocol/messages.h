@@ -61,6 +61,7 @@ enum class Schema {
   Palette,
   ValueType,
   LayerKind,
+  Visibility,
   Resolution,
   Recompute,
   Layer,
@@ -69,6 +70,8 @@ enum class Schema {
   LookShown,
   LightMode,
   Light,
+  LayerOverride,
+  View,
   Unit,
   Axis,
   Bounds,
@@ -82,7 +85,6 @@ enum class Schema {
   Role,
   Hello,
   CameraUpdate,
-  LayerOverride,
   LayersUpdate,
   StrokeBegin,
   StrokeExtend,
@@ -109,6 +111,7 @@ enum class Schema {
   RecordEditors,
   TableEvent,
   CommentEvent,
+  ViewEvent,
   PresencePointer,
   PresenceUser,
   Presence,
@@ -138,6 +141,12 @@ enum class Schema {
   Member,
   MemberList,
   MemberPut,
+  ProjectPerson,
+  ProjectPersonList,
+  ActivityKind,
+  Activity,
+  ChangedProperty,
+  ActivityList,
   ProjectList,
   ProjectCreate,
   ProjectPatch,
@@ -157,6 +166,7 @@ enum class Schema {
   ColumnList,
   ColumnChanged,
   Attachment,
+  AttachmentPatch,
   AttachmentList,
   Attached,
   AttachmentMatch,
@@ -206,6 +216,9 @@ enum class Schema {
   CommentCreate,
   ReplyCreate,
   CommentPatch,
+  ViewList,
+  ViewCreate,
+  ViewPatch,
   ToolList,
   ToolPatch,
   LookPatch,
@@ -242,7 +255,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 216;
+constexpr int kSchemaCount = 229;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -267,6 +280,8 @@ nlohmann::json to_json(const ColumnKind& value);
 
 // Place of a mark.
 using MarkPlace = std::array<double, 3>;
+
+using Visibility = strata::Visibility;
 
 // Whether there is still something to do.
 enum class CommentState { open, resolved };
@@ -423,6 +438,20 @@ using LightMode = strata::LightMode;
 
 using Light = strata::Light;
 
+// How a view shows a layer. An absent member is the layer's own default.
+struct LayerOverride {
+  LayerRef layer;
+  std::optional<bool> visible;
+  std::optional<double> opacity;
+  std::optional<nlohmann::json> palette;
+  std::optional<Highlight> highlight;
+  bool operator==(const LayerOverride&) const = default;
+};
+void read(const nlohmann::json& json, LayerOverride& value);
+nlohmann::json to_json(const LayerOverride& value);
+template <>
+inline constexpr Schema kSchemaOf<LayerOverride> = Schema::LayerOverride;
+
 using Unit = strata::Unit;
 
 // Up direction.
@@ -552,20 +581,6 @@ strata::Camera camera_of(const CameraUpdate& value);
 Result<void> check(const CameraUpdate& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<CameraUpdate> = Schema::CameraUpdate;
-
-// How this viewer shows a layer. An absent member is the layer's own default.
-struct LayerOverride {
-  LayerRef layer;
-  std::optional<bool> visible;
-  std::optional<double> opacity;
-  std::optional<nlohmann::json> palette;
-  std::optional<Highlight> highlight;
-  bool operator==(const LayerOverride&) const = default;
-};
-void read(const nlohmann::json& json, LayerOverride& value);
-nlohmann::json to_json(const LayerOverride& value);
-template <>
-inline constexpr Schema kSchemaOf<LayerOverride> = Schema::LayerOverride;
 
 // What a view shows, for this viewer. Replaces all that was said before of the view; layers not listed show their defaults.
 struct LayersUpdate {
@@ -969,6 +984,24 @@ nlohmann::json to_json(const CommentEvent& value);
 template <>
 inline constexpr Schema kSchemaOf<CommentEvent> = Schema::CommentEvent;
 
+enum class ViewEventEvent { created, changed, deleted };
+std::string_view name(ViewEventEvent value);
+void read(const nlohmann::json& json, ViewEventEvent& value);
+nlohmann::json to_json(const ViewEventEvent& value);
+
+// A named view was made, changed or deleted. Of the model; who shows views asks for it anew.
+struct ViewEvent {
+  static constexpr std::string_view kOp = "view";
+  ViewEventEvent event{};
+  std::int64_t view = 0;  // Its id.
+  std::optional<std::string> user;
+  bool operator==(const ViewEvent&) const = default;
+};
+void read(const nlohmann::json& json, ViewEvent& value);
+nlohmann::json to_json(const ViewEvent& value);
+template <>
+inline constexpr Schema kSchemaOf<ViewEvent> = Schema::ViewEvent;
+
 // Where a pointer touches the surface. World coordinates.
 struct PresencePointer {
   glm::dvec3 position{0};
@@ -1157,6 +1190,12 @@ nlohmann::json to_json(const MemberPut& value);
 template <>
 inline constexpr Schema kSchemaOf<MemberPut> = Schema::MemberPut;
 
+// What something was done to.
+enum class ActivityKind { edit, layer, look, model, table, columns, records, comment, member, project };
+std::string_view name(ActivityKind value);
+void read(const nlohmann::json& json, ActivityKind& value);
+nlohmann::json to_json(const ActivityKind& value);
+
 // New project.
 struct ProjectCreate {
   std::string name;
@@ -1180,6 +1219,11 @@ nlohmann::json to_json(const ProjectPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ProjectPatch> = Schema::ProjectPatch;
 
+enum class ModelPatchSourceDownload { viewer, annotator, curator };
+std::string_view name(ModelPatchSourceDownload value);
+void read(const nlohmann::json& json, ModelPatchSourceDownload& value);
+nlohmann::json to_json(const ModelPatchSourceDownload& value);
+
 // Changes to a model's description. None of them touches paint. Stating the unit clears `unit_assumed`.
 struct ModelPatch {
   std::optional<std::string> name;
@@ -1198,6 +1242,7 @@ struct ModelPatch {
   std::optional<std::string> processing;
   std::optional<std::string> rights_uri;
   std::optional<std::string> credit;
+  std::optional<ModelPatchSourceDownload> source_download;  // The least role that gets the scan's files, the pictures of its looks and its mesh.
   bool operator==(const ModelPatch&) const = default;
 };
 void read(const nlohmann::json& json, ModelPatch& value);
@@ -1297,6 +1342,7 @@ struct ColumnCreate {
   std::optional<TableRef> target;  // Terms and relations: the table of the project whose records they name.
   std::optional<double> minimum;
   std::optional<double> maximum;
+  std::optional<strata::Visibility> visibility;  // Absent: public.
   bool operator==(const ColumnCreate&) const = default;
 };
 void read(const nlohmann::json& json, ColumnCreate& value);
@@ -1320,12 +1366,23 @@ struct ColumnPatch {
   std::optional<double> minimum;
   std::optional<double> maximum;
   std::optional<int> order;  // Ascending from left to right.
+  std::optional<strata::Visibility> visibility;  // Alone. Counts for the past, too, and is no entry of the table's journal: no undo shows the column again.
   bool operator==(const ColumnPatch&) const = default;
 };
 void read(const nlohmann::json& json, ColumnPatch& value);
 nlohmann::json to_json(const ColumnPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ColumnPatch> = Schema::ColumnPatch;
+
+// Changes to a file of a record.
+struct AttachmentPatch {
+  strata::Visibility visibility{};
+  bool operator==(const AttachmentPatch&) const = default;
+};
+void read(const nlohmann::json& json, AttachmentPatch& value);
+nlohmann::json to_json(const AttachmentPatch& value);
+template <>
+inline constexpr Schema kSchemaOf<AttachmentPatch> = Schema::AttachmentPatch;
 
 // Names of files that say which records they are of.
 struct AttachmentMatch {
@@ -1514,6 +1571,7 @@ struct LayerCreate {
   double opacity = 1;
   bool visible = true;
   bool locked = false;  // Nobody below curator changes its texels.
+  std::optional<strata::Visibility> visibility;  // Absent: public. What it reads and is coloured by must be seen by all who see it.
   std::optional<int> order;  // Absent: on top.
   std::optional<TableRef> table;  // Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own name.
   std::optional<std::vector<ColumnCreate>> columns;  // Database layers without `table`: those of its own one. Absent: one text, Name.
@@ -1583,6 +1641,38 @@ nlohmann::json to_json(const CommentPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<CommentPatch> = Schema::CommentPatch;
 
+// A view to keep.
+struct ViewCreate {
+  std::string name;
+  std::optional<std::string> text;  // Plain text.
+  strata::Camera camera;  // With its section.
+  std::optional<std::vector<LayerOverride>> layers;  // Layers not listed show their defaults.
+  std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top; absent: those visible by default.
+  std::optional<strata::Light> light;  // Absent: museum.
+  bool operator==(const ViewCreate&) const = default;
+};
+void read(const nlohmann::json& json, ViewCreate& value);
+nlohmann::json to_json(const ViewCreate& value);
+Result<void> check(const ViewCreate& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<ViewCreate> = Schema::ViewCreate;
+
+// Changes to a view. What is shown is changed as a whole: with `camera`, absent `layers`, `looks` and `light` mean the defaults.
+struct ViewPatch {
+  std::optional<std::string> name;
+  std::optional<std::string> text;  // Plain text.
+  std::optional<strata::Camera> camera;  // With its section.
+  std::optional<std::vector<LayerOverride>> layers;  // Layers not listed show their defaults.
+  std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top; absent: those visible by default.
+  std::optional<strata::Light> light;  // Absent: museum.
+  bool operator==(const ViewPatch&) const = default;
+};
+void read(const nlohmann::json& json, ViewPatch& value);
+nlohmann::json to_json(const ViewPatch& value);
+Result<void> check(const ViewPatch& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<ViewPatch> = Schema::ViewPatch;
+
 // Another name for a tool.
 struct ToolPatch {
   std::string name;
@@ -1616,6 +1706,7 @@ struct LayerPatch {
   std::optional<double> opacity;
   std::optional<bool> visible;
   std::optional<bool> locked;  // true: from the answer on nobody below curator changes its texels, until it is unlocked.
+  std::optional<strata::Visibility> visibility;  // Counts at once, for open pages too.
   std::optional<int> order;
   std::optional<strata::ValueType> type;  // Alone: a layer of u8 or u16 gets room for larger keys or values (u16, u32), its history too.
   std::optional<std::string> expression;  // Of a computed layer, which it has to be computed by anew; empty: the layer keeps its values and is edited by hand from now on.
@@ -2037,7 +2128,7 @@ std::optional<Schema> client_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ClientMessage& value);
 nlohmann::json to_json(const ClientMessage& value);
 
-using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, CommentEvent, Presence, Picked, ProblemMessage>;
+using ServerMessage = std::variant<Welcome, Applied, Saved, Unsaved, LayerEvent, LookEvent, ToolEvent, ModelEvent, RecordEvent, RecordEditors, TableEvent, CommentEvent, ViewEvent, Presence, Picked, ProblemMessage>;
 // The schema of the message with this `op`; nothing when the op is unknown.
 std::optional<Schema> server_message_schema(std::string_view op);
 void read(const nlohmann::json& json, ServerMessage& value);

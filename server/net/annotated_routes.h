@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "net/routes.h"
+
+namespace strata::net {
+
+// Adds routes of things that everybody reads and annotators write: bodies are JSON, and answers to changes are kept for repeats.
+class AnnotatedRoutes {
+ public:
+  using Answer = Result<Response> (*)(const RouteContext&, const Request&);
+
+  AnnotatedRoutes(Router& router, const RouteContext& context) : router_(router), context_(context) {}
+
+  void read(std::string pattern, Answer answer, std::vector<std::string> query = {}) {
+    router_.add(
+        {.method = Method::get, .pattern = std::move(pattern), .handler = handler(answer), .query = std::move(query)});
+  }
+  void change(Method method, std::string pattern, Answer answer) {
+    const bool has_body = method != Method::remove;
+    router_.add({.method = method,
+                 .pattern = std::move(pattern),
+                 .handler = handler(answer),
+                 .role = Role::annotator,
+                 .body = has_body ? BodyKind::memory : BodyKind::none,
+                 .max_body = has_body ? context_.options.max_json_bytes : 0,
+                 .keeps_answer = true});
+  }
+
+ private:
+  Handler handler(Answer answer) const {
+    return answering([&context = context_, answer](const Request& request) { return answer(context, request); });
+  }
+
+  Router& router_;
+  const RouteContext& context_;
+};
+
+}  // namespace strata::net

@@ -1,0 +1,221 @@
+// Named views of a model. Everybody reads them, annotators make them; what one made one changes oneself, and curators may.
+#include <algorithm>
+
+#include "core/palette.h"
+#include "net/annotated_routes.h"
+#include "net/answer_book.h"
+#include "net/routes.h"
+#include "net/wire.h"
+#include "protocol/json_values.h"
+#include "query/expression_parser.h"
+#include "store/views.h"
+
+namespace strata::net {
+namespace {
+
+using protocol::ViewEventEvent;
+using store::NamedView;
+
+// What the body says is shown, as it is kept: with ids, since slugs change.
+template <class Asked>
+Result<nlohmann::json> content_of(const room::Room& room, const Asked& asked, const Camera& camera) {
+  if (auto good = validate(camera); !good) return tl::unexpected(good.error());
+  const Light light = asked.light.value_or(Light{});
+  if (auto lit = validate(light); !lit) return tl::unexpected(lit.error());
+  nlohmann::json layers = nlohmann::json::array();
+  const auto shown = asked.layers.value_or(std::vector<protocol::LayerOverride>{});
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const std::string field = "layers[" + std::to_string(i) + "]";
+    const auto layer = room.layer(protocol::to_ref(shown[i].layer));
+    if (!layer) {
+      Problem problem = layer.error();
+      problem.field = field + ".layer";
+      return tl::unexpected(std::move(problem));
+    }
+    if (shown[i].palette)
+      if (auto palette = palette_from_json(*shown[i].palette, field + ".palette"); !palette)
+        return tl::unexpected(palette.error());
+    if (shown[i].highlight)
+      if (auto highlight = highlight_of(*shown[i].highlight, *layer, field + ".highlight"); !highlight)
+        return tl::unexpected(highlight.error());
+    nlohmann::json kept = protocol::to_json(shown[i]);
+    kept["layer"] = layer->id;
+    layers.push_back(std::move(kept));
+  }
+  nlohmann::json content{
+      {"camera", protocol::write_core(camera)}, {"layers", std::move(layers)}, {"light", protocol::write_core(light)}};
+  if (asked.looks) {
+    const auto looks = look_views(room, *asked.looks);
+    if (!looks) return tl::unexpected(looks.error());
+    content["looks"] = nlohmann::json::array();
+    for (const room::LookView& look : *looks)
+      content["looks"].push_back({{"look", look.look_id}, {"opacity", look.opacity}});
+  }
+  return content;
+}
+
+// Takes out what names columns that are not there for the role.
+void leave_out_columns(const RouteContext& context, Role role, std::int64_t table_id, nlohmann::json& shown) {
+  if (const auto palette = shown.find("palette"); palette != shown.end() && palette->contains("column")) {
+    const auto table = context.store.table(std::to_string(table_id), role);
+    if (!table || !find_column(table->columns, palette->at("column").get<std::string>())) shown.erase(palette);
+  }
+  if (const auto highlight = shown.find("highlight"); highlight != shown.end() && highlight->contains("filter")) {
+    store::Store::RecordQuery asked;
+    asked.limit = 1;
+    auto filter = query::parse_condition(highlight->at("filter").get<std::string>(), "filter", query::Names::columns);
+    if (filter) asked.filter = std::move(*filter);
+    if (!filter || !context.store.records(table_id, role, asked)) shown.erase(highlight);
+  }
+}
+
+// Of what the view names, what is there for who asks.
+nlohmann::json to_json(const RouteContext& context, Role role, const NamedView& view, const room::Room& room) {
+  nlohmann::json json = view.content;
+  const auto leave_out = [](nlohmann::json& list, const char* member, const auto& there) {
+    list.erase(std::remove_if(list.begin(), list.end(),
+                              [&](const nlohmann::json& entry) {
+                                const auto id = entry.at(member).template get<std::int64_t>();
+                                return std::ranges::none_of(there, [&](const auto& each) { return each.id == id; });
+                              }),
+               list.end());
+  };
+  const auto layers = room.layers();
+  leave_out(json["layers"], "layer", layers);
+  for (nlohmann::json& shown : json["layers"])
+    for (const Layer& layer : layers)
+      if (layer.table && layer.id == shown.at("layer").get<std::int64_t>())
+        leave_out_columns(context, role, *layer.table, shown);
+  if (json.contains("looks")) leave_out(json["looks"], "look", room.looks());
+  json.update({{"id", view.id},
+               {"slug", view.slug},
+               {"name", view.name},
+               {"text", view.text},
+               {"user", view.user},
+               {"time", utc_text(view.time)},
+               {"version", view.version}});
+  return json;
+}
+
+// The model as who asks sees it, and one of its views.
+struct Found {
+  std::shared_ptr<room::Room> room;
+  NamedView view;
+};
+Result<Found> find_view(const RouteContext& context, const Request& request) {
+  auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return tl::unexpected(room.error());
+  auto view = context.store.views().view((*room)->model().id, request.param("view"));
+  if (!view) return tl::unexpected(view.error());
+  return Found{std::move(*room), std::move(*view)};
+}
+
+Result<Found> find_own_view(const RouteContext& context, const Request& request) {
+  auto found = find_view(context, request);
+  if (!found) return found;
+  if (auto fresh = check_if_match(request, found->view.version); !fresh) return tl::unexpected(fresh.error());
+  if (found->view.user != request.user() && request.role() < Role::curator)
+    return fail(
+        403, "Not yours",
+        "Only " + found->view.user + " and curators change this view. Keep one of your own under another name.");
+  return found;
+}
+
+void tell(const RouteContext& context, ViewEventEvent event, const NamedView& view, const std::string& user) {
+  protocol::ViewEvent message;
+  message.event = event;
+  message.view = view.id;
+  message.user = user;
+  context.live_sockets.tell_model(view.model_id, message);
+}
+
+Result<Response> list_views(const RouteContext& context, const Request& request) {
+  const auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  const auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return tl::unexpected(room.error());
+  const auto found = context.store.views().of_model((*room)->model().id, page->limit, page->offset);
+  if (!found) return tl::unexpected(found.error());
+  nlohmann::json views = nlohmann::json::array();
+  for (const NamedView& view : found->views) views.push_back(to_json(context, request.role(), view, **room));
+  Response response = json_response({{"views", std::move(views)}, {"total", found->total}});
+  add_page_links(response, request, *page, found->total);
+  return response;
+}
+
+Result<Response> get_view(const RouteContext& context, const Request& request) {
+  const auto found = find_view(context, request);
+  if (!found) return tl::unexpected(found.error());
+  return with_etag(json_response(to_json(context, request.role(), found->view, *found->room)), request,
+                   found->view.version);
+}
+
+Result<Response> create_view(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::ViewCreate>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return tl::unexpected(room.error());
+  auto content = content_of(**room, *asked, asked->camera);
+  if (!content) return tl::unexpected(content.error());
+  NamedView view;
+  view.model_id = (*room)->model().id;
+  view.name = asked->name;
+  view.text = asked->text.value_or("");
+  view.content = std::move(*content);
+  view.user = request.user();
+  const auto answer = [&](const NamedView& made) {
+    return json_response(to_json(context, request.role(), made, **room), 201)
+        .with("Location", "/api/v1/models/" + (*room)->model().slug + "/views/" + made.slug)
+        .with("ETag", etag_of(made.version));
+  };
+  const auto made = context.store.views().create(view, first_answer<NamedView>(request, answer));
+  if (!made) return tl::unexpected(made.error());
+  tell(context, ViewEventEvent::created, *made, request.user());
+  return answer(*made);
+}
+
+Result<Response> change_view(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::ViewPatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto found = find_own_view(context, request);
+  if (!found) return tl::unexpected(found.error());
+  NamedView& view = found->view;
+  if (asked->name) view.name = *asked->name;
+  if (asked->text) view.text = *asked->text;
+  if (asked->camera) {
+    auto content = content_of(*found->room, *asked, *asked->camera);
+    if (!content) return tl::unexpected(content.error());
+    view.content = std::move(*content);
+  }
+  const auto answer = [&](const NamedView& now) {
+    return json_response(to_json(context, request.role(), now, *found->room)).with("ETag", etag_of(now.version));
+  };
+  const auto changed = context.store.views().update(view, first_answer<NamedView>(request, answer));
+  if (!changed) return tl::unexpected(changed.error());
+  tell(context, ViewEventEvent::changed, *changed, request.user());
+  return answer(*changed);
+}
+
+Result<Response> delete_view(const RouteContext& context, const Request& request) {
+  const auto found = find_own_view(context, request);
+  if (!found) return tl::unexpected(found.error());
+  const auto answer = [] { return empty_response(204); };
+  const auto gone = context.store.views().remove(found->view, first_answer<>(request, answer));
+  if (!gone) return tl::unexpected(gone.error());
+  tell(context, ViewEventEvent::deleted, found->view, request.user());
+  return answer();
+}
+
+}  // namespace
+
+void add_view_routes(Router& router, const RouteContext& context) {
+  AnnotatedRoutes routes(router, context);
+  const std::string views = "/api/v1/models/{model}/views", view = views + "/{view}";
+  routes.read(views, list_views, {"limit", "offset"});
+  routes.change(Method::post, views, create_view);
+  routes.read(view, get_view);
+  routes.change(Method::patch, view, change_view);
+  routes.change(Method::remove, view, delete_view);
+}
+
+}  // namespace strata::net

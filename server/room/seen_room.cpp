@@ -1,0 +1,182 @@
+#include "room/seen_room.h"
+
+#include <algorithm>
+
+namespace strata::room {
+namespace {
+
+// Every call that is told of layers looks at them here first. Edits are looked at when their turn comes (EditPipeline), frames and events as
+// they are made (RoomMember, OpenRoom::tell_layer), since what is seen may change meanwhile.
+class SeenRoom final : public Room {
+ public:
+  SeenRoom(std::shared_ptr<Room> room, Role role) : room_(std::move(room)), role_(role) {}
+
+  std::vector<Layer> layers() const override {
+    std::vector<Layer> layers = room_->layers();
+    std::erase_if(layers, [this](const Layer& layer) { return !sees(role_, layer.visibility); });
+    return layers;
+  }
+  Result<Layer> layer(const std::string& ref) const override {
+    auto layer = room_->layer(ref);
+    if (layer && !sees(role_, layer->visibility)) return no_such_layer(ref);
+    return layer;
+  }
+  std::unique_ptr<Member> join(Author who, std::string full_name, Listener* listener,
+                               stream::Viewer::Send send) override {
+    return room_->join({std::move(who.user), std::min(who.role, role_)}, std::move(full_name), listener,
+                       std::move(send));
+  }
+
+  Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers,
+                                       At at) override {
+    if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
+    return room_->position(world, layers, at);
+  }
+  Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
+                                                     const std::vector<std::string>& layers, At at) override {
+    if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
+    return room_->positions(world, layers, at);
+  }
+  Result<query::SurfacePoint> pick(const Camera& camera, double x, double y, const std::vector<std::string>& layers,
+                                   At at) override {
+    if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
+    return room_->pick(camera, x, y, layers, at);
+  }
+  Result<query::Statistics> statistics(const std::string& layer, const Selection& selection,
+                                       StatisticsWanted wanted) override {
+    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    return room_->statistics(layer, seen_by(selection), wanted);
+  }
+  Result<SelectedArea> select(const Selection& selection, const std::vector<std::string>& layers,
+                              StatisticsWanted wanted) override {
+    if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
+    return room_->select(seen_by(selection), layers, wanted);
+  }
+  Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers, At at) override {
+    if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
+    return room_->profile(line, layers, at);
+  }
+  Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
+                                        const Selection& selection) override {
+    if (auto seen = check({rows, columns}); !seen) return tl::unexpected(seen.error());
+    return room_->cross_table(rows, columns, seen_by(selection));
+  }
+  Result<query::Quantities> quantities(const std::string& layer, At at) override {
+    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    return room_->quantities(layer, at);
+  }
+  Result<query::SurfaceTexels> surface_texels(const std::string& layer, const Selection& selection) override {
+    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    return room_->surface_texels(layer, seen_by(selection));
+  }
+  Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer) override {
+    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    return room_->key_areas(layer);
+  }
+  Result<TileMirror::Snapshot> tiles(const std::string& layer, At at) override {
+    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    return room_->tiles(layer, at);
+  }
+  Result<render::Frame> picture(const PictureRequest& asked) override {
+    PictureRequest seen = asked;
+    seen.seen_by = std::min(asked.seen_by, role_);
+    if (asked.layers) {
+      if (auto known = check(*asked.layers); !known) return tl::unexpected(known.error());
+    } else {
+      seen.layers.emplace();
+      for (const Layer& layer : layers())
+        if (layer.visible) seen.layers->push_back(std::to_string(layer.id));
+    }
+    return room_->picture(seen);
+  }
+
+  // Nothing of layers is asked or told.
+  Model model() const override { return room_->model(); }
+  std::int64_t sequence() const override { return room_->sequence(); }
+  std::int64_t durable_sequence() const override { return room_->durable_sequence(); }
+  std::vector<Presence> presence(const Uuid& receiver) const override { return room_->presence(receiver); }
+  std::shared_ptr<const mesh::Geometry> geometry() const override { return room_->geometry(); }
+  std::shared_ptr<const mesh::SearchTree> search_tree() override { return room_->search_tree(); }
+  Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution) override {
+    return room_->surface_map(resolution);
+  }
+  std::vector<Look> looks() const override { return room_->looks(); }
+  Result<Look> look(const std::string& ref) const override { return room_->look(ref); }
+  Result<Look> create_look(Look look, std::span<const std::uint8_t> picture,
+                           const store::FirstAnswer<Look>& answer) override {
+    return room_->create_look(std::move(look), picture, answer);
+  }
+  Result<Look> update_look(const Look& look, const store::FirstAnswer<Look>& answer) override {
+    return room_->update_look(look, answer);
+  }
+  Result<void> delete_look(std::int64_t id, const store::FirstAnswer<>& answer) override {
+    return room_->delete_look(id, answer);
+  }
+  Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer) override {
+    return room_->update_model(std::move(model), answer);
+  }
+
+  // Of a layer that was found here.
+  void edit(EditRequest request, Applied applied, Saved saved) override {
+    room_->edit(std::move(request), std::move(applied), std::move(saved));
+  }
+  Result<TileMap> dabs(const Layer& layer, const std::vector<PlacedValue>& values, double radius,
+                       double tolerance) override {
+    return room_->dabs(layer, values, radius, tolerance);
+  }
+  Result<TileMap> project(const Layer& layer, const glm::dvec3& direction, const ValueAt& value_at) override {
+    return room_->project(layer, direction, value_at);
+  }
+  Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer,
+                             std::vector<Column> columns) override {
+    return room_->create_layer(std::move(layer), answer, std::move(columns));
+  }
+  Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer) override {
+    return room_->update_layer(std::move(layer), answer);
+  }
+  Result<Layer> widen_layer(const Layer& layer, ValueType type, const store::FirstAnswer<Layer>& answer) override {
+    return room_->widen_layer(layer, type, answer);
+  }
+  Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) override {
+    return room_->delete_layer(id, answer);
+  }
+  Result<Layer> layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
+                               const std::map<std::int64_t, std::int64_t>& tables) override {
+    return room_->layer_computed(id, expression, sequence, tables);
+  }
+  Result<void> check_expression(const Expression& expression, const std::string& field,
+                                Visibility layer) const override {
+    return room_->check_expression(expression, field, layer);
+  }
+
+  // Of the server's own work.
+  void records_changed(std::int64_t table_id) override { room_->records_changed(table_id); }
+  Result<void> sum_layer(std::int64_t layer_id) override { return room_->sum_layer(layer_id); }
+
+ private:
+  Result<void> check(const std::vector<std::string>& refs) const {
+    for (const std::string& ref : refs)
+      if (auto seen = layer(ref); !seen) return tl::unexpected(seen.error());
+    return {};
+  }
+  Selection seen_by(Selection selection) const {
+    selection.seen_by = std::min(selection.seen_by, role_);
+    return selection;
+  }
+
+  const std::shared_ptr<Room> room_;
+  const Role role_;
+};
+
+}  // namespace
+
+std::shared_ptr<Room> seen_as(std::shared_ptr<Room> room, Role role) {
+  if (sees(role, Visibility::curators)) return room;
+  return std::make_shared<SeenRoom>(std::move(room), role);
+}
+
+tl::unexpected<Problem> no_such_layer(const std::string& ref) {
+  return fail(404, "No such layer", "This model has no layer \"" + ref + "\".", "layer");
+}
+
+}  // namespace strata::room

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace strata::store {
+
+// A line of what was done in a project: what one person did to one thing, each time within ten minutes of the last one.
+struct Activity {
+  std::int64_t id = 0;
+  std::chrono::system_clock::time_point time, begun;  // the last time, and the first
+  std::string user;                                   // empty: the server itself, by its command line
+  std::string kind;  // "edit", "layer", "look", "model", "table", "columns", "records", "comment", "member", "project"
+  std::string op;    // of an edit or a table's entry as its journal has it; "created", "changed", "deleted", …
+  std::string name;  // of what it was done to, as it is called now, or was last; empty: a comment
+  // What is still there.
+  std::optional<std::int64_t> model, layer, table, comment;
+  std::string model_name;
+  std::optional<std::int64_t> record;  // where all of the line is about this one, which may be deleted
+  std::string text;                    // how the comment begins
+  std::string person, role;            // of a membership; no role: it ended
+  std::int64_t count = 1;              // strokes and other edits; records or columns written; changes
+  std::optional<std::int64_t> texels;  // of edits: changed one after the other
+  std::optional<double> area_m2;
+  std::vector<std::string> changed;  // columns of what was changed
+};
+
+// Where a page of lines ends. A line that goes on meanwhile moves to the top, and so between pages.
+struct ActivityPlace {
+  std::int64_t time_us = 0;  // since 1970
+  std::int64_t id = 0;
+};
+
+struct ActivityQuery {
+  // Only of this one of the project's, and of the tables whose records lie on it.
+  std::optional<std::int64_t> model{};
+  std::optional<ActivityPlace> before{};
+  bool with_members = false;  // also who was given which role
+  int limit = 100;
+};
+
+struct ActivityPage {
+  std::vector<Activity> lines;        // newest first
+  std::optional<ActivityPlace> next;  // `before` of the page that follows
+};
+
+}  // namespace strata::store

@@ -1,0 +1,118 @@
+// A curator says who sees a layer, a column and a photo, and who downloads the scan; somebody who looks on loses them, and gets them back, at once.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser } from "../support/browser.mjs";
+import { encode_png } from "../support/png.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const [carl, vera, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ viewport: { width: 390, height: 844 } })];
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+async function shoot({ page }, name) {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `visibility_${name}.png`) });
+}
+async function choose_for({ page }, menu, command) {
+  await page.getByRole("button", { name: menu, exact: true }).click();
+  await page.getByRole("menuitem", { name: command, exact: true }).click();
+}
+const row_of = ({ page }) => page.getByRole("button", { name: "Paint on Finds" });
+const badge = (where, says) => where.getByRole("img", { name: says });
+const kCurators = "Only curators of the project see this.";
+const kTeam = "Only annotators and curators of the project see this.";
+const photo = encode_png({ width: 64, height: 48, data: Buffer.alloc(64 * 48 * 4, 200) });
+
+try {
+  await server.start();
+  const model = (await server.json("GET", "/models")).models[0];
+  const layers = `/models/${model.id}/layers`;
+  await server.json("POST", layers, { name: "Finds", kind: "database", type: "u16", columns: [{ name: "Name" }, { name: "Place" }, { name: "Photos", kind: "picture" }] });
+  await server.json("POST", "/tables/finds/records", { values: { name: "Ring", place: "Under the slab" } });
+  await server.json("POST", `${layers}/finds/edits`, { op: "fill", value: 1, mode: "where", where: "true" });
+  const attached = await fetch(`${server.url}/api/v1/tables/finds/records/1/attachments?name=ring.png&column=photos`, {
+    method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" }, body: photo,
+  });
+  assert.equal(attached.status, 201);
+
+  say("a curator and two viewers look at the model");
+  await carl.sign_in(server, await server.add_person("carl", "curator"));
+  const veras = await server.add_person("vera", "viewer");
+  for (const who of [vera, phone]) await who.sign_in(server, veras);
+  for (const who of [carl, vera, phone]) {
+    await who.page.goto(`${server.url}/models/${model.id}`);
+    await who.drawn();
+  }
+  const later = carl.page.getByRole("button", { name: "Decide later" });
+  if (await later.isVisible()) await later.click();
+  await row_of(vera).click();
+
+  say("the layer becomes the curators' own: it is gone for the others while they look");
+  await choose_for(carl, "Options for Finds", "Edit…");
+  const dialog = carl.page.locator("strata-layer-dialog");
+  await dialog.getByText("Everybody who sees the project sees this.").waitFor();
+  await dialog.getByRole("radio", { name: "Curators" }).click();
+  await dialog.getByText(kCurators).waitFor();
+  await shoot(carl, "layer_dialog");
+  await dialog.getByRole("button", { name: "Save", exact: true }).click();
+  await badge(carl.page.locator("strata-layer-panel"), kCurators).waitFor();
+  await wait_for(async () => (await row_of(vera).count()) === 0, "the layer to be gone for her");
+  await shoot(carl, "layer_badge");
+  await shoot(vera, "layer_gone");
+
+  say("it is everybody's again");
+  await choose_for(carl, "Options for Finds", "Edit…");
+  await dialog.getByRole("radio", { name: "Everybody" }).click();
+  await dialog.getByRole("button", { name: "Save", exact: true }).click();
+  await row_of(vera).waitFor();
+  await wait_for(async () => (await badge(carl.page.locator("strata-layer-panel"), kCurators).count()) === 0, "the badge to go");
+
+  say("a column of the team");
+  for (const who of [carl, vera]) {
+    await row_of(who).click();
+    await who.page.keyboard.press("t");
+    await who.page.locator("strata-table-panel").getByText("Under the slab").waitFor();
+  }
+  await choose_for(carl, "Options for the column Place", "Change…");
+  const column = carl.page.locator("strata-column-dialog");
+  await column.getByRole("radio", { name: "The team" }).click();
+  await shoot(carl, "column_dialog");
+  await column.getByRole("button", { name: "Save", exact: true }).click();
+  await badge(carl.page.locator("strata-table-panel"), kTeam).waitFor();
+  await wait_for(async () => (await vera.page.locator("strata-table-panel").getByText("Under the slab").count()) === 0, "the column to be gone for her");
+  await vera.page.locator("strata-table-panel").getByText("Ring").waitFor();
+  await shoot(carl, "column_badge");
+  await shoot(vera, "column_gone");
+
+  say("a photo of the curators");
+  await carl.page.locator("strata-table-panel").getByRole("rowheader", { name: "1", exact: true }).click();
+  await carl.page.getByRole("button", { name: "Edit the record", exact: true }).click();
+  const choice = carl.page.locator("strata-record-dialog").getByLabel("Who sees ring.png");
+  await choice.selectOption({ label: "Curators" });
+  await wait_for(async () => (await server.json("GET", "/tables/finds/records/1/attachments")).attachments[0].visibility === "private", "the photo to be private");
+  await shoot(carl, "photo");
+  await carl.page.keyboard.press("Escape");
+
+  say("who downloads the scan");
+  await carl.page.getByRole("button", { name: "About this model" }).click();
+  const about = carl.page.locator("strata-about-sheet");
+  await about.getByLabel("The scan's files are for").selectOption({ label: "everybody who sees the project" });
+  await shoot(carl, "about");
+  await wait_for(async () => (await server.json("GET", `/models/${model.id}`)).source_download === "viewer", "the right to be given");
+  await about.getByLabel("The scan's files are for").selectOption({ label: "curators alone" });
+  await wait_for(async () => (await server.json("GET", `/models/${model.id}`)).source_download === "curator", "the right to be taken");
+  await carl.page.keyboard.press("Escape");
+  await shoot(phone, "phone");
+
+  // What she does not see has no small picture either.
+  for (const who of [carl, vera, phone]) who.assert_no_complaints(["/attachments/"]);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
+  for (const [name, who] of Object.entries({ carl, vera, phone })) await shoot(who, `failed_${name}`).catch(() => {});
+  throw error;
+} finally {
+  for (const who of [carl, vera, phone]) await who.close();
+  await server.remove();
+}

@@ -1,0 +1,194 @@
+// <strata-activity-panel>: what was done on the model, or in its whole project, by days.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { by_day } from "../core/activity";
+import { format_list } from "../core/locale";
+import { format_area } from "../core/measure";
+import type { Activity } from "../core/protocol.gen";
+import { folding_heading_styles } from "./folding-heading";
+import { follow_session } from "./follow-session";
+import { icon } from "./icons";
+import { Kept } from "./kept";
+import type { ModelSession } from "./model-session";
+import { person_mark, person_mark_styles } from "./person-mark";
+import { radio_group } from "./radio-group";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+import { told_clock, told_day } from "./times";
+
+const words = texts.activity;
+
+/** That of the first key which has one. */
+const text_of = (all: { readonly [key: string]: string; other: string }, ...keys: string[]): string =>
+  keys.map((key) => all[key]).find((text) => text !== undefined) ?? all.other;
+
+@customElement("strata-activity-panel")
+export class StrataActivityPanel extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  private readonly open_ = new Kept(() => localStorage, "strata.activity_panel_open", false);
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    folding_heading_styles,
+    person_mark_styles,
+    css`
+      :host {
+        display: block;
+      }
+      .parts {
+        display: grid;
+        gap: 10px;
+        margin-top: 8px;
+      }
+      .segments {
+        display: flex;
+      }
+      h3 {
+        margin: 6px 0 0;
+        font-size: 0.8rem;
+        font-weight: 600;
+        color: var(--ink-soft);
+      }
+      h3::first-letter {
+        text-transform: uppercase;
+      }
+      ul {
+        display: grid;
+        gap: 2px;
+        margin: 0 -8px;
+        padding: 0;
+        list-style: none;
+      }
+      .line {
+        display: grid;
+        grid-template-columns: auto minmax(0, 1fr) auto;
+        justify-content: stretch;
+        align-items: start;
+        gap: 1px 10px;
+        width: 100%;
+        min-height: 0;
+        padding: 8px;
+        text-align: left;
+        white-space: normal;
+      }
+      .person-mark,
+      .server {
+        grid-row: span 2;
+      }
+      .server {
+        display: grid;
+        place-items: center;
+        width: 26px;
+        height: 26px;
+        color: var(--ink-soft);
+      }
+      .what {
+        overflow-wrap: anywhere;
+      }
+      .more-of-it {
+        grid-column: 2 / 4;
+        overflow-wrap: anywhere;
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.session.activity.watch(this.open_.value);
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.session.activity.watch(false);
+  }
+
+  override render(): TemplateResult {
+    const open = this.open_.value;
+    return html`<div class="heading">
+        <h2>
+          <button class="quiet" aria-expanded=${open} aria-controls="parts" @click=${this.toggle}>${icon("up")}${words.title}</button>
+        </h2>
+      </div>
+      <div id="parts" class="parts" ?hidden=${!open}>${open ? this.content() : nothing}</div>`;
+  }
+
+  private readonly toggle = (): void => {
+    this.open_.value = !this.open_.value;
+    this.session.activity.watch(this.open_.value);
+    this.requestUpdate();
+  };
+
+  private content(): TemplateResult {
+    const { activity } = this.session;
+    return html`${radio_group({
+        label: words.of,
+        class: "segments",
+        choices: [
+          { value: false, content: words.of_model },
+          { value: true, content: words.of_project },
+        ],
+        chosen: activity.whole,
+        choose: (whole) => (activity.whole = whole),
+      })}
+      ${activity.failed
+        ? html`<p class="error" role="alert">${words.failed}</p>
+            <button @click=${() => void activity.load()}>${texts.try_again}</button>`
+        : nothing}
+      ${activity.lines.length === 0 && !activity.failed ? html`<p class="hint">${activity.loaded ? words.none : texts.loading}</p>` : nothing}
+      ${by_day(activity.lines, (time) => told_day(time)).map(
+        ({ day, lines }) =>
+          html`<h3>${day}</h3>
+            <ul aria-label=${day}>
+              ${repeat(
+                lines,
+                ({ id }) => id,
+                (line) => html`<li>${this.line(line)}</li>`,
+              )}
+            </ul>`,
+      )}
+      ${activity.has_more ? html`<button ?disabled=${activity.busy} @click=${() => void activity.more()}>${words.more}</button>` : nothing}`;
+  }
+
+  private line(line: Activity): TemplateResult {
+    const { activity } = this.session;
+    const content = html`${line.user === undefined ? html`<span class="server">${icon("cube")}</span>` : person_mark(line.user)}
+      <span class="what"><b>${line.user ?? words.server}</b> ${this.done(line)}</span>
+      <span class="hint numeric">${told_clock(line.time)}</span>
+      <span class="more-of-it hint">${this.details(line)}</span>`;
+    return activity.leads_somewhere(line)
+      ? html`<button class="quiet line" data-activity=${line.id} @click=${() => void activity.go_to(line)}>${content}</button>`
+      : html`<div class="line" data-activity=${line.id}>${content}</div>`;
+  }
+
+  private done({ kind, op, name, person }: Activity): TemplateResult {
+    const what = kind === "member" ? person : name;
+    return html`${text_of(words.done, `${kind} ${op}`, kind)}${what === undefined ? nothing : html` <b>${what}</b>`}`;
+  }
+
+  private details(line: Activity): string {
+    const { kind, op, count, area_m2, text, record, table, role, changed, model_name, model } = line;
+    const is_elsewhere = model !== undefined && model !== this.session.model?.id;
+    const parts = [
+      kind === "edit" && (op === "stroke" ? words.strokes(count) : count > 1 ? words.times(count) : ""),
+      kind === "edit" && area_m2 ? format_area(area_m2) : "",
+      kind === "records" && (record === undefined ? texts.tables.records(count) : this.record_name(table, record)),
+      kind === "columns" && words.columns(count),
+      kind === "member" && role ? texts.roles[role] : "",
+      changed ? format_list([...new Set(changed.map((each) => text_of(words.changed, each)))]) : "",
+      text ?? "",
+      is_elsewhere && kind !== "model" ? (model_name ?? "") : "",
+    ];
+    return parts.filter(Boolean).join(" · ");
+  }
+
+  private record_name(table: number | undefined, record: number): string {
+    return (table === undefined ? null : this.session.tables.label(table, record)) ?? texts.tables.record(record);
+  }
+}
