@@ -14,7 +14,7 @@ using store::TokenKind;
 
 struct PeopleOptions {
   DataOptions data;
-  std::string name, role, full_name, user, url = "http://127.0.0.1:8080";
+  std::string name, role, project, full_name, user, url = "http://127.0.0.1:8080";
   std::int64_t id = 0;
   int days = 365;
   bool password_stdin = false;
@@ -87,15 +87,26 @@ Result<void> renew(store::Store& store, const PeopleOptions& options, const stor
   return password ? let_in(store, options, person, *password) : tl::unexpected(password.error());
 }
 
-Result<void> list_people(store::Store& store, const PeopleOptions&) {
+void print(const store::Person& person, Role role) {
+  std::cout << std::left << std::setw(24) << person.name << std::setw(15) << name(role) << std::setw(10)
+            << (person.disabled       ? "disabled"
+                : person.has_password ? "active"
+                                      : "invited")
+            << "last seen " << std::setw(12) << day_of(person.last_seen) << person.full_name << "\n";
+}
+
+Result<void> list_people(store::Store& store, const PeopleOptions& options) {
+  if (!options.project.empty()) {
+    const auto project = store.project(options.project);
+    if (!project) return tl::unexpected(project.error());
+    const auto members = store.members(project->id);
+    if (!members) return tl::unexpected(members.error());
+    for (const store::Membership& member : *members) print(member.person, member.role);
+    return {};
+  }
   const auto people = store.people();
   if (!people) return tl::unexpected(people.error());
-  for (const store::Person& person : *people)
-    std::cout << std::left << std::setw(24) << person.name << std::setw(15) << name(person.role) << std::setw(10)
-              << (person.disabled       ? "disabled"
-                  : person.has_password ? "active"
-                                        : "invited")
-              << "last seen " << std::setw(12) << day_of(person.last_seen) << person.full_name << "\n";
+  for (const store::Person& person : *people) print(person, person.role);
   return {};
 }
 
@@ -114,7 +125,18 @@ Result<void> change(store::Store& store, const store::Person& person, const stor
   return {};
 }
 
+Result<void> set_role_in_project(store::Store& store, const PeopleOptions& options, const store::Person& person) {
+  const auto project = store.project(options.project);
+  if (!project) return tl::unexpected(project.error());
+  if (options.role == "none") return store.remove_member(project->id, person.name);
+  const auto put = store.put_member(project->id, person.name, parse_role(options.role).value_or(Role::guest));
+  if (!put) return tl::unexpected(put.error());
+  return {};
+}
+
 Result<void> set_role(store::Store& store, const PeopleOptions& options, const store::Person& person) {
+  if (!options.project.empty()) return set_role_in_project(store, options, person);
+  if (options.role == "none") return fail(400, "No role", "Whoever is to see no project is a guest.", "role");
   return change(store, person, {.full_name = {}, .role = parse_role(options.role), .disabled = {}});
 }
 
@@ -188,12 +210,14 @@ Command add_user(CLI::App& app) {
   add_role(*made, options, "What they may do (annotator)");
   made->add_option("--full-name", options->full_name, "How the page calls them");
   add_password(*made, options);
-  add(*parent, options, "list", "Everybody with an account");
+  add(*parent, options, "list", "Everybody with an account")
+      ->add_option("--project", options->project, "Only those with a role in this project, and that role");
   works["list"] = list_people;
   auto* role = add_named("role", "What somebody may do", changing(set_role));
-  role->add_option("role", options->role, "guest, viewer, annotator, curator or administrator")
+  role->add_option("role", options->role, "guest, viewer, annotator, curator or administrator; in a project also none")
       ->required()
-      ->check(CLI::IsMember({"guest", "viewer", "annotator", "curator", "administrator"}));
+      ->check(CLI::IsMember({"guest", "viewer", "annotator", "curator", "administrator", "none"}));
+  role->add_option("--project", options->project, "What they may do there, where that is more than everywhere");
   add_password(*add_named("password", "A new link to choose a password, or a new password", changing(renew)), options);
   add_named("disable", "Signs somebody out everywhere, and lets them in no more", disabling(true));
   add_named("enable", "Lets somebody in again", disabling(false));

@@ -216,6 +216,16 @@ def commands(server):
     assert server.get("/users/max").json()["state"] == "active"
     strata("user", "role", "max", "guest")
     assert re.search(r"Max +guest +active", strata("user", "list"))
+    project = server.ok("POST", "/projects", {"name": "Villa"}).json()["slug"]
+    strata("user", "role", "max", "annotator", "--project", project)
+    assert re.search(r"Max +annotator", strata("user", "list", "--project", project)) and re.search(r"Max +guest", strata("user", "list"))
+    for role, place in (("administrator", project), ("guest", project), ("viewer", "nowhere"), ("none", "nowhere")):
+        assert "strata: " in strata("user", "role", "max", role, "--project", place, code=1), (role, place)
+    assert "annotator" in strata("user", "list", "--project", project), "what was refused changed nothing"
+    strata("user", "role", "max", "none", "--project", project)
+    assert strata("user", "list", "--project", project) == ""
+    for words in (("user", "role", "max", "none", "--project", project), ("user", "role", "max", "none"), ("user", "list", "--project", "nowhere")):
+        assert "strata: " in strata(*words, code=1), words
     strata("user", "role", "max", "curator")
     listed = strata("user", "list")
     assert re.search(r"Max +curator +active", listed) and "owner" in listed, listed
