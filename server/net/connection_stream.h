@@ -1,15 +1,65 @@
 #pragma once
 
+#include <array>
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/associated_executor.hpp>
 #include <boost/asio/async_result.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/bind_executor.hpp>
+#include <boost/asio/buffer.hpp>
 #include <boost/asio/ssl/context.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/ssl/ssl_stream.hpp>
 #include <boost/beast/websocket/teardown.hpp>
-#include <chrono>
+#include <memory>
+#include <tuple>
 #include <utility>
 #include <variant>
 
 namespace strata::net {
+
+// What follows when a read or a write ended, of one type whatever it is: otherwise each operation of HTTP and WebSocket would compile
+// TLS anew, which took more time than all other units of the room.
+class IoDone {
+ public:
+  template <class Handler>
+  explicit IoDone(Handler handler) : held_(std::make_unique<HeldOf<Handler>>(std::move(handler))) {}
+  void operator()(boost::beast::error_code error, std::size_t size = 0) { held_->run(error, size); }
+
+ private:
+  struct Held {
+    virtual ~Held() = default;
+    virtual void run(boost::beast::error_code error, std::size_t size) = 0;
+  };
+  template <class Handler>
+  struct HeldOf final : Held {
+    explicit HeldOf(Handler handler) : handler_(std::move(handler)) {}
+    void run(boost::beast::error_code error, std::size_t size) override { handler_(error, size); }
+    Handler handler_;
+  };
+  std::unique_ptr<Held> held_;
+};
+
+// The first pieces of a sequence of buffers that hold something: enough to read or write *some*.
+template <class Buffer>
+class SomeBuffers {
+ public:
+  using value_type = Buffer;
+  using const_iterator = const Buffer*;
+
+  template <class Sequence>
+  explicit SomeBuffers(const Sequence& sequence) {
+    const auto end = boost::asio::buffer_sequence_end(sequence);
+    for (auto at = boost::asio::buffer_sequence_begin(sequence); at != end && count_ < buffers_.size(); ++at)
+      if (const Buffer buffer(*at); buffer.size() > 0) buffers_[count_++] = buffer;
+  }
+  const_iterator begin() const { return buffers_.data(); }
+  const_iterator end() const { return buffers_.data() + count_; }
+
+ private:
+  std::array<Buffer, 16> buffers_{};
+  std::size_t count_ = 0;
+};
 
 // A TCP connection, with TLS or without: an asynchronous stream whose users need not know which. Moved only while nothing is under way.
 class ConnectionStream {
@@ -17,54 +67,59 @@ class ConnectionStream {
   using next_layer_type = boost::beast::tcp_stream;
   using executor_type = next_layer_type::executor_type;
 
-  explicit ConnectionStream(boost::asio::ip::tcp::socket socket) : stream_(next_layer_type(std::move(socket))) {}
+  explicit ConnectionStream(boost::asio::ip::tcp::socket socket);
 
   executor_type get_executor() noexcept { return next_layer().get_executor(); }
-  next_layer_type& next_layer() noexcept {
-    if (auto* tls = std::get_if<Tls>(&stream_)) return tls->next_layer();
-    return *std::get_if<next_layer_type>(&stream_);
-  }
+  next_layer_type& next_layer() noexcept;
 
   bool has_tls() const noexcept { return std::holds_alternative<Tls>(stream_); }
-  // From here on the connection speaks TLS. `first`: bytes of the client that were read already; completes with how many of them were used.
-  template <class Buffers, class Token>
-  auto async_start_tls(boost::asio::ssl::context& context, const Buffers& first, Token&& token) {
-    next_layer_type plain = std::move(next_layer());
-    return stream_.emplace<Tls>(std::move(plain), context)
-        .async_handshake(boost::asio::ssl::stream_base::server, first, std::forward<Token>(token));
-  }
+  // From here on the connection speaks TLS. `first`: bytes of the client that were read already; gives how many of them were used.
+  boost::asio::awaitable<std::tuple<boost::beast::error_code, std::size_t>> start_tls(
+      boost::asio::ssl::context& context, boost::asio::const_buffer first);
   // Tells the client that this was all; of a connection with TLS.
-  template <class Token>
-  auto async_end_tls(Token&& token) {
-    return std::get<Tls>(stream_).async_shutdown(std::forward<Token>(token));
-  }
+  boost::asio::awaitable<void> end_tls();
 
   template <class Buffers, class Token>
   auto async_read_some(const Buffers& buffers, Token&& token) {
     return boost::asio::async_initiate<Token, void(boost::beast::error_code, std::size_t)>(
-        [this](auto handler, const Buffers& into) {
-          std::visit([&](auto& stream) { stream.async_read_some(into, std::move(handler)); }, stream_);
+        [this](auto handler, const SomeBuffers<boost::asio::mutable_buffer>& into) {
+          read_some(into, done(std::move(handler)));
         },
-        token, buffers);
+        token, SomeBuffers<boost::asio::mutable_buffer>(buffers));
   }
   template <class Buffers, class Token>
   auto async_write_some(const Buffers& buffers, Token&& token) {
     return boost::asio::async_initiate<Token, void(boost::beast::error_code, std::size_t)>(
-        [this](auto handler, const Buffers& from) {
-          std::visit([&](auto& stream) { stream.async_write_some(from, std::move(handler)); }, stream_);
+        [this](auto handler, const SomeBuffers<boost::asio::const_buffer>& from) {
+          write_some(from, done(std::move(handler)));
         },
-        token, buffers);
+        token, SomeBuffers<boost::asio::const_buffer>(buffers));
   }
 
   // How a WebSocket ends the connection below it; found by Beast.
   template <class Handler>
   friend void async_teardown(boost::beast::role_type role, ConnectionStream& connection, Handler&& handler) {
-    using boost::beast::websocket::async_teardown;
-    std::visit([&](auto& stream) { async_teardown(role, stream, std::forward<Handler>(handler)); }, connection.stream_);
+    const boost::asio::any_io_executor executor =
+        boost::asio::get_associated_executor(handler, connection.get_executor());
+    auto ended = [handler = std::forward<Handler>(handler)](boost::beast::error_code error, std::size_t) mutable {
+      handler(error);
+    };
+    connection.tear_down(role, boost::asio::bind_executor(executor, IoDone(std::move(ended))));
   }
 
  private:
   using Tls = boost::beast::ssl_stream<next_layer_type>;
+  using Done = boost::asio::executor_binder<IoDone, boost::asio::any_io_executor>;
+
+  template <class Handler>
+  Done done(Handler handler) {
+    const boost::asio::any_io_executor executor = boost::asio::get_associated_executor(handler, get_executor());
+    return boost::asio::bind_executor(executor, IoDone(std::move(handler)));
+  }
+  void read_some(const SomeBuffers<boost::asio::mutable_buffer>& into, Done done);
+  void write_some(const SomeBuffers<boost::asio::const_buffer>& from, Done done);
+  void tear_down(boost::beast::role_type role, Done done);
+
   std::variant<next_layer_type, Tls> stream_;
 };
 

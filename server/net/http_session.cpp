@@ -117,7 +117,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (error) co_return false;
     if (speaks_tls) {
       const auto first = buffer_.cdata();
-      auto [refused, used] = co_await stream_.async_start_tls(*tls_, first, kUseResult);
+      auto [refused, used] = co_await stream_.start_tls(*tls_, first);
       if (!refused) buffer_.consume(used);
       co_return !refused;
     }
@@ -475,7 +475,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   // Ends our side, and reads what is still under way for a moment: closing at once could destroy the answer in the client's hands.
   asio::awaitable<void> say_goodbye() {
     connection().expires_after(seconds(2));
-    if (stream_.has_tls()) (void)co_await stream_.async_end_tls(kUseResult);
+    if (stream_.has_tls()) co_await stream_.end_tls();
     beast::error_code ignored;
     connection().socket().shutdown(tcp::socket::shutdown_send, ignored);
     std::array<char, 4096> rest;
