@@ -7,6 +7,13 @@ function(strata_room name)
   # A room sees its own headers and those of the rooms it links, because each room exports only its own folder.
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/rooms/${name})
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/rooms/${name}/${name} SYMBOLIC)
+  if(name MATCHES "^(net|cli)$")
+    strata_shared_headers(strata_${name} net)
+  elseif(name MATCHES "^(mesh|render|query)$")
+    strata_shared_headers(strata_${name} standard COMPUTES)
+  else()
+    strata_shared_headers(strata_${name} standard)
+  endif()
   target_link_libraries(strata_${name} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE} strata_warnings)
 endfunction()
 
@@ -14,3 +21,7 @@ add_library(strata_warnings INTERFACE)
 target_compile_options(strata_warnings INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
 # False alarms of GCC 12 at -O3: std::string's replace (its bug 105651), frames of Asio's coroutines.
 target_compile_options(strata_warnings INTERFACE $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Release>>:-Wno-restrict -Wno-mismatched-new-delete>)
+# And of the standard library's own members, as soon as a sanitizer's checks stand between their statements.
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize" AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  target_compile_options(strata_warnings INTERFACE -Wno-maybe-uninitialized)
+endif()

@@ -6,6 +6,7 @@
 
 #include "jobs/companions.h"
 #include "mesh/demo_pot.h"
+#include "strata_dirs.h"
 
 namespace strata::bench {
 namespace {

@@ -17,6 +17,7 @@
 #include "jobs/job_queue.h"
 #include "net/server.h"
 #include "query/expression_parser.h"
+#include "strata_dirs.h"
 
 namespace strata::bench {
 namespace {

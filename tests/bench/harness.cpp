@@ -9,6 +9,7 @@
 #include <iostream>
 #include <thread>
 
+#include "strata_dirs.h"
 #include "support/shader_dirs.h"
 
 namespace strata::bench {

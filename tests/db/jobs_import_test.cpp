@@ -12,6 +12,7 @@
 #include "mesh/surface_map.h"
 #include "store/hash.h"
 #include "store/pg.h"
+#include "strata_dirs.h"
 #include "support/test_cluster.h"
 #include "support/zip_files.h"
 

@@ -11,6 +11,7 @@
 #include "store/inspect.h"
 #include "store/migrations.h"
 #include "store/pg.h"
+#include "strata_dirs.h"
 #include "support/test_cluster.h"
 
 namespace strata::store {

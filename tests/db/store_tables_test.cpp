@@ -4,6 +4,7 @@
 
 #include "store/migrations.h"
 #include "store/pg.h"
+#include "strata_dirs.h"
 #include "support/test_cluster.h"
 
 namespace strata::store {

@@ -8,6 +8,7 @@
 
 #include "db/journal_painter.h"
 #include "store/pg.h"
+#include "strata_dirs.h"
 
 namespace strata::store {
 namespace {

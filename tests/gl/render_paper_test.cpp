@@ -10,6 +10,7 @@
 #include "bench/peers/paper.h"
 #include "mesh/load.h"
 #include "render/depth_bias.h"
+#include "strata_dirs.h"
 #include "support/gl_scene.h"
 #include "support/shader_dirs.h"
 

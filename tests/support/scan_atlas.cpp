@@ -4,6 +4,7 @@
 #include <map>
 
 #include "mesh/load.h"
+#include "strata_dirs.h"
 
 namespace strata::test {
 namespace {

@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "strata_dirs.h"
+
 namespace strata::test {
 
 // The shaders that tests and benchmarks load: the sources', or a bundle's (STRATA_SHADERS, STRATA_PEER_SHADERS), so that

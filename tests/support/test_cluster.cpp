@@ -1,4 +1,5 @@
 #include "support/test_cluster.h"
+#include "strata_dirs.h"
 
 #include <gtest/gtest.h>
 #include <libpq-fe.h>

@@ -11,6 +11,7 @@
 
 #include "mesh/atlas_report.h"
 #include "mesh/uv_islands.h"
+#include "strata_dirs.h"
 #include "support/meshes.h"
 #include "support/scan_atlas.h"
 

@@ -22,6 +22,7 @@
 #include "mesh/base_color.h"
 #include "mesh/geometry.h"
 #include "mesh/load.h"
+#include "strata_dirs.h"
 #include "support/manifold_check.h"
 
 namespace {

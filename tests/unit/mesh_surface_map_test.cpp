@@ -14,6 +14,7 @@
 #include "mesh/load.h"
 #include "mesh/slot_bits.h"
 #include "mesh/uv_islands.h"
+#include "strata_dirs.h"
 #include "support/meshes.h"
 #include "support/scan_atlas.h"
 

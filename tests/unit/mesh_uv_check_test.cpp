@@ -6,6 +6,7 @@
 
 #include "mesh/atlas.h"
 #include "mesh/load.h"
+#include "strata_dirs.h"
 #include "support/meshes.h"
 
 namespace strata::mesh {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "protocol/frame_header.h"
+#include "strata_dirs.h"
 
 namespace strata::protocol {
 namespace {

@@ -11,6 +11,7 @@
 
 #include "protocol/fast_json.h"
 #include "protocol/parse.h"
+#include "strata_dirs.h"
 
 namespace strata::protocol {
 namespace {

@@ -1,0 +1,38 @@
+# Headers that nearly every unit reads are compiled once for each kind of target: half of the time of a build was their parsing.
+# The release build does without, so that a file that forgets to name what it uses is found.
+# A unit with options of its own does without, too (SKIP_PRECOMPILE_HEADERS): GCC 12 dies of some that differ from the headers'.
+set(STRATA_STANDARD_HEADERS
+  <algorithm> <array> <atomic> <bit> <charconv> <chrono> <cmath> <cstdint> <cstring> <deque> <filesystem> <fstream> <functional>
+  <future> <limits> <map> <memory> <mutex> <numeric> <optional> <random> <set> <span> <sstream> <string> <string_view> <thread>
+  <tuple> <unordered_map> <utility> <variant> <vector> <glm/glm.hpp> <glm/gtc/matrix_transform.hpp> <tl/expected.hpp>)
+set(STRATA_NET_HEADERS ${STRATA_STANDARD_HEADERS}
+  <nlohmann/json.hpp> <boost/asio/any_io_executor.hpp> <boost/asio/awaitable.hpp> <boost/asio/co_spawn.hpp>
+  <boost/asio/detached.hpp> <boost/asio/ip/tcp.hpp> <boost/asio/post.hpp> <boost/asio/steady_timer.hpp>
+  <boost/asio/thread_pool.hpp> <boost/asio/use_awaitable.hpp>)
+set(STRATA_TESTS_HEADERS ${STRATA_STANDARD_HEADERS} <gmock/gmock.h> <gtest/gtest.h> <nlohmann/json.hpp>)
+
+# strata_shared_headers(TARGET standard|net|tests [COMPUTES]). To optimise the checks of sanitizers takes the compiler longer than to
+# run them as they are, but where texels and triangles are computed.
+function(strata_shared_headers target kind)
+  cmake_parse_arguments(HEADERS "COMPUTES" "" "" ${ARGN})
+  string(TOUPPER STRATA_${kind}_HEADERS list)
+  set(options)
+  if(CMAKE_CXX_FLAGS MATCHES "-fsanitize" AND NOT HEADERS_COMPUTES)
+    set(kind ${kind}_unoptimised)
+    set(options -O0)
+  endif()
+  set(headers strata_${kind}_headers)
+  if(NOT TARGET ${headers})
+    set(unit ${PROJECT_BINARY_DIR}/shared_headers/${kind}.cpp)
+    file(CONFIGURE OUTPUT ${unit} CONTENT "")
+    add_library(${headers} OBJECT ${unit})
+    target_link_libraries(${headers} PRIVATE glm::glm nlohmann_json::nlohmann_json strata_boost strata_warnings)
+    if(TARGET GTest::gtest)
+      target_link_libraries(${headers} PRIVATE GTest::gtest GTest::gmock)
+    endif()
+    target_compile_options(${headers} PRIVATE ${options})
+    target_precompile_headers(${headers} PRIVATE ${${list}})
+  endif()
+  target_compile_options(${target} PRIVATE ${options})
+  target_precompile_headers(${target} REUSE_FROM ${headers})
+endfunction()
