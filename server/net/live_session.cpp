@@ -148,37 +148,9 @@ void LiveSession::on(const protocol::CameraUpdate& message) {
 
 void LiveSession::on(const protocol::LayersUpdate& message) {
   if (!has_view(message.view_id, std::string())) return;
-  std::vector<room::LayerView> views;
-  for (std::size_t i = 0; i < message.layers.size(); ++i) {
-    const auto& asked = message.layers[i];
-    const std::string field = "layers[" + std::to_string(i) + "]";
-    auto layer = layer_of(asked.layer);
-    if (!layer) {
-      Problem problem = layer.error();
-      problem.field = field + ".layer";
-      return refuse(problem, std::string());
-    }
-    room::LayerView view{layer->id, asked.visible, asked.opacity, std::nullopt, std::nullopt};
-    if (asked.palette) {
-      auto palette = palette_from_json(*asked.palette, field + ".palette");
-      if (!palette) return refuse(palette.error(), std::string());
-      view.palette = std::move(*palette);
-    }
-    if (asked.highlight) {
-      auto highlight = highlight_of(*asked.highlight, *layer, field + ".highlight");
-      if (!highlight) return refuse(highlight.error(), std::string());
-      view.highlight = std::move(*highlight);
-    }
-    views.push_back(std::move(view));
-  }
-  room::ViewSettings settings{std::move(views), std::nullopt, message.light.value_or(Light{})};
-  if (auto lit = validate(settings.light); !lit) return refuse(lit.error(), std::string());
-  if (message.looks) {
-    auto looks = look_views(*room_, *message.looks);
-    if (!looks) return refuse(looks.error(), std::string());
-    settings.looks = std::move(*looks);
-  }
-  if (auto done = member()->show(static_cast<std::uint32_t>(message.view_id), std::move(settings)); !done)
+  auto settings = view_settings(*room_, message.layers, message.looks, message.light);
+  if (!settings) return refuse(settings.error(), std::string());
+  if (auto done = member()->show(static_cast<std::uint32_t>(message.view_id), std::move(*settings)); !done)
     refuse(done.error(), std::string());
 }
 

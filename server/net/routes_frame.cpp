@@ -1,12 +1,10 @@
-#include "core/picture.h"
 #include "net/as_of.h"
+#include "net/picture_response.h"
 #include "net/routes.h"
 #include "net/wire.h"
 
 namespace strata::net {
 namespace {
-
-constexpr int kJpegQuality = 90;  // one picture for keeps, not a frame of many
 
 Result<Response> frame(const RouteContext& context, const Request& request) {
   auto asked = body_of<protocol::FrameRequest>(request);
@@ -39,7 +37,7 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
       }
       auto highlight = highlight_of(wished.highlight, *layer, field + ".highlight");
       if (!highlight) return tl::unexpected(highlight.error());
-      wanted.highlights[layer->slug] = std::move(*highlight);
+      wanted.shown.layers.push_back({layer->id, std::nullopt, std::nullopt, std::nullopt, std::move(*highlight)});
     }
   }
   const auto sequence = (*room)->sequence();
@@ -49,17 +47,13 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   if (asked->looks) {
     auto looks = look_views(**room, *asked->looks);
     if (!looks) return tl::unexpected(looks.error());
-    wanted.looks = std::move(*looks);
+    wanted.shown.looks = std::move(*looks);
   }
-  if (asked->light) wanted.light = *asked->light;
-  if (auto lit = validate(wanted.light); !lit) return tl::unexpected(lit.error());
+  if (asked->light) wanted.shown.light = *asked->light;
+  if (auto lit = validate(wanted.shown.light); !lit) return tl::unexpected(lit.error());
   auto picture = (*room)->picture(wanted);
   if (!picture) return tl::unexpected(picture.error());
-  const bool is_png = asked->format == protocol::FrameRequestFormat::png;
-  Response response =
-      is_png ? bytes_response(encode_png(picture->pixels, picture->width, picture->height), "image/png")
-             : bytes_response(encode_jpeg(picture->pixels, picture->width, picture->height, {kJpegQuality, true}),
-                              "image/jpeg");
+  Response response = picture_response(*picture, asked->format == protocol::FrameRequestFormat::png);
   add_sequences(response, wanted.at.value_or(sequence), (*room)->durable_sequence());
   return response;
 }

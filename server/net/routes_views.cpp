@@ -1,9 +1,10 @@
 // Named views of a model. Everybody reads them, annotators make them; what one made one changes oneself, and curators may.
 #include <algorithm>
+#include <cmath>
 
-#include "core/palette.h"
 #include "net/annotated_routes.h"
 #include "net/answer_book.h"
+#include "net/picture_response.h"
 #include "net/routes.h"
 #include "net/wire.h"
 #include "protocol/json_values.h"
@@ -20,35 +21,21 @@ using store::NamedView;
 template <class Asked>
 Result<nlohmann::json> content_of(const room::Room& room, const Asked& asked, const Camera& camera) {
   if (auto good = validate(camera); !good) return tl::unexpected(good.error());
-  const Light light = asked.light.value_or(Light{});
-  if (auto lit = validate(light); !lit) return tl::unexpected(lit.error());
-  nlohmann::json layers = nlohmann::json::array();
   const auto shown = asked.layers.value_or(std::vector<protocol::LayerOverride>{});
+  const auto settings = view_settings(room, shown, asked.looks, asked.light);
+  if (!settings) return tl::unexpected(settings.error());
+  nlohmann::json layers = nlohmann::json::array();
   for (std::size_t i = 0; i < shown.size(); ++i) {
-    const std::string field = "layers[" + std::to_string(i) + "]";
-    const auto layer = room.layer(protocol::to_ref(shown[i].layer));
-    if (!layer) {
-      Problem problem = layer.error();
-      problem.field = field + ".layer";
-      return tl::unexpected(std::move(problem));
-    }
-    if (shown[i].palette)
-      if (auto palette = palette_from_json(*shown[i].palette, field + ".palette"); !palette)
-        return tl::unexpected(palette.error());
-    if (shown[i].highlight)
-      if (auto highlight = highlight_of(*shown[i].highlight, *layer, field + ".highlight"); !highlight)
-        return tl::unexpected(highlight.error());
     nlohmann::json kept = protocol::to_json(shown[i]);
-    kept["layer"] = layer->id;
+    kept["layer"] = settings->layers[i].layer_id;
     layers.push_back(std::move(kept));
   }
-  nlohmann::json content{
-      {"camera", protocol::write_core(camera)}, {"layers", std::move(layers)}, {"light", protocol::write_core(light)}};
-  if (asked.looks) {
-    const auto looks = look_views(room, *asked.looks);
-    if (!looks) return tl::unexpected(looks.error());
+  nlohmann::json content{{"camera", protocol::write_core(camera)},
+                         {"layers", std::move(layers)},
+                         {"light", protocol::write_core(settings->light)}};
+  if (settings->looks) {
     content["looks"] = nlohmann::json::array();
-    for (const room::LookView& look : *looks)
+    for (const room::LookView& look : *settings->looks)
       content["looks"].push_back({{"look", look.look_id}, {"opacity", look.opacity}});
   }
   return content;
@@ -150,6 +137,46 @@ Result<Response> get_view(const RouteContext& context, const Request& request) {
                    found->view.version);
 }
 
+// What the view shows today, to who asks.
+Result<Response> view_picture(const RouteContext& context, const Request& request) {
+  std::optional<int> side;
+  if (const std::string text = request.query_or("thumbnail", {}); !text.empty()) {
+    const auto number = parse_integer(text, 16, 1024, "thumbnail");
+    if (!number) return tl::unexpected(number.error());
+    side = static_cast<int>(*number);
+  }
+  const std::string format = request.query_or("format", "jpeg");
+  if (format != "jpeg" && format != "png")
+    return fail(422, "Unknown format", "A picture of a view is 'jpeg' or 'png'.", "format");
+  const auto found = find_view(context, request);
+  if (!found) return tl::unexpected(found.error());
+  const nlohmann::json seen = to_json(context, request.role(), found->view, *found->room);
+  nlohmann::json content{{"name", found->view.name},
+                         {"camera", seen.at("camera")},
+                         {"layers", seen.at("layers")},
+                         {"light", seen.at("light")}};
+  if (seen.contains("looks")) content["looks"] = seen.at("looks");
+  const auto kept = protocol::from_json<protocol::ViewCreate>(content);
+  if (!kept) return tl::unexpected(kept.error());
+  auto shown = view_settings(*found->room, kept->layers.value_or(std::vector<protocol::LayerOverride>{}), kept->looks,
+                             kept->light);
+  if (!shown) return tl::unexpected(shown.error());
+  room::PictureRequest wanted;
+  wanted.camera = kept->camera;
+  if (side) {
+    const double scale = std::min(1.0, double(*side) / std::max(wanted.camera.width, wanted.camera.height));
+    wanted.camera.width = std::max(1, static_cast<int>(std::lround(wanted.camera.width * scale)));
+    wanted.camera.height = std::max(1, static_cast<int>(std::lround(wanted.camera.height * scale)));
+  }
+  wanted.shown = std::move(*shown);
+  const auto sequence = found->room->sequence();
+  const auto picture = found->room->picture(wanted);
+  if (!picture) return tl::unexpected(picture.error());
+  Response response = picture_response(*picture, format == "png");
+  add_sequences(response, sequence, found->room->durable_sequence());
+  return response;
+}
+
 Result<Response> create_view(const RouteContext& context, const Request& request) {
   const auto asked = body_of<protocol::ViewCreate>(request);
   if (!asked) return tl::unexpected(asked.error());
@@ -214,6 +241,7 @@ void add_view_routes(Router& router, const RouteContext& context) {
   routes.read(views, list_views, {"limit", "offset"});
   routes.change(Method::post, views, create_view);
   routes.read(view, get_view);
+  routes.read(view + "/picture", view_picture, {"thumbnail", "format"});
   routes.change(Method::patch, view, change_view);
   routes.change(Method::remove, view, delete_view);
 }

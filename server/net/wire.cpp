@@ -209,6 +209,42 @@ Result<std::vector<room::LookView>> look_views(const room::Room& room, const std
   return views;
 }
 
+Result<room::ViewSettings> view_settings(const room::Room& room, const std::vector<protocol::LayerOverride>& layers,
+                                         const std::optional<std::vector<protocol::LookShown>>& looks,
+                                         const std::optional<Light>& light) {
+  room::ViewSettings settings;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const protocol::LayerOverride& asked = layers[i];
+    const std::string field = "layers[" + std::to_string(i) + "]";
+    const auto layer = room.layer(protocol::to_ref(asked.layer));
+    if (!layer) {
+      Problem problem = layer.error();
+      problem.field = field + ".layer";
+      return tl::unexpected(std::move(problem));
+    }
+    room::LayerView view{layer->id, asked.visible, asked.opacity, std::nullopt, std::nullopt};
+    if (asked.palette) {
+      auto palette = palette_from_json(*asked.palette, field + ".palette");
+      if (!palette) return tl::unexpected(palette.error());
+      view.palette = std::move(*palette);
+    }
+    if (asked.highlight) {
+      auto highlight = highlight_of(*asked.highlight, *layer, field + ".highlight");
+      if (!highlight) return tl::unexpected(highlight.error());
+      view.highlight = std::move(*highlight);
+    }
+    settings.layers.push_back(std::move(view));
+  }
+  if (looks) {
+    auto shown = look_views(room, *looks);
+    if (!shown) return tl::unexpected(shown.error());
+    settings.looks = std::move(*shown);
+  }
+  if (light) settings.light = *light;
+  if (auto lit = validate(settings.light); !lit) return tl::unexpected(lit.error());
+  return settings;
+}
+
 std::optional<glm::dvec2> end_of_path(const nlohmann::json& record) {
   if (!record.is_object()) return std::nullopt;
   const auto path = record.find("path");

@@ -45,6 +45,10 @@ room::Place place_of(const protocol::SurfacePlace& place);
 
 // The looks that a view asks for; 404 or 422 with the field's name for one that is not there or comes twice.
 Result<std::vector<room::LookView>> look_views(const room::Room& room, const std::vector<protocol::LookShown>& asked);
+// What a view shows; refused as those, with the fields of layers, looks and light.
+Result<room::ViewSettings> view_settings(const room::Room& room, const std::vector<protocol::LayerOverride>& layers,
+                                         const std::optional<std::vector<protocol::LookShown>>& looks,
+                                         const std::optional<Light>& light);
 
 // Of a layer of records, for `field`; the filter's columns are found when it is first drawn.
 Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Layer& layer, const std::string& field);

@@ -31,7 +31,8 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
     }
   } else {
     for (auto& candidate : layer_states())
-      if (candidate.layer.visible) shown.push_back(std::move(candidate));
+      if (asked.shown.of(candidate.layer.id).visible.value_or(candidate.layer.visible))
+        shown.push_back(std::move(candidate));
   }
   if (asked.at && *asked.at > durable_)
     return fail(422, "Sequence not reached",
@@ -53,16 +54,16 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
       handle = *copy;
       borrowed.layers.push_back(handle);
     }
-    auto palette = item.palette;
-    const auto asked_for = asked.highlights.find(item.layer.slug);
-    const auto highlight =
-        asked_for == asked.highlights.end() ? nullptr : std::make_shared<const Highlight>(asked_for->second);
+    const LayerView& mine = asked.shown.of(item.layer.id);
+    auto palette = mine.palette ? std::make_shared<const Palette>(*mine.palette) : item.palette;
+    const auto highlight = mine.highlight ? std::make_shared<const Highlight>(*mine.highlight) : nullptr;
     if (item.layer.table && RecordColors::needs_records(*palette, highlight)) {
       auto made = record_colors_->make({*item.layer.table, sight, palette, highlight});
       if (!made) return tl::unexpected(made.error());
       palette = std::move(*made);
     }
-    request.layers.push_back({handle, std::move(palette), static_cast<float>(item.layer.opacity)});
+    request.layers.push_back(
+        {handle, std::move(palette), static_cast<float>(mine.opacity.value_or(item.layer.opacity))});
     if (!item.layer.table) continue;
     auto marks = asked.at ? record_marks_->when(*item.layer.table, sight, *asked.at)
                           : record_marks_->newest(*item.layer.table, sight);
@@ -75,10 +76,10 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
   request.camera = asked.camera;
   request.width = asked.camera.width;
   request.height = asked.camera.height;
-  auto looks = look_shelf_->wait(asked.looks);
+  auto looks = look_shelf_->wait(asked.shown.looks);
   if (!looks) return tl::unexpected(gpu_problem(looks.error()));
   request.looks = std::move(*looks);
-  request.light = asked.light;
+  request.light = asked.shown.light;
   request.marks = show_marks(marked);
   request.unit_mm = this->model().metres() * 1000;
   auto frame = await<render::Frame>([&](auto done) { parts_.renderer.draw(std::move(request), std::move(done)); });

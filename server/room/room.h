@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -74,6 +75,14 @@ struct ViewSettings {
   std::vector<LayerView> layers;
   std::optional<std::vector<LookView>> looks;  // bottom to top; nothing: those visible by default
   Light light;
+
+  // What it says of a layer; of one that it does not name, nothing.
+  const LayerView& of(std::int64_t layer_id) const {
+    static const LayerView kNothing;
+    const auto last =
+        std::find_if(layers.rbegin(), layers.rend(), [&](const auto& own) { return own.layer_id == layer_id; });
+    return last == layers.rend() ? kNothing : *last;
+  }
 };
 
 // Where somebody points on the surface.
@@ -145,10 +154,8 @@ using ProfileLine = std::variant<PlacesInSteps, SeenLine>;
 
 struct PictureRequest {
   Camera camera;
-  std::optional<std::vector<std::string>> layers{};  // by slug; nothing: those visible by default
-  std::optional<std::vector<LookView>> looks{};      // the same
-  std::map<std::string, Highlight> highlights{};     // by slug
-  Light light{};
+  std::optional<std::vector<std::string>> layers{};  // exactly these, by slug; nothing: those that are visible
+  ViewSettings shown{};
   std::optional<std::int64_t> at{};  // layers as they were after that sequence
   Role seen_by = Role::owner;        // columns that it does not see neither draw nor colour
 };

@@ -85,7 +85,7 @@ class SeenRoom final : public Room {
     } else {
       seen.layers.emplace();
       for (const Layer& layer : layers())
-        if (layer.visible) seen.layers->push_back(std::to_string(layer.id));
+        if (asked.shown.of(layer.id).visible.value_or(layer.visible)) seen.layers->push_back(std::to_string(layer.id));
     }
     return room_->picture(seen);
   }

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Named views over HTTP: what they keep, who may change them, what is left of one when its layers go, events, and what is refused."""
 import os
+import struct
 import sys
 import uuid
 
@@ -19,6 +20,51 @@ def told(answer, status, field=None):
     problem = answer.json()
     assert problem["detail"] and (field is None or problem.get("field") == field), problem
     return problem
+
+
+def pictures(server, ask, camera, palette):
+    """A view's picture is the frame of a model whose defaults are what the view keeps."""
+    light = {"mode": "raking", "direction": [1, 0.5, 0.25]}
+    server.ok("POST", M + "/layers/cracks/edits", {"op": "fill", "mode": "where", "where": "true", "value": 3})
+    own = {"opacity": 0.25, "palette": palette}
+    view = ask("ada", "POST", ALL, {"name": "Pictured", "camera": camera, "light": light, "looks": [],
+                                    "layers": [{"layer": "cracks", "visible": True, **own}, {"layer": "units", "visible": False}]}).json()
+    path = f"{ALL}/{view['slug']}"
+
+    def frame(**more):
+        return server.ok("POST", M + "/frame", {"camera": camera, "light": light, "looks": [], "format": "png", **more}).body
+
+    def picture(who="vera", query="?format=png"):
+        answer = ask(who, "GET", path + "/picture" + query)
+        assert answer.status == 200, answer
+        return answer.body
+
+    def size(png):
+        return struct.unpack(">II", png[16:24])
+
+    was = server.get(M + "/layers/cracks").json()
+    before = frame()
+    shown = picture()
+    assert shown != before and size(shown) == (camera["width"], camera["height"])
+    server.ok("PATCH", M + "/layers/cracks", own)
+    server.ok("PATCH", M + "/layers/units", {"visible": False})
+    assert frame() == shown == picture()
+    server.ok("PATCH", M + "/layers/cracks", {"opacity": was["opacity"], "palette": was["palette"], "visible": False})
+    server.ok("PATCH", M + "/layers/units", {"visible": True})
+    assert frame() == frame(layers=["units"]) and picture() == shown, "what the view keeps comes before the defaults"
+
+    small = size(picture(query="?format=png&thumbnail=100"))
+    assert max(small) == 100 and abs(small[0] / small[1] - camera["width"] / camera["height"]) < 0.02, small
+    jpeg = ask("vera", "GET", path + "/picture?thumbnail=64")
+    assert jpeg.headers["Content-Type"] == "image/jpeg" and jpeg.body[:2] == b"\xff\xd8", jpeg
+    for query, field in (("?thumbnail=8", "thumbnail"), ("?thumbnail=1025", "thumbnail"), ("?thumbnail=x", "thumbnail"), ("?format=gif", "format")):
+        told(ask("vera", "GET", path + "/picture" + query), 422, field)
+    told(server.get(f"{ALL}/nothing/picture"), 404)
+
+    server.ok("PATCH", M + "/layers/cracks", {"visibility": "private", "visible": True})
+    assert picture() == frame(layers=[]) and picture("carl") == shown, "who does not see a layer does not see it in a view"
+    server.ok("PATCH", M + "/layers/cracks", {"visibility": "public"})
+    assert ask("ada", "DELETE", path).status == 204
 
 
 def main():
@@ -92,6 +138,8 @@ def main():
         told(server.get(f"{ALL}/nothing"), 404)
         told(server.get("/models/nothing/views"), 404)
         assert server.get(ALL).json()["total"] == 2
+
+        pictures(server, ask, camera, palette)
 
         # What names a column that is not there, or not for who asks, is left out.
         server.ok("PATCH", "/tables/units/columns/state", {"visibility": "private"})

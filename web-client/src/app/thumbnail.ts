@@ -1,21 +1,25 @@
-// <strata-thumbnail>: one small rendered picture of a model, asked for when it comes into sight.
+// <strata-thumbnail>: one small rendered picture of a model, or of what a named view shows, asked for when it comes into sight.
 
-import { css, html, LitElement, type TemplateResult } from "lit";
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import type { Api } from "../core/api";
 import { OrbitCamera } from "../core/camera";
+import type { View } from "../core/protocol.gen";
 import type { Model } from "../core/types";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
 const kWidth = 640;
 const kHeight = 480;
+const kViewSide = 256;
 let busy: Promise<void> = Promise.resolve(); // one picture at a time, so that a gallery never crowds out people at work
 
 @customElement("strata-thumbnail")
 export class StrataThumbnail extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) model!: Model;
+  @property({ attribute: false, hasChanged: (now: View | null, before: View | null) => now?.id !== before?.id || now?.version !== before?.version })
+  view: View | null = null;
   @state() private state_: "waiting" | "drawn" | "failed" = "waiting";
   @query("canvas") private canvas_!: HTMLCanvasElement;
   private observer_: IntersectionObserver | null = null;
@@ -51,13 +55,16 @@ export class StrataThumbnail extends LitElement {
     `,
   ];
 
-  override firstUpdated(): void {
-    this.observer_ = new IntersectionObserver((entries) => {
+  protected override updated(changed: PropertyValues): void {
+    if (this.observer_ && !changed.has("view")) return;
+    this.observer_?.disconnect();
+    const observer = new IntersectionObserver((entries) => {
       if (!entries.some((entry) => entry.isIntersecting)) return;
-      this.observer_?.disconnect();
+      observer.disconnect();
       busy = busy.then(() => this.load());
     });
-    this.observer_.observe(this);
+    observer.observe(this);
+    this.observer_ = observer;
   }
 
   override disconnectedCallback(): void {
@@ -67,12 +74,8 @@ export class StrataThumbnail extends LitElement {
 
   private async load(): Promise<void> {
     if (!this.isConnected) return;
-    const camera = new OrbitCamera();
-    camera.set_model(this.model.bounds, this.model.up);
-    camera.resize(kWidth, kHeight);
-    camera.first_view();
     try {
-      const bitmap = await createImageBitmap(await this.api.frame(this.model.id, camera.message()));
+      const bitmap = await createImageBitmap(await this.picture());
       this.canvas_.width = bitmap.width;
       this.canvas_.height = bitmap.height;
       this.canvas_.getContext("2d")?.drawImage(bitmap, 0, 0);
@@ -83,8 +86,17 @@ export class StrataThumbnail extends LitElement {
     }
   }
 
+  private picture(): Promise<Blob> {
+    if (this.view) return this.api.view_picture(this.model.id, this.view.id, kViewSide);
+    const camera = new OrbitCamera();
+    camera.set_model(this.model.bounds, this.model.up);
+    camera.resize(kWidth, kHeight);
+    camera.first_view();
+    return this.api.frame(this.model.id, camera.message());
+  }
+
   override render(): TemplateResult {
     return html`<canvas class=${this.state_} width="4" height="3" aria-hidden="true"></canvas>
-      ${this.state_ === "failed" ? html`<p>${texts.home.no_picture}</p>` : ""}`;
+      ${this.state_ === "failed" && !this.view ? html`<p>${texts.home.no_picture}</p>` : nothing}`;
   }
 }

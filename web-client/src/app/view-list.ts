@@ -13,6 +13,7 @@ import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
+import "./thumbnail";
 
 /** The dialog that names a view; without `view` what is seen is kept as a new one. */
 export interface ViewRequest {
@@ -66,9 +67,10 @@ export class StrataViewList extends LitElement {
       }
       button.go {
         display: grid;
-        grid-template-columns: minmax(0, 1fr);
+        grid-template-columns: 64px minmax(0, 1fr);
         justify-content: stretch;
-        gap: 1px;
+        align-items: start;
+        gap: 10px;
         padding: 7px 8px;
         text-align: start;
         white-space: normal;
@@ -80,6 +82,13 @@ export class StrataViewList extends LitElement {
         font-weight: 600;
         overflow-wrap: anywhere;
         unicode-bidi: plaintext;
+      }
+      strata-thumbnail {
+        border-radius: 4px;
+      }
+      .words {
+        display: grid;
+        gap: 1px;
       }
       button.go .hint {
         display: -webkit-box;
@@ -134,12 +143,15 @@ export class StrataViewList extends LitElement {
   }
 
   private row(view: View, is_current: boolean): TemplateResult {
-    const { views, can_paint } = this.session;
+    const { api, model, views, can_paint } = this.session;
     const may_change = can_paint && views.may_change(view);
     return html`<li>
       <button class="quiet go" data-view=${view.id} aria-current=${is_current} title=${view.text || nothing} @click=${() => views.go_to(view)}>
-        <b>${view.name}</b>
-        ${view.text ? html`<span class="hint">${view.text}</span>` : nothing}
+        ${model ? html`<strata-thumbnail .api=${api} .model=${model} .view=${view}></strata-thumbnail>` : nothing}
+        <span class="words">
+          <b>${view.name}</b>
+          ${view.text ? html`<span class="hint">${view.text}</span>` : nothing}
+        </span>
       </button>
       <strata-menu label=${texts.layers.options(view.name)}>
         <button class="quiet" role="menuitem" @click=${() => void this.copy_link(view)}>${icon("link")}${words.copy_link}</button>

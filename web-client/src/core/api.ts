@@ -310,6 +310,10 @@ export class Api {
   async view(model: Id, view: Id): Promise<wire.View> {
     return this.json("GET", view_path(model, view));
   }
+  /** What it shows now; no side of the picture is longer than `side` pixels. */
+  async view_picture(model: Id, view: Id, side: number): Promise<Blob> {
+    return (await this.request("GET", `${view_path(model, view)}/picture?thumbnail=${side}`)).blob();
+  }
   /** `key`: the same for each attempt at one view. */
   async create_view(model: Id, view: wire.ViewCreate, key: string): Promise<wire.View> {
     return this.parsed(await this.request("POST", views_path(model), view, { "Idempotency-Key": key }));
