@@ -206,6 +206,16 @@ function screens_of({ page }, w, site) {
       await from_menu(w.view.look_more, w.orthophoto.open)();
     }, end: close_dialog },
     { name: "help", start: () => open(button(w.model.help)), end: close_dialog, keyboard: true },
+    { name: "tour", start: async () => {
+      await open(button(w.model.help));
+      await button(w.tour.again).click();
+      await page.locator("strata-tour section").waitFor();
+    }, keyboard: true },
+    { name: "tour: the layers", start: () => button(w.tour.next).click() },
+    { name: "tour: the brush", start: () => button(w.tour.next).click(), end: async () => {
+      await escape();
+      await page.locator("strata-tour section").waitFor({ state: "detached" });
+    } },
     { name: "about", start: () => open(button(w.model.details)), end: close_dialog },
     { name: "size", start: async () => {
       await open(button(w.model.details));

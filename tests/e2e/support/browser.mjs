@@ -22,8 +22,18 @@ export const require_browser = () => void load_playwright();
 /** What the console says when a test takes the server away, whatever each connection was at. */
 export const kOfLostServer = ["WebSocket connection", "ERR_CONNECTION_REFUSED", "ERR_EMPTY_RESPONSE", "ERR_CONNECTION_RESET", "ERR_SOCKET_NOT_CONNECTED", "ERR_CONNECTION_CLOSED"];
 
+/** Runs in the page, before everything of its own. */
+function seen_tour() {
+  try {
+    localStorage.setItem("strata.tour_over", "true");
+  } catch {
+    // A page that keeps nothing, such as about:blank.
+  }
+}
+
 export class Browser {
-  static async open(options = {}) {
+  /** `tour`: the tour of the model's page offers itself, as to who comes for the first time; without it this person has seen it. */
+  static async open({ tour = false, ...options } = {}) {
     const { chromium } = load_playwright();
     const browser = new Browser();
     browser.folder = mkdtempSync(join(tmpdir(), "strata-browser-"));
@@ -32,6 +42,7 @@ export class Browser {
       executablePath: kChromium, headless: true, args: kFlags, viewport: { width: 1280, height: 800 }, locale: "en-GB", timezoneId: "UTC",
       colorScheme: "light", reducedMotion: "reduce", ...options,
     });
+    if (!tour) await browser.context.addInitScript(seen_tour);
     browser.page = browser.context.pages()[0] ?? (await browser.context.newPage());
     browser.page.setDefaultTimeout(kLong_ms);
     browser.page.on("console", (message) => ["error", "warning"].includes(message.type()) && browser.complaints.push(`${message.text()} (${message.location().url})`));

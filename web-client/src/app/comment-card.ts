@@ -12,6 +12,7 @@ import type { DraftOf } from "./comments";
 import { ask } from "./dialog";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
+import { has_keyboard } from "./keyboard";
 import type { ModelSession } from "./model-session";
 import { NameCompletion, name_completion_styles } from "./name-completion";
 import { person_mark, person_mark_styles } from "./person-mark";
@@ -505,11 +506,4 @@ export class StrataCommentCard extends LitElement {
   private contains_deep(element: Node): boolean {
     return element.getRootNode() === this.renderRoot;
   }
-}
-
-/** The innermost element that takes keys; null: none in particular. */
-function has_keyboard(): HTMLElement | null {
-  let active = document.activeElement;
-  while (active?.shadowRoot?.activeElement) active = active.shadowRoot.activeElement;
-  return active instanceof HTMLElement && active !== document.body ? active : null;
 }

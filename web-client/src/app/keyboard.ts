@@ -120,3 +120,10 @@ export function arrow_step(key: string, at: number, count: number): number | nul
   const step = { ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1 }[key];
   return step === undefined || count === 0 ? null : (at + step + count) % count;
 }
+
+/** The innermost element that takes keys; null: none in particular. */
+export function has_keyboard(): HTMLElement | null {
+  let active = document.activeElement;
+  while (active?.shadowRoot?.activeElement) active = active.shadowRoot.activeElement;
+  return active instanceof HTMLElement && active !== document.body ? active : null;
+}

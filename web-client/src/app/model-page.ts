@@ -52,6 +52,8 @@ import "./terms-dialog";
 import { texts } from "./texts";
 import "./together-bar";
 import "./tool-rail";
+import "./tour";
+import type { StrataTour } from "./tour";
 import "./transfer-dialog";
 import "./value-readout";
 import "./view-dialog";
@@ -78,6 +80,7 @@ export class StrataModelPage extends LitElement {
   @state() private table_height_ = Number(localStorage.getItem(kTableKey)) || kTableHeight.first;
   @state() private panel_shown_ = window.innerWidth > 820;
   @query("strata-stage") private stage_!: StrataStage | null;
+  @query("strata-tour") private tour_!: StrataTour | null;
   private session_: ModelSession | null = null;
   private asked_scale_ = false;
   private role_: Role | null = null; // of the newest welcome
@@ -116,6 +119,7 @@ export class StrataModelPage extends LitElement {
   }
 
   override updated(): void {
+    this.tour_?.requestUpdate(); // what it speaks of may be elsewhere now
     const session = this.session_;
     const narrow = matchMedia("(max-width: 820px)").matches;
     if (session?.tables.view) this.lift_notices(narrow ? "52dvh" : `${this.table_height_}px`);
@@ -201,6 +205,7 @@ export class StrataModelPage extends LitElement {
         ${styled({ "--panel": `${this.panel_width_}px`, "--table": `${this.table_height_}px` })}
         @click=${{ handleEvent: give_back_keyboard, capture: true }}
       >
+        <strata-tour .session=${session} .held=${this.dialog_ !== null}></strata-tour>
         ${this.header(session)}
         <strata-tool-rail role="toolbar" aria-label=${texts.model.tools} .session=${session}></strata-tool-rail>
         <main>
@@ -247,6 +252,7 @@ export class StrataModelPage extends LitElement {
       ${this.saving(session)}
       <button
         class="icon quiet"
+        data-tour="share"
         aria-label=${texts.model.help}
         title="${texts.model.help} (?)"
         @click=${() => (this.dialog_ = { dialog: "help" })}
@@ -255,6 +261,7 @@ export class StrataModelPage extends LitElement {
       </button>
       <button
         class="icon quiet"
+        data-tour="panel"
         aria-pressed=${this.panel_shown_}
         aria-label=${this.panel_shown_ ? texts.model.hide_panel : texts.model.show_panel}
         title=${this.panel_shown_ ? texts.model.hide_panel : texts.model.show_panel}
@@ -429,7 +436,7 @@ export class StrataModelPage extends LitElement {
       case "scale":
         return html`<strata-scale-dialog .session=${session} @closed=${closed}></strata-scale-dialog>`;
       case "help":
-        return html`<strata-help-sheet @closed=${closed}></strata-help-sheet>`;
+        return html`<strata-help-sheet @closed=${closed} @tour=${() => void this.tour_?.start()}></strata-help-sheet>`;
       case "about":
         return session.model
           ? html`<strata-about-sheet
@@ -464,7 +471,8 @@ export class StrataModelPage extends LitElement {
       event.preventDefault();
       return;
     }
-    if (handle_key(event, session, () => (this.dialog_ = { dialog: "help" }))) event.preventDefault();
+    const does = handle_key(event, session, () => (this.dialog_ = { dialog: "help" })) || (event.key === "Escape" && this.tour_?.end());
+    if (does) event.preventDefault();
   };
 
   private readonly on_key_up = (event: KeyboardEvent): void => {

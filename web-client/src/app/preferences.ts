@@ -1,9 +1,11 @@
-// What this person chose for the page at this browser: its language and its theme. Nothing of it is told to the server.
+// What this person chose for the page at this browser: its language and its theme, and that they have seen the tour. Nothing of it is told to the server.
 
 import { kPageLanguages, type PageLanguage } from "../core/locale";
+import { Kept } from "./kept";
 
 const kLanguageKey = "strata.language";
 const kThemeKey = "strata.theme";
+const kTourKey = "strata.tour_over";
 
 export const kThemes = ["system", "light", "dark", "contrast"] as const;
 export type Theme = (typeof kThemes)[number];
@@ -48,4 +50,13 @@ function show_theme(): void {
 export function follow_theme(): void {
   for (const query of [dark, contrast]) matchMedia(query).addEventListener("change", show_theme);
   show_theme();
+}
+
+const kept_tour = (): Kept<boolean> => new Kept(() => localStorage, kTourKey, false);
+const tour_of_page = kept_tour();
+
+/** Skipped or seen to its end, here or in another window. */
+export const tour_is_over = (): boolean => tour_of_page.value || kept_tour().value;
+export function keep_tour_over(): void {
+  tour_of_page.value = true;
 }

@@ -1,11 +1,12 @@
 // Two sheets that only tell: help, and what is known about the model.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property } from "lit/decorators.js";
+import { customElement, property, query } from "lit/decorators.js";
 import { format_count } from "../core/locale";
 import { detail_choices, format_area, format_bytes, format_length, format_size, metres_per } from "../core/measure";
 import { may_download, type Model, type Role } from "../core/types";
 import "./dialog";
+import type { StrataDialog } from "./dialog";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -43,6 +44,8 @@ const sheet_styles = css`
 
 @customElement("strata-help-sheet")
 export class StrataHelpSheet extends LitElement {
+  @query("strata-dialog") private dialog_!: StrataDialog;
+
   static override styles = [shared_styles, sheet_styles];
 
   override render(): TemplateResult {
@@ -53,7 +56,14 @@ export class StrataHelpSheet extends LitElement {
     return html`<strata-dialog wide prose heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       ${part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
       ${part(words.brush, words.brush_rows)} ${part(words.terms, words.terms_rows)} ${part(words.table, words.table_rows)} ${part(words.layers, words.layer_rows)}
+      <button slot="actions" @click=${this.show_tour}>${texts.tour.again}</button>
     </strata-dialog>`;
+  }
+
+  /** Closed first: the tour gives the keyboard back to what opened the help. */
+  private show_tour(): void {
+    this.dialog_.close();
+    this.dispatchEvent(new CustomEvent("tour"));
   }
 }
 

@@ -10,6 +10,7 @@ import "./menu";
 import type { ModelSession } from "./model-session";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
+import type { StepName } from "./tour-steps";
 
 const kTools: [ToolName, string][] = [
   ["orbit", "V"],
@@ -24,6 +25,8 @@ const kTools: [ToolName, string][] = [
   ["pick", "I"],
   ["comment", "C"],
 ];
+/** What a step of the tour speaks of. */
+const kOfTour: Partial<Record<ToolName, StepName>> = { brush: "brush", pick: "values" };
 const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
 
 @customElement("strata-tool-rail")
@@ -110,6 +113,7 @@ export class StrataToolRail extends LitElement {
         ([name, key]) =>
           html`<button
             class="icon quiet"
+            data-tour=${kOfTour[name] ?? nothing}
             aria-pressed=${session.tools.active === name}
             aria-label=${texts.tools[name]}
             title="${texts.tools[name]} (${key})"
@@ -122,6 +126,7 @@ export class StrataToolRail extends LitElement {
       ${session.can_paint
         ? html`<button
               class="icon quiet"
+              data-tour="undo"
               aria-label=${words.undo}
               title="${words.undo} (Ctrl Z)"
               ?disabled=${!session.layers.selected}

@@ -1390,6 +1390,47 @@ export const texts = {
     ],
   },
 
+  tour: {
+    again: "Rundgang zeigen",
+    progress: (at, of) => `${at} von ${of}`,
+    next: "Weiter",
+    back: "Zurück",
+    skip: "Rundgang beenden",
+    done: "Fertig",
+    steps: {
+      turn: {
+        title: "Das Modell drehen",
+        mouse: "Mit der rechten Maustaste ziehen; solange „Drehen“ gewählt ist, auch mit der linken. Das Rad führt näher heran.",
+        touch: "Mit einem Finger ziehen. Zwei Finger verschieben, führen näher heran und drehen im Bild.",
+      },
+      layers: {
+        title: "Ebenen",
+        way: "Diese Schaltfläche bringt sie her.",
+        paint: "Was man weiß, liegt in Ebenen auf der Oberfläche. Wählen Sie die, auf die Sie malen wollen; ihr Auge zeigt und verbirgt sie.",
+        look: "Was man weiß, liegt in Ebenen auf der Oberfläche. Wählen Sie eine, um ihre Legende zu sehen; ihr Auge zeigt und verbirgt sie.",
+      },
+      brush: {
+        title: "Malen",
+        mouse: "Nehmen Sie den Pinsel (B) und ziehen Sie über das Modell. [ und ] machen ihn schmaler und breiter. Jeder Strich wird sofort gespeichert, und andere sehen ihn, während Sie malen.",
+        touch: "Nehmen Sie den Pinsel und malen Sie mit Finger oder Stift auf das Modell; zwei Finger bewegen es weiterhin. Jeder Strich wird sofort gespeichert, und andere sehen ihn, während Sie malen.",
+      },
+      undo: {
+        title: "Zurücknehmen",
+        mouse: "Rückgängig (Strg + Z) nimmt Ihren eigenen letzten Strich auf der Ebene zurück, auch morgen noch. Was andere gemalt haben, bleibt.",
+        touch: "Rückgängig nimmt Ihren eigenen letzten Strich auf der Ebene zurück, auch morgen noch. Was andere gemalt haben, bleibt.",
+      },
+      values: {
+        title: "Was ist hier?",
+        mouse: "Lassen Sie die Maus auf dem Modell ruhen: unten rechts steht, was die Ebenen dort enthalten. Mit diesem Werkzeug (I) oder durch einen Klick beim Drehen zeigt ein Datensatz seine Karte.",
+        touch: "Nehmen Sie dieses Werkzeug und tippen Sie auf das Modell: Sie erfahren, was die gewählte Ebene dort enthält, und ein Datensatz zeigt seine Karte.",
+      },
+      share: {
+        title: "Anderen zeigen, Hilfe finden",
+        text: "Die Adresse dieser Seite führt andere zu diesem Modell. Ansicht → Ansichten behält, was Sie sehen, mit einem eigenen Link. Hier stehen alle Tasten und Gesten, und der Rundgang beginnt hier von neuem.",
+      },
+    },
+  },
+
   settings: {
     open: "Sprache und Farbschema …",
     title: "Sprache und Farbschema",

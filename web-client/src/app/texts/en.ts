@@ -1376,6 +1376,47 @@ export const texts = {
     ],
   },
 
+  tour: {
+    again: "Show the tour",
+    progress: (at: number, of: number) => `${at} of ${of}`,
+    next: "Next",
+    back: "Back",
+    skip: "Skip the tour",
+    done: "Done",
+    steps: {
+      turn: {
+        title: "Turn the model",
+        mouse: "Drag with the right mouse button; while Turn is chosen, with the left one, too. The wheel comes nearer.",
+        touch: "Drag it with a finger. Two fingers move it, come nearer and twist it.",
+      },
+      layers: {
+        title: "Layers",
+        way: "This button brings them.",
+        paint: "What is known lies on the surface in layers. Choose the one to paint on; its eye shows and hides it.",
+        look: "What is known lies on the surface in layers. Choose one to see its legend; its eye shows and hides it.",
+      },
+      brush: {
+        title: "Paint",
+        mouse: "Take the brush (B) and drag over the model. [ and ] make it narrower and wider. Each stroke is saved at once, and others see it while you draw.",
+        touch: "Take the brush and draw on the model with a finger or a pen; two fingers still move it. Each stroke is saved at once, and others see it while you draw.",
+      },
+      undo: {
+        title: "Take it back",
+        mouse: "Undo (Ctrl + Z) takes back your own last stroke on the layer, also tomorrow. What others painted stays.",
+        touch: "Undo takes back your own last stroke on the layer, also tomorrow. What others painted stays.",
+      },
+      values: {
+        title: "What is here?",
+        mouse: "Rest the mouse on the model: at the lower right you read what the layers hold there. With this tool (I), or by a click while turning, a record shows its card.",
+        touch: "Take this tool and tap the model: you are told what the chosen layer holds there, and a record shows its card.",
+      },
+      share: {
+        title: "Show others, find help",
+        text: "The address of this page leads others to this model. View → Views keeps what you see and gives it a link of its own. Here you find all keys and gestures, and this tour again.",
+      },
+    },
+  },
+
   settings: {
     open: "Language and theme…",
     title: "Language and theme",

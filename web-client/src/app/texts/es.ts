@@ -1396,6 +1396,47 @@ export const texts = {
     ],
   },
 
+  tour: {
+    again: "Mostrar el recorrido",
+    progress: (at, of) => `${at} de ${of}`,
+    next: "Siguiente",
+    back: "Atrás",
+    skip: "Omitir recorrido",
+    done: "Listo",
+    steps: {
+      turn: {
+        title: "Girar el modelo",
+        mouse: "Arrastre con el botón derecho del ratón; mientras esté elegida la herramienta Girar, también con el izquierdo. La rueda acerca.",
+        touch: "Arrastre con un dedo. Con dos dedos se mueve, se acerca y se rota.",
+      },
+      layers: {
+        title: "Capas",
+        way: "Este botón las muestra.",
+        paint: "Lo que se sabe está sobre la superficie, en capas. Elija aquella en la que va a pintar; su ojo la muestra y la oculta.",
+        look: "Lo que se sabe está sobre la superficie, en capas. Elija una para ver su leyenda; su ojo la muestra y la oculta.",
+      },
+      brush: {
+        title: "Pintar",
+        mouse: "Tome el pincel (B) y arrastre sobre el modelo. [ y ] lo hacen más estrecho y más ancho. Cada trazo se guarda en el acto, y los demás lo ven mientras usted pinta.",
+        touch: "Tome el pincel y pinte sobre el modelo con un dedo o un lápiz; dos dedos siguen moviéndolo. Cada trazo se guarda en el acto, y los demás lo ven mientras usted pinta.",
+      },
+      undo: {
+        title: "Deshacer",
+        mouse: "Deshacer (Ctrl + Z) retira su propio último trazo en la capa, también mañana. Lo que pintaron los demás se queda.",
+        touch: "Deshacer retira su propio último trazo en la capa, también mañana. Lo que pintaron los demás se queda.",
+      },
+      values: {
+        title: "¿Qué hay aquí?",
+        mouse: "Deje el ratón quieto sobre el modelo: abajo a la derecha se lee lo que las capas contienen allí. Con esta herramienta (I), o con un clic al girar, un registro muestra su ficha.",
+        touch: "Tome esta herramienta y toque el modelo: se le dice lo que la capa elegida contiene allí, y un registro muestra su ficha.",
+      },
+      share: {
+        title: "Mostrar a otros, encontrar ayuda",
+        text: "La dirección de esta página lleva a otros a este modelo. Vista → Vistas guarda lo que usted ve y le da un enlace propio. Aquí están todas las teclas y los gestos, y de nuevo este recorrido.",
+      },
+    },
+  },
+
   settings: {
     open: "Idioma y tema…",
     title: "Idioma y tema",
