@@ -7,7 +7,7 @@ import { arrow_step } from "../src/app/keyboard";
 import { layer_changes } from "../src/app/layer-changes";
 import { notices } from "../src/app/notices";
 import { PickProbe, type PickPurpose } from "../src/app/pick-probe";
-import { route_of } from "../src/app/routes";
+import { path_of_project, route_of } from "../src/app/routes";
 import { texts } from "../src/app/texts";
 import { class_palette, measurement_palette, presence_palette, record_palette } from "../src/core/palette";
 import type { Layer, Palette, ValueType } from "../src/core/types";
@@ -97,10 +97,13 @@ describe("radio buttons", () => {
 
 describe("addresses", () => {
   it("name the gallery or a model", () => {
-    expect(route_of("/")).toEqual({ page: "home" });
+    expect(route_of("/")).toEqual({ page: "home", project: null });
+    expect(route_of("/projects/villa-giulia")).toEqual({ page: "home", project: "villa-giulia" });
+    expect(route_of(path_of_project("Día 2/3"))).toEqual({ page: "home", project: "Día 2/3" });
+    expect(route_of("/projects/%")).toEqual({ page: "home", project: null });
     expect(route_of("/models/12")).toEqual({ page: "model", model: "12" });
     expect(route_of("/models/muro%203/")).toEqual({ page: "model", model: "muro 3" });
-    expect(route_of("/models/%")).toEqual({ page: "home" });
+    expect(route_of("/models/%")).toEqual({ page: "home", project: null });
   });
 });
 

@@ -137,7 +137,7 @@ describe("coming in", () => {
   it("an invitation has an address of its own, and its secret is in the fragment", () => {
     expect(route_of("/join")).toEqual({ page: "join" });
     expect(route_of("/join/")).toEqual({ page: "join" });
-    expect(route_of("/joiner")).toEqual({ page: "home" });
+    expect(route_of("/joiner")).toEqual({ page: "home", project: null });
     expect(invitation_of("#3q2-7wAAqrs_")).toBe("3q2-7wAAqrs_");
     expect(["", "#", "#a b", "#<x>"].map(invitation_of)).toEqual(["", "", "", ""]);
   });

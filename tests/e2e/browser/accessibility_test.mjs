@@ -89,9 +89,25 @@ function screens_of({ page }, w, site) {
     { name: "home", start: async () => {
       await page.context().request.post(`${server.url}/api/v1/login`, { data: { token: server.token }, headers: { Origin: server.url } });
       await page.goto(server.url);
-      await page.getByRole("heading", exact(w.home.title)).waitFor();
+      await page.getByRole("heading", exact(w.home.projects)).waitFor();
       await page.locator("strata-thumbnail canvas.drawn").first().waitFor();
       await page.getByRole("combobox", exact(w.home.into)).waitFor();
+    }, keyboard: true },
+    { name: "empty project", start: async () => {
+      await page.getByRole("link", { name: kOtherProject }).click();
+      await page.getByRole("heading", exact(kOtherProject)).waitFor();
+      await page.getByText(w.home.empty_title).waitFor();
+    } },
+    { name: "no such project", start: async () => {
+      await page.goto(`${server.url}/projects/nowhere`);
+      await page.getByRole("heading", exact(w.home.missing_title)).waitFor();
+    } },
+    { name: "models of a project", start: async () => {
+      await page.getByRole("link", exact(w.home.all_projects)).click();
+      await page.getByRole("heading", exact(w.home.projects)).waitFor();
+      await page.getByRole("link", { name: "Demo" }).click();
+      await page.getByRole("link", exact(w.home.open("Demo pot"))).waitFor();
+      await page.locator("strata-thumbnail canvas.drawn").first().waitFor();
     }, keyboard: true },
     { name: "menu of the account", start: () => button(w.account.menu("owner")).click(), end: escape },
     { name: "menu of a model", start: async () => {

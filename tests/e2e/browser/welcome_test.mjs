@@ -1,4 +1,4 @@
-// Who comes for the first time: the tour of the model's page, by keyboard and by touch, for who paints and who looks.
+// Who comes for the first time: the tour of the model's page, by keyboard and by touch, for who paints and who looks; and projects to choose among.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -55,6 +55,19 @@ async function offers_nothing(who) {
   await who.page.keyboard.press("Escape");
   await who.page.locator("strata-help-sheet").waitFor({ state: "detached" });
   assert.equal(await card_of(who).count(), 0, "the tour offers itself again");
+}
+
+/** 100 mm wide. */
+const kSquare = ["ply", "format ascii 1.0", "element vertex 4", "property float x", "property float y", "property float z", "element face 2",
+  "property list uchar int vertex_indices", "end_header", "0 0 0", "100 0 0", "100 100 0", "0 100 0", "3 0 1 2", "3 0 2 3", ""].join("\n");
+
+async function import_square(name, project) {
+  const started = await fetch(`${server.url}/api/v1/models?filename=square.ply&name=${name}&unit=mm&project=${project}`, {
+    method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" }, body: kSquare,
+  });
+  assert.equal(started.status, 202, await started.clone().text());
+  const { id } = await started.json();
+  await wait_for(async () => (await server.json("GET", `/jobs/${id}`)).state === "done", `the import of ${name}`);
 }
 
 let model;
@@ -170,6 +183,88 @@ try {
   await tablet.page.reload();
   await tablet.drawn();
   await offers_nothing(tablet);
+
+  say("with one project home shows its models, as ever");
+  await nora.page.goto(server.url);
+  await nora.page.getByRole("heading", { name: "Models", exact: true }).waitFor();
+  await nora.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
+
+  say("with several a project is chosen first; the empty ones are last, and say so");
+  await server.json("POST", "/projects", { name: "Villa Giulia", description: "Frescoes of the east wing, campaign of 2026." });
+  await server.json("POST", "/projects", { name: "Archive" });
+  await import_square("Threshold", "villa-giulia");
+  await import_square("Lintel", "villa-giulia");
+  for (const who of [nora, vic, tablet]) {
+    await who.page.goto(server.url);
+    await who.page.getByRole("heading", { name: "Projects", exact: true }).waitFor();
+    // What is beneath the window's end is asked for when it comes into sight.
+    for (const each of await who.page.locator("strata-project-card").all()) {
+      await each.scrollIntoViewIfNeeded();
+      await each.getByText(/changed (today|yesterday)/).waitFor();
+    }
+    await wait_for(async () => (await who.page.locator("strata-thumbnail canvas.drawn").count()) === 2, "a picture of each project with models");
+    await who.page.locator("strata-project-card").first().scrollIntoViewIfNeeded();
+  }
+  const names = () => nora.page.locator("strata-project-card b").allInnerTexts();
+  assert.deepEqual(await names(), ["Demo", "Villa Giulia", "Archive"]);
+  await nora.page.getByRole("link", { name: /^Villa Giulia.*2 models · changed/s }).waitFor();
+  await nora.page.getByRole("link", { name: /^Archive.*No models yet/s }).waitFor();
+  await shoot(nora, "gallery_desk");
+  await shoot(vic, "gallery_phone");
+  await tablet.page.evaluate(() => (document.documentElement.dataset.theme = "dark"));
+  await shoot(tablet, "gallery_tablet_dark");
+
+  say("a project is gone to by keyboard; its address leads there, and Back to the others");
+  await nora.page.getByRole("link", { name: /^Villa Giulia/ }).focus();
+  await nora.page.keyboard.press("Enter");
+  await nora.page.getByRole("heading", { name: "Villa Giulia", exact: true }).waitFor();
+  assert.equal(nora.page.url(), `${server.url}/projects/villa-giulia`);
+  assert.equal(await nora.page.title(), "Villa Giulia – Strata");
+  await wait_for(async () => /Villa Giulia/.test(await active(nora.page)), "the keyboard to be at the head of the project");
+  await nora.page.getByText("2 models").waitFor();
+  const models_of = ({ page }) => page.getByRole("link", { name: /^Open / }).evaluateAll((links) => links.map((link) => link.getAttribute("aria-label")).sort());
+  assert.deepEqual(await models_of(nora), ["Open Lintel", "Open Threshold"]);
+  await wait_for(async () => (await nora.page.locator("strata-thumbnail canvas.drawn").count()) === 2, "the pictures");
+  await shoot(nora, "project_desk");
+  await nora.page.goBack();
+  await nora.page.getByRole("heading", { name: "Projects", exact: true }).waitFor();
+  assert.equal(await nora.page.title(), "Strata");
+  await nora.page.goForward();
+  await nora.page.getByRole("heading", { name: "Villa Giulia", exact: true }).waitFor();
+  await nora.page.getByRole("link", { name: "Open Lintel" }).click();
+  await nora.drawn();
+  await nora.page.getByRole("link", { name: "All models" }).click();
+  await nora.page.getByRole("heading", { name: "Villa Giulia", exact: true }).waitFor();
+  await nora.page.getByRole("link", { name: "All projects" }).click();
+  await nora.page.getByRole("heading", { name: "Projects", exact: true }).waitFor();
+  await vic.page.goto(`${server.url}/projects/villa-giulia`);
+  await vic.page.getByRole("link", { name: "Open Lintel" }).waitFor();
+  await shoot(vic, "project_phone");
+
+  say("where nothing is, it says what to do: wait for a curator, import, ask for a role");
+  await vic.page.goto(`${server.url}/projects/archive`);
+  await vic.page.getByText("Curators of the project do; ask one of them").waitFor();
+  assert.equal(await vic.page.getByRole("button", { name: "Choose a file" }).count(), 0);
+  await shoot(vic, "empty_phone");
+  await vic.page.goto(`${server.url}/projects/nowhere`);
+  await vic.page.getByRole("heading", { name: "This project is not here" }).waitFor();
+  await vic.page.getByRole("link", { name: "All projects" }).tap();
+  await vic.page.getByRole("heading", { name: "Projects", exact: true }).waitFor();
+  await tablet.sign_in(server, await server.add_person("gil", "guest"));
+  await tablet.page.getByRole("heading", { name: "No project yet" }).waitFor();
+  await tablet.page.getByText("Ask whoever invited you for one.").waitFor();
+  await shoot(tablet, "no_project_tablet");
+
+  say("what a curator imports on the page of a project lies in it");
+  await nora.sign_in(server, await server.add_person("carl", "curator"));
+  await nora.page.goto(`${server.url}/projects/archive`);
+  await nora.page.getByRole("button", { name: "Choose a file" }).waitFor();
+  assert.equal(await nora.page.getByRole("combobox", { name: "Import into" }).count(), 0, "another project can be chosen on the page of one");
+  await shoot(nora, "empty_curator");
+  await nora.page.locator("input[type=file]").setInputFiles({ name: "sill.ply", mimeType: "application/octet-stream", buffer: Buffer.from(kSquare) });
+  await nora.page.waitForURL(/\/models\/\d+$/);
+  const made = (await server.json("GET", "/models")).models.find(({ name }) => name === "sill");
+  assert.equal(made?.project, "archive");
 
   say("the end");
   for (const who of Object.values(everybody)) who.assert_no_complaints();

@@ -67,7 +67,7 @@ export class Browser {
     const answer = await this.page.context().request.post(`${server.url}/api/v1/login`, { data, headers: { Origin: server.url } });
     if (!answer.ok()) throw new Error(`sign-in: ${answer.status()} ${await answer.text()}`);
     await this.page.goto(server.url);
-    await this.page.getByRole("heading", { name: "Models", exact: true }).waitFor();
+    await this.page.getByRole("heading", { name: /^(Models|Projects)$/ }).waitFor();
   }
 
   /** The model page with its first picture. */

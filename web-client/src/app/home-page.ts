@@ -1,4 +1,4 @@
-// <strata-home-page>: the project's models and the imports under way.
+// <strata-home-page>: the projects, or the models of one of them, and the imports under way. Where there is one project only, its models.
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -12,9 +12,12 @@ import "./blank";
 import { ask } from "./dialog";
 import { icon, logo } from "./icons";
 import type { ImportEntry, Imports } from "./imports";
+import { has_keyboard } from "./keyboard";
 import "./menu";
 import { notices } from "./notices";
-import { follow, path_of_model } from "./routes";
+import "./project-card";
+import { kDefaultProject, list_projects, type ListedProject } from "./project-list";
+import { follow, path_of_model, path_of_project } from "./routes";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
 import { home_styles } from "./home-styles";
@@ -30,6 +33,10 @@ export class StrataHomePage extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
   @property({ attribute: false }) imports!: Imports;
+  /** All that this person sees. */
+  @property({ attribute: false }) projects: readonly Project[] = [];
+  /** The slug of the one whose models are looked at; null: all that there is. */
+  @property({ attribute: false }) project: string | null = null;
   /** Where this person may import scans, and delete models. */
   @property({ attribute: false }) curated: readonly Project[] = [];
   /** The one of them that scans are imported into. */
@@ -38,6 +45,7 @@ export class StrataHomePage extends LitElement {
   @property({ attribute: false }) imported = 0;
   @state() private models_: Model[] | null = null;
   @state() private problem_ = "";
+  @query("h1") private heading_!: HTMLElement | null;
   @query("input[type=file]") private file_input_!: HTMLInputElement;
   private unsubscribe_: (() => void) | null = null;
 
@@ -45,7 +53,6 @@ export class StrataHomePage extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    document.title = texts.product;
     this.unsubscribe_ = this.imports.subscribe(() => this.requestUpdate());
   }
 
@@ -56,6 +63,36 @@ export class StrataHomePage extends LitElement {
 
   override willUpdate(changed: PropertyValues<this>): void {
     if (changed.has("imported")) void this.load();
+    const { shown } = this;
+    document.title = shown ? `${shown.name} – ${texts.product}` : texts.product;
+  }
+
+  /** Whoever came by the keyboard goes on at the head of what they came to. */
+  override updated(changed: PropertyValues<this>): void {
+    if (changed.has("project") && changed.get("project") !== undefined && has_keyboard() === null) this.heading_?.focus({ preventScroll: true });
+  }
+
+  /** The project whose page this is; null: there is none of that name, or none beside it. */
+  private get shown(): Project | null {
+    const found = this.projects.find(({ slug }) => slug === this.project) ?? null;
+    return this.has_several || (this.models_ && this.listed[0]?.project !== found) ? found : null;
+  }
+  /** There are several to choose among. Before it is known what is in them: surely. */
+  private get has_several(): boolean {
+    return this.models_ ? this.listed.length > 1 : this.projects.filter(({ slug }) => slug !== kDefaultProject).length > 1;
+  }
+  private get is_gallery(): boolean {
+    return this.project === null && this.has_several && this.models_?.length !== 0;
+  }
+  private get is_missing(): boolean {
+    return this.project !== null && !this.projects.some(({ slug }) => slug === this.project);
+  }
+  private get listed(): ListedProject[] {
+    return list_projects(this.projects, this.models_ ?? []);
+  }
+  private get models(): Model[] {
+    const { shown } = this;
+    return (this.models_ ?? []).filter(({ project }) => !shown || project === shown.slug);
   }
 
   private get can_curate(): boolean {
@@ -86,15 +123,19 @@ export class StrataHomePage extends LitElement {
               <button class="link" @click=${() => ask_account(this, "account")}>${texts.account.no_password}</button>
               ${texts.account.no_password_why}
             </p>`}
+        ${this.shown || this.is_missing
+          ? html`<a class="up" href="/" @click=${follow}>${icon("back")}${texts.home.all_projects}</a>`
+          : nothing}
         <div class="title">
-          <h1>${texts.home.title}</h1>
-          <span class="hint grow">${this.models_ ? texts.home.count(this.models_.length) : ""}</span>
-          ${this.curated.length > 1 ? this.project_choice(this.curated) : nothing}
+          <h1 tabindex="-1">${this.heading}</h1>
+          <span class="hint grow">${this.counted}</span>
+          ${this.project === null && this.curated.length > 1 ? this.project_choice(this.curated) : nothing}
           ${this.can_curate
             ? html`<button class="primary" @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
                 <input type="file" accept=".ply,.obj,.stl,.gltf,.glb,.zip,.mtl,.bin,.png,.jpg,.jpeg" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
             : nothing}
         </div>
+        ${this.shown?.description ? html`<p class="description">${this.shown.description}</p>` : nothing}
         ${this.imports.entries.length > 0
           ? html`<section class="imports" aria-live="polite">
               ${repeat(
@@ -106,6 +147,17 @@ export class StrataHomePage extends LitElement {
           : nothing}
         ${this.content()}
       </main>`;
+  }
+
+  private get heading(): string {
+    const words = texts.home;
+    if (this.is_missing) return words.missing_title;
+    return this.shown?.name ?? (this.is_gallery ? words.projects : words.title);
+  }
+  private get counted(): string {
+    const words = texts.home;
+    if (!this.models_ || this.is_missing || this.models.length === 0) return ""; // that is said below
+    return this.is_gallery ? words.count_projects(this.listed.length) : words.count(this.models.length);
   }
 
   private project_choice(projects: readonly Project[]): TemplateResult {
@@ -125,11 +177,28 @@ export class StrataHomePage extends LitElement {
       </div>`;
     }
     if (!this.models_) return html`<p class="hint" role="status">${texts.loading}</p>`;
-    if (this.models_.length === 0) {
+    if (this.is_missing) return html`<div class="empty">${logo()}<p>${texts.home.missing_lead}</p></div>`;
+    if (this.is_gallery) {
+      return html`<ul class="gallery projects">
+        ${repeat(
+          this.listed,
+          ({ project }) => project.id,
+          (listed) =>
+            html`<li>
+              <a href=${path_of_project(listed.project.slug)} @click=${follow}>
+                <strata-project-card .api=${this.api} .listed=${listed}></strata-project-card>
+              </a>
+            </li>`,
+        )}
+      </ul>`;
+    }
+    if (this.models.length === 0) {
+      const in_none = this.projects.length === 0;
+      const words = texts.home;
       return html`<div class="empty">
         ${logo()}
-        <h2>${texts.home.empty_title}</h2>
-        <p>${this.can_curate ? texts.home.empty_lead : this.me.role === "guest" ? texts.home.empty_guest : texts.home.empty_viewer}</p>
+        <h2>${in_none ? words.no_projects : words.empty_title}</h2>
+        <p>${this.can_curate ? words.empty_lead : in_none ? words.empty_guest : words.empty_viewer}</p>
         ${this.can_curate
           ? html`<button class="primary" @click=${() => this.file_input_.click()}>${texts.home.choose_file}</button>`
           : nothing}
@@ -137,7 +206,7 @@ export class StrataHomePage extends LitElement {
     }
     return html`<ul class="gallery">
       ${repeat(
-        this.models_,
+        this.models,
         (model) => model.id,
         (model) => this.card(model),
       )}

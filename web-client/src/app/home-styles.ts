@@ -54,6 +54,27 @@ export const home_styles = css`
     gap: 14px;
     margin-bottom: 24px;
   }
+  .up {
+    display: flex;
+    width: max-content;
+    max-width: 100%;
+    align-items: center;
+    gap: 6px;
+    min-height: 36px;
+    margin-bottom: 6px;
+    color: var(--ink-soft);
+    text-decoration: none;
+  }
+  .up:hover {
+    color: var(--ink);
+    text-decoration: underline;
+  }
+  .description {
+    max-width: 74ch;
+    margin: -10px 0 24px;
+    color: var(--ink-soft);
+    overflow-wrap: anywhere;
+  }
   .title button,
   .into {
     align-self: center;
@@ -74,6 +95,13 @@ export const home_styles = css`
   }
   h1 {
     font-size: clamp(1.6rem, 3vw, 2.1rem);
+    overflow-wrap: anywhere;
+  }
+  h1:focus {
+    outline: none; /* it only says where one is */
+  }
+  .projects li > a {
+    height: 100%;
   }
   .gallery {
     display: grid;
@@ -138,6 +166,11 @@ export const home_styles = css`
   @media (hover: none) {
     .options {
       opacity: 1;
+    }
+  }
+  @media (pointer: coarse) {
+    .up {
+      min-height: 44px;
     }
   }
   .empty {

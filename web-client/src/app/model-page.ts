@@ -6,6 +6,7 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { ApiError, type Api } from "../core/api";
 import { label_of } from "../core/cells";
+import type { Project } from "../core/protocol.gen";
 import type { Column, Layer, Me, Model, Role } from "../core/types";
 import { kPaintingTools } from "../tools/tool";
 import "./account-menu";
@@ -35,8 +36,9 @@ import { notices } from "./notices";
 import "./record-card";
 import "./people-menu";
 import "./photos-dialog";
+import { is_one_of_several } from "./project-list";
 import "./record-dialog";
-import { comment_of, follow, hash_of_comment, hash_of_view, put_hash, view_of } from "./routes";
+import { comment_of, follow, hash_of_comment, hash_of_view, path_of_project, put_hash, view_of } from "./routes";
 import "./scale-dialog";
 import "./sheets";
 import "./stage";
@@ -74,6 +76,8 @@ export class StrataModelPage extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
   @property() model_id = "";
+  /** All that this person sees. */
+  @property({ attribute: false }) projects: readonly Project[] = [];
   @state() private dialog_: OpenDialog = null;
   @state() private missing_: { heading: string; lead: string } | null = null;
   @state() private panel_width_ = Number(localStorage.getItem(kPanelKey)) || kPanelWidth.first;
@@ -233,7 +237,7 @@ export class StrataModelPage extends LitElement {
   private header(session: ModelSession): TemplateResult {
     const { model } = session;
     return html`<header>
-      <a class="home" href="/" title=${texts.model.back} aria-label=${texts.model.back} @click=${follow}>${logo()}</a>
+      <a class="home" href=${model && is_one_of_several(model.project, this.projects) ? path_of_project(model.project) : "/"} title=${texts.model.back} aria-label=${texts.model.back} @click=${follow}>${logo()}</a>
       <h1 class="ellipsis">${model?.name ?? ""}</h1>
       <button
         class="icon quiet"

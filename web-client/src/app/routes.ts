@@ -1,19 +1,24 @@
-// The page's addresses: /, /models/{id}, and /join#SECRET for who is invited.
+// The page's addresses: /, /projects/{slug}, /models/{id}, and /join#SECRET for who is invited.
 
-export type Route = { page: "home" } | { page: "join" } | { page: "model"; model: string };
+/** `project`: the one whose models are looked at; null: all that there is. */
+export type Route = { page: "home"; project: string | null } | { page: "join" } | { page: "model"; model: string };
+
+const kHome: Route = { page: "home", project: null };
 
 export function route_of(path: string): Route {
   if (/^\/join\/?$/.test(path)) return { page: "join" };
-  const found = /^\/models\/([^/?#]+)\/?$/.exec(path);
-  if (!found) return { page: "home" };
+  const found = /^\/(models|projects)\/([^/?#]+)\/?$/.exec(path);
+  if (!found) return kHome;
   try {
-    return { page: "model", model: decodeURIComponent(found[1]!) };
+    const name = decodeURIComponent(found[2]!);
+    return found[1] === "models" ? { page: "model", model: name } : { page: "home", project: name };
   } catch {
-    return { page: "home" };
+    return kHome;
   }
 }
 
 export const path_now = (): string => location.pathname;
+export const path_of_project = (slug: string): string => `/projects/${encodeURIComponent(slug)}`;
 export const path_of_model = (id: number | string): string => `/models/${encodeURIComponent(id)}`;
 
 /** The comment that an address leads to. */

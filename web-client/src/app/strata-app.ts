@@ -6,7 +6,7 @@ import { customElement, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { Api, ApiError, name_of_file } from "../core/api";
 import type { Project } from "../core/protocol.gen";
-import { may_curate, type Me } from "../core/types";
+import type { Me } from "../core/types";
 import "./account-dialog";
 import type { AccountRequest } from "./account-menu";
 import { ask } from "./dialog";
@@ -21,13 +21,12 @@ import { notices } from "./notices";
 import "./notices-view";
 import "./people-dialog";
 import "./preferences-fields";
+import { curates, kDefaultProject } from "./project-list";
 import { navigate, on_navigate, path_now, path_of_model, replace_address, route_of, type Route } from "./routes";
 import { check_connections, discard_unsaved, unsaved_changes } from "./sessions";
 import { shared_styles } from "./styles";
 import "./sign-in";
 import { texts } from "./texts";
-
-const kDefaultProject = "default"; // every site has it
 
 @customElement("strata-app")
 export class StrataApp extends LitElement {
@@ -181,6 +180,7 @@ export class StrataApp extends LitElement {
             .api=${this.api_}
             .me=${me}
             .model_id=${this.route_.model}
+            .projects=${this.projects_}
             @account=${this.on_account}
             @role-changed=${this.refresh_me}
             @signed-out=${this.signed_out}
@@ -189,6 +189,8 @@ export class StrataApp extends LitElement {
       : html`<strata-home-page
           .api=${this.api_}
           .me=${me}
+          .projects=${this.projects_}
+          .project=${this.route_.project}
           .curated=${this.curated}
           .into=${this.into}
           .imports=${this.imports_}
@@ -244,11 +246,13 @@ export class StrataApp extends LitElement {
 
   /** Where they may import scans. */
   private get curated(): readonly Project[] {
-    return this.projects_.filter(({ role }) => role !== undefined && may_curate(role));
+    return this.projects_.filter(curates);
   }
-  /** The project that scans are imported into; null: they may import nowhere. */
+  /** The project that scans are imported into, which is the one that is looked at; null: they may not import. */
   private get into(): Project | null {
     const by_slug = (slug: string): Project | undefined => this.curated.find((project) => project.slug === slug);
+    const { route_: route } = this;
+    if (route.page === "home" && route.project !== null) return by_slug(route.project) ?? null;
     return by_slug(this.chosen_project_) ?? by_slug(kDefaultProject) ?? this.curated[0] ?? null;
   }
 

@@ -8,6 +8,7 @@ import type { View } from "../core/protocol.gen";
 import type { Model } from "../core/types";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
+import { when_seen } from "./when-seen";
 
 const kWidth = 640;
 const kHeight = 480;
@@ -22,7 +23,7 @@ export class StrataThumbnail extends LitElement {
   view: View | null = null;
   @state() private state_: "waiting" | "drawn" | "failed" = "waiting";
   @query("canvas") private canvas_!: HTMLCanvasElement;
-  private observer_: IntersectionObserver | null = null;
+  private stop_waiting_: (() => void) | null = null;
 
   static override styles = [
     shared_styles,
@@ -56,20 +57,14 @@ export class StrataThumbnail extends LitElement {
   ];
 
   protected override updated(changed: PropertyValues): void {
-    if (this.observer_ && !changed.has("view")) return;
-    this.observer_?.disconnect();
-    const observer = new IntersectionObserver((entries) => {
-      if (!entries.some((entry) => entry.isIntersecting)) return;
-      observer.disconnect();
-      busy = busy.then(() => this.load());
-    });
-    observer.observe(this);
-    this.observer_ = observer;
+    if (this.stop_waiting_ && !changed.has("view")) return;
+    this.stop_waiting_?.();
+    this.stop_waiting_ = when_seen(this, () => (busy = busy.then(() => this.load())));
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.observer_?.disconnect();
+    this.stop_waiting_?.();
   }
 
   private async load(): Promise<void> {

@@ -169,7 +169,12 @@ export class Api {
   }
 
   async models(): Promise<Model[]> {
-    return (await this.json<wire.ModelList>("GET", "/models?limit=1000")).models;
+    const models: Model[] = [];
+    for (;;) {
+      const page = await this.json<wire.ModelList>("GET", `/models?limit=1000&offset=${models.length}`);
+      models.push(...page.models);
+      if (models.length >= page.total || page.models.length === 0) return models;
+    }
   }
   async model(id: Id): Promise<Versioned<Model>> {
     return this.versioned("GET", `/models/${encodeURIComponent(id)}`);

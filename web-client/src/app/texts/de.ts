@@ -222,6 +222,13 @@ export const texts = {
 
   home: {
     title: "Modelle",
+    projects: "Projekte",
+    all_projects: "Alle Projekte",
+    count_projects: (n) => count(n, "Projekt", "Projekte"),
+    changed: (day) => `geändert: ${day}`,
+    missing_title: "Dieses Projekt ist nicht hier",
+    missing_lead: "Vielleicht wurde es gelöscht, oder Sie haben keine Rolle darin. Fragen Sie die Person, von der Sie den Link haben.",
+    no_projects: "Noch kein Projekt",
     import: "Scan importieren",
     into: "Importieren in",
     drop_title: "Zum Importieren ablegen",
@@ -235,7 +242,7 @@ export const texts = {
     delete_lead: "Der Scan, alle seine Ebenen und deren Historie werden vom Server gelöscht. Das lässt sich nicht rückgängig machen.",
     deleted: (name) => `„${name}“ wurde gelöscht.`,
     triangles: (n) => count(n, "Dreieck", "Dreiecke"),
-    empty_viewer: "Noch hat niemand einen Scan importiert.",
+    empty_viewer: "Noch hat niemand einen Scan importiert. Das tun Kuratierende des Projekts: Bitten Sie sie darum, dann erscheint er hier.",
     empty_guest: "Sie sehen die Modelle von Projekten, in denen Sie eine Rolle haben. Bitten Sie die Person, die Sie eingeladen hat, um eine.",
     count: (n) => count(n, "Modell", "Modelle"),
     no_picture: "Kein Bild",

@@ -209,6 +209,13 @@ export const texts = {
 
   home: {
     title: "Models",
+    projects: "Projects",
+    all_projects: "All projects",
+    count_projects: (n: number) => count(n, "project", "projects"),
+    changed: (day: string) => `changed ${day}`,
+    missing_title: "This project is not here",
+    missing_lead: "It may have been deleted, or you have no role in it. Ask whoever sent you the link.",
+    no_projects: "No project yet",
     import: "Import a scan",
     into: "Import into",
     drop_title: "Drop to import",
@@ -222,7 +229,7 @@ export const texts = {
     delete_lead: "The scan, all its layers and their history are deleted from the server. This cannot be undone.",
     deleted: (name: string) => `“${name}” was deleted.`,
     triangles: (n: number) => count(n, "triangle", "triangles"),
-    empty_viewer: "Nobody has imported a scan yet.",
+    empty_viewer: "Nobody has imported a scan yet. Curators of the project do; ask one of them, and it appears here.",
     empty_guest: "You see the models of projects that you have a role in. Ask whoever invited you for one.",
     count: (n: number) => count(n, "model", "models"),
     no_picture: "No picture",

@@ -228,6 +228,13 @@ export const texts = {
 
   home: {
     title: "Modelos",
+    projects: "Proyectos",
+    all_projects: "Todos los proyectos",
+    count_projects: (n) => count(n, "proyecto", "proyectos"),
+    changed: (day) => `último cambio: ${day}`,
+    missing_title: "Este proyecto no está aquí",
+    missing_lead: "Puede que se haya eliminado, o que usted no tenga un papel en él. Pregunte a quien le envió el enlace.",
+    no_projects: "Ningún proyecto todavía",
     import: "Importar un escaneo",
     into: "Importar en",
     drop_title: "Suelte aquí para importar",
@@ -241,7 +248,7 @@ export const texts = {
     delete_lead: "El escaneo, todas sus capas y su historial se eliminan del servidor. Esto no se puede deshacer.",
     deleted: (name) => `«${name}» se eliminó.`,
     triangles: (n) => count(n, "triángulo", "triángulos"),
-    empty_viewer: "Todavía nadie importó un escaneo.",
+    empty_viewer: "Todavía nadie importó un escaneo. Lo hace la curaduría del proyecto: pídaselo, y aparecerá aquí.",
     empty_guest: "Ve los modelos de los proyectos en los que tiene un papel. Pida uno a quien le invitó.",
     count: (n) => count(n, "modelo", "modelos"),
     no_picture: "Sin imagen",

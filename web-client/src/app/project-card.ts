@@ -1,0 +1,111 @@
+// <strata-project-card>: what is told of a project where one is chosen: a picture of one of its models, how many it has, when it was last changed.
+
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { keyed } from "lit/directives/keyed.js";
+import { ApiError, type Api } from "../core/api";
+import { logo } from "./icons";
+import type { ListedProject } from "./project-list";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+import "./thumbnail";
+import { told_day } from "./times";
+import { when_seen } from "./when-seen";
+
+const words = texts.home;
+let busy: Promise<void> = Promise.resolve(); // one question at a time, as with pictures
+
+@customElement("strata-project-card")
+export class StrataProjectCard extends LitElement {
+  @property({ attribute: false }) api!: Api;
+  @property({ attribute: false }) listed!: ListedProject;
+  @state() private changed_ = ""; // when; nothing: it is not known
+  private is_seen_ = false;
+  private stop_waiting_: (() => void) | null = null;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+      }
+      .no-picture {
+        display: grid;
+        place-items: center;
+        aspect-ratio: 4 / 3;
+        background: var(--stage);
+      }
+      .no-picture .logo {
+        width: 56px;
+        height: 56px;
+        opacity: 0.4;
+      }
+      .about {
+        display: grid;
+        gap: 2px;
+        padding: 13px 16px 15px;
+      }
+      b {
+        font: 600 1.08rem/1.3 var(--serif);
+        overflow-wrap: anywhere;
+      }
+      .faint {
+        color: var(--ink-soft);
+        font-size: 0.86rem;
+      }
+      p {
+        display: -webkit-box;
+        -webkit-box-orient: vertical;
+        -webkit-line-clamp: 2;
+        overflow: hidden;
+        font-size: 0.9rem;
+      }
+    `,
+  ];
+
+  override firstUpdated(): void {
+    this.stop_waiting_ = when_seen(this, () => {
+      this.is_seen_ = true;
+      this.ask();
+    });
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.stop_waiting_?.();
+  }
+
+  override updated(changed: PropertyValues<this>): void {
+    if (changed.has("listed") && this.is_seen_) this.ask();
+  }
+
+  private ask(): void {
+    busy = busy.then(() => this.load());
+  }
+
+  private async load(): Promise<void> {
+    if (!this.isConnected) return;
+    try {
+      const { activity } = await this.api.activity(this.listed.project.slug, { model: undefined, before: undefined, limit: 1 });
+      this.changed_ = activity[0]?.time ?? "";
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.changed_ = ""; // whoever opens the project is told what is wrong
+    }
+  }
+
+  override render(): TemplateResult {
+    const { project, models } = this.listed;
+    const [first] = models;
+    return html`${first
+        ? keyed(first.id, html`<strata-thumbnail .api=${this.api} .model=${first}></strata-thumbnail>`)
+        : html`<div class="no-picture">${logo()}</div>`}
+      <div class="about">
+        <b>${project.name}</b>
+        ${project.description ? html`<p>${project.description}</p>` : nothing}
+        <span class="numeric faint">
+          ${models.length === 0 ? words.empty_title : words.count(models.length)}${this.changed_ ? ` · ${words.changed(told_day(this.changed_))}` : nothing}
+        </span>
+      </div>`;
+  }
+}

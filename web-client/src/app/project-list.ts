@@ -1,0 +1,29 @@
+// The projects that a person chooses among, with their models.
+
+import { page_locale } from "../core/locale";
+import type { Project } from "../core/protocol.gen";
+import { may_curate, type Model } from "../core/types";
+
+export const kDefaultProject = "default"; // every site has it
+
+export interface ListedProject {
+  project: Project;
+  models: readonly Model[];
+}
+
+/** Whether they may import scans there, and delete models. */
+export const curates = ({ role }: Project): boolean => role !== undefined && may_curate(role);
+
+/** Those with models first, each part by name. The project that every site has is left out while it is empty and there are others. */
+export function list_projects(projects: readonly Project[], models: readonly Model[]): ListedProject[] {
+  const listed = projects.map((project) => ({ project, models: models.filter((model) => model.project === project.slug) }));
+  const is_leftover = ({ project, models: own }: ListedProject): boolean => own.length === 0 && project.slug === kDefaultProject;
+  const { compare } = new Intl.Collator(page_locale(), { numeric: true });
+  return listed
+    .filter((each) => listed.length === 1 || !is_leftover(each))
+    .sort((a, b) => Number(a.models.length === 0) - Number(b.models.length === 0) || compare(a.project.name, b.project.name));
+}
+
+/** Whether a project that has models is listed beside others, as far as that can be told without asking what else there is. */
+export const is_one_of_several = (slug: string, projects: readonly Project[]): boolean =>
+  projects.filter((project) => project.slug === slug || project.slug !== kDefaultProject).length > 1;
