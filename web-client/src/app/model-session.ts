@@ -222,6 +222,7 @@ export class ModelSession {
       this.pointer.hover(sample);
     },
     free_mouse: (sample) => this.hovered.move(sample),
+    tool_is_for_pen: () => kChangingTools.includes(this.tools.active),
   };
 
   private make_connection(make_socket?: (url: string, protocol: string) => SocketLike): Connection {

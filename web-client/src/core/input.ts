@@ -1,5 +1,8 @@
 // Mouse, touch and pen on the stage → gestures. Positions are window pixels of the camera (CSS pixels × scale), not
 // of the page. Knows nothing of tools: who listens decides what a drag of the tool button means.
+//
+// A hand that holds a pen rests on the glass. While a pen touches or is in range, and for a moment afterwards, touches are that hand: those that were
+// there are dropped, new ones are not listened to, and none of them counts before it was lifted. Once a pen has been used, fingers turn what the pen paints.
 
 export interface PointerSample {
   x: number;
@@ -22,6 +25,8 @@ export interface GestureHandler {
   hover(sample: PointerSample | null): void;
   /** A mouse is there with nothing pressed; null: no longer, or something else points. */
   free_mouse(sample: PointerSample | null): void;
+  /** Where a pen is in use it alone has this tool, and one finger turns instead. */
+  tool_is_for_pen(): boolean;
 }
 
 type Drag = "tool" | "orbit" | "pan";
@@ -30,6 +35,8 @@ type Drag = "tool" | "orbit" | "pan";
 // one that comes later ends the stroke, which stays and can be undone.
 const kTouchSlop = 6; // CSS pixels
 const kTouchDelay_ms = 140;
+const kPenLinger_ms = 400; // between two strokes a pen leaves, and the hand that holds it stays
+const kPenSilence_ms = 3000; // a pen in range tells of itself all the time; one that does not has gone without a word
 const kWheelStep = 0.0016; // per pixel of scrolling
 
 export class StageInput {
@@ -40,6 +47,11 @@ export class StageInput {
   private drag_: { kind: Drag; pointer: number; last: PointerSample } | null = null;
   private waiting_touch_: { pointer: number; start: PointerSample; timer: ReturnType<typeof setTimeout> } | null = null;
   private pinch_: { distance: number; angle: number; middle: PointerSample } | null = null;
+  private pen_near_ = false; // or was just now
+  private pen_timer_: ReturnType<typeof setTimeout> | null = null;
+  private pen_used_ = false;
+  private readonly fingers_ = new Set<number>(); // of pointers_
+  private readonly palms_ = new Set<number>(); // touches that are not listened to, until they are lifted
   private readonly listeners_: [string, (event: never) => void, AddEventListenerOptions?][] = [];
 
   constructor(
@@ -53,8 +65,9 @@ export class StageInput {
     this.listen("pointerup", (event: PointerEvent) => this.on_up(event, false));
     this.listen("pointercancel", (event: PointerEvent) => this.on_up(event, true));
     this.listen("pointerleave", (event: PointerEvent) => {
-      if (event.pointerType === "mouse" && !this.drag_) this.handler_.hover(null);
+      if (event.pointerType !== "touch" && !this.drag_) this.handler_.hover(null);
       this.handler_.free_mouse(null);
+      if (event.pointerType === "pen") this.pen_is_near(kPenLinger_ms);
     });
     this.listen("wheel", (event: WheelEvent) => this.on_wheel(event), { passive: false });
     this.listen("contextmenu", (event: Event) => event.preventDefault());
@@ -64,6 +77,33 @@ export class StageInput {
   detach(): void {
     for (const [name, listener] of this.listeners_) this.element_.removeEventListener(name, listener as EventListener);
     this.forget_waiting_touch();
+    if (this.pen_timer_) clearTimeout(this.pen_timer_);
+  }
+
+  /** `for_ms`: unless it is heard of again; null: until then. */
+  private pen_is_near(for_ms: number | null): void {
+    if (this.pen_timer_) clearTimeout(this.pen_timer_);
+    this.pen_timer_ = for_ms === null ? null : setTimeout(() => (this.pen_near_ = false), for_ms);
+    if (this.pen_near_) return;
+    this.pen_near_ = true;
+    this.drop_fingers();
+  }
+
+  /** They were the hand that brought the pen. What they did so far stands. */
+  private drop_fingers(): void {
+    if (this.fingers_.size === 0) return;
+    this.forget_waiting_touch();
+    if (this.drag_ && this.fingers_.has(this.drag_.pointer)) {
+      if (this.drag_.kind === "tool") this.handler_.tool_cancel();
+      this.drag_ = null;
+    }
+    this.pinch_ = null;
+    for (const finger of this.fingers_) {
+      this.pointers_.delete(finger);
+      this.palms_.add(finger);
+    }
+    this.fingers_.clear();
+    this.handler_.hover(null);
   }
 
   private listen<E extends Event>(name: string, listener: (event: E) => void, options?: AddEventListenerOptions): void {
@@ -82,11 +122,20 @@ export class StageInput {
   }
 
   private on_down(event: PointerEvent): void {
+    if (event.pointerType === "pen") {
+      this.pen_used_ = true;
+      this.pen_is_near(null);
+    }
+    if (event.pointerType === "touch" && this.pen_near_) {
+      this.palms_.add(event.pointerId);
+      return;
+    }
     const at = this.css_position(event);
     this.element_.setPointerCapture(event.pointerId);
     this.pointers_.set(event.pointerId, at);
     this.handler_.free_mouse(null);
     if (event.pointerType === "touch") {
+      this.fingers_.add(event.pointerId);
       this.on_touch_down(event.pointerId, at);
       return;
     }
@@ -116,8 +165,9 @@ export class StageInput {
     const waiting = this.waiting_touch_;
     if (!waiting) return;
     this.forget_waiting_touch();
-    this.drag_ = { kind: "tool", pointer: waiting.pointer, last: waiting.start };
-    this.handler_.tool_down(this.to_window(waiting.start));
+    const kind = this.pen_used_ && this.handler_.tool_is_for_pen() ? "orbit" : "tool";
+    this.drag_ = { kind, pointer: waiting.pointer, last: waiting.start };
+    if (kind === "tool") this.handler_.tool_down(this.to_window(waiting.start));
   }
 
   private forget_waiting_touch(): void {
@@ -126,6 +176,8 @@ export class StageInput {
   }
 
   private on_move(event: PointerEvent): void {
+    if (this.palms_.has(event.pointerId)) return;
+    if (event.pointerType === "pen") this.pen_is_near(this.pointers_.has(event.pointerId) ? null : kPenSilence_ms);
     const at = this.css_position(event);
     if (this.pointers_.has(event.pointerId)) this.pointers_.set(event.pointerId, at);
     if (this.pinch_) {
@@ -155,6 +207,9 @@ export class StageInput {
   }
 
   private on_up(event: PointerEvent, cancelled: boolean): void {
+    if (this.palms_.delete(event.pointerId)) return;
+    if (event.pointerType === "pen") this.pen_is_near(kPenSilence_ms);
+    this.fingers_.delete(event.pointerId);
     if (!this.pointers_.delete(event.pointerId)) return;
     if (this.pinch_) {
       this.pinch_ = this.pointers_.size >= 2 ? this.pinch_now() : null;

@@ -1335,6 +1335,8 @@ export const texts = {
       ["Ein Finger", "das gewählte Werkzeug"],
       ["Tippen beim Drehen oder Verschieben", "der Datensatz, der dort liegt"],
       ["Zwei Finger", "verschieben; spreizen holt näher; drehen dreht"],
+      ["Stift", "das gewählte Werkzeug; solange er aufliegt oder in der Nähe ist, tun Hand und Finger nichts"],
+      ["Ein Finger, sobald ein Stift benutzt wurde", "dreht das Modell, auch wenn das Werkzeug malt oder zeichnet"],
     ],
     key_rows: [
       ["B · E · I", "Pinsel · Radierer · Wert aufnehmen"],

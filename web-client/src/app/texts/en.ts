@@ -1321,6 +1321,8 @@ export const texts = {
       ["One finger", "the chosen tool"],
       ["Tap while turning or moving", "the record that lies there"],
       ["Two fingers", "move, pinch to come nearer, twist to turn"],
+      ["Pen", "the chosen tool; while it touches or is near, hand and fingers do nothing"],
+      ["One finger, once a pen was used", "turns the model, whatever tool paints or draws"],
     ],
     key_rows: [
       ["B · E · I", "brush · eraser · pick a value"],

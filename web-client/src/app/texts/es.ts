@@ -1341,6 +1341,8 @@ export const texts = {
       ["Un dedo", "la herramienta elegida"],
       ["Tocar al girar o mover", "el registro que hay allí"],
       ["Dos dedos", "mover, separar para acercarse, torcer para girar"],
+      ["Lápiz", "la herramienta elegida; mientras toca o está cerca, la mano y los dedos no hacen nada"],
+      ["Un dedo, una vez usado un lápiz", "gira el modelo, aunque la herramienta pinte o dibuje"],
     ],
     key_rows: [
       ["B · E · I", "pincel · borrador · tomar un valor"],

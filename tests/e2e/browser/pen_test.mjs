@@ -1,0 +1,88 @@
+// A pen on a tablet: it paints, while the hand that holds it rests on the glass; when it is away two fingers move the model, and one turns it.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const tilda = await Browser.open({ viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true });
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+try {
+  await server.start();
+  const [model] = (await server.json("GET", "/models")).models;
+  const edits = async () => (await server.json("GET", `/models/${model.id}/layers/cracks/edits?limit=1`)).total;
+  await tilda.sign_in(server, await server.add_person("tilda", "annotator"));
+  await tilda.page.goto(`${server.url}/models/${model.id}`);
+  await tilda.drawn();
+  await tilda.page.getByRole("button", { name: "Paint on cracks" }).click();
+  await tilda.page.getByRole("button", { name: "Brush", exact: true }).click();
+  const box = await tilda.stage_box();
+  const at = ([x, y]) => ({ x: box.x + x * box.width, y: box.y + y * box.height });
+  const device = await tilda.context.newCDPSession(tilda.page);
+  const pen = (type, place, more = {}) => device.send("Input.dispatchMouseEvent", { type, ...at(place), pointerType: "pen", ...more });
+  const touch = (type, ...places) => device.send("Input.dispatchTouchEvent", { type, touchPoints: places.map((place, id) => ({ ...at(place), id })) });
+  const camera = () => tilda.page.locator("strata-stage canvas").first().evaluate((canvas) => Number(canvas.dataset.cameraSeq));
+  const before = await edits();
+
+  say("the pen paints with the hand beside it, which neither paints nor turns");
+  const stood = await camera();
+  await pen("mouseMoved", [0.4, 0.5]);
+  await touch("touchStart", [0.7, 0.7]);
+  await pen("mousePressed", [0.4, 0.5], { button: "left", buttons: 1, clickCount: 1 });
+  for (const x of [0.42, 0.44, 0.46]) {
+    await pen("mouseMoved", [x, 0.5], { button: "left", buttons: 1 });
+    await touch("touchMove", [x + 0.3, 0.75]);
+  }
+  await touch("touchMove", [0.75, 0.75], [0.8, 0.6]);
+  await touch("touchMove", [0.75, 0.75], [0.85, 0.5]);
+  await pen("mouseReleased", [0.46, 0.5], { button: "left", buttons: 0, clickCount: 1 });
+  await touch("touchEnd");
+  await tilda.saved();
+  await wait_for(async () => (await edits()) > before, "the stroke to be saved");
+  const { edits: done } = await server.json("GET", `/models/${model.id}/layers/cracks/edits?limit=1000`);
+  const strokes = new Set(done.filter(({ user }) => user === "tilda").map(({ stroke }) => stroke));
+  assert.equal(strokes.size, 1, "the hand painted, too");
+  assert.equal(await camera(), stood, "the hand turned the model");
+  if (process.env.STRATA_TEST_OUTPUT) await tilda.page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "pen.png") });
+
+  say("away with the pen: two fingers move the model, one turns it, and neither paints");
+  await pen("mouseMoved", [-0.02, 0.5]); // over the tools
+  const painted = await edits();
+  // How long it counts as there is the page's affair: the fingers try again until they are listened to.
+  const moves = (gesture) => async () => {
+    const from = await camera();
+    await gesture();
+    await new Promise((resolve) => setTimeout(resolve, 200));
+    return (await camera()) !== from;
+  };
+  const pinch = async () => {
+    await touch("touchStart", [0.4, 0.5], [0.5, 0.5]);
+    await touch("touchMove", [0.38, 0.5], [0.55, 0.5]);
+    await touch("touchMove", [0.36, 0.5], [0.6, 0.5]);
+    await touch("touchEnd");
+  };
+  const drag = async () => {
+    await touch("touchStart", [0.4, 0.5]);
+    await touch("touchMove", [0.45, 0.5]);
+    await touch("touchMove", [0.5, 0.5]);
+    await touch("touchEnd");
+  };
+  await wait_for(moves(pinch), "two fingers to move the model");
+  await wait_for(moves(drag), "one finger to turn the model");
+  await tilda.saved();
+  assert.equal(await edits(), painted, "a finger painted while there is a pen");
+
+  say("the end");
+  tilda.assert_no_complaints();
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
+  if (process.env.STRATA_TEST_OUTPUT) await tilda.page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "pen_failed.png") }).catch(() => {});
+  throw error;
+} finally {
+  await tilda.close();
+  await server.remove();
+}
