@@ -52,6 +52,12 @@ export interface Upload<T> {
 
 type Progress = (share: number) => void;
 
+/** A line over a surface: under a path of a camera's pixels, or through places, where each step is the nearest of the surface. `layers`: absent for all. */
+export type ProfileLine = (
+  | { camera: CameraMessage; path: readonly (readonly [number, number])[] }
+  | { places: readonly (readonly [number, number, number])[]; step_mm: number }
+) & { layers?: readonly string[] };
+
 /** Records of a table, or of the table whose keys a layer holds. */
 export type RecordPlace = { table: Id } | { model: Id; layer: Id };
 
@@ -472,7 +478,14 @@ export class Api {
   }
   /** What it sees along a path of its window's pixels, at each of them. */
   async profile(model: Id, camera: CameraMessage, path: readonly (readonly [number, number])[]): Promise<wire.Profile> {
-    return this.json("POST", `/models/${encodeURIComponent(model)}/profile`, { camera, path, layers: [] });
+    return this.profile_of(model, { camera, path, layers: [] });
+  }
+  /** The same, or through places; also as the CSV file that the server makes of it. */
+  async profile_of(model: Id, line: ProfileLine): Promise<wire.Profile> {
+    return this.json("POST", `/models/${encodeURIComponent(model)}/profile`, line);
+  }
+  async profile_csv(model: Id, line: ProfileLine): Promise<Blob> {
+    return (await this.request("POST", `/models/${encodeURIComponent(model)}/profile`, line, { Accept: "text/csv" })).blob();
   }
   async statistics(model: Id, layer: Id): Promise<Statistics> {
     return this.json("GET", `${layer_path(model, layer)}/statistics`);

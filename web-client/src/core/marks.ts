@@ -40,26 +40,30 @@ export function describe_mark(mark: Mark, kind: MarkKind, model: Pick<Model, "un
   return `${format_place(mark.coordinates[0]!.map((number) => typed_number(Number(number.toPrecision(5)))))} ${model.unit}`;
 }
 
-const kLongestStep_px = 40; // between the places of two neighbouring pixels: the surface is seen at 1.5° or less
+const kLongestStep = 40; // times what it is where the surface is seen straight: between the places of two neighbouring pixels, at 1.5° or less
 
 /**
- * The lines on a surface that were seen along a path, pixel by pixel. Where nothing was hit, and where the next place lies far before
- * or behind the last, as at the edge of a handle, one line ends and another begins. `pixel_at`: the length of a pixel at a place.
- * Lines are simplified to half a pixel.
+ * The parts of a line on a surface, of what was found at one step of it after the other. Where nothing was hit, and where the next place lies far
+ * before or behind the last, as at the edge of a handle, one part ends and another begins. `step_at`: how far two steps are from each other at a
+ * place where the surface is seen straight, the length of a pixel there.
  */
-export function lines_seen(places: readonly (MarkPlace | null)[], pixel_at: (place: MarkPlace) => number): MarkPlace[][] {
-  const lines: MarkPlace[][] = [];
-  let line: MarkPlace[] = [];
-  for (const place of places) {
-    const last = line[line.length - 1];
-    const parts = place === null || (last && length(subtract(place, last)) > kLongestStep_px * pixel_at(place));
-    if (parts && line.length > 0) {
-      lines.push(line);
-      line = [];
+export function parts_of_line<T>(found: readonly (T | null)[], place_of: (each: T) => MarkPlace, step_at: (place: MarkPlace) => number): T[][] {
+  const parts: T[][] = [];
+  let last: MarkPlace | null = null;
+  for (const each of found) {
+    const place = each === null ? null : place_of(each);
+    if (each !== null && place) {
+      if (!last || length(subtract(place, last)) > kLongestStep * step_at(place)) parts.push([]);
+      parts[parts.length - 1]!.push(each);
     }
-    if (place) line.push(place);
+    last = place;
   }
-  if (line.length > 0) lines.push(line);
+  return parts;
+}
+
+/** The same of places, simplified to half a pixel: what is kept of a line that was drawn. */
+export function lines_seen(places: readonly (MarkPlace | null)[], pixel_at: (place: MarkPlace) => number): MarkPlace[][] {
+  const lines = parts_of_line(places, (place) => place, pixel_at);
   return lines.map((each) => simplify_line(each, (place) => pixel_at(place) / 2)).filter((each) => mark_length({ coordinates: each }) > 0);
 }
 

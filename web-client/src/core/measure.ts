@@ -15,23 +15,36 @@ export function format_number(value: number, digits = 3): string {
   return value.toLocaleString(page_locale(), { maximumFractionDigits: Math.min(decimals, 20) });
 }
 
-/** A length in metres with the unit that suits its size: "0.8 mm", "12.4 cm", "3.1 m". */
-export function format_length(metres: number): string {
+/** The unit that suits a length, and how many of it a metre has. */
+export function length_unit(metres: number): { unit: string; per_metre: number } {
   const size = Math.abs(metres);
-  if (size < 1e-5) return `${format_number(metres * 1e6, 2)} µm`;
-  if (size < 0.01) return `${format_number(metres * 1e3, 2)} mm`;
-  if (size < 1) return `${format_number(metres * 100)} cm`;
-  if (size < 1000) return `${format_number(metres)} m`;
-  return `${format_number(metres / 1000)} km`;
+  if (size > 0 && size < 1e-5) return { unit: "µm", per_metre: 1e6 };
+  if (size < 0.01) return { unit: "mm", per_metre: 1e3 };
+  if (size < 1) return { unit: "cm", per_metre: 100 };
+  return size < 1000 ? { unit: "m", per_metre: 1 } : { unit: "km", per_metre: 1e-3 };
 }
 
-export function format_area(square_metres: number): string {
+function length_text(metres: number, digits: number): string {
+  const { unit, per_metre } = length_unit(metres);
+  return `${format_number(metres * per_metre, digits)} ${unit}`;
+}
+
+function area_text(square_metres: number, digits: number): string {
   const size = Math.abs(square_metres);
   if (size === 0) return "0 mm²";
-  if (size < 1e-4) return `${format_number(square_metres * 1e6)} mm²`;
-  if (size < 0.1) return `${format_number(square_metres * 1e4)} cm²`;
-  return `${format_number(square_metres)} m²`;
+  if (size < 1e-4) return `${format_number(square_metres * 1e6, digits)} mm²`;
+  if (size < 0.1) return `${format_number(square_metres * 1e4, digits)} cm²`;
+  return `${format_number(square_metres, digits)} m²`;
 }
+
+/** A length in metres with the unit that suits its size: "0.8 mm", "12.4 cm", "3.1 m". */
+export const format_length = (metres: number): string => length_text(metres, Math.abs(metres) < 0.01 ? 2 : 3);
+export const format_area = (square_metres: number): string => area_text(square_metres, 3);
+
+export const kMeasuredDigits = 4;
+/** What was measured: "12.43 cm". */
+export const measured_length = (metres: number): string => length_text(metres, kMeasuredDigits);
+export const measured_area = (square_metres: number): string => area_text(square_metres, kMeasuredDigits);
 
 /** Three sides in one unit, for "105 × 99 × 91 mm". */
 export function format_size(sides_in_metres: readonly number[]): string {
