@@ -159,6 +159,17 @@ function screens_of({ page }, w, site) {
     { name: "polygon", start: () => tool("a") },
     { name: "fill connected", start: () => tool("g") },
     { name: "line", start: () => tool("d") },
+    { name: "measure", start: async () => {
+      const box = await page.locator("strata-stage").boundingBox();
+      const panel = page.locator("strata-measure-panel");
+      await tool("m");
+      for (const [x, y] of [[0.4, 0.5], [0.6, 0.5], [0.5, 0.6]]) { // prettier-ignore
+        await page.mouse.click(box.x + x * box.width, box.y + y * box.height);
+      }
+      await panel.locator('[data-figure="area"]').waitFor();
+      await panel.getByRole("button", exact(w.measure.end)).click();
+      await panel.locator("strata-profile-plot path.curve").first().waitFor();
+    }, keyboard: true },
     { name: "value under the pointer", start: async () => {
       await tool("v");
       await choose_layer("Finds");

@@ -12,6 +12,7 @@ const kTools: Record<string, ToolName> = {
   l: "lasso",
   g: "bucket",
   i: "pick",
+  m: "measure",
   d: "line",
   s: "point",
   c: "comment",

@@ -31,6 +31,7 @@ import "./layer-panel";
 import "./map-dialog";
 import "./orthophoto-dialog";
 import { model_styles } from "./model-styles";
+import "./measure-panel";
 import { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import "./record-card";
@@ -87,6 +88,7 @@ export class StrataModelPage extends LitElement {
   @query("strata-tour") private tour_!: StrataTour | null;
   private session_: ModelSession | null = null;
   private asked_scale_ = false;
+  private measures_ = false;
   private role_: Role | null = null; // of the newest welcome
   private wanted_comment_: number | null = null; // by the address
   private wanted_view_: string | null = null;
@@ -157,6 +159,7 @@ export class StrataModelPage extends LitElement {
       this.role_ = session.role;
       if (session.role !== this.me.role) this.dispatchEvent(new CustomEvent("role-changed"));
     }
+    this.show_measuring(session);
     if (session.model) document.title = `${session.model.name} – ${texts.product}`;
     this.follow_address(session);
     const asks_scale = session.model && !session.model.scale_verified && session.can_curate;
@@ -165,6 +168,13 @@ export class StrataModelPage extends LitElement {
       this.dialog_ ??= { dialog: "scale" };
     }
     this.requestUpdate();
+  }
+
+  /** What is measured is told in the panel. */
+  private show_measuring(session: ModelSession): void {
+    const measures = session.tools.active === "measure";
+    if (measures && !this.measures_) this.panel_shown_ = true;
+    this.measures_ = measures;
   }
 
   private readonly on_hash = (): void => {
@@ -327,6 +337,7 @@ export class StrataModelPage extends LitElement {
         @keydown=${this.on_splitter_key}
       ></div>
       <div class="scroll">
+        ${session.tools.active === "measure" ? html`<section><strata-measure-panel .session=${session}></strata-measure-panel></section>` : nothing}
         ${paints ? html`<section><strata-brush-panel .session=${session} @request=${request}></strata-brush-panel></section>` : nothing}
         <section>
           <strata-layer-panel

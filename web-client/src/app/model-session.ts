@@ -1,7 +1,7 @@
 // One open model on this page: its life, and the messages between its parts. `view` is the camera, `layers` what is painted on,
 // `tables` the records that layers hold the keys of, `comments` what people wrote on the surface, `hovered` the one that the mouse rests
 // on, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits, `together` who
-// else is here and whose view this is, `cursors` where they point, `views` what was kept to come back to. Elements subscribe and draw themselves from their state; they change it
+// else is here and whose view this is, `cursors` where they point, `views` what was kept to come back to, `measuring` what is measured. Elements subscribe and draw themselves from their state; they change it
 // only through their methods.
 
 import { Api, ApiError, type Versioned } from "../core/api";
@@ -15,6 +15,7 @@ import { BucketTool } from "../tools/bucket";
 import { CommentTool } from "../tools/comment";
 import { Activities } from "./activity";
 import { LineTool } from "../tools/line";
+import { MeasureTool } from "../tools/measure";
 import { OrbitTool, PanTool } from "../tools/navigate";
 import { LassoTool, PolygonTool } from "../tools/outline";
 import { PickTool } from "../tools/pick";
@@ -26,6 +27,7 @@ import { Comments } from "./comments";
 import { LayerJobs } from "./layer-jobs";
 import { LayerList } from "./layer-list";
 import { MarkDrawing } from "./mark-drawing";
+import { Measuring } from "./measuring";
 import { notices } from "./notices";
 import { Painting } from "./painting";
 import { PeopleCursors } from "./people-cursors";
@@ -60,6 +62,7 @@ export class ModelSession {
   readonly tables: Tables;
   readonly editors: RecordEditors;
   readonly marks: MarkDrawing;
+  readonly measuring: Measuring;
   readonly comments: Comments;
   readonly activity: Activities;
   readonly hovered: RecordHover;
@@ -90,6 +93,7 @@ export class ModelSession {
       send: (moving) => {
         this.hovered.wait_again();
         this.comments.sight.camera_moved();
+        this.measuring.camera_moved();
         this.connection_.set_camera(this.view.camera.message(), moving);
       },
       when_free: (action) => this.painting.when_free(action),
@@ -99,6 +103,7 @@ export class ModelSession {
         this.cursors.look_again();
         this.together.came_to_rest();
         this.comments.look_again();
+        this.measuring.came_to_rest();
       },
       went_own_way: () => this.together.stop_following(),
       changed,
@@ -159,6 +164,7 @@ export class ModelSession {
       model: () => this.model,
       changed,
     });
+    this.measuring = new Measuring(api, { view: this.view, layers: this.layers, model: () => this.model, changed });
     this.comments = new Comments(api, model_id, {
       view: this.view,
       layers: this.layers,
@@ -291,6 +297,17 @@ export class ModelSession {
       pan: (dx: number, dy: number) => this.view.pan_pixels(dx, dy),
       tap: (sample: PointerSample) => this.pointer.look(sample),
     };
+    const { measuring } = this;
+    const measure_host = {
+      ...navigator,
+      tap: (sample: PointerSample) => measuring.set_at(sample),
+      point_at: (sample: PointerSample | null) => measuring.point_at(sample),
+      set_in_middle: () => measuring.set_in_middle(),
+      end: () => measuring.end(),
+      take_back: () => measuring.take_back(),
+      clear: () => measuring.clear(),
+      begun: () => measuring.places.length > 0,
+    };
     const outline_host = {
       begin_outline: () => this.painting.begin_outline(),
       finish_outline: (path: Point[]) => this.painting.finish_outline(path),
@@ -319,6 +336,7 @@ export class ModelSession {
         new PickTool((sample) => this.pointer.take(sample)),
         new LineTool(line_host),
         new PointTool((sample) => this.marks.set_point(sample)),
+        new MeasureTool(measure_host),
         new CommentTool({ ...navigator, tap: comment }, () => ({ x: this.view.camera.width / 2, y: this.view.camera.height / 2 })),
       ],
       "orbit",
@@ -613,6 +631,7 @@ export class ModelSession {
     this.activity.outdated();
     if (event.event === "edited") {
       this.pointer.ask_again();
+      this.measuring.on_layer_edited(event.layer_id);
       this.tables.on_layer_edited(event.layer_id);
     } else if (event.event === "deleted") {
       this.tables.on_layer_deleted(event.layer_id);

@@ -8,6 +8,7 @@ import { color_of, css_color } from "../core/palette";
 import { kSnap_px, type Outline } from "../tools/outline";
 import type { ModelSession } from "./model-session";
 import { styled } from "./styled";
+import type { ViewControl } from "./view-control";
 
 const kLength = { width: 96, height: 28 }; // room for how long a line is, CSS pixels
 const kGap_px = 14;
@@ -31,14 +32,12 @@ export function outline_overlay(session: ModelSession, { points, corners, pointe
             stroke=${index === 0 ? "var(--mark-light)" : "var(--mark-dark)"} stroke-width="1.5" />`,
       )}
     </svg>
-    ${area ? nothing : length_so_far(session, pointer ?? points[points.length - 1]!)}`;
+    ${area ? nothing : length_so_far(session.view, session.marks.metres_so_far, pointer ?? points[points.length - 1]!)}`;
 }
 
-/** Beside the end of a line that is being drawn. Who cannot see it is told when the line is finished. */
-function length_so_far({ marks, view }: ModelSession, [x, y]: Point): TemplateResult | typeof nothing {
-  const metres = marks.metres_so_far;
+/** Beside the end of a line that is being drawn, at a window pixel. Who cannot see it is told when the line is finished. */
+export function length_so_far({ camera, scale }: ViewControl, metres: number | null, [x, y]: Point): TemplateResult | typeof nothing {
   if (metres === null) return nothing;
-  const { camera, scale } = view;
   const end = [x / scale, y / scale] as const;
   const place = beside(end, kLength, { width: camera.width / scale, height: camera.height / scale }, kGap_px);
   if (!place) return nothing;

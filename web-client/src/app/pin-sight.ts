@@ -75,7 +75,8 @@ export class PinSight {
   }
 }
 
-function faces(camera: OrbitCamera, { position, normal }: PinPlace): boolean {
+/** Whether the surface at the place is turned to the camera. */
+export function faces(camera: OrbitCamera, { position, normal }: Pick<PinPlace, "position" | "normal">): boolean {
   const towards = camera.perspective ? subtract(camera.eye(), position) : camera.axes().back;
   return dot(normal, towards) > 0.05 * length(towards);
 }

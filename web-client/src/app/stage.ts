@@ -10,6 +10,7 @@ import { metres_per, scale_bar } from "../core/measure";
 import { color_of, css_color } from "../core/palette";
 import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
+import { measure_overlay } from "./measure-overlay";
 import { notices } from "./notices";
 import { outline_overlay } from "./outline-overlay";
 import "./people-overlay";
@@ -196,7 +197,7 @@ export class StrataStage extends LitElement {
     const tool = session.tools.active;
     const locked = session.locked_target !== null;
     const paints = !locked && (tool === "brush" || tool === "eraser");
-    const aims = tool === "polygon" || tool === "lasso" || tool === "bucket" || tool === "pick" || tool === "line" || tool === "point" || tool === "comment";
+    const aims = tool === "polygon" || tool === "lasso" || tool === "bucket" || tool === "pick" || tool === "line" || tool === "point" || tool === "comment" || tool === "measure";
     return html`<div
         class="surface ${locked ? "locked" : paints ? "paint" : aims ? "aim" : tool}"
         tabindex="0"
@@ -206,6 +207,7 @@ export class StrataStage extends LitElement {
         <canvas width="2" height="2"></canvas>
         ${paints ? this.brush_cursor() : nothing}
         ${session.tools.outline ? outline_overlay(session, session.tools.outline) : nothing}
+        ${tool === "measure" ? measure_overlay(session) : nothing}
       </div>
       <strata-people-overlay .session=${session}></strata-people-overlay>
       ${this.scale_bar()}

@@ -23,6 +23,7 @@ const kTools: [ToolName, string][] = [
   ["line", "D"],
   ["point", "S"],
   ["pick", "I"],
+  ["measure", "M"],
   ["comment", "C"],
 ];
 /** What a step of the tour speaks of. */
