@@ -83,6 +83,7 @@ export class StrataTour extends LitElement {
       }
       .choices .skip {
         margin: 0 auto 0 -14px;
+        outline-offset: -3px; /* within the card */
       }
       .ring {
         position: fixed;
