@@ -133,7 +133,7 @@ void LiveSession::on(const protocol::Hello& message) {
     member_ = std::move(joined);
   }
   shared_->editors->list(project_id(), [this](std::int64_t, const std::vector<EditorBook::Entry>& entries) {
-    for (const auto& message : editor_messages(entries)) send(message);
+    for (const auto& each : editor_messages(entries)) send(each);
   });
   presence_changed();
 }

@@ -284,7 +284,7 @@ void OpenRoom::records_changed(std::int64_t table_id) {
 Result<void> OpenRoom::check_expression(const Expression& expression, const std::string& field,
                                         Visibility layer) const {
   std::vector<query::LayerView> views;
-  for (const Layer& layer : layers()) views.push_back({layer, {}});
+  for (const Layer& each : layers()) views.push_back({each, {}});
   for (const std::string& shape : shapes_read(expression, views)) {
     views.emplace_back();
     views.back().layer.slug = std::string(kShapePrefix) + shape;
