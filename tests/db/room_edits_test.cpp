@@ -1,7 +1,5 @@
 // The order of edits, the journal and undo, with a real database and a real renderer.
 #include <libpq-fe.h>
-#include <signal.h>
-
 #include <cmath>
 #include <future>
 #include <thread>
@@ -217,7 +215,7 @@ TEST_F(RoomTest, with_the_database_gone_edits_are_refused_and_viewing_goes_on) {
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
   const auto picture = room()->picture({camera()});
   auto& cluster = test::shared_cluster();
-  kill(cluster.postmaster_pid(), SIGKILL);
+  test::Hang(cluster).kill();  // with its sessions, which may write for a moment after the postmaster is gone
   auto edit = stroke(layer, 6, {{340, 240}}, 20);
   EXPECT_FALSE(send(edit));
   EXPECT_EQ(room()->picture({camera()})->pixels, picture->pixels);
