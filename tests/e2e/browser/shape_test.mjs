@@ -112,7 +112,7 @@ try {
   const now = await import_hill("Now", 57);
   const made = await server.json("POST", `/models/${then}/layers`, { name: "Terraces", type: "u8", compute: { kind: "height" } });
   await wait_for(async () => (await server.json("GET", `/jobs/${made.id}`)).state === "done", "the terraces");
-  await page.goto(server.url);
+  await page.goto(new URL("/projects/default", server.url).href);
   await page.getByRole("link", { name: /Now/ }).click();
   await browser.drawn();
   await button("More about layers").click();
