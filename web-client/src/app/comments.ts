@@ -18,6 +18,7 @@ import type { Comment, CommentEvent, PresenceUser, ProjectPerson, SurfacePoint }
 import type { Layer, Model } from "../core/types";
 import type { Vec3 } from "../core/vector";
 import { Kept } from "./kept";
+import { KnownItems } from "./known-items";
 import type { LayerList } from "./layer-list";
 import { notices } from "./notices";
 import { PinSight, type PinPlace } from "./pin-sight";
@@ -68,9 +69,6 @@ export class Comments {
   /** Only this person's; only with these words: in the list. */
   mine = false;
   words = "";
-  /** They could not be read. */
-  failed = false;
-  loaded = false;
   /** A thread by its id, or the one that is being begun. */
   card: number | "new" | null = null;
   /** What happened, for those who cannot see it. */
@@ -78,9 +76,8 @@ export class Comments {
   readonly sight: PinSight;
 
   private me_ = "";
-  private known_ = new Map<number, Comment>();
+  private readonly known_ = new KnownItems<Comment>();
   private threads_: Thread[] = [];
-  private reading_: { gone: Set<number>; come: Set<number> } | null = null; // what happens meanwhile
   private people_: readonly ProjectPerson[] = [];
   private asking_: Promise<ProjectPerson[]> | null = null; // for them
   private drafts_: Kept<Marks> | null = null;
@@ -106,6 +103,13 @@ export class Comments {
 
   // ── what there is ─────────────────────────────────────────────────────────────────────────────────────────────────
 
+  get loaded(): boolean {
+    return this.known_.loaded;
+  }
+  /** They could not be read. */
+  get failed(): boolean {
+    return this.known_.failed;
+  }
   get threads(): readonly Thread[] {
     return this.threads_;
   }
@@ -136,7 +140,7 @@ export class Comments {
   get people(): ReadonlySet<string> {
     const names = new Set(this.host_.here().map(({ name }) => name));
     names.add(this.me_);
-    for (const { user } of this.known_.values()) names.add(user);
+    for (const { user } of this.known_.all) names.add(user);
     for (const { user } of this.people_) names.add(user);
     return names;
   }
@@ -170,34 +174,16 @@ export class Comments {
   }
 
   async load(): Promise<void> {
-    const reading = (this.reading_ = { gone: new Set<number>(), come: new Set<number>() });
-    let comments: Comment[];
-    try {
-      comments = await this.api_.comments(this.model_id_);
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      if (reading === this.reading_) this.failed = true;
-      this.host_.changed();
-      return;
-    }
-    if (reading !== this.reading_) return; // they are being read anew
-    this.reading_ = null;
-    this.failed = false;
-    this.loaded = true;
-    const come = [...this.known_].filter(([id]) => reading.come.has(id)).map(([, comment]) => comment);
-    this.known_ = new Map(comments.filter(({ id }) => !reading.gone.has(id)).map((comment) => [comment.id, comment]));
-    for (const comment of come) this.put(comment);
-    this.sort();
+    if (await this.known_.load(() => this.api_.comments(this.model_id_))) this.sort();
   }
 
   on_event({ event, comment_id, comment, user }: CommentEvent): void {
     if (event === "deleted" || !comment) {
-      this.reading_?.gone.add(comment_id);
-      this.known_.delete(comment_id);
+      this.known_.drop(comment_id);
       this.sort();
       return;
     }
-    const is_new = !this.known_.has(comment.id);
+    const is_new = this.known_.find(comment.id) === null;
     this.put(comment);
     if (event !== "created" || !is_new || user === this.me_) return;
     this.said = words.said(comment.user, comment.text);
@@ -207,15 +193,11 @@ export class Comments {
   }
 
   private put(comment: Comment): void {
-    const known = this.known_.get(comment.id);
-    if (known && known.version > comment.version) return;
-    this.known_.set(comment.id, comment);
-    this.reading_?.come.add(comment.id);
-    this.sort();
+    if (this.known_.put(comment)) this.sort();
   }
 
   private sort(): void {
-    this.threads_ = threads_of(this.known_.values());
+    this.threads_ = threads_of(this.known_.all);
     if (typeof this.card === "number" && this.loaded && !this.find(this.card)) this.card = null;
     this.look_again();
   }
@@ -252,7 +234,7 @@ export class Comments {
 
   /** Opens the thread of a comment and goes there. */
   go_to(id: number): void {
-    const comment = this.known_.get(id);
+    const comment = this.known_.find(id);
     const thread = comment && this.find(comment.thread ?? comment.id);
     if (!thread) {
       notices.show("info", words.missing);
@@ -294,7 +276,7 @@ export class Comments {
   }
   mark_all_read(): void {
     if (!this.reads_) return;
-    this.reads_.value = { upto: Math.max(0, ...this.known_.keys()), threads: {} };
+    this.reads_.value = { upto: Math.max(0, ...this.known_.all.map(({ id }) => id)), threads: {} };
     this.host_.changed();
   }
 

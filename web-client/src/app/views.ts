@@ -5,6 +5,7 @@ import { place_like } from "../core/look-along";
 import type { View, ViewEvent } from "../core/protocol.gen";
 import type { ViewContent } from "../core/views";
 import type { Appearance } from "./appearance";
+import { KnownItems } from "./known-items";
 import type { LayerList } from "./layer-list";
 import { notices } from "./notices";
 import { hash_of_view, path_of_model } from "./routes";
@@ -27,13 +28,8 @@ export interface ViewsHost {
 }
 
 export class Views {
-  /** They could not be read. */
-  failed = false;
-  loaded = false;
-
   private me_ = "";
-  private known_ = new Map<number, View>();
-  private reading_: { gone: Set<number>; come: Set<number> } | null = null; // what happens meanwhile
+  private readonly known_ = new KnownItems<View>();
   private shown_: { id: number; place: string; settings: string } | null = null; // the newest that was gone to, and what was seen then
   private back_: (() => void) | null = null;
   private notice_ = 0;
@@ -46,12 +42,19 @@ export class Views {
 
   // ── what there is ─────────────────────────────────────────────────────────────────────────────────────────────────
 
+  get loaded(): boolean {
+    return this.known_.loaded;
+  }
+  /** They could not be read. */
+  get failed(): boolean {
+    return this.known_.failed;
+  }
   /** In the order in which they were made. */
   get all(): View[] {
-    return [...this.known_.values()].sort((a, b) => a.id - b.id);
+    return this.known_.all.sort((a, b) => a.id - b.id);
   }
   find(id: number): View | null {
-    return this.known_.get(id) ?? null;
+    return this.known_.find(id);
   }
   /** The view that is seen: nothing was moved or changed since this person came there. */
   get current(): View | null {
@@ -71,24 +74,7 @@ export class Views {
   }
 
   async load(): Promise<void> {
-    const reading = (this.reading_ = { gone: new Set<number>(), come: new Set<number>() });
-    let views: View[];
-    try {
-      views = await this.api_.views(this.model_id_);
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      if (reading === this.reading_) this.failed = true;
-      this.host_.changed();
-      return;
-    }
-    if (reading !== this.reading_) return; // they are being read anew
-    this.reading_ = null;
-    this.failed = false;
-    this.loaded = true;
-    const come = this.all.filter(({ id }) => reading.come.has(id));
-    this.known_ = new Map(views.filter(({ id }) => !reading.gone.has(id)).map((view) => [view.id, view]));
-    for (const view of come) this.put(view);
-    this.host_.changed();
+    if (await this.known_.load(() => this.api_.views(this.model_id_))) this.host_.changed();
   }
 
   on_event({ event, view }: ViewEvent): void {
@@ -106,16 +92,11 @@ export class Views {
   }
 
   private put(view: View): void {
-    const known = this.known_.get(view.id);
-    if ((known && known.version > view.version) || this.reading_?.gone.has(view.id)) return;
-    this.known_.set(view.id, view);
-    this.reading_?.come.add(view.id);
-    this.host_.changed();
+    if (this.known_.put(view)) this.host_.changed();
   }
 
   private drop(id: number): void {
-    this.reading_?.gone.add(id);
-    this.known_.delete(id);
+    this.known_.drop(id);
     this.host_.changed();
   }
 
