@@ -1,20 +1,17 @@
 // <strata-activity-panel>: what was done on the model, or in its whole project, by days.
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property } from "lit/decorators.js";
+import { css, html, nothing, type TemplateResult } from "lit";
+import { customElement } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { by_day } from "../core/activity";
 import { format_list } from "../core/locale";
 import { format_area } from "../core/measure";
 import type { Activity } from "../core/protocol.gen";
-import { folding_heading_styles } from "./folding-heading";
-import { follow_session } from "./follow-session";
+import { FoldingPanel, folding_styles } from "./folding-panel";
 import { icon } from "./icons";
-import { Kept } from "./kept";
-import type { ModelSession } from "./model-session";
+import { panel_line_styles } from "./panel-styles";
 import { person_mark, person_mark_styles } from "./person-mark";
 import { radio_group } from "./radio-group";
-import { shared_styles } from "./styles";
 import { texts } from "./texts";
 import { told_clock, told_day } from "./times";
 
@@ -25,31 +22,18 @@ const text_of = (all: { readonly [key: string]: string; other: string }, ...keys
   keys.map((key) => all[key]).find((text) => text !== undefined) ?? all.other;
 
 @customElement("strata-activity-panel")
-export class StrataActivityPanel extends LitElement {
-  @property({ attribute: false }) session!: ModelSession;
-  private readonly open_ = new Kept(() => localStorage, "strata.activity_panel_open", false);
+export class StrataActivityPanel extends FoldingPanel {
+  protected readonly heading = words.title;
 
   constructor() {
-    super();
-    follow_session(this);
+    super("activity");
   }
 
   static override styles = [
-    shared_styles,
-    folding_heading_styles,
+    folding_styles,
+    panel_line_styles,
     person_mark_styles,
     css`
-      :host {
-        display: block;
-      }
-      .parts {
-        display: grid;
-        gap: 10px;
-        margin-top: 8px;
-      }
-      .segments {
-        display: flex;
-      }
       h3 {
         margin: 6px 0 0;
         font-size: 0.8rem;
@@ -59,30 +43,8 @@ export class StrataActivityPanel extends LitElement {
       h3::first-letter {
         text-transform: uppercase;
       }
-      ul {
-        display: grid;
-        gap: 2px;
-        margin: 0 -8px;
-        padding: 0;
-        list-style: none;
-      }
-      .line {
-        display: grid;
-        grid-template-columns: auto minmax(0, 1fr) auto;
-        justify-content: stretch;
-        align-items: start;
-        gap: 1px 10px;
-        width: 100%;
-        min-height: 0;
-        padding: 8px;
-        text-align: left;
-        white-space: normal;
-      }
-      .person-mark,
       .server {
         grid-row: span 2;
-      }
-      .server {
         display: grid;
         place-items: center;
         width: 26px;
@@ -101,7 +63,7 @@ export class StrataActivityPanel extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.session.activity.watch(this.open_.value);
+    this.session.activity.watch(this.is_open);
   }
 
   override disconnectedCallback(): void {
@@ -109,23 +71,11 @@ export class StrataActivityPanel extends LitElement {
     this.session.activity.watch(false);
   }
 
-  override render(): TemplateResult {
-    const open = this.open_.value;
-    return html`<div class="heading">
-        <h2>
-          <button class="quiet" aria-expanded=${open} aria-controls="parts" @click=${this.toggle}>${icon("up")}${words.title}</button>
-        </h2>
-      </div>
-      <div id="parts" class="parts" ?hidden=${!open}>${open ? this.content() : nothing}</div>`;
+  protected override toggled(): void {
+    this.session.activity.watch(this.is_open);
   }
 
-  private readonly toggle = (): void => {
-    this.open_.value = !this.open_.value;
-    this.session.activity.watch(this.open_.value);
-    this.requestUpdate();
-  };
-
-  private content(): TemplateResult {
+  protected content(): TemplateResult {
     const { activity } = this.session;
     return html`${radio_group({
         label: words.of,

@@ -1,18 +1,15 @@
 // <strata-comment-panel>: the threads of the model as a list, with what is new to this person.
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, state } from "lit/decorators.js";
+import { css, html, nothing, type TemplateResult } from "lit";
+import { customElement, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import type { Thread, ThreadState } from "../core/comments";
 import { format_count } from "../core/locale";
-import { folding_heading_styles } from "./folding-heading";
-import { follow_session } from "./follow-session";
+import { FoldingPanel, folding_styles } from "./folding-panel";
 import { icon } from "./icons";
-import { Kept } from "./kept";
-import type { ModelSession } from "./model-session";
+import { panel_line_styles } from "./panel-styles";
 import { person_mark, person_mark_styles } from "./person-mark";
 import { radio_group } from "./radio-group";
-import { shared_styles } from "./styles";
 import { texts } from "./texts";
 import { told_time } from "./times";
 
@@ -21,23 +18,20 @@ const kStates: readonly ThreadState[] = ["open", "resolved", "all"];
 const kAtOnce = 50;
 
 @customElement("strata-comment-panel")
-export class StrataCommentPanel extends LitElement {
-  @property({ attribute: false }) session!: ModelSession;
+export class StrataCommentPanel extends FoldingPanel {
+  protected readonly heading = words.title;
   @state() private most_ = kAtOnce;
-  private readonly open_ = new Kept(() => localStorage, "strata.comment_panel_open", false);
 
   constructor() {
-    super();
-    follow_session(this);
+    super("comment");
   }
 
   static override styles = [
-    shared_styles,
-    folding_heading_styles,
+    folding_styles,
+    panel_line_styles,
     person_mark_styles,
     css`
       :host {
-        display: block;
         position: relative; /* of what is hidden for eyes */
       }
       .number {
@@ -51,37 +45,7 @@ export class StrataCommentPanel extends LitElement {
         border-radius: 50%;
         background: var(--news);
       }
-      .parts {
-        display: grid;
-        gap: 10px;
-        margin-top: 8px;
-      }
-      .segments {
-        display: flex;
-      }
-      ul {
-        display: grid;
-        gap: 2px;
-        margin: 0 -8px;
-        padding: 0;
-        list-style: none;
-      }
-      li button {
-        display: grid;
-        grid-template-columns: auto minmax(0, 1fr) auto;
-        justify-content: stretch;
-        align-items: start;
-        gap: 1px 10px;
-        width: 100%;
-        min-height: 0;
-        padding: 8px;
-        text-align: left;
-        white-space: normal;
-      }
-      li button .person-mark {
-        grid-row: span 2;
-      }
-      li button[aria-current="true"] {
+      .line[aria-current="true"] {
         background: var(--accent-soft);
       }
       li b {
@@ -115,38 +79,25 @@ export class StrataCommentPanel extends LitElement {
     `,
   ];
 
-  override render(): TemplateResult {
-    const { comments } = this.session;
-    const open = this.open_.value;
-    const unread = comments.unread_count;
-    return html`<div class="heading">
-        <h2>
-          <button class="quiet" aria-expanded=${open} aria-controls="parts" @click=${this.toggle}>
-            ${icon("up")}${words.title}
-            ${comments.open_count > 0
-              ? html`<span class="number numeric" aria-label=${words.open_count(comments.open_count)} role="img">${format_count(comments.open_count)}</span>`
-              : nothing}
-            ${unread > 0 ? html`<span class="dot" role="img" aria-label=${words.unread(unread)} title=${words.unread(unread)}></span>` : nothing}
-          </button>
-        </h2>
-        <button
-          class="icon quiet"
-          aria-label=${comments.pins_shown ? words.hide_pins : words.show_pins}
-          title=${comments.pins_shown ? words.hide_pins : words.show_pins}
-          @click=${() => (comments.pins_shown = !comments.pins_shown)}
-        >
-          ${icon(comments.pins_shown ? "eye" : "eye_off")}
-        </button>
-      </div>
-      <div id="parts" class="parts" ?hidden=${!open}>${open ? this.content(unread) : nothing}</div>`;
+  protected override beside_heading(): TemplateResult {
+    const { open_count, unread_count } = this.session.comments;
+    return html`${open_count > 0
+      ? html`<span class="number numeric" aria-label=${words.open_count(open_count)} role="img">${format_count(open_count)}</span>`
+      : nothing}
+    ${unread_count > 0
+      ? html`<span class="dot" role="img" aria-label=${words.unread(unread_count)} title=${words.unread(unread_count)}></span>`
+      : nothing}`;
   }
 
-  private readonly toggle = (): void => {
-    this.open_.value = !this.open_.value;
-    this.requestUpdate();
-  };
+  protected override tools(): TemplateResult {
+    const { comments } = this.session;
+    const label = comments.pins_shown ? words.hide_pins : words.show_pins;
+    return html`<button class="icon quiet" aria-label=${label} title=${label} @click=${() => (comments.pins_shown = !comments.pins_shown)}>
+      ${icon(comments.pins_shown ? "eye" : "eye_off")}
+    </button>`;
+  }
 
-  private content(unread: number): TemplateResult {
+  protected content(): TemplateResult {
     const { comments } = this.session;
     if (comments.failed) {
       return html`<p class="error" role="alert">${words.failed}</p>
@@ -174,7 +125,7 @@ export class StrataCommentPanel extends LitElement {
           ${comments.mine ? icon("check") : nothing}${words.mine}
         </button>
       </div>
-      ${unread > 0 ? html`<div><button class="link" @click=${() => comments.mark_all_read()}>${words.mark_all_read}</button></div>` : nothing}
+      ${comments.unread_count > 0 ? html`<div><button class="link" @click=${() => comments.mark_all_read()}>${words.mark_all_read}</button></div>` : nothing}
       ${shown.length === 0
         ? html`<p class="hint">${this.nothing_there()}</p>`
         : html`<ul>
@@ -199,7 +150,7 @@ export class StrataCommentPanel extends LitElement {
     const { first, replies } = thread;
     const newest = replies[replies.length - 1] ?? first;
     return html`<li>
-      <button class="quiet" data-comment=${first.id} aria-current=${comments.card === first.id} @click=${() => comments.go_to(first.id)}>
+      <button class="quiet line" data-comment=${first.id} aria-current=${comments.card === first.id} @click=${() => comments.go_to(first.id)}>
         ${person_mark(first.user)}
         <span><b>${first.user}</b> <span class="hint">${told_time(newest.time)}</span></span>
         <span class="state">

@@ -9,6 +9,7 @@ import { icon } from "./icons";
 import "./menu";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { list_head_styles } from "./panel-styles";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -25,28 +26,10 @@ export class StrataLookList extends LitElement {
 
   static override styles = [
     shared_styles,
+    list_head_styles,
     css`
-      :host {
-        display: grid;
-        grid-template-columns: minmax(0, 1fr);
-        gap: 10px;
-      }
-      .row {
-        flex-wrap: wrap;
-        min-height: 30px;
-      }
-      h3 {
-        flex: 1;
-        font-size: 0.8rem;
-        font-weight: 600;
-        color: var(--ink-soft);
-      }
       ul {
-        display: grid;
         gap: 6px;
-        margin: 0;
-        padding: 0;
-        list-style: none;
       }
       li {
         display: grid;

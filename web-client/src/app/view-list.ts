@@ -11,6 +11,7 @@ import { icon } from "./icons";
 import "./menu";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { list_head_styles } from "./panel-styles";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 import "./thumbnail";
@@ -36,28 +37,10 @@ export class StrataViewList extends LitElement {
 
   static override styles = [
     shared_styles,
+    list_head_styles,
     css`
-      :host {
-        display: grid;
-        grid-template-columns: minmax(0, 1fr);
-        gap: 10px;
-      }
-      .row {
-        flex-wrap: wrap;
-        min-height: 30px;
-      }
-      h3 {
-        flex: 1;
-        font-size: 0.8rem;
-        font-weight: 600;
-        color: var(--ink-soft);
-      }
       ul {
-        display: grid;
-        gap: 2px;
-        margin: 0 0 0 -8px;
-        padding: 0;
-        list-style: none;
+        margin-left: -8px;
       }
       li {
         display: grid;

@@ -1,19 +1,15 @@
 // <strata-view-panel>: how this person sees the model: the views that were kept, looks, light, section.
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property } from "lit/decorators.js";
+import { css, html, nothing, type TemplateResult } from "lit";
+import { customElement } from "lit/decorators.js";
 import { format_length, metres_per } from "../core/measure";
 import type { LightMode, Point3 } from "../core/protocol.gen";
 import { kAxes, with_box_side, world_position, type SectionMode } from "../core/section";
-import { folding_heading_styles } from "./folding-heading";
-import { follow_session } from "./follow-session";
+import { FoldingPanel, folding_styles } from "./folding-panel";
 import { icon } from "./icons";
-import { Kept } from "./kept";
 import "./light-pad";
 import "./look-list";
-import type { ModelSession } from "./model-session";
 import { radio_group } from "./radio-group";
-import { shared_styles } from "./styles";
 import { texts } from "./texts";
 import type { ViewRequest } from "./view-list";
 import "./view-list";
@@ -23,22 +19,16 @@ const kSections: readonly Exclude<SectionMode, "planes">[] = ["off", "x", "y", "
 const kSteps = 1000; // of a section's slider
 
 @customElement("strata-view-panel")
-export class StrataViewPanel extends LitElement {
-  @property({ attribute: false }) session!: ModelSession;
-  private readonly open_ = new Kept(() => localStorage, "strata.view_panel_open", false);
+export class StrataViewPanel extends FoldingPanel {
+  protected readonly heading = texts.view.title;
 
   constructor() {
-    super();
-    follow_session(this);
+    super("view");
   }
 
   static override styles = [
-    shared_styles,
-    folding_heading_styles,
+    folding_styles,
     css`
-      :host {
-        display: block;
-      }
       h2 .dot {
         width: 8px;
         height: 8px;
@@ -46,8 +36,6 @@ export class StrataViewPanel extends LitElement {
         background: var(--accent);
       }
       .parts {
-        display: grid;
-        grid-template-columns: minmax(0, 1fr);
         gap: 18px;
         margin-top: 10px;
       }
@@ -64,9 +52,6 @@ export class StrataViewPanel extends LitElement {
         font-size: 0.8rem;
         font-weight: 600;
         color: var(--ink-soft);
-      }
-      .segments {
-        display: flex;
       }
       .segments button {
         padding: 0 6px;
@@ -90,28 +75,18 @@ export class StrataViewPanel extends LitElement {
     `,
   ];
 
-  override render(): TemplateResult {
-    const { appearance } = this.session;
-    const words = texts.view;
-    const open = this.open_.value;
-    return html`<div class="heading">
-        <h2>
-          <button class="quiet" aria-expanded=${open} aria-controls="parts" @click=${this.toggle}>
-            ${icon("up")}${words.title}${appearance.is_default || open
-              ? nothing
-              : html`<span class="dot" role="img" aria-label=${words.changed} title=${words.changed}></span>`}
-          </button>
-        </h2>
-        ${open && !appearance.is_default
-          ? html`<button class="link" @click=${() => appearance.reset()}>${words.reset}</button>`
-          : nothing}
-      </div>
-      <div id="parts" class="parts" ?hidden=${!open}>${open ? [this.views(), this.looks(), this.light(), this.section()] : nothing}</div>`;
+  protected override beside_heading(): unknown {
+    const { changed } = texts.view;
+    return this.session.appearance.is_default || this.is_open ? nothing : html`<span class="dot" role="img" aria-label=${changed} title=${changed}></span>`;
   }
 
-  private toggle(): void {
-    this.open_.value = !this.open_.value;
-    this.requestUpdate();
+  protected override tools(): unknown {
+    const { appearance } = this.session;
+    return this.is_open && !appearance.is_default ? html`<button class="link" @click=${() => appearance.reset()}>${texts.view.reset}</button>` : nothing;
+  }
+
+  protected content(): TemplateResult[] {
+    return [this.views(), this.looks(), this.light(), this.section()];
   }
 
   private views(): TemplateResult {

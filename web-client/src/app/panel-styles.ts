@@ -1,0 +1,55 @@
+// What lists in the side panel look like.
+
+import { css } from "lit";
+
+/** Lines in a panel, each a button of three columns: whose it is, what, and when. */
+export const panel_line_styles = css`
+  ul {
+    display: grid;
+    gap: 2px;
+    margin: 0 -8px;
+    padding: 0;
+    list-style: none;
+  }
+  .line {
+    display: grid;
+    grid-template-columns: auto minmax(0, 1fr) auto;
+    justify-content: stretch;
+    align-items: start;
+    gap: 1px 10px;
+    width: 100%;
+    min-height: 0;
+    padding: 8px;
+    text-align: left;
+    white-space: normal;
+  }
+  .line .person-mark {
+    grid-row: span 2;
+  }
+`;
+
+/** Heading of a list within a panel, with its buttons. */
+export const list_head_styles = css`
+  :host {
+    display: grid;
+    grid-template-columns: minmax(0, 1fr);
+    gap: 10px;
+  }
+  .row {
+    flex-wrap: wrap;
+    min-height: 30px;
+  }
+  h3 {
+    flex: 1;
+    font-size: 0.8rem;
+    font-weight: 600;
+    color: var(--ink-soft);
+  }
+  ul {
+    display: grid;
+    gap: 2px;
+    margin: 0;
+    padding: 0;
+    list-style: none;
+  }
+`;
