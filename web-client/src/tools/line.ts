@@ -2,17 +2,16 @@
 
 import type { Point } from "../core/connection";
 import type { PointerSample } from "../core/input";
-import { OutlineTool, type Outline, type OutlineHost } from "./outline";
+import { PlacesTool, type Outline, type OutlineHost } from "./outline";
 import type { Tool } from "./tool";
 
 const kMostPoints = 1000; // that the server looks at
 const kDragReach_px = 6; // CSS pixels that a hand trembles: farther, and a press is a drag
 
 /** A drag is a line. Presses are its places: one more on the last of them, or Enter, ends it. */
-export class LineTool extends OutlineTool implements Tool {
+export class LineTool extends PlacesTool implements Tool {
   readonly name = "line";
   private corners_: Point[] = [];
-  private pointer_: Point | null = null;
   private press_: { at: Point; first: boolean; dragged: boolean; points: number } | null = null; // under way, with how many were before
 
   constructor(host: OutlineHost) {
@@ -22,7 +21,7 @@ export class LineTool extends OutlineTool implements Tool {
   override get outline(): Outline | null {
     if (this.points.length === 0) return null;
     const leads_on = !this.press_ && this.points.length < this.most;
-    return { points: this.points, corners: this.corners_, pointer: leads_on ? this.pointer_ : null, closable: false, area: false };
+    return { points: this.points, corners: this.corners_, pointer: leads_on ? this.pointer : null, closable: false, area: false };
   }
 
   down(sample: PointerSample): void {
@@ -61,33 +60,15 @@ export class LineTool extends OutlineTool implements Tool {
     if (press) this.take_back(press.points);
   }
 
-  hover(sample: PointerSample | null): void {
-    this.pointer_ = sample ? [sample.x, sample.y] : null;
-    if (this.points.length > 0) this.host.outline_changed();
-  }
-
-  key(key: string): boolean {
-    if (this.points.length === 0) return false;
-    if (key === "Escape") this.give_up();
-    else if (key === "Backspace" || key === "Delete") this.take_back(this.points.length - 1);
-    else if (key === "Enter") this.finish();
-    else return false;
-    return true;
-  }
-
   protected override give_up(): void {
     this.press_ = null;
     this.corners_ = [];
     super.give_up();
   }
 
-  private take_back(points: number): void {
-    if (points < 1) {
-      this.give_up();
-      return;
-    }
-    this.points.length = Math.min(points, this.points.length);
-    this.corners_ = this.corners_.filter((corner) => this.points.some(([x, y]) => x === corner[0] && y === corner[1]));
-    this.host.outline_changed();
+  protected override take_back(points: number): void {
+    const left = this.points.slice(0, points);
+    this.corners_ = this.corners_.filter((corner) => left.some(([x, y]) => x === corner[0] && y === corner[1]));
+    super.take_back(points);
   }
 }

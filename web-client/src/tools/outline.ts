@@ -117,20 +117,51 @@ export class LassoTool extends OutlineTool implements Tool {
   }
 }
 
+/** Of one that is pressed place by place, to which the pointer leads on. */
+export abstract class PlacesTool extends OutlineTool {
+  protected pointer: Point | null = null;
+
+  hover(sample: PointerSample | null): void {
+    this.pointer = sample ? [sample.x, sample.y] : null;
+    if (this.points.length > 0) this.host.outline_changed();
+  }
+
+  key(key: string): boolean {
+    if (this.points.length === 0) return false;
+    if (key === "Escape") this.give_up();
+    else if (key === "Backspace" || key === "Delete") this.take_back(this.points.length - 1);
+    else if (key === "Enter") this.enter();
+    else return false;
+    return true;
+  }
+
+  protected enter(): void {
+    this.finish();
+  }
+  /** To so many places. */
+  protected take_back(points: number): void {
+    if (points < 1) {
+      this.give_up();
+      return;
+    }
+    this.points.length = Math.min(points, this.points.length);
+    this.host.outline_changed();
+  }
+}
+
 /** A press sets a corner; one on the first corner, a second one on the last, or Enter closes. */
-export class PolygonTool extends OutlineTool implements Tool {
+export class PolygonTool extends PlacesTool implements Tool {
   readonly name = "polygon";
-  private pointer_: Point | null = null;
   private added_ = false; // by the press that is under way
 
   override get outline(): Outline | null {
     if (this.points.length === 0) return null;
-    return { points: this.points, corners: this.points, pointer: this.pointer_, closable: this.points.length >= 3, area: true };
+    return { points: this.points, corners: this.points, pointer: this.pointer, closable: this.points.length >= 3, area: true };
   }
 
   down(sample: PointerSample): void {
     this.added_ = false;
-    this.pointer_ = [sample.x, sample.y];
+    this.pointer = [sample.x, sample.y];
     if (this.points.length === 0) {
       this.added_ = this.begin(sample);
       return;
@@ -154,31 +185,11 @@ export class PolygonTool extends OutlineTool implements Tool {
 
   /** A second finger came: its first one's press was none. */
   cancel(): void {
-    if (this.added_) this.take_back();
+    if (this.added_) this.take_back(this.points.length - 1);
     this.added_ = false;
   }
 
-  hover(sample: PointerSample | null): void {
-    this.pointer_ = sample ? [sample.x, sample.y] : null;
-    if (this.points.length > 0) this.host.outline_changed();
-  }
-
-  key(key: string): boolean {
-    if (this.points.length === 0) return false;
-    if (key === "Escape") this.give_up();
-    else if (key === "Backspace" || key === "Delete") this.take_back();
-    else if (key === "Enter") {
-      if (this.points.length >= 3) this.finish();
-    } else return false;
-    return true;
-  }
-
-  private take_back(): void {
-    if (this.points.length <= 1) {
-      this.give_up();
-      return;
-    }
-    this.points.pop();
-    this.host.outline_changed();
+  protected override enter(): void {
+    if (this.points.length >= 3) this.finish();
   }
 }
