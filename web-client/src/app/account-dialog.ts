@@ -12,7 +12,7 @@ import { ask } from "./dialog";
 import { password_words } from "./entry";
 import { icon } from "./icons";
 import { password_field, password_styles } from "./password-field";
-import { choices_styles, shared_styles } from "./styles";
+import { chip_styles, choices_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 import { told_date, told_time } from "./times";
 
@@ -38,6 +38,7 @@ export class StrataAccountDialog extends LitElement {
 
   static override styles = [
     shared_styles,
+    chip_styles,
     choices_styles,
     password_styles,
     css`
@@ -91,15 +92,6 @@ export class StrataAccountDialog extends LitElement {
       }
       li .hint {
         display: block;
-      }
-      .chip {
-        padding: 1px 8px;
-        border-radius: 99px;
-        background: var(--calm-soft);
-        color: var(--calm);
-        font-size: 0.76rem;
-        font-weight: 600;
-        white-space: nowrap;
       }
       .done {
         color: var(--calm);

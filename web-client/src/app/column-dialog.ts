@@ -12,7 +12,7 @@ import type { StrataDialog } from "./dialog";
 import "./labels-field";
 import type { StrataLabelsField } from "./labels-field";
 import type { ModelSession } from "./model-session";
-import { shared_styles } from "./styles";
+import { form_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 import { visibility_choice } from "./visibility";
 
@@ -37,11 +37,8 @@ export class StrataColumnDialog extends LitElement {
 
   static override styles = [
     shared_styles,
+    form_styles,
     css`
-      form {
-        display: grid;
-        gap: 14px;
-      }
       .three {
         display: grid;
         grid-template-columns: repeat(3, minmax(0, 1fr));

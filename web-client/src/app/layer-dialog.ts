@@ -32,7 +32,7 @@ import { number_input } from "./number-input";
 import { radio_group } from "./radio-group";
 import "./shape-fields";
 import type { StrataShapeFields } from "./shape-fields";
-import { shared_styles } from "./styles";
+import { form_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 import { visibility_choice } from "./visibility";
 
@@ -74,11 +74,8 @@ export class StrataLayerDialog extends LitElement {
 
   static override styles = [
     shared_styles,
+    form_styles,
     css`
-      form {
-        display: grid;
-        gap: 16px;
-      }
       .kinds {
         display: grid;
         grid-template-columns: repeat(2, 1fr);

@@ -19,7 +19,7 @@ import { notices } from "./notices";
 import { number_input } from "./number-input";
 import { radio_group } from "./radio-group";
 import { Sending, type Begin } from "./sending";
-import { number_field_styles, shared_styles } from "./styles";
+import { files_styles, form_styles, number_field_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 import "./value-picker";
 
@@ -57,12 +57,10 @@ export class StrataMapDialog extends LitElement {
 
   static override styles = [
     shared_styles,
+    files_styles,
+    form_styles,
     number_field_styles,
     css`
-      form {
-        display: grid;
-        gap: 14px;
-      }
       .pair {
         display: grid;
         grid-template-columns: repeat(auto-fit, minmax(140px, 1fr));
@@ -72,22 +70,8 @@ export class StrataMapDialog extends LitElement {
         display: grid;
         gap: 6px;
       }
-      .found {
-        padding: 9px 12px;
-        border-radius: var(--radius-small);
-        background: var(--calm-soft);
-        font-size: 0.9rem;
-      }
       .short {
         width: 110px;
-      }
-      textarea {
-        font: 0.95rem var(--mono);
-      }
-      progress {
-        width: 100%;
-        height: 6px;
-        accent-color: var(--accent);
       }
     `,
   ];

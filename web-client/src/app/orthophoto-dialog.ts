@@ -1,6 +1,6 @@
 // <strata-orthophoto-dialog>: makes a look of a picture that was taken along an axis.
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { name_of_file } from "../core/api";
 import type { MapContents } from "../core/types";
@@ -10,7 +10,7 @@ import { direction_field, found_line, progress_line, world_field } from "./map-p
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { Sending } from "./sending";
-import { shared_styles } from "./styles";
+import { files_styles, form_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 
 const words = texts.orthophoto;
@@ -27,26 +27,8 @@ export class StrataOrthophotoDialog extends LitElement {
 
   static override styles = [
     shared_styles,
-    css`
-      form {
-        display: grid;
-        gap: 14px;
-      }
-      .found {
-        padding: 9px 12px;
-        border-radius: var(--radius-small);
-        background: var(--calm-soft);
-        font-size: 0.9rem;
-      }
-      textarea {
-        font: 0.95rem var(--mono);
-      }
-      progress {
-        width: 100%;
-        height: 6px;
-        accent-color: var(--accent);
-      }
-    `,
+    files_styles,
+    form_styles,
   ];
 
   override render(): TemplateResult {

@@ -12,7 +12,7 @@ import { ask } from "./dialog";
 import { icon } from "./icons";
 import "./menu";
 import "./project-roles-dialog";
-import { shared_styles } from "./styles";
+import { chip_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 import { told_time } from "./times";
 
@@ -38,6 +38,7 @@ export class StrataPeopleDialog extends LitElement {
 
   static override styles = [
     shared_styles,
+    chip_styles,
     css`
       .bar {
         position: sticky;
@@ -127,15 +128,6 @@ export class StrataPeopleDialog extends LitElement {
         white-space: nowrap;
         font-size: 0.86rem;
         color: var(--ink-soft);
-      }
-      .chip {
-        padding: 1px 8px;
-        border-radius: 99px;
-        background: var(--calm-soft);
-        color: var(--calm);
-        font-size: 0.76rem;
-        font-weight: 600;
-        white-space: nowrap;
       }
       .chip.invited {
         background: var(--warn-soft);

@@ -17,7 +17,7 @@ import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
 import type { RecordClaim } from "./record-editors";
-import { shared_styles } from "./styles";
+import { form_styles, shared_styles } from "./styles";
 import { styled } from "./styled";
 import { texts } from "./texts";
 
@@ -47,11 +47,8 @@ export class StrataRecordDialog extends LitElement {
 
   static override styles = [
     shared_styles,
+    form_styles,
     css`
-      form {
-        display: grid;
-        gap: 14px;
-      }
       .facts {
         display: flex;
         align-items: center;

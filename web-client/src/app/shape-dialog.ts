@@ -7,7 +7,7 @@ import { in_square, kShapeSide, likely_part, to_shape, type ShapePart } from "..
 import "./dialog";
 import type { ModelSession } from "./model-session";
 import { radio_group } from "./radio-group";
-import { shared_styles } from "./styles";
+import { form_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 
 const kParts: readonly ShapePart[] = ["opaque", "light", "dark"];
@@ -26,11 +26,8 @@ export class StrataShapeDialog extends LitElement {
 
   static override styles = [
     shared_styles,
+    form_styles,
     css`
-      form {
-        display: grid;
-        gap: 16px;
-      }
       canvas {
         justify-self: center;
         width: 160px;

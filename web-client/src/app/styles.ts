@@ -277,6 +277,14 @@ export const shared_styles = css`
   }
 `;
 
+/** Fields of a dialog, one below the other. */
+export const form_styles = css`
+  form {
+    display: grid;
+    gap: 14px;
+  }
+`;
+
 /** Fields of a dialog, two beside each other. */
 export const choices_styles = css`
   .choices {
@@ -306,5 +314,36 @@ export const number_field_styles = css`
     color: var(--ink-soft);
     font-size: 0.85rem;
     pointer-events: none;
+  }
+`;
+
+/** A word or two about what stands beside it. */
+export const chip_styles = css`
+  .chip {
+    padding: 1px 8px;
+    border-radius: 99px;
+    background: var(--calm-soft);
+    color: var(--calm);
+    font-size: 0.76rem;
+    font-weight: 600;
+    white-space: nowrap;
+  }
+`;
+
+/** A dialog that sends files: what they hold, the numbers of their place, how far it is. */
+export const files_styles = css`
+  .found {
+    padding: 9px 12px;
+    border-radius: var(--radius-small);
+    background: var(--calm-soft);
+    font-size: 0.9rem;
+  }
+  textarea {
+    font: 0.95rem var(--mono);
+  }
+  progress {
+    width: 100%;
+    height: 6px;
+    accent-color: var(--accent);
   }
 `;

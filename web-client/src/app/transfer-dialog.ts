@@ -12,7 +12,7 @@ import { layer_chip } from "./legend";
 import type { ModelSession } from "./model-session";
 import { number_input } from "./number-input";
 import { other_models } from "./shape-kinds";
-import { shared_styles } from "./styles";
+import { form_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 
 const words = texts.transfer;
@@ -41,11 +41,8 @@ export class StrataTransferDialog extends LitElement {
 
   static override styles = [
     shared_styles,
+    form_styles,
     css`
-      form {
-        display: grid;
-        gap: 16px;
-      }
       .layers {
         display: grid;
         gap: 4px;

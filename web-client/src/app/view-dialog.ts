@@ -9,7 +9,7 @@ import "./dialog";
 import type { StrataDialog } from "./dialog";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
-import { shared_styles } from "./styles";
+import { form_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 
 const words = texts.kept_views;
@@ -30,11 +30,8 @@ export class StrataViewDialog extends LitElement {
 
   static override styles = [
     shared_styles,
+    form_styles,
     css`
-      form {
-        display: grid;
-        gap: 14px;
-      }
       textarea {
         min-height: 96px;
       }

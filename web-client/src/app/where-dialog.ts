@@ -12,7 +12,7 @@ import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { radio_group } from "./radio-group";
-import { shared_styles } from "./styles";
+import { form_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 import "./value-picker";
 
@@ -31,11 +31,8 @@ export class StrataWhereDialog extends LitElement {
 
   static override styles = [
     shared_styles,
+    form_styles,
     css`
-      form {
-        display: grid;
-        gap: 14px;
-      }
       dl {
         display: grid;
         grid-template-columns: minmax(0, 2fr) minmax(0, 3fr);
