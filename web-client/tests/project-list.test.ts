@@ -22,8 +22,9 @@ describe("projects to choose among", () => {
     expect(listed([project("default")], [])).toEqual(["default"]);
   });
 
-  it("tell whether one of them surely stands beside others", () => {
-    expect(is_one_of_several("villa", [project("default"), project("villa")])).toBe(false); // which may be empty
+  it("tell whether one of them stands beside others", () => {
+    expect(is_one_of_several("villa", [project("default"), project("villa")])).toBe(true);
+    expect(is_one_of_several("gone", [project("default"), project("villa")])).toBe(false);
     expect(is_one_of_several("default", [project("default"), project("villa")])).toBe(true);
     expect(is_one_of_several("villa", [project("default"), project("villa"), project("site")])).toBe(true);
     expect(is_one_of_several("default", [project("default")])).toBe(false);

@@ -93,6 +93,17 @@ function screens_of({ page }, w, site) {
       await page.locator("strata-thumbnail canvas.drawn").first().waitFor();
       await page.getByRole("combobox", exact(w.home.into)).waitFor();
     }, keyboard: true },
+    { name: "new project", start: () => open(button(w.projects.new)), end: close_dialog, keyboard: true },
+    { name: "menu of a project", start: async () => {
+      await page.getByRole("listitem").filter({ hasText: kOtherProject }).hover();
+      await button(w.home.options(kOtherProject)).click();
+    }, end: escape },
+    { name: "project", start: from_menu(w.home.options(kOtherProject), w.projects.describe), end: close_dialog },
+    { name: "delete a project", start: async () => {
+      await from_menu(w.home.options(kOtherProject), w.layers.delete)();
+      await page.getByText(w.projects.delete_lead).waitFor();
+    }, end: close_dialog },
+    { name: "delete a project with models", start: from_menu(w.home.options("Demo"), w.layers.delete), end: close_dialog },
     { name: "empty project", start: async () => {
       await page.getByRole("link", { name: kOtherProject }).click();
       await page.getByRole("heading", exact(kOtherProject)).waitFor();

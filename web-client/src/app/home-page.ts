@@ -6,9 +6,10 @@ import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../core/api";
 import { format_area, format_size, metres_per } from "../core/measure";
 import type { Project } from "../core/protocol.gen";
-import type { Me, Model } from "../core/types";
+import { may_administer, type Me, type Model } from "../core/types";
 import { ask_account } from "./account-menu";
 import "./blank";
+import { ask_to_delete_project } from "./delete-project-dialog";
 import { ask } from "./dialog";
 import { icon, logo } from "./icons";
 import type { ImportEntry, Imports } from "./imports";
@@ -16,11 +17,12 @@ import { has_keyboard } from "./keyboard";
 import "./menu";
 import { notices } from "./notices";
 import "./project-card";
+import { ask_project } from "./project-dialog";
 import { kDefaultProject, list_projects, type ListedProject } from "./project-list";
 import { follow, path_of_model, path_of_project } from "./routes";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
-import { home_styles } from "./home-styles";
+import { card_styles, home_styles } from "./home-styles";
 import { texts } from "./texts";
 import "./thumbnail";
 
@@ -49,7 +51,7 @@ export class StrataHomePage extends LitElement {
   @query("input[type=file]") private file_input_!: HTMLInputElement;
   private unsubscribe_: (() => void) | null = null;
 
-  static override styles = [shared_styles, home_styles];
+  static override styles = [shared_styles, card_styles, home_styles];
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -72,17 +74,28 @@ export class StrataHomePage extends LitElement {
     if (changed.has("project") && changed.get("project") !== undefined && has_keyboard() === null) this.heading_?.focus({ preventScroll: true });
   }
 
-  /** The project whose page this is; null: there is none of that name, or none beside it. */
+  /** The project whose page this is; null: there is none of that name. */
   private get shown(): Project | null {
-    const found = this.projects.find(({ slug }) => slug === this.project) ?? null;
-    return this.has_several || (this.models_ && this.listed[0]?.project !== found) ? found : null;
+    return this.projects.find(({ slug }) => slug === this.project) ?? null;
+  }
+  /** The one that is looked at, also where it is the only one. */
+  private get about(): ListedProject | null {
+    const { shown, listed } = this;
+    if (!this.models_) return null;
+    if (shown) return { project: shown, models: this.models };
+    return this.project === null && listed.length === 1 ? listed[0]! : null;
+  }
+  /** There is something else than the one that is shown. */
+  private get leads_up(): boolean {
+    const { shown } = this;
+    return this.is_missing || (shown !== null && (this.has_several || (this.models_ !== null && this.listed[0]?.project !== shown)));
   }
   /** There are several to choose among. Before it is known what is in them: surely. */
   private get has_several(): boolean {
     return this.models_ ? this.listed.length > 1 : this.projects.filter(({ slug }) => slug !== kDefaultProject).length > 1;
   }
   private get is_gallery(): boolean {
-    return this.project === null && this.has_several && this.models_?.length !== 0;
+    return this.project === null && this.has_several && (this.models_?.length !== 0 || this.can_administer);
   }
   private get is_missing(): boolean {
     return this.project !== null && !this.projects.some(({ slug }) => slug === this.project);
@@ -97,6 +110,11 @@ export class StrataHomePage extends LitElement {
 
   private get can_curate(): boolean {
     return this.into !== null;
+  }
+
+  /** Who may make projects may change and delete all of them. */
+  private get can_administer(): boolean {
+    return may_administer(this.me.role);
   }
 
   private async load(): Promise<void> {
@@ -123,7 +141,7 @@ export class StrataHomePage extends LitElement {
               <button class="link" @click=${() => ask_account(this, "account")}>${texts.account.no_password}</button>
               ${texts.account.no_password_why}
             </p>`}
-        ${this.shown || this.is_missing
+        ${this.leads_up
           ? html`<a class="up" href="/" @click=${follow}>${icon("back")}${texts.home.all_projects}</a>`
           : nothing}
         <div class="title">
@@ -134,6 +152,10 @@ export class StrataHomePage extends LitElement {
             ? html`<button class="primary" @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
                 <input type="file" accept=".ply,.obj,.stl,.gltf,.glb,.zip,.mtl,.bin,.png,.jpg,.jpeg" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
             : nothing}
+          ${this.project === null && this.can_administer
+            ? html`<button @click=${() => void this.make_project()}>${icon("plus")}${texts.projects.new}</button>`
+            : nothing}
+          ${this.about ? this.project_menu(this.about) : nothing}
         </div>
         ${this.shown?.description ? html`<p class="description">${this.shown.description}</p>` : nothing}
         ${this.imports.entries.length > 0
@@ -188,6 +210,7 @@ export class StrataHomePage extends LitElement {
               <a href=${path_of_project(listed.project.slug)} @click=${follow}>
                 <strata-project-card .api=${this.api} .listed=${listed}></strata-project-card>
               </a>
+              ${this.project_menu(listed, "options")}
             </li>`,
         )}
       </ul>`;
@@ -211,6 +234,18 @@ export class StrataHomePage extends LitElement {
         (model) => this.card(model),
       )}
     </ul>`;
+  }
+
+  private project_menu(listed: ListedProject, place = ""): TemplateResult | typeof nothing {
+    if (!this.can_administer) return nothing;
+    const { project } = listed;
+    return html`<strata-menu class=${place} label=${texts.home.options(project.name)} .quiet=${false}>
+      <button class="quiet" role="menuitem" @click=${() => void this.describe_project(project)}>${icon("edit")}${texts.projects.describe}</button>
+      ${project.slug === kDefaultProject
+        ? nothing
+        : html`<hr />
+            <button class="quiet" role="menuitem" @click=${() => void this.delete_project(listed)}>${icon("trash")}${texts.layers.delete}</button>`}
+    </strata-menu>`;
   }
 
   private card(model: Model): TemplateResult {
@@ -282,6 +317,28 @@ export class StrataHomePage extends LitElement {
     const files = [...(this.file_input_.files ?? [])];
     this.file_input_.value = "";
     this.dispatchEvent(new CustomEvent<File[]>("import-files", { detail: files }));
+  }
+
+  /** `next`: where to go once the page knows of it. */
+  private projects_changed(next: string | null = null): void {
+    this.dispatchEvent(new CustomEvent("projects-changed", { detail: next }));
+  }
+
+  private async make_project(): Promise<void> {
+    const made = await ask_project(this.api, null);
+    if (!made) return;
+    notices.show("success", texts.projects.made(made.name), texts.projects.made_next);
+    this.projects_changed(path_of_project(made.slug));
+  }
+
+  private async describe_project(project: Project): Promise<void> {
+    if (await ask_project(this.api, project)) this.projects_changed();
+  }
+
+  private async delete_project(listed: ListedProject): Promise<void> {
+    if (!(await ask_to_delete_project(this.api, listed))) return;
+    notices.show("success", texts.home.deleted(listed.project.name));
+    this.projects_changed("/");
   }
 
   private async delete_model(model: Model): Promise<void> {

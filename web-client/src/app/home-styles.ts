@@ -1,5 +1,21 @@
 import { css } from "lit";
 
+/** What stands below a card's picture. */
+export const card_styles = css`
+  .about {
+    display: grid;
+    gap: 2px;
+    padding: 13px 16px 15px;
+  }
+  .about b {
+    font: 600 1.08rem/1.3 var(--serif);
+  }
+  .about .faint {
+    color: var(--ink-soft);
+    font-size: 0.86rem;
+  }
+`;
+
 export const home_styles = css`
   :host {
     display: block;
@@ -76,8 +92,12 @@ export const home_styles = css`
     overflow-wrap: anywhere;
   }
   .title button,
+  .title strata-menu,
   .into {
     align-self: center;
+  }
+  .title strata-menu {
+    display: flex;
   }
   .into {
     display: flex;
@@ -129,18 +149,6 @@ export const home_styles = css`
   li > a:hover {
     border-color: var(--line-strong);
     box-shadow: var(--shadow);
-  }
-  .about {
-    display: grid;
-    gap: 2px;
-    padding: 13px 16px 15px;
-  }
-  .about b {
-    font: 600 1.08rem/1.3 var(--serif);
-  }
-  .about .faint {
-    color: var(--ink-soft);
-    font-size: 0.86rem;
   }
   .chip {
     justify-self: start;

@@ -4,6 +4,7 @@ import { css, html, LitElement, nothing, type PropertyValues, type TemplateResul
 import { customElement, property, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { ApiError, type Api } from "../core/api";
+import { card_styles } from "./home-styles";
 import { logo } from "./icons";
 import type { ListedProject } from "./project-list";
 import { shared_styles } from "./styles";
@@ -25,6 +26,7 @@ export class StrataProjectCard extends LitElement {
 
   static override styles = [
     shared_styles,
+    card_styles,
     css`
       :host {
         display: block;
@@ -40,18 +42,8 @@ export class StrataProjectCard extends LitElement {
         height: 56px;
         opacity: 0.4;
       }
-      .about {
-        display: grid;
-        gap: 2px;
-        padding: 13px 16px 15px;
-      }
-      b {
-        font: 600 1.08rem/1.3 var(--serif);
+      .about b {
         overflow-wrap: anywhere;
-      }
-      .faint {
-        color: var(--ink-soft);
-        font-size: 0.86rem;
       }
       p {
         display: -webkit-box;

@@ -24,6 +24,6 @@ export function list_projects(projects: readonly Project[], models: readonly Mod
     .sort((a, b) => Number(a.models.length === 0) - Number(b.models.length === 0) || compare(a.project.name, b.project.name));
 }
 
-/** Whether a project that has models is listed beside others, as far as that can be told without asking what else there is. */
+/** Whether the project has a page of its own to go home to from its models: there are others, which may be empty. */
 export const is_one_of_several = (slug: string, projects: readonly Project[]): boolean =>
-  projects.filter((project) => project.slug === slug || project.slug !== kDefaultProject).length > 1;
+  projects.length > 1 && projects.some((project) => project.slug === slug);

@@ -128,6 +128,14 @@ export class StrataApp extends LitElement {
     }
   };
 
+  /** `next`: where what was changed is seen. It is gone to with nothing to come back to from there where the place itself is gone. */
+  private async take_projects(next: string | null): Promise<void> {
+    await this.refresh_me();
+    if (next === null || next === path_now()) return;
+    if (next === "/") replace_address(next);
+    else navigate(next);
+  }
+
   private readonly signed_out = (): void => {
     this.session_ = "signed-out";
     this.dialog_ = null;
@@ -198,6 +206,7 @@ export class StrataApp extends LitElement {
           @account=${this.on_account}
           @signed-out=${this.signed_out}
           @choose-project=${({ detail }: CustomEvent<string>) => (this.chosen_project_ = detail)}
+          @projects-changed=${({ detail }: CustomEvent<string | null>) => void this.take_projects(detail)}
           @import-files=${(event: CustomEvent<File[]>) => void this.import_files(without_folders(event.detail))}
         ></strata-home-page>`;
   }

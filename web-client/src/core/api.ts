@@ -164,6 +164,21 @@ export class Api {
   async projects(): Promise<wire.Project[]> {
     return (await this.json<wire.ProjectList>("GET", "/projects?limit=1000")).projects;
   }
+  async project(project: Id): Promise<Versioned<wire.Project>> {
+    return this.versioned("GET", project_path(project));
+  }
+  /** `key`: the same for each attempt at one project. */
+  async create_project(project: { name: string; description: string }, key: string): Promise<wire.Project> {
+    return this.parsed(await this.request("POST", "/projects", project, { "Idempotency-Key": key }));
+  }
+  async change_project(project: Id, change: wire.ProjectPatch, etag: string): Promise<wire.Project> {
+    return (await this.versioned<wire.Project>("PATCH", project_path(project), change, etag)).value;
+  }
+  /** Refused while it has models or tables. */
+  async delete_project(project: Id): Promise<void> {
+    const { etag } = await this.project(project);
+    await this.request("DELETE", project_path(project), undefined, { "If-Match": etag });
+  }
   async members(project: string): Promise<wire.Member[]> {
     return (await this.json<wire.MemberList>("GET", `/projects/${encodeURIComponent(project)}/members?limit=1000`)).members;
   }
@@ -341,6 +356,11 @@ export class Api {
   }
   async table(table: Id): Promise<wire.Table> {
     return this.json("GET", table_path(table));
+  }
+  /** With its records and their history. Refused while a layer, or a column of another table, names it. */
+  async delete_table(table: Id): Promise<void> {
+    const { etag } = await this.versioned<wire.Table>("GET", table_path(table));
+    await this.request("DELETE", table_path(table), undefined, { "If-Match": etag });
   }
   async create_column(table: Id, column: wire.ColumnCreate): Promise<wire.ColumnChanged> {
     return this.json("POST", `${table_path(table)}/columns`, column);

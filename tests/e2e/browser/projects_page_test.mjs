@@ -1,0 +1,226 @@
+// Projects on the page: administrators make, rename and delete them, by keyboard, mouse and touch; what would be lost is said before; others are offered nothing.
+import assert from "node:assert/strict";
+import { mkdirSync } from "node:fs";
+import { join } from "node:path";
+import { active } from "../support/accessible.mjs";
+import { Browser } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+const output = process.env.STRATA_TEST_OUTPUT;
+if (output) mkdirSync(output, { recursive: true });
+
+const ada = await Browser.open(); // an administrator at a desk
+const pia = await Browser.open({ ...kPhone, colorScheme: "dark" }); // another, with a phone
+const nora = await Browser.open(); // who may not
+const everybody = { ada, pia, nora };
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const shoot = async ({ page }, name) => {
+  if (output) await page.screenshot({ path: join(output, `projects_${name}.png`) });
+};
+const dialog = ({ page }) => page.locator("dialog[open]");
+const inside = ({ page }) => page.locator("strata-dialog"); // what is slotted is no part of the dialog element itself
+const button = ({ page }, name) => page.getByRole("button", { name, exact: true });
+const box = ({ page }, name) => page.getByRole("textbox", { name, exact: true });
+const heading = ({ page }, name) => page.getByRole("heading", { name, exact: true }).waitFor();
+const cards = ({ page }) => page.locator("strata-project-card b").allInnerTexts();
+const from_menu = async (who, project, command) => {
+  await button(who, `Options for ${project}`).click();
+  await who.page.getByRole("menuitem", { name: command, exact: true }).click();
+  await dialog(who).waitFor();
+};
+const is_closed = (who) => wait_for(async () => (await dialog(who).count()) === 0, "the dialog to close");
+const status = async ({ token }, method, path, body) =>
+  (await fetch(`${server.url}/api/v1${path}`, {
+    method, headers: { Authorization: `Bearer ${token}`, ...(body ? { "Content-Type": "application/json" } : {}) }, ...(body ? { body: JSON.stringify(body) } : {}),
+  })).status;
+
+/** 100 mm wide. */
+const kSquare = ["ply", "format ascii 1.0", "element vertex 4", "property float x", "property float y", "property float z", "element face 2",
+  "property list uchar int vertex_indices", "end_header", "0 0 0", "100 0 0", "100 100 0", "0 100 0", "3 0 1 2", "3 0 2 3", ""].join("\n");
+
+try {
+  await server.start();
+  const [pot] = (await server.json("GET", "/models")).models;
+  const [curator, annotator] = [await server.add_person("carl", "curator"), await server.add_person("nora", "annotator")];
+  await ada.sign_in(server, await server.add_person("ada", "administrator"));
+  await pia.sign_in(server, await server.add_person("pia", "administrator"));
+  await nora.sign_in(server, annotator);
+
+  say("from a model home is its project, also where the only other one is that of every site");
+  await ada.page.goto(`${server.url}/models/${pot.id}`);
+  await ada.drawn();
+  await ada.page.getByRole("link", { name: "All models" }).click();
+  await heading(ada, "Demo");
+  await ada.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
+  assert.equal(new URL(ada.page.url()).pathname, `/projects/${pot.project}`);
+  assert.equal(await ada.page.getByRole("link", { name: "All projects" }).count(), 0, "there is nothing to go up to");
+
+  say("an administrator makes a project by keyboard, and is led to it");
+  await ada.page.goto(server.url);
+  await heading(ada, "Models");
+  await button(ada, "New project").focus();
+  await ada.page.keyboard.press("Enter");
+  await heading(ada, "New project");
+  await wait_for(async () => (await box(ada, "Name").evaluate((input) => input.getRootNode().activeElement === input)), "the name to have the keyboard");
+  await ada.page.keyboard.type("   ");
+  await ada.page.keyboard.press("Enter");
+  await ada.page.getByText("Give it a name.").waitFor();
+  await ada.page.keyboard.type("Villa Giulia");
+  await ada.page.keyboard.press("Tab");
+  await ada.page.keyboard.type("Frescoes of the east wing, campaign of 2026.");
+  await shoot(ada, "new_desk");
+  await button(ada, "Make the project").click();
+  await heading(ada, "Villa Giulia");
+  await is_closed(ada);
+  assert.equal(new URL(ada.page.url()).pathname, "/projects/villa-giulia");
+  await ada.page.getByText("Frescoes of the east wing").waitFor();
+  await heading(ada, "No models yet");
+  await ada.page.getByText("Who may work on it is said in the account menu").waitFor();
+  await shoot(ada, "made_desk");
+  assert.equal((await server.json("GET", "/projects/villa-giulia")).name, "Villa Giulia");
+
+  say("escape leaves everything as it is, and gives the keyboard back");
+  await ada.page.goto(server.url);
+  await heading(ada, "Projects");
+  await from_menu(ada, "Demo", "Rename and describe…");
+  await box(ada, "Name").fill("Something else");
+  await ada.page.keyboard.press("Escape");
+  await is_closed(ada);
+  await wait_for(async () => /Options for Demo/.test(await active(ada.page)), "the keyboard to be back at the menu");
+  assert.equal((await server.json("GET", `/projects/${pot.project}`)).name, "Demo");
+
+  say("the project that every site has can be named, not deleted");
+  await ada.page.goto(`${server.url}/projects/default`);
+  await heading(ada, "Default");
+  await button(ada, "Options for Default").click();
+  await ada.page.getByRole("menuitem", { name: "Rename and describe…" }).waitFor();
+  assert.equal(await ada.page.getByRole("menuitem", { name: "Delete…" }).count(), 0);
+  await ada.page.keyboard.press("Escape");
+
+  say("who changes a project that somebody else changed meanwhile is told, and then may; its address stays");
+  await ada.page.getByRole("link", { name: "All projects" }).click();
+  await heading(ada, "Projects");
+  assert.deepEqual(await cards(ada), ["Demo", "Villa Giulia"]);
+  await from_menu(ada, "Villa Giulia", "Rename and describe…");
+  await ada.page.getByText("Its address stays as it is, /projects/villa-giulia").waitFor();
+  await server.json("PATCH", "/projects/villa-giulia", { name: "Villa Julia" });
+  await box(ada, "Name").fill("Villa Giulia, Rome");
+  await button(ada, "Save").click();
+  await ada.page.getByText("it is called “Villa Julia” now").waitFor();
+  await shoot(ada, "changed_meanwhile");
+  await button(ada, "Save").click();
+  await is_closed(ada);
+  await wait_for(async () => (await cards(ada)).includes("Villa Giulia, Rome"), "the card to have the new name");
+  const renamed = await server.json("GET", "/projects/villa-giulia");
+  assert.deepEqual([renamed.name, renamed.description], ["Villa Giulia, Rome", "Frescoes of the east wing, campaign of 2026."]);
+  await shoot(ada, "gallery_desk");
+
+  say("with models it stays, and it is said what to do");
+  const started = await fetch(`${server.url}/api/v1/models?filename=square.ply&name=Threshold&unit=mm&project=villa-giulia`, {
+    method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" }, body: kSquare,
+  });
+  assert.equal(started.status, 202);
+  const { id: job } = await started.json();
+  await wait_for(async () => (await server.json("GET", `/jobs/${job}`)).state === "done", "the import");
+  await pia.page.goto(`${server.url}/projects/villa-giulia`);
+  await heading(pia, "Villa Giulia, Rome");
+  await pia.page.getByRole("link", { name: "Open Threshold" }).waitFor();
+  await from_menu(pia, "Villa Giulia, Rome", "Delete…");
+  await heading(pia, "“Villa Giulia, Rome” still has models");
+  await pia.page.getByText("Delete its model first").waitFor();
+  assert.equal(await inside(pia).getByRole("button", { name: "Delete", exact: true }).count(), 0);
+  await shoot(pia, "with_models_phone_dark");
+  await inside(pia).locator('button[slot="actions"]').tap();
+  await is_closed(pia);
+
+  say("with tables only, these are named, and its name is typed");
+  const [{ id: model }] = (await server.json("GET", "/models")).models.filter(({ name }) => name === "Threshold");
+  const finds = await server.json("POST", "/projects/villa-giulia/tables", { name: "Finds", columns: [{ name: "Name" }] });
+  await server.json("POST", `/tables/${finds.id}/records`, { values: { name: "Sherd" } });
+  await server.json("POST", "/projects/villa-giulia/tables", { name: "Units", columns: [{ name: "Find", kind: "relation", target: "finds" }] });
+  await server.request("DELETE", `/models/${model}`);
+  await pia.page.reload();
+  await heading(pia, "No models yet");
+  await from_menu(pia, "Villa Giulia, Rome", "Delete…");
+  await pia.page.getByText("Its 2 tables go with it").waitFor();
+  await inside(pia).getByText("1 record").waitFor();
+  const remove = inside(pia).getByRole("button", { name: "Delete", exact: true });
+  const typed = box(pia, "Type “Villa Giulia, Rome” to delete them");
+  for (const wrong of ["", "villa giulia, rome", "Villa Giulia"]) {
+    await typed.fill(wrong);
+    await typed.press("Enter");
+    assert.ok(await remove.isDisabled(), `deleted by “${wrong}”`);
+  }
+  assert.equal((await server.json("GET", "/projects/villa-giulia/tables")).total, 2);
+  await shoot(pia, "with_tables_phone_dark");
+  await typed.fill("Villa Giulia, Rome");
+  await remove.tap();
+  await heading(pia, "Models"); // of the only one that is left
+  assert.equal(new URL(pia.page.url()).pathname, "/");
+  await pia.page.getByText("“Villa Giulia, Rome” was deleted.").waitFor();
+  assert.equal(await status({ token: server.token }, "GET", "/projects/villa-giulia"), 404);
+  assert.equal(await status({ token: server.token }, "GET", `/tables/${finds.id}`), 404);
+  await shoot(pia, "deleted_phone_dark");
+
+  say("by touch: a project is made on a phone, and deleted while it is empty by one more tap");
+  await button(pia, "New project").tap();
+  await box(pia, "Name").fill("遺跡");
+  await button(pia, "Make the project").tap();
+  await heading(pia, "遺跡");
+  await shoot(pia, "empty_phone_dark");
+  await pia.page.getByRole("link", { name: "All projects" }).tap();
+  await heading(pia, "Projects");
+  await shoot(pia, "gallery_phone_dark");
+  await from_menu(pia, "遺跡", "Delete…");
+  await pia.page.getByText("Links to it lead nowhere").waitFor();
+  await shoot(pia, "delete_phone_dark");
+  await inside(pia).getByRole("button", { name: "Delete", exact: true }).tap();
+  await heading(pia, "Models");
+  await is_closed(pia);
+
+  say("who may not is offered none of it, and the server refuses them");
+  await server.json("POST", "/projects", { name: "Archive" });
+  for (const person of [annotator, curator]) {
+    await nora.sign_in(server, person);
+    await heading(nora, "Projects");
+    await wait_for(async () => (await cards(nora)).length === 2, "both projects");
+    assert.equal(await button(nora, "New project").count(), 0);
+    assert.equal(await nora.page.getByRole("button", { name: /^Options for/ }).count(), 0);
+    await nora.page.goto(`${server.url}/projects/archive`);
+    await heading(nora, "Archive");
+    assert.equal(await nora.page.getByRole("button", { name: /^Options for/ }).count(), 0);
+    assert.equal(await status(person, "POST", "/projects", { name: "Mine" }), 403);
+    assert.equal(await status(person, "PATCH", "/projects/archive", { name: "Mine" }), 403);
+    assert.equal(await status(person, "DELETE", "/projects/archive"), 403);
+  }
+  await shoot(nora, "curator_empty");
+
+  say("whose role changes while the dialog is open is told so there");
+  await ada.page.goto(server.url);
+  await heading(ada, "Projects");
+  await button(ada, "New project").click();
+  await box(ada, "Name").fill("Too late");
+  await server.json("PATCH", "/users/ada", { role: "viewer" });
+  await button(ada, "Make the project").click();
+  await inside(ada).getByRole("alert").filter({ hasText: /./ }).waitFor();
+  await shoot(ada, "refused_desk");
+  assert.deepEqual((await server.json("GET", "/projects")).projects.map(({ name }) => name).sort(), ["Archive", "Default", "Demo"]);
+
+  say("the end");
+  ada.assert_no_complaints(["412", "403", "401"]);
+  pia.assert_no_complaints(["409"]); // the table that another one names is tried first
+  nora.assert_no_complaints();
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
+  for (const [name, who] of Object.entries(everybody)) await shoot(who, `failed_${name}`).catch(() => {});
+  throw error;
+} finally {
+  for (const who of Object.values(everybody)) await who.close();
+  await server.remove();
+}

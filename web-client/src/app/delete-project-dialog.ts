@@ -1,0 +1,131 @@
+// <strata-delete-project-dialog>: what deleting a project takes along. With models it stays; with tables its name is typed first. Opened by ask_to_delete_project().
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { ApiError, type Api } from "../core/api";
+import { label_of } from "../core/cells";
+import type { Table } from "../core/protocol.gen";
+import "./dialog";
+import type { StrataDialog } from "./dialog";
+import type { ListedProject } from "./project-list";
+import { is_name_of, remove_project } from "./project-removal";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+const words = texts.projects;
+
+@customElement("strata-delete-project-dialog")
+class StrataDeleteProjectDialog extends LitElement {
+  @property({ attribute: false }) api!: Api;
+  @property({ attribute: false }) listed!: ListedProject;
+  answer: (is_deleted: boolean) => void = () => {};
+
+  @state() private tables_: readonly Table[] | null = null;
+  @state() private typed_ = "";
+  @state() private problem_ = "";
+  @state() private busy_ = false;
+  @query("strata-dialog") private dialog_!: StrataDialog;
+  private answered_ = false;
+
+  static override styles = [
+    shared_styles,
+    css`
+      ul {
+        max-height: 30vh;
+        margin: 0;
+        padding-left: 1.2em;
+        overflow: auto;
+      }
+      li {
+        overflow-wrap: anywhere;
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    if (this.listed.models.length === 0) void this.read();
+  }
+
+  private async read(): Promise<void> {
+    this.problem_ = "";
+    try {
+      this.tables_ = await this.api.tables(this.listed.project.slug);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.problem_ = error.message;
+    }
+  }
+
+  override render(): TemplateResult {
+    const { project, models } = this.listed;
+    const has_models = models.length > 0;
+    return html`<strata-dialog heading=${has_models ? words.kept_title(project.name) : words.delete_title(project.name)} @closed=${() => this.finish()}>
+      ${has_models ? html`<p>${words.kept_lead(models.length)}</p>` : this.consequences()}
+      <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
+      ${this.problem_ && !this.tables_ ? html`<div><button @click=${() => void this.read()}>${texts.try_again}</button></div>` : nothing}
+      <button slot="actions" @click=${() => this.dialog_.close()}>${has_models ? texts.close : texts.cancel}</button>
+      ${has_models
+        ? nothing
+        : html`<button slot="actions" class="danger" ?disabled=${this.busy_ || !this.is_confirmed} @click=${() => void this.delete_project()}>${texts.delete}</button>`}
+    </strata-dialog>`;
+  }
+
+  private consequences(): TemplateResult {
+    const { tables_: tables } = this;
+    if (!tables) return html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`;
+    if (tables.length === 0) return html`<p>${words.delete_lead}</p>`;
+    return html`<p>${words.delete_tables_lead(tables.length)}</p>
+      <ul>
+        ${tables.map((table) => html`<li>${label_of(table)} <span class="hint">${texts.tables.records(table.records)}</span></li>`)}
+      </ul>
+      <p>${words.delete_lead}</p>
+      <label class="field">
+        <span>${words.type_name(this.listed.project.name)}</span>
+        <input
+          type="text"
+          autocomplete="off"
+          spellcheck="false"
+          autofocus
+          @input=${(event: Event) => (this.typed_ = (event.target as HTMLInputElement).value)}
+          @keydown=${(event: KeyboardEvent) => event.key === "Enter" && void this.delete_project()}
+        />
+      </label>`;
+  }
+
+  private get is_confirmed(): boolean {
+    if (!this.tables_) return false;
+    return this.tables_.length === 0 || is_name_of(this.typed_, this.listed.project);
+  }
+
+  private async delete_project(): Promise<void> {
+    if (!this.tables_ || !this.is_confirmed || this.busy_) return;
+    this.busy_ = true;
+    this.problem_ = "";
+    try {
+      await remove_project(this.api, this.listed.project, this.tables_);
+      this.answered_ = true;
+      this.dialog_.close();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      await this.read(); // some of the tables may be gone
+      this.problem_ = error.message;
+    } finally {
+      this.busy_ = false;
+    }
+  }
+
+  private finish(): void {
+    this.answer(this.answered_);
+    this.remove();
+  }
+}
+
+/** Whether it was deleted. */
+export function ask_to_delete_project(api: Api, listed: ListedProject): Promise<boolean> {
+  return new Promise((resolve) => {
+    const element = new StrataDeleteProjectDialog();
+    Object.assign(element, { api, listed, answer: resolve });
+    document.body.append(element);
+  });
+}
