@@ -146,6 +146,7 @@ export class StrataHomePage extends LitElement {
           : nothing}
         <div class="title">
           <h1 tabindex="-1">${this.heading}</h1>
+          ${this.about ? this.project_menu(this.about) : nothing}
           <span class="hint grow">${this.counted}</span>
           ${this.project === null && this.curated.length > 1 ? this.project_choice(this.curated) : nothing}
           ${this.can_curate
@@ -155,7 +156,6 @@ export class StrataHomePage extends LitElement {
           ${this.project === null && this.can_administer
             ? html`<button @click=${() => void this.make_project()}>${icon("plus")}${texts.projects.new}</button>`
             : nothing}
-          ${this.about ? this.project_menu(this.about) : nothing}
         </div>
         ${this.shown?.description ? html`<p class="description">${this.shown.description}</p>` : nothing}
         ${this.imports.entries.length > 0
@@ -239,7 +239,7 @@ export class StrataHomePage extends LitElement {
   private project_menu(listed: ListedProject, place = ""): TemplateResult | typeof nothing {
     if (!this.can_administer) return nothing;
     const { project } = listed;
-    return html`<strata-menu class=${place} label=${texts.home.options(project.name)} .quiet=${false}>
+    return html`<strata-menu class=${place} label=${texts.home.options(project.name)} .quiet=${place === ""}>
       <button class="quiet" role="menuitem" @click=${() => void this.describe_project(project)}>${icon("edit")}${texts.projects.describe}</button>
       ${project.slug === kDefaultProject
         ? nothing
