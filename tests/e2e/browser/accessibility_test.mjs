@@ -467,7 +467,7 @@ try {
   await server.request("DELETE", `/models/${site.model}`);
   for (const [language, browser] of Object.entries(browsers)) {
     await browser.page.goto(server.url);
-    await browser.page.getByText(texts_of(language).home.empty_title).waitFor();
+    await browser.page.getByRole("heading", { name: texts_of(language).home.empty_title, exact: true }).waitFor();
     await check(language, browser, { name: "empty home", keyboard: true });
   }
 

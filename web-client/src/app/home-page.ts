@@ -213,20 +213,10 @@ export class StrataHomePage extends LitElement {
               ${this.project_menu(listed, "options")}
             </li>`,
         )}
-      </ul>`;
+        </ul>
+        ${this.models_.length === 0 ? this.nothing_yet() : nothing}`;
     }
-    if (this.models.length === 0) {
-      const in_none = this.projects.length === 0;
-      const words = texts.home;
-      return html`<div class="empty">
-        ${logo()}
-        <h2>${in_none ? words.no_projects : words.empty_title}</h2>
-        <p>${this.can_curate ? words.empty_lead : in_none ? words.empty_guest : words.empty_viewer}</p>
-        ${this.can_curate
-          ? html`<button class="primary" @click=${() => this.file_input_.click()}>${texts.home.choose_file}</button>`
-          : nothing}
-      </div>`;
-    }
+    if (this.models.length === 0) return this.nothing_yet();
     return html`<ul class="gallery">
       ${repeat(
         this.models,
@@ -234,6 +224,19 @@ export class StrataHomePage extends LitElement {
         (model) => this.card(model),
       )}
     </ul>`;
+  }
+
+  private nothing_yet(): TemplateResult {
+    const in_none = this.projects.length === 0;
+    const words = texts.home;
+    return html`<div class="empty">
+      ${logo()}
+      <h2>${in_none ? words.no_projects : words.empty_title}</h2>
+      <p>${this.can_curate ? words.empty_lead : in_none ? words.empty_guest : words.empty_viewer}</p>
+      ${this.can_curate
+        ? html`<button class="primary" @click=${() => this.file_input_.click()}>${texts.home.choose_file}</button>`
+        : nothing}
+    </div>`;
   }
 
   private project_menu(listed: ListedProject, place = ""): TemplateResult | typeof nothing {

@@ -98,6 +98,7 @@ export const home_styles = css`
   }
   .title strata-menu {
     display: flex;
+    margin-left: -8px;
   }
   .into {
     display: flex;
