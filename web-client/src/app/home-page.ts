@@ -202,17 +202,17 @@ export class StrataHomePage extends LitElement {
     if (this.is_missing) return html`<div class="empty">${logo()}<p>${texts.home.missing_lead}</p></div>`;
     if (this.is_gallery) {
       return html`<ul class="gallery projects">
-        ${repeat(
-          this.listed,
-          ({ project }) => project.id,
-          (listed) =>
-            html`<li>
-              <a href=${path_of_project(listed.project.slug)} @click=${follow}>
-                <strata-project-card .api=${this.api} .listed=${listed}></strata-project-card>
-              </a>
-              ${this.project_menu(listed, "options")}
-            </li>`,
-        )}
+          ${repeat(
+            this.listed,
+            ({ project }) => project.id,
+            (listed) =>
+              html`<li>
+                <a href=${path_of_project(listed.project.slug)} @click=${follow}>
+                  <strata-project-card .api=${this.api} .listed=${listed}></strata-project-card>
+                </a>
+                ${this.project_menu(listed, "options")}
+              </li>`,
+          )}
         </ul>
         ${this.models_.length === 0 ? this.nothing_yet() : nothing}`;
     }
