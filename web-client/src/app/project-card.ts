@@ -35,7 +35,7 @@ export class StrataProjectCard extends LitElement {
         display: grid;
         place-items: center;
         aspect-ratio: 4 / 3;
-        background: var(--stage);
+        background: var(--paper);
       }
       .no-picture .logo {
         width: 56px;
