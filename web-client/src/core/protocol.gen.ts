@@ -386,6 +386,68 @@ export interface View {
   version: number;
 }
 
+/** Language of a tour. BCP 47: a language, and what narrows it down. */
+export type TourLanguage = string;
+
+/** How one comes to a stop. */
+export type TourTransition = "cut" | "move";
+
+/** A few words by language. Keys are languages of the tour. */
+export type TourWords = Record<string, string>;
+
+/** A text by language. Plain text; keys are languages of the tour. */
+export type TourText = Record<string, string>;
+
+/** Column that the card of a record shows. */
+export interface TourColumn {
+  /** Its slug; in requests its id, too. */
+  column: string;
+  /** How it is called on the card; absent, as in the table. */
+  labels?: TourWords;
+}
+
+/** Records of a table to show at a stop. */
+export interface TourRecords {
+  /** Its slug; in requests its id, too. */
+  table: string;
+  /** In this order; records may be gone meanwhile. */
+  keys: number[];
+  /** In this order, of any record of the table that is looked at here. */
+  columns: TourColumn[];
+}
+
+/** Stop of a tour. */
+export interface TourStop {
+  /** Slug of the named view; absent: it is gone, and the stop is passed over. */
+  view?: string;
+  title: TourWords;
+  text: TourText;
+  attract_s: number;
+  transition: TourTransition;
+  transition_s: number;
+  /** Slugs of those that are offered for swiping, in order. */
+  layers: string[];
+  records: TourRecords[];
+}
+
+/** Tour of a model. Named views one after the other, with what is said of each. Layers, tables and columns that are gone, or not for who asks, are left out. */
+export interface Tour {
+  id: number;
+  /** Stays when the tour gets another name. */
+  slug: string;
+  name: string;
+  /** The first one is that of who chooses none. */
+  languages: TourLanguage[];
+  /** So long after the last touch the tour begins anew and plays by itself. */
+  idle_s: number;
+  stops: TourStop[];
+  /** Who made it; empty for kiosks. */
+  user: string;
+  /** UTC, RFC 3339. */
+  time: string;
+  version: number;
+}
+
 /** Unit of length. */
 export type Unit = "mm" | "cm" | "m";
 
@@ -1887,6 +1949,134 @@ export interface ViewPatch {
   looks?: LookShown[];
   /** Absent: museum. */
   light?: Light;
+}
+
+/** Tour in a list. */
+export interface TourEntry {
+  id: number;
+  slug: string;
+  name: string;
+  languages: TourLanguage[];
+  stop_count: number;
+  /** Who made it. */
+  user: string;
+  /** UTC, RFC 3339. */
+  time: string;
+  version: number;
+}
+
+/** Tours of a model, in the order in which they were made. */
+export interface TourList {
+  tours: TourEntry[];
+  total: number;
+}
+
+/** Stop of a tour. */
+export interface TourStopCreate {
+  /** A named view of the model: slug or id. */
+  view: string;
+  /** In the tour's first language at least. */
+  title: TourWords;
+  text?: TourText;
+  /** How long it is shown while the tour plays by itself. Default: 10. */
+  attract_s?: number;
+  /** Absent: `move`. */
+  transition?: TourTransition;
+  /** How long a `move` takes. Default: 2. */
+  transition_s?: number;
+  /** Offered for swiping, in this order: slugs or ids. None twice. */
+  layers?: string[];
+  /** Each of another table of the project. */
+  records?: TourRecords[];
+}
+
+/** A tour to keep. */
+export interface TourCreate {
+  name: string;
+  /** The first one is that of who chooses none; every stop has a title in it. None twice. */
+  languages: TourLanguage[];
+  /** So long after the last touch the tour begins anew and plays by itself. Default: 60. */
+  idle_s?: number;
+  stops: TourStopCreate[];
+}
+
+/** Changes to a tour. Stops are changed as a whole. Those that stay must fit the languages. */
+export interface TourPatch {
+  name?: string;
+  /** The first one is that of who chooses none; every stop has a title in it. None twice. */
+  languages?: TourLanguage[];
+  idle_s?: number;
+  stops?: TourStopCreate[];
+}
+
+/** Link for a screen that shows a tour. */
+export interface Kiosk {
+  id: number;
+  /** Where it stands. */
+  name: string;
+  /** Its slug. */
+  project: string;
+  /** Its slug. */
+  model: string;
+  model_name: string;
+  /** Its slug. */
+  tour: string;
+  tour_name: string;
+  /** Who made it. */
+  user: string;
+  /** UTC, RFC 3339. */
+  created: string;
+  /** Absent: never. */
+  expires?: string;
+  /** To a minute; absent: never. */
+  last_seen?: string;
+  /** Since when it is worthless; absent: it is not. */
+  revoked?: string;
+  /** It was asked to load the page anew, and has not done so yet. */
+  wants_reload: boolean;
+}
+
+/** Links for kiosks, in the order in which they were made. */
+export interface KioskList {
+  kiosks: Kiosk[];
+  total: number;
+}
+
+/** A link for a kiosk. */
+export interface KioskCreate {
+  /** Where it stands. */
+  name: string;
+  /** Until it expires; absent: never. */
+  days?: number;
+}
+
+/** The link, told this once. */
+export interface KioskMade {
+  /** Of the page, behind the server's address: `/kiosk/{secret}`. */
+  path: string;
+  kiosk: Kiosk;
+}
+
+/** The link of a kiosk. */
+export interface KioskLogin {
+  /** Its secret: what stands behind `/kiosk/`. */
+  link: string;
+}
+
+/** What a kiosk is told of itself. */
+export interface KioskSelf {
+  id: number;
+  /** Where it stands. */
+  name: string;
+  /** Its slug. */
+  project: string;
+  /** Its slug. */
+  model: string;
+  tour: Tour;
+  /** UTC, RFC 3339; absent: never. */
+  expires?: string;
+  /** true: load the page anew, and sign in with the link, which takes it back. */
+  wants_reload: boolean;
 }
 
 /** Tools of the site, by name. */

@@ -117,6 +117,22 @@ void read(const nlohmann::json& json, Recompute& value) {
 
 nlohmann::json to_json(const Recompute& value) { return name(value); }
 
+std::string_view name(TourTransition value) {
+  switch (value) {
+    case TourTransition::cut: return "cut";
+    case TourTransition::move: return "move";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, TourTransition& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "cut") value = TourTransition::cut;
+  if (text == "move") value = TourTransition::move;
+}
+
+nlohmann::json to_json(const TourTransition& value) { return name(value); }
+
 std::string_view name(Axis value) {
   switch (value) {
     case Axis::x: return "x";
@@ -753,6 +769,32 @@ nlohmann::json to_json(const LayerOverride& value) {
   write_optional_member(json, "opacity", value.opacity);
   write_optional_member(json, "palette", value.palette);
   write_optional_member(json, "highlight", value.highlight);
+  return json;
+}
+
+void read(const nlohmann::json& json, TourColumn& value) {
+  read_member(json, "column", value.column);
+  read_optional_member(json, "labels", value.labels);
+}
+
+nlohmann::json to_json(const TourColumn& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "column", value.column);
+  write_optional_member(json, "labels", value.labels);
+  return json;
+}
+
+void read(const nlohmann::json& json, TourRecords& value) {
+  read_member(json, "table", value.table);
+  read_member(json, "keys", value.keys);
+  read_member(json, "columns", value.columns);
+}
+
+nlohmann::json to_json(const TourRecords& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "table", value.table);
+  write_member(json, "keys", value.keys);
+  write_member(json, "columns", value.columns);
   return json;
 }
 
@@ -2181,6 +2223,84 @@ nlohmann::json to_json(const ViewPatch& value) {
 Result<void> check(const ViewPatch& value, const std::string& field) {
   if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
   return {};
+}
+
+void read(const nlohmann::json& json, TourStopCreate& value) {
+  read_member(json, "view", value.view);
+  read_member(json, "title", value.title);
+  read_optional_member(json, "text", value.text);
+  read_optional_member(json, "attract_s", value.attract_s);
+  read_optional_member(json, "transition", value.transition);
+  read_optional_member(json, "transition_s", value.transition_s);
+  read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "records", value.records);
+}
+
+nlohmann::json to_json(const TourStopCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "view", value.view);
+  write_member(json, "title", value.title);
+  write_optional_member(json, "text", value.text);
+  write_member(json, "attract_s", value.attract_s);
+  write_optional_member(json, "transition", value.transition);
+  write_member(json, "transition_s", value.transition_s);
+  write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "records", value.records);
+  return json;
+}
+
+void read(const nlohmann::json& json, TourCreate& value) {
+  read_member(json, "name", value.name);
+  read_member(json, "languages", value.languages);
+  read_optional_member(json, "idle_s", value.idle_s);
+  read_member(json, "stops", value.stops);
+}
+
+nlohmann::json to_json(const TourCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_member(json, "languages", value.languages);
+  write_member(json, "idle_s", value.idle_s);
+  write_member(json, "stops", value.stops);
+  return json;
+}
+
+void read(const nlohmann::json& json, TourPatch& value) {
+  read_optional_member(json, "name", value.name);
+  read_optional_member(json, "languages", value.languages);
+  read_optional_member(json, "idle_s", value.idle_s);
+  read_optional_member(json, "stops", value.stops);
+}
+
+nlohmann::json to_json(const TourPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "name", value.name);
+  write_optional_member(json, "languages", value.languages);
+  write_optional_member(json, "idle_s", value.idle_s);
+  write_optional_member(json, "stops", value.stops);
+  return json;
+}
+
+void read(const nlohmann::json& json, KioskCreate& value) {
+  read_member(json, "name", value.name);
+  read_optional_member(json, "days", value.days);
+}
+
+nlohmann::json to_json(const KioskCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_optional_member(json, "days", value.days);
+  return json;
+}
+
+void read(const nlohmann::json& json, KioskLogin& value) {
+  read_member(json, "link", value.link);
+}
+
+nlohmann::json to_json(const KioskLogin& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "link", value.link);
+  return json;
 }
 
 void read(const nlohmann::json& json, ToolPatch& value) {

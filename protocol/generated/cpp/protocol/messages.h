@@ -72,6 +72,14 @@ enum class Schema {
   Light,
   LayerOverride,
   View,
+  TourLanguage,
+  TourTransition,
+  TourWords,
+  TourText,
+  TourColumn,
+  TourRecords,
+  TourStop,
+  Tour,
   Unit,
   Axis,
   Bounds,
@@ -219,6 +227,17 @@ enum class Schema {
   ViewList,
   ViewCreate,
   ViewPatch,
+  TourEntry,
+  TourList,
+  TourStopCreate,
+  TourCreate,
+  TourPatch,
+  Kiosk,
+  KioskList,
+  KioskCreate,
+  KioskMade,
+  KioskLogin,
+  KioskSelf,
   ToolList,
   ToolPatch,
   LookPatch,
@@ -255,7 +274,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 229;
+constexpr int kSchemaCount = 248;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -451,6 +470,41 @@ void read(const nlohmann::json& json, LayerOverride& value);
 nlohmann::json to_json(const LayerOverride& value);
 template <>
 inline constexpr Schema kSchemaOf<LayerOverride> = Schema::LayerOverride;
+
+// How one comes to a stop.
+enum class TourTransition { cut, move };
+std::string_view name(TourTransition value);
+void read(const nlohmann::json& json, TourTransition& value);
+nlohmann::json to_json(const TourTransition& value);
+
+// A few words by language. Keys are languages of the tour.
+using TourWords = std::map<std::string, std::string>;
+
+// A text by language. Plain text; keys are languages of the tour.
+using TourText = std::map<std::string, std::string>;
+
+// Column that the card of a record shows.
+struct TourColumn {
+  std::string column;  // Its slug; in requests its id, too.
+  std::optional<TourWords> labels;  // How it is called on the card; absent, as in the table.
+  bool operator==(const TourColumn&) const = default;
+};
+void read(const nlohmann::json& json, TourColumn& value);
+nlohmann::json to_json(const TourColumn& value);
+template <>
+inline constexpr Schema kSchemaOf<TourColumn> = Schema::TourColumn;
+
+// Records of a table to show at a stop.
+struct TourRecords {
+  std::string table;  // Its slug; in requests its id, too.
+  std::vector<std::int64_t> keys;  // In this order; records may be gone meanwhile.
+  std::vector<TourColumn> columns;  // In this order, of any record of the table that is looked at here.
+  bool operator==(const TourRecords&) const = default;
+};
+void read(const nlohmann::json& json, TourRecords& value);
+nlohmann::json to_json(const TourRecords& value);
+template <>
+inline constexpr Schema kSchemaOf<TourRecords> = Schema::TourRecords;
 
 using Unit = strata::Unit;
 
@@ -1672,6 +1726,70 @@ nlohmann::json to_json(const ViewPatch& value);
 Result<void> check(const ViewPatch& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<ViewPatch> = Schema::ViewPatch;
+
+// Stop of a tour.
+struct TourStopCreate {
+  std::string view;  // A named view of the model: slug or id.
+  TourWords title;  // In the tour's first language at least.
+  std::optional<TourText> text;
+  double attract_s = 10;  // How long it is shown while the tour plays by itself.
+  std::optional<TourTransition> transition;  // Absent: `move`.
+  double transition_s = 2;  // How long a `move` takes.
+  std::optional<std::vector<std::string>> layers;  // Offered for swiping, in this order: slugs or ids. None twice.
+  std::optional<std::vector<TourRecords>> records;  // Each of another table of the project.
+  bool operator==(const TourStopCreate&) const = default;
+};
+void read(const nlohmann::json& json, TourStopCreate& value);
+nlohmann::json to_json(const TourStopCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<TourStopCreate> = Schema::TourStopCreate;
+
+// A tour to keep.
+struct TourCreate {
+  std::string name;
+  std::vector<std::string> languages;  // The first one is that of who chooses none; every stop has a title in it. None twice.
+  int idle_s = 60;  // So long after the last touch the tour begins anew and plays by itself.
+  std::vector<TourStopCreate> stops;
+  bool operator==(const TourCreate&) const = default;
+};
+void read(const nlohmann::json& json, TourCreate& value);
+nlohmann::json to_json(const TourCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<TourCreate> = Schema::TourCreate;
+
+// Changes to a tour. Stops are changed as a whole. Those that stay must fit the languages.
+struct TourPatch {
+  std::optional<std::string> name;
+  std::optional<std::vector<std::string>> languages;  // The first one is that of who chooses none; every stop has a title in it. None twice.
+  std::optional<int> idle_s;
+  std::optional<std::vector<TourStopCreate>> stops;
+  bool operator==(const TourPatch&) const = default;
+};
+void read(const nlohmann::json& json, TourPatch& value);
+nlohmann::json to_json(const TourPatch& value);
+template <>
+inline constexpr Schema kSchemaOf<TourPatch> = Schema::TourPatch;
+
+// A link for a kiosk.
+struct KioskCreate {
+  std::string name;  // Where it stands.
+  std::optional<int> days;  // Until it expires; absent: never.
+  bool operator==(const KioskCreate&) const = default;
+};
+void read(const nlohmann::json& json, KioskCreate& value);
+nlohmann::json to_json(const KioskCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<KioskCreate> = Schema::KioskCreate;
+
+// The link of a kiosk.
+struct KioskLogin {
+  std::string link;  // Its secret: what stands behind `/kiosk/`.
+  bool operator==(const KioskLogin&) const = default;
+};
+void read(const nlohmann::json& json, KioskLogin& value);
+nlohmann::json to_json(const KioskLogin& value);
+template <>
+inline constexpr Schema kSchemaOf<KioskLogin> = Schema::KioskLogin;
 
 // Another name for a tool.
 struct ToolPatch {

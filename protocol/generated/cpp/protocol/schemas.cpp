@@ -52,6 +52,14 @@ std::string_view name(Schema schema) {
     case Schema::Light: return "Light";
     case Schema::LayerOverride: return "LayerOverride";
     case Schema::View: return "View";
+    case Schema::TourLanguage: return "TourLanguage";
+    case Schema::TourTransition: return "TourTransition";
+    case Schema::TourWords: return "TourWords";
+    case Schema::TourText: return "TourText";
+    case Schema::TourColumn: return "TourColumn";
+    case Schema::TourRecords: return "TourRecords";
+    case Schema::TourStop: return "TourStop";
+    case Schema::Tour: return "Tour";
     case Schema::Unit: return "Unit";
     case Schema::Axis: return "Axis";
     case Schema::Bounds: return "Bounds";
@@ -199,6 +207,17 @@ std::string_view name(Schema schema) {
     case Schema::ViewList: return "ViewList";
     case Schema::ViewCreate: return "ViewCreate";
     case Schema::ViewPatch: return "ViewPatch";
+    case Schema::TourEntry: return "TourEntry";
+    case Schema::TourList: return "TourList";
+    case Schema::TourStopCreate: return "TourStopCreate";
+    case Schema::TourCreate: return "TourCreate";
+    case Schema::TourPatch: return "TourPatch";
+    case Schema::Kiosk: return "Kiosk";
+    case Schema::KioskList: return "KioskList";
+    case Schema::KioskCreate: return "KioskCreate";
+    case Schema::KioskMade: return "KioskMade";
+    case Schema::KioskLogin: return "KioskLogin";
+    case Schema::KioskSelf: return "KioskSelf";
     case Schema::ToolList: return "ToolList";
     case Schema::ToolPatch: return "ToolPatch";
     case Schema::LookPatch: return "LookPatch";
@@ -287,6 +306,14 @@ std::string_view schema_bundle() {
 "Light":{"type":"object","additionalProperties":false,"required":["mode"],"properties":{"mode":{"$ref":"#/definitions/LightMode"},"direction":{"$ref":"#/definitions/Point3"}}},
 "LayerOverride":{"type":"object","additionalProperties":false,"required":["layer"],"properties":{"layer":{"$ref":"#/definitions/LayerRef"},"visible":{"type":"boolean"},"opacity":{"type":"number","minimum":0,"maximum":1},"palette":{"$ref":"#/definitions/Palette"},"highlight":{"$ref":"#/definitions/Highlight"}}},
 "View":{"type":"object","additionalProperties":false,"required":["id","slug","name","text","camera","layers","light","user","time","version"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"slug":{"type":"string","minLength":1,"maxLength":128},"name":{"type":"string","minLength":1,"maxLength":200},"text":{"type":"string","maxLength":10000},"camera":{"$ref":"#/definitions/Camera"},"layers":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/LayerOverride"}},"looks":{"type":"array","minItems":0,"maxItems":4,"items":{"$ref":"#/definitions/LookShown"}},"light":{"$ref":"#/definitions/Light"},"user":{"type":"string","maxLength":200},"time":{"type":"string","minLength":20,"maxLength":40},"version":{"type":"integer","minimum":1,"maximum":9007199254740991}}},
+"TourLanguage":{"type":"string","minLength":2,"maxLength":35,"pattern":"^[a-z]{2,3}(-[A-Za-z0-9]{2,8}){0,3}$"},
+"TourTransition":{"type":"string","enum":["cut","move"]},
+"TourWords":{"type":"object","additionalProperties":{"type":"string","minLength":1,"maxLength":200},"maxProperties":20},
+"TourText":{"type":"object","additionalProperties":{"type":"string","maxLength":5000},"maxProperties":20},
+"TourColumn":{"type":"object","additionalProperties":false,"required":["column"],"properties":{"column":{"type":"string","minLength":1,"maxLength":128},"labels":{"$ref":"#/definitions/TourWords"}}},
+"TourRecords":{"type":"object","additionalProperties":false,"required":["table","keys","columns"],"properties":{"table":{"type":"string","minLength":1,"maxLength":128},"keys":{"type":"array","minItems":0,"maxItems":100,"items":{"type":"integer","minimum":0,"maximum":4294967295}},"columns":{"type":"array","minItems":0,"maxItems":50,"items":{"$ref":"#/definitions/TourColumn"}}}},
+"TourStop":{"type":"object","additionalProperties":false,"required":["title","text","attract_s","transition","transition_s","layers","records"],"properties":{"view":{"type":"string","minLength":1,"maxLength":128},"title":{"$ref":"#/definitions/TourWords"},"text":{"$ref":"#/definitions/TourText"},"attract_s":{"type":"number","minimum":1,"maximum":600},"transition":{"$ref":"#/definitions/TourTransition"},"transition_s":{"type":"number","minimum":0,"maximum":30},"layers":{"type":"array","minItems":0,"maxItems":20,"items":{"type":"string","minLength":1,"maxLength":128}},"records":{"type":"array","minItems":0,"maxItems":10,"items":{"$ref":"#/definitions/TourRecords"}}}},
+"Tour":{"type":"object","additionalProperties":false,"required":["id","slug","name","languages","idle_s","stops","user","time","version"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"slug":{"type":"string","minLength":1,"maxLength":128},"name":{"type":"string","minLength":1,"maxLength":200},"languages":{"type":"array","minItems":1,"maxItems":20,"items":{"$ref":"#/definitions/TourLanguage"}},"idle_s":{"type":"integer","minimum":30,"maximum":3600},"stops":{"type":"array","minItems":1,"maxItems":100,"items":{"$ref":"#/definitions/TourStop"}},"user":{"type":"string","maxLength":200},"time":{"type":"string","minLength":20,"maxLength":40},"version":{"type":"integer","minimum":1,"maximum":9007199254740991}}},
 "Unit":{"type":"string","enum":["mm","cm","m"]},
 "Axis":{"type":"string","enum":["x","y","z"]},
 "Bounds":{"type":"object","additionalProperties":false,"required":["min","max"],"properties":{"min":{"$ref":"#/definitions/Point3"},"max":{"$ref":"#/definitions/Point3"}}},
@@ -434,6 +461,17 @@ std::string_view schema_bundle() {
 "ViewList":{"type":"object","additionalProperties":false,"required":["views","total"],"properties":{"views":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/View"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
 "ViewCreate":{"type":"object","additionalProperties":false,"required":["name","camera"],"properties":{"name":{"type":"string","minLength":1,"maxLength":200},"text":{"type":"string","maxLength":10000},"camera":{"$ref":"#/definitions/Camera"},"layers":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/LayerOverride"}},"looks":{"type":"array","minItems":0,"maxItems":4,"items":{"$ref":"#/definitions/LookShown"}},"light":{"$ref":"#/definitions/Light"}}},
 "ViewPatch":{"type":"object","additionalProperties":false,"minProperties":1,"dependencies":{"layers":["camera"],"looks":["camera"],"light":["camera"]},"properties":{"name":{"type":"string","minLength":1,"maxLength":200},"text":{"type":"string","maxLength":10000},"camera":{"$ref":"#/definitions/Camera"},"layers":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/LayerOverride"}},"looks":{"type":"array","minItems":0,"maxItems":4,"items":{"$ref":"#/definitions/LookShown"}},"light":{"$ref":"#/definitions/Light"}}},
+"TourEntry":{"type":"object","additionalProperties":false,"required":["id","slug","name","languages","stop_count","user","time","version"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"slug":{"type":"string","minLength":1,"maxLength":128},"name":{"type":"string","minLength":1,"maxLength":200},"languages":{"type":"array","minItems":1,"maxItems":20,"items":{"$ref":"#/definitions/TourLanguage"}},"stop_count":{"type":"integer","minimum":1,"maximum":100},"user":{"type":"string","maxLength":200},"time":{"type":"string","minLength":20,"maxLength":40},"version":{"type":"integer","minimum":1,"maximum":9007199254740991}}},
+"TourList":{"type":"object","additionalProperties":false,"required":["tours","total"],"properties":{"tours":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/TourEntry"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
+"TourStopCreate":{"type":"object","additionalProperties":false,"required":["view","title"],"properties":{"view":{"type":"string","minLength":1,"maxLength":128},"title":{"$ref":"#/definitions/TourWords"},"text":{"$ref":"#/definitions/TourText"},"attract_s":{"type":"number","minimum":1,"maximum":600},"transition":{"$ref":"#/definitions/TourTransition"},"transition_s":{"type":"number","minimum":0,"maximum":30},"layers":{"type":"array","minItems":0,"maxItems":20,"items":{"type":"string","minLength":1,"maxLength":128}},"records":{"type":"array","minItems":0,"maxItems":10,"items":{"$ref":"#/definitions/TourRecords"}}}},
+"TourCreate":{"type":"object","additionalProperties":false,"required":["name","languages","stops"],"properties":{"name":{"type":"string","minLength":1,"maxLength":200},"languages":{"type":"array","minItems":1,"maxItems":20,"items":{"$ref":"#/definitions/TourLanguage"}},"idle_s":{"type":"integer","minimum":30,"maximum":3600},"stops":{"type":"array","minItems":1,"maxItems":100,"items":{"$ref":"#/definitions/TourStopCreate"}}}},
+"TourPatch":{"type":"object","additionalProperties":false,"minProperties":1,"properties":{"name":{"type":"string","minLength":1,"maxLength":200},"languages":{"type":"array","minItems":1,"maxItems":20,"items":{"$ref":"#/definitions/TourLanguage"}},"idle_s":{"type":"integer","minimum":30,"maximum":3600},"stops":{"type":"array","minItems":1,"maxItems":100,"items":{"$ref":"#/definitions/TourStopCreate"}}}},
+"Kiosk":{"type":"object","additionalProperties":false,"required":["id","name","project","model","model_name","tour","tour_name","user","created","wants_reload"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"name":{"type":"string","minLength":1,"maxLength":200},"project":{"type":"string","minLength":1,"maxLength":128},"model":{"type":"string","minLength":1,"maxLength":128},"model_name":{"type":"string","maxLength":255},"tour":{"type":"string","minLength":1,"maxLength":128},"tour_name":{"type":"string","minLength":1,"maxLength":200},"user":{"type":"string","maxLength":200},"created":{"type":"string","minLength":20,"maxLength":40},"expires":{"type":"string","minLength":20,"maxLength":40},"last_seen":{"type":"string","minLength":20,"maxLength":40},"revoked":{"type":"string","minLength":20,"maxLength":40},"wants_reload":{"type":"boolean"}}},
+"KioskList":{"type":"object","additionalProperties":false,"required":["kiosks","total"],"properties":{"kiosks":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/Kiosk"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
+"KioskCreate":{"type":"object","additionalProperties":false,"required":["name"],"properties":{"name":{"type":"string","minLength":1,"maxLength":200},"days":{"type":"integer","minimum":1,"maximum":3650}}},
+"KioskMade":{"type":"object","additionalProperties":false,"required":["path","kiosk"],"properties":{"path":{"type":"string","minLength":1,"maxLength":200},"kiosk":{"$ref":"#/definitions/Kiosk"}}},
+"KioskLogin":{"type":"object","additionalProperties":false,"required":["link"],"properties":{"link":{"type":"string","minLength":1,"maxLength":200}}},
+"KioskSelf":{"type":"object","additionalProperties":false,"required":["id","name","project","model","tour","wants_reload"],"properties":{"id":{"type":"integer","minimum":1,"maximum":9007199254740991},"name":{"type":"string","minLength":1,"maxLength":200},"project":{"type":"string","minLength":1,"maxLength":128},"model":{"type":"string","minLength":1,"maxLength":128},"tour":{"$ref":"#/definitions/Tour"},"expires":{"type":"string","minLength":20,"maxLength":40},"wants_reload":{"type":"boolean"}}},
 "ToolList":{"type":"object","additionalProperties":false,"required":["tools","total"],"properties":{"tools":{"type":"array","minItems":0,"maxItems":1000,"items":{"$ref":"#/definitions/Tool"}},"total":{"type":"integer","minimum":0,"maximum":9007199254740991}}},
 "ToolPatch":{"type":"object","additionalProperties":false,"required":["name"],"properties":{"name":{"type":"string","minLength":1,"maxLength":200}}},
 "LookPatch":{"type":"object","additionalProperties":false,"minProperties":1,"properties":{"name":{"type":"string","minLength":1,"maxLength":200},"description":{"type":"string","maxLength":10000},"opacity":{"type":"number","minimum":0,"maximum":1},"visible":{"type":"boolean"},"order":{"type":"integer","minimum":-1000000,"maximum":1000000}}},
