@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
       {"demo", strata::cli::add_demo(app)},       {"migrate", strata::cli::add_migrate(app)},
       {"doctor", strata::cli::add_doctor(app)},   {"user", strata::cli::add_user(app)},
       {"token", strata::cli::add_token(app)},     {"backup", strata::cli::add_backup(app)},
-      {"restore", strata::cli::add_restore(app)},
+      {"restore", strata::cli::add_restore(app)}, {"kiosk", strata::cli::add_kiosk(app)},
   };
   try {
     app.parse(argc, argv);

@@ -7,6 +7,7 @@ CREATE TABLE tours (
   model_id bigint NOT NULL REFERENCES models ON DELETE CASCADE,
   slug text NOT NULL,
   name text NOT NULL CHECK (char_length(name) BETWEEN 1 AND 200),
+  text text NOT NULL DEFAULT '' CHECK (char_length(text) <= 10000),
   content jsonb NOT NULL,
   user_name text NOT NULL,
   time timestamptz NOT NULL DEFAULT clock_timestamp(),

@@ -15,6 +15,7 @@ Command add_migrate(CLI::App& app);
 Command add_doctor(CLI::App& app);
 Command add_user(CLI::App& app);
 Command add_token(CLI::App& app);
+Command add_kiosk(CLI::App& app);
 Command add_backup(CLI::App& app);
 Command add_restore(CLI::App& app);
 

@@ -3,8 +3,7 @@
 #include <iostream>
 #include <iterator>
 
-#include "cli/commands.h"
-#include "cli/open_database.h"
+#include "cli/subcommands.h"
 #include "store/password.h"
 
 namespace strata::cli {
@@ -20,14 +19,6 @@ struct PeopleOptions {
   bool password_stdin = false;
 };
 using Options = std::shared_ptr<PeopleOptions>;
-using Work = std::function<Result<void>(store::Store&, const PeopleOptions&)>;
-
-// A command below `strata user` or `strata token`.
-CLI::App* add(CLI::App& app, const Options& options, const char* name, const char* what) {
-  auto* command = app.add_subcommand(name, what);
-  add_data_options(*command, options->data);
-  return command;
-}
 
 void add_role(CLI::App& command, const Options& options, const char* what) {
   command.add_option("--role", options->role, what)
@@ -61,16 +52,6 @@ Result<void> let_in(store::Store& store, const PeopleOptions& options, const sto
   std::cout << "For " << person.name << ", to choose a password within 7 days:\n"
             << options.url << "/join#" << link->secret << std::endl;
   return {};
-}
-
-std::string day_of(const std::optional<std::chrono::system_clock::time_point>& time) {
-  if (!time) return "never";
-  const std::time_t seconds = std::chrono::system_clock::to_time_t(*time);
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  char text[20];
-  std::strftime(text, sizeof text, "%Y-%m-%d", &utc);
-  return text;
 }
 
 Result<void> add_person(store::Store& store, const PeopleOptions& options) {
@@ -111,7 +92,7 @@ Result<void> list_people(store::Store& store, const PeopleOptions& options) {
 }
 
 // Changes of one who is there.
-Work changing(std::function<Result<void>(store::Store&, const PeopleOptions&, const store::Person&)> change) {
+Work<PeopleOptions> changing(std::function<Result<void>(store::Store&, const PeopleOptions&, const store::Person&)> change) {
   return [change = std::move(change)](store::Store& store, const PeopleOptions& options) -> Result<void> {
     const auto person = store.person(options.name);
     if (!person) return tl::unexpected(person.error());
@@ -140,7 +121,7 @@ Result<void> set_role(store::Store& store, const PeopleOptions& options, const s
   return change(store, person, {.full_name = {}, .role = parse_role(options.role), .disabled = {}});
 }
 
-Work disabling(bool disabled) {
+Work<PeopleOptions> disabling(bool disabled) {
   return changing([disabled](store::Store& store, const PeopleOptions&, const store::Person& person) {
     return change(store, person, {.full_name = {}, .role = {}, .disabled = disabled});
   });
@@ -183,25 +164,14 @@ Result<void> revoke_token(store::Store& store, const PeopleOptions& options) {
   return store.revoke_token(person->name, TokenKind::script, options.id);
 }
 
-// Runs the subcommand that was chosen.
-Command choosing(CLI::App* parent, Options options, std::map<std::string, Work> works) {
-  parent->require_subcommand(1);
-  return [parent, options = std::move(options), works = std::move(works)] {
-    auto database = open_database_beside(options->data);
-    if (!database) return report(database.error());
-    const auto done = works.at(parent->get_subcommands().front()->get_name())(*(*database)->store, *options);
-    return done ? 0 : report(done.error());
-  };
-}
-
 }  // namespace
 
 Command add_user(CLI::App& app) {
   auto* parent = app.add_subcommand("user", "Accounts of this server");
   auto options = std::make_shared<PeopleOptions>();
-  std::map<std::string, Work> works;
-  const auto add_named = [&](const char* name, const char* what, Work work) {
-    auto* command = add(*parent, options, name, what);
+  std::map<std::string, Work<PeopleOptions>> works;
+  const auto add_named = [&](const char* name, const char* what, Work<PeopleOptions> work) {
+    auto* command = add_subcommand(*parent, options, name, what);
     command->add_option("name", options->name, "What the person signs in with")->required();
     works[name] = std::move(work);
     return command;
@@ -210,7 +180,7 @@ Command add_user(CLI::App& app) {
   add_role(*made, options, "What they may do (annotator)");
   made->add_option("--full-name", options->full_name, "How the page calls them");
   add_password(*made, options);
-  add(*parent, options, "list", "Everybody with an account")
+  add_subcommand(*parent, options, "list", "Everybody with an account")
       ->add_option("--project", options->project, "Only those with a role in this project, and that role");
   works["list"] = list_people;
   auto* role = add_named("role", "What somebody may do", changing(set_role));
@@ -223,7 +193,7 @@ Command add_user(CLI::App& app) {
   add_named("enable", "Lets somebody in again", disabling(false));
   add_named("remove", "Deletes somebody; what they did stays, under a name that tells nothing",
             changing(remove_person));
-  return choosing(parent, options, std::move(works));
+  return choosing<PeopleOptions>(parent, options, std::move(works));
 }
 
 Command add_token(CLI::App& app) {
@@ -231,7 +201,7 @@ Command add_token(CLI::App& app) {
   auto options = std::make_shared<PeopleOptions>();
   options->user = "owner";
   const auto add_of = [&](const char* name, const char* what) {
-    auto* command = add(*parent, options, name, what);
+    auto* command = add_subcommand(*parent, options, name, what);
     command->add_option("--user", options->user, "Whose token")->capture_default_str();
     return command;
   };
@@ -241,7 +211,7 @@ Command add_token(CLI::App& app) {
   made->add_option("--days", options->days, "Until it expires")->check(CLI::Range(1, 3650))->capture_default_str();
   add_of("list", "Tokens of a person");
   add_of("revoke", "Makes a token worthless")->add_option("id", options->id, "As `list` tells it")->required();
-  return choosing(parent, options, {{"add", add_token_of}, {"list", list_tokens}, {"revoke", revoke_token}});
+  return choosing<PeopleOptions>(parent, options, {{"add", add_token_of}, {"list", list_tokens}, {"revoke", revoke_token}});
 }
 
 }  // namespace strata::cli

@@ -8,12 +8,13 @@
 
 namespace strata::net {
 
-// Adds routes of things that everybody reads and annotators write: bodies are JSON, and answers to changes are kept for repeats.
+// Adds routes of things that everybody reads and annotators write, or a higher role: bodies are JSON, and answers to changes are kept for repeats.
 class AnnotatedRoutes {
  public:
   using Answer = Result<Response> (*)(const RouteContext&, const Request&);
 
-  AnnotatedRoutes(Router& router, const RouteContext& context) : router_(router), context_(context) {}
+  AnnotatedRoutes(Router& router, const RouteContext& context, Role least = Role::annotator)
+      : router_(router), context_(context), least_(least) {}
 
   void read(std::string pattern, Answer answer, std::vector<std::string> query = {}) {
     router_.add(
@@ -24,7 +25,7 @@ class AnnotatedRoutes {
     router_.add({.method = method,
                  .pattern = std::move(pattern),
                  .handler = handler(answer),
-                 .role = Role::annotator,
+                 .role = least_,
                  .body = has_body ? BodyKind::memory : BodyKind::none,
                  .max_body = has_body ? context_.options.max_json_bytes : 0,
                  .keeps_answer = true});
@@ -37,6 +38,7 @@ class AnnotatedRoutes {
 
   Router& router_;
   const RouteContext& context_;
+  const Role least_;
 };
 
 }  // namespace strata::net

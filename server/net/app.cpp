@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "core/log.h"
+#include "net/kiosk_gate.h"
 #include "net/origin.h"
 #include "net/project_gate.h"
 
@@ -87,6 +88,8 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_look_routes(router_, context_);
   add_comment_routes(router_, context_);
   add_view_routes(router_, context_);
+  add_tour_routes(router_, context_);
+  add_kiosk_routes(router_, context_);
   add_tool_routes(router_, context_);
   add_table_routes(router_, context_);
   add_term_routes(router_, context_);
@@ -109,6 +112,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   page_.role = std::nullopt;
   page_.any_query = true;
   page_.handler = [this](const Request& request, const Respond& respond) { respond(files_.serve(request)); };
+  live_.pattern = "/api/v1/models/{model}/live";
 }
 
 App::~App() { stop_workers(); }
@@ -152,12 +156,15 @@ const Route* App::find_route(Request& request, Response& refusal) const {
   return nullptr;
 }
 
-Result<void> App::identify(Request& request, Role least, bool project_in_query) {
+Result<void> App::identify(Request& request, const Route& route) {
   auto principal = auth_.identify(request);
   if (!principal) return tl::unexpected(principal.error());
   request.principal = std::move(*principal);
   if (!request.principal) return fail(401, "Not signed in", "Sign in, or send `Authorization: Bearer TOKEN`.");
-  if (auto inside = enter_project(context_, request, project_in_query); !inside) return inside;
+  const auto inside = request.principal->kiosk ? enter_as_kiosk(context_, request, route)
+                                               : enter_project(context_, request, route.project_in_query);
+  if (!inside) return inside;
+  const Role least = *route.role;
   if (request.principal->role < least)
     return fail(403, "Not allowed",
                 "This takes the role " + std::string(name(least)) + "; yours is " +
@@ -168,8 +175,7 @@ Result<void> App::identify(Request& request, Role least, bool project_in_query) 
 std::optional<Response> App::admit(Request& request, const Route& route) {
   // What is open to everyone must work with a stale cookie, too: the page itself, signing in, health.
   if (route.role)
-    if (auto known = identify(request, *route.role, route.project_in_query); !known)
-      return problem_response(known.error());
+    if (auto known = identify(request, route); !known) return problem_response(known.error());
   if (changes(request.method))
     if (auto own = check_same_origin(request, options_.allowed_origins); !own) return problem_response(own.error());
   if (auto known = check_query(route, request); !known) return problem_response(known.error());
@@ -183,8 +189,7 @@ std::optional<Response> App::admit(Request& request, const Route& route) {
 std::optional<Response> App::admit_again(Request& request, const Route& route) {
   if (!route.role) return std::nullopt;
   const std::string user = request.user();
-  if (auto known = identify(request, *route.role, route.project_in_query); !known)
-    return problem_response(known.error());
+  if (auto known = identify(request, route); !known) return problem_response(known.error());
   if (request.user() != user) return problem_response({401, "Not signed in", "Somebody else is signed in now.", {}});
   return std::nullopt;
 }
@@ -209,7 +214,10 @@ void App::handle(const Request& request, const Route& route, const Respond& resp
   try {
     route.handler(request, answer);
   } catch (const std::exception& error) {
-    log::error("request " + std::string(name(request.method)) + " " + request.path + " failed: " + error.what());
+    // The address of a kiosk is its secret.
+    const bool is_secret = !request.segments.empty() && request.segments.front() == "kiosk";
+    log::error("request " + std::string(name(request.method)) + " " + (is_secret ? "/kiosk/…" : request.path) +
+               " failed: " + error.what());
     answer(Problem{500, "Internal error", "The server made a mistake; its log says more.", {}});
   }
 }
@@ -221,7 +229,7 @@ bool App::is_live_address(const Request& request) {
 
 Result<App::LiveEntry> App::admit_live(Request& request) {
   request.params["model"] = request.segments[3];
-  if (auto known = identify(request, Role::viewer); !known) return tl::unexpected(known.error());
+  if (auto known = identify(request, live_); !known) return tl::unexpected(known.error());
   if (auto own = check_upgrade_origin(request, options_.allowed_origins); !own) return tl::unexpected(own.error());
   auto room = rooms_.open(request.segments[3], request.role());
   if (!room) return tl::unexpected(room.error());

@@ -60,7 +60,7 @@ class App {
 
  private:
   // Who asks, and that they may do there what takes the role.
-  Result<void> identify(Request& request, Role least, bool project_in_query = false);
+  Result<void> identify(Request& request, const Route& route);
 
   const ServerOptions options_;
   store::Store& store_;
@@ -75,6 +75,7 @@ class App {
   WorkerPool workers_;
   Router router_;
   Route page_;  // everything that is no API address
+  Route live_;  // the live connections, which no handler answers
   const RouteContext context_;
   Recomputer recomputer_;
 };

@@ -2,6 +2,7 @@
 
 #include "net/digest.h"
 #include "net/origin.h"
+#include "store/kiosks.h"
 #include "store/password.h"
 
 namespace strata::net {
@@ -17,7 +18,24 @@ tl::unexpected<Problem> unknown_secret() {
               "This token or session is unknown, expired or revoked. Sign in again, or make a new token.");
 }
 
+constexpr std::string_view kKioskPrefix = "kiosk ";
+
+Principal principal_of(const store::Kiosk& kiosk) {
+  Principal principal{kiosk_name(kiosk.id), Role::guest};
+  principal.roles.in_projects[kiosk.project_id] = Role::viewer;
+  principal.kiosk = KioskPass{kiosk.id, kiosk.model_id, kiosk.tour_id};
+  return principal;
+}
+
+std::string cookie_of(std::string_view name, const std::string& value, std::chrono::seconds lifetime, bool secure) {
+  return std::string(name) + "=" + value + "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" +
+         std::to_string(lifetime.count()) + (secure ? "; Secure" : "");
+}
+
 }  // namespace
+
+std::string kiosk_name(std::int64_t id) { return std::string(kKioskPrefix) + std::to_string(id); }
+bool is_kiosk_name(const std::string& user) { return user.starts_with(kKioskPrefix); }
 
 Authenticator::Authenticator(store::Store& store, std::string owner_token)
     : store_(store), owner_token_(std::move(owner_token)) {}
@@ -41,10 +59,18 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
   if (!stored) return tl::unexpected(stored.error());
   // Links are traded for sessions; they are no tokens of their own.
   using store::TokenKind;
-  if (!*stored || ((*stored)->kind != TokenKind::session && (*stored)->kind != TokenKind::script)) return std::nullopt;
-  const Roles& roles = (*stored)->roles;
-  Principal principal{
-      (*stored)->user, roles.everywhere, false, (*stored)->kind == TokenKind::script, (*stored)->token, roles};
+  if (*stored && (*stored)->kind != TokenKind::session && (*stored)->kind != TokenKind::script) return std::nullopt;
+  Principal principal;
+  if (*stored) {
+    const Roles& roles = (*stored)->roles;
+    principal = {
+        (*stored)->user, roles.everywhere, false, (*stored)->kind == TokenKind::script, (*stored)->token, roles};
+  } else {
+    auto kiosk = store_.kiosks().find(token);
+    if (!kiosk) return tl::unexpected(kiosk.error());
+    if (!*kiosk) return std::nullopt;
+    principal = principal_of(**kiosk);
+  }
   std::lock_guard lock(mutex_);
   if (changes != changes_) return principal;  // what was read may be of before
   if (remembered_.size() >= kMaxRemembered) remembered_.clear();
@@ -54,7 +80,7 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
 
 std::string Authenticator::secret_of(const Request& request) {
   const std::string authorization(request.header("authorization"));
-  if (authorization.empty()) return cookie_value(request.header("cookie"), kSessionCookie);
+  if (authorization.empty()) return cookie_value(request.header("cookie"), request.as_kiosk ? kKioskCookie : kSessionCookie);
   return to_lower(authorization.substr(0, kScheme.size())) == kScheme ? authorization.substr(kScheme.size())
                                                                       : std::string();
 }
@@ -67,6 +93,9 @@ Result<std::optional<Principal>> Authenticator::identify(const Request& request)
   auto principal = identify_token(secret);
   if (!principal) return principal;
   if (!*principal) return unknown_secret();
+  // A cookie tells only what it is for: whoever can set one makes no kiosk of a person's page by it, and the other way round.
+  const bool is_kiosk = (*principal)->kiosk.has_value();
+  if (request.as_kiosk ? !is_kiosk : by_cookie && is_kiosk) return unknown_secret();
   (*principal)->by_cookie = by_cookie;
   return principal;
 }
@@ -94,7 +123,7 @@ Result<std::string> Authenticator::session_for_token(const std::string& token, c
   if (!principal) return tl::unexpected(principal.error());
   if (!*principal) return unknown_secret();
   // Another session of a session, or of a token, would outlive what it was made of.
-  if ((*principal)->secret != 0)
+  if ((*principal)->secret != 0 || (*principal)->kiosk)
     return fail(
         403, "Not for signing in",
         "This token is for scripts, as `Authorization: Bearer TOKEN`. In a browser sign in with name and password.",
@@ -127,12 +156,15 @@ Result<void> Authenticator::end_session(const std::string& session_token) {
 }
 
 std::string Authenticator::set_cookie(const std::string& session_token, bool secure) {
-  return std::string(kSessionCookie) + "=" + session_token + "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" +
-         std::to_string(std::chrono::seconds(kSessionLifetime).count()) + (secure ? "; Secure" : "");
+  return cookie_of(kSessionCookie, session_token, kSessionLifetime, secure);
 }
 
 std::string Authenticator::clear_cookie(bool secure) {
-  return std::string(kSessionCookie) + "=; Path=/; HttpOnly; SameSite=Strict; Max-Age=0" + (secure ? "; Secure" : "");
+  return cookie_of(kSessionCookie, {}, std::chrono::seconds(0), secure);
+}
+
+std::string Authenticator::set_kiosk_cookie(const std::string& link, bool secure) {
+  return cookie_of(kKioskCookie, link, kKioskLifetime, secure);
 }
 
 }  // namespace strata::net

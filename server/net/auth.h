@@ -11,11 +11,16 @@
 
 namespace strata::net {
 
-constexpr std::string_view kSessionCookie = "strata_session";
+constexpr std::string_view kSessionCookie = "strata_session", kKioskCookie = "strata_kiosk";
 constexpr std::chrono::hours kSessionLifetime{24 * 90};
+constexpr std::chrono::hours kKioskLifetime{24 * 365};  // of the cookie; the link says for itself how long it is good
 constexpr std::size_t kMinOwnerTokenLength = 32;
 
-// Tells who sends a request: by bearer token, or by the session cookie. Thread-safe; may ask the database, so call it on a
+// What a kiosk is called among people, whose names have no blanks.
+std::string kiosk_name(std::int64_t id);
+bool is_kiosk_name(const std::string& user);
+
+// Tells who sends a request: by bearer token, or by the session cookie, or, where the request is marked so, by that of a kiosk. Thread-safe; may ask the database, so call it on a
 // worker. Answers are remembered for a few seconds so that a busy page costs no query a request.
 class Authenticator {
  public:
@@ -25,7 +30,7 @@ class Authenticator {
   // Empty: no secret was sent. 401: one was sent that is unknown, expired or revoked. 503: the database is away.
   Result<std::optional<Principal>> identify(const Request& request);
   Result<std::optional<Principal>> identify_token(const std::string& token);
-  // What the request shows: a bearer token, else the session's cookie; empty when neither.
+  // What the request shows: a bearer token, else the cookie that counts for it; empty when neither.
   static std::string secret_of(const Request& request);
 
   // The secret of a new browser session for who knows the password, holds the token (the owner's, or the secret of an owner link)
@@ -40,6 +45,7 @@ class Authenticator {
 
   static std::string set_cookie(const std::string& session_token, bool secure);
   static std::string clear_cookie(bool secure);
+  static std::string set_kiosk_cookie(const std::string& link, bool secure);
 
  private:
   struct Remembered {

@@ -207,6 +207,11 @@ Result<void> parse_target(std::string_view target, Request& request) {
     if (!request.query.emplace(*key, std::move(*value)).second)
       return fail(400, "Query parameter given twice", "Give '" + *key + "' once.", *key);
   }
+  // No route's own: it says which cookie counts.
+  if (const auto as = request.query.find("as"); as != request.query.end() && as->second == "kiosk") {
+    request.as_kiosk = true;
+    request.query.erase(as);
+  }
   return {};
 }
 

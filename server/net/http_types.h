@@ -23,6 +23,11 @@ namespace strata::net {
 enum class Method { get, head, post, put, patch, remove, options, unknown };
 std::string_view name(Method method);
 
+// What the link of a kiosk leads to, by ids.
+struct KioskPass {
+  std::int64_t id = 0, model = 0, tour = 0;
+};
+
 // Who asks. `role`: what they may do where the address leads. `by_cookie`: the browser sent the secret by itself, so changing calls
 // must prove where they come from.
 struct Principal {
@@ -32,6 +37,7 @@ struct Principal {
   bool is_script = false;   // it came with a token for scripts
   std::int64_t secret = 0;  // id of the session or token; 0: the owner's token of the environment
   Roles roles{};
+  std::optional<KioskPass> kiosk{};  // it is none of the people, but a screen that shows a tour
 
   bool sees(std::int64_t project) const { return roles.in(project) >= Role::viewer; }
 };
@@ -52,6 +58,7 @@ struct Request {
   std::optional<Principal> principal;
   std::string peer;     // address at the other end of the connection
   bool by_tls = false;  // the connection speaks TLS
+  bool as_kiosk = false;  // the query had `as=kiosk`: of all cookies that of the kiosk counts, which otherwise does not
 
   std::string_view header(std::string_view lower_case_name) const;  // empty when absent
   const std::string& param(const std::string& name) const { return params.at(name); }

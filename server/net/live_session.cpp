@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "net/auth.h"
+#include "net/kiosk_gate.h"
 #include "net/live_sockets.h"
 #include "net/painted_keys.h"
 #include "net/wire.h"
@@ -70,6 +72,10 @@ LiveSession::Work LiveSession::on_text(const std::string& text) {
   }
   if (!member() && !std::holds_alternative<protocol::Hello>(*message)) {
     refuse(need_hello(), ref);
+    return {};
+  }
+  if (principal_.kiosk && !may_send_as_kiosk(*message)) {
+    refuse({403, "Not for kiosks", "A kiosk looks, and changes nothing.", "op"}, ref);
     return {};
   }
   std::visit([this](const auto& m) { on(m); }, *message);
@@ -458,7 +464,7 @@ void LiveSession::model_deleted() {
 
 void LiveSession::presence_changed() {
   auto socket = socket_.lock();
-  if (!socket) return;
+  if (!socket || principal_.kiosk) return;
   std::chrono::milliseconds delay{0};
   {
     std::lock_guard lock(mutex_);
@@ -490,6 +496,7 @@ void LiveSession::send_presence() {
   }
   protocol::Presence presence;
   for (auto& person : room_->presence(own)) {
+    if (is_kiosk_name(person.user)) continue;  // nobody stands there whom one could talk to
     protocol::PresenceUser user;
     user.session = person.session;
     user.name = std::move(person.user);
@@ -568,6 +575,11 @@ std::shared_ptr<room::Member> LiveSession::member() const {
 }
 
 void LiveSession::send(const protocol::ServerMessage& message) {
+  if (principal_.kiosk) {
+    const auto told = told_to_kiosk(message);
+    if (auto socket = socket_.lock(); socket && told) socket->send_text(protocol::to_text(*told));
+    return;
+  }
   if (auto socket = socket_.lock()) socket->send_text(protocol::to_text(message));
 }
 

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "store/comments.h"
+#include "store/kiosks.h"
 
 namespace strata::net {
 namespace {
@@ -61,6 +62,11 @@ constexpr Place kPlaces[] = {
          return job->project;
        });
      }},
+    {"kiosk",
+     [](const RouteContext& context, const std::string& ref) {
+       return project_of_number(
+           ref, [&](std::int64_t id) -> Result<std::int64_t> { return project_id_of(context.store.kiosks().kiosk(id)); });
+     }},
 };
 
 Result<void> enter(const RouteContext& context, Principal& who, const Place& place, const std::string& ref,
@@ -68,8 +74,7 @@ Result<void> enter(const RouteContext& context, Principal& who, const Place& pla
   const auto project = place.project(context, ref);
   if (!project && project.error().status != 404) return tl::unexpected(project.error());
   // The same whether it is not there or not for them.
-  if (!project || !who.sees(*project))
-    return fail(404, "Not found", "There is no " + std::string(place.param) + " `" + ref.substr(0, 100) + "`.", field);
+  if (!project || !who.sees(*project)) return not_there(place.param, ref, field);
   who.role = who.roles.in(*project);
   return {};
 }
@@ -80,6 +85,10 @@ bool depends_on_project(const Roles& roles) {
 }
 
 }  // namespace
+
+tl::unexpected<Problem> not_there(const std::string& kind, const std::string& ref, const std::string& field) {
+  return fail(404, "Not found", "There is no " + kind + " `" + ref.substr(0, 100) + "`.", field);
+}
 
 Result<void> enter_project(const RouteContext& context, Request& request, bool in_query) {
   Principal& who = *request.principal;

@@ -5,9 +5,12 @@
 namespace strata::net {
 
 // What who asks may do where the address leads: sets the role of the request's principal to theirs in the project of the model, table,
-// attachment, comment or job that the address names, or in that of the query's `project` (absent: `default`) where `in_query`.
+// attachment, comment, job or kiosk that the address names, or in that of the query's `project` (absent: `default`) where `in_query`.
 // 404, as if it was not there: they have none in it.
 Result<void> enter_project(const RouteContext& context, Request& request, bool in_query);
+
+// The answer for what is not there, or not for who asks.
+tl::unexpected<Problem> not_there(const std::string& kind, const std::string& ref, const std::string& field = {});
 
 // That who asks may see the project; otherwise 404 at `field`.
 Result<void> check_seen(const RouteContext& context, const Request& request, const std::string& project,

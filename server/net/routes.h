@@ -49,6 +49,8 @@ void add_layer_routes(Router& router, const RouteContext& context);
 void add_look_routes(Router& router, const RouteContext& context);
 void add_comment_routes(Router& router, const RouteContext& context);
 void add_view_routes(Router& router, const RouteContext& context);
+void add_tour_routes(Router& router, const RouteContext& context);
+void add_kiosk_routes(Router& router, const RouteContext& context);
 void add_tool_routes(Router& router, const RouteContext& context);
 void add_table_routes(Router& router, const RouteContext& context);
 void add_term_routes(Router& router, const RouteContext& context);
@@ -106,6 +108,10 @@ Result<Response> who_is_signed_in(const RouteContext& context, const std::string
 Result<Response> signed_in(const RouteContext& context, const Request& request, const std::string& session);
 // 403: what a token does must not outlive it, so that scripts change no accounts.
 Result<void> check_no_script(const Request& request);
+// Their live connections are over, and the links are looked up anew.
+void end_kiosks(const RouteContext& context, const std::vector<std::int64_t>& kiosks, const std::string& reason);
+// Who made something, as who asks is told: kiosks hear no names.
+std::string told_name(const Request& request, const std::string& user);
 // What the browser calls itself, for its person to know the session by.
 std::string agent_of(const Request& request);
 

@@ -152,6 +152,7 @@ Result<Response> list_attachments(const RouteContext& context, const Request& re
     for (const Attachment& attachment : *found)
       if (attachment.id == id) {
         list.push_back(to_json(attachment));
+        list.back()["user"] = told_name(request, attachment.user);
         list.back()["column"] = column->slug;
       }
   const std::size_t total = list.size();

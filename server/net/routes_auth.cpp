@@ -34,6 +34,10 @@ Result<void> check_no_script(const Request& request) {
   return fail(403, "Not for scripts", "A token for scripts does nothing to accounts. Sign in with name and password.");
 }
 
+std::string told_name(const Request& request, const std::string& user) {
+  return request.principal->kiosk ? std::string() : user;
+}
+
 std::string agent_of(const Request& request) {
   const std::string_view agent = request.header("user-agent");
   return is_utf8(agent) ? mended_utf8(agent.substr(0, 390)) : std::string();

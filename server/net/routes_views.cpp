@@ -9,13 +9,13 @@
 #include "net/wire.h"
 #include "protocol/json_values.h"
 #include "query/expression_parser.h"
-#include "store/views.h"
+#include "store/named_parts.h"
 
 namespace strata::net {
 namespace {
 
 using protocol::ViewEventEvent;
-using store::NamedView;
+using store::NamedPart;
 
 // What the body says is shown, as it is kept: with ids, since slugs change.
 template <class Asked>
@@ -57,7 +57,8 @@ void leave_out_columns(const RouteContext& context, Role role, std::int64_t tabl
 }
 
 // Of what the view names, what is there for who asks.
-nlohmann::json to_json(const RouteContext& context, Role role, const NamedView& view, const room::Room& room) {
+nlohmann::json to_json(const RouteContext& context, const Request& request, const NamedPart& view,
+                       const room::Room& room) {
   nlohmann::json json = view.content;
   const auto leave_out = [](nlohmann::json& list, const char* member, const auto& there) {
     list.erase(std::remove_if(list.begin(), list.end(),
@@ -72,13 +73,13 @@ nlohmann::json to_json(const RouteContext& context, Role role, const NamedView& 
   for (nlohmann::json& shown : json["layers"])
     for (const Layer& layer : layers)
       if (layer.table && layer.id == shown.at("layer").get<std::int64_t>())
-        leave_out_columns(context, role, *layer.table, shown);
+        leave_out_columns(context, request.role(), *layer.table, shown);
   if (json.contains("looks")) leave_out(json["looks"], "look", room.looks());
   json.update({{"id", view.id},
                {"slug", view.slug},
                {"name", view.name},
                {"text", view.text},
-               {"user", view.user},
+               {"user", told_name(request, view.user)},
                {"time", utc_text(view.time)},
                {"version", view.version}});
   return json;
@@ -87,12 +88,12 @@ nlohmann::json to_json(const RouteContext& context, Role role, const NamedView& 
 // The model as who asks sees it, and one of its views.
 struct Found {
   std::shared_ptr<room::Room> room;
-  NamedView view;
+  NamedPart view;
 };
 Result<Found> find_view(const RouteContext& context, const Request& request) {
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
-  auto view = context.store.views().view((*room)->model().id, request.param("view"));
+  auto view = context.store.views().find((*room)->model().id, request.param("view"));
   if (!view) return tl::unexpected(view.error());
   return Found{std::move(*room), std::move(*view)};
 }
@@ -108,7 +109,7 @@ Result<Found> find_own_view(const RouteContext& context, const Request& request)
   return found;
 }
 
-void tell(const RouteContext& context, ViewEventEvent event, const NamedView& view, const std::string& user) {
+void tell(const RouteContext& context, ViewEventEvent event, const NamedPart& view, const std::string& user) {
   protocol::ViewEvent message;
   message.event = event;
   message.view = view.id;
@@ -124,7 +125,7 @@ Result<Response> list_views(const RouteContext& context, const Request& request)
   const auto found = context.store.views().of_model((*room)->model().id, page->limit, page->offset);
   if (!found) return tl::unexpected(found.error());
   nlohmann::json views = nlohmann::json::array();
-  for (const NamedView& view : found->views) views.push_back(to_json(context, request.role(), view, **room));
+  for (const NamedPart& view : found->parts) views.push_back(to_json(context, request, view, **room));
   Response response = json_response({{"views", std::move(views)}, {"total", found->total}});
   add_page_links(response, request, *page, found->total);
   return response;
@@ -133,7 +134,7 @@ Result<Response> list_views(const RouteContext& context, const Request& request)
 Result<Response> get_view(const RouteContext& context, const Request& request) {
   const auto found = find_view(context, request);
   if (!found) return tl::unexpected(found.error());
-  return with_etag(json_response(to_json(context, request.role(), found->view, *found->room)), request,
+  return with_etag(json_response(to_json(context, request, found->view, *found->room)), request,
                    found->view.version);
 }
 
@@ -150,7 +151,7 @@ Result<Response> view_picture(const RouteContext& context, const Request& reques
     return fail(422, "Unknown format", "A picture of a view is 'jpeg' or 'png'.", "format");
   const auto found = find_view(context, request);
   if (!found) return tl::unexpected(found.error());
-  const nlohmann::json seen = to_json(context, request.role(), found->view, *found->room);
+  const nlohmann::json seen = to_json(context, request, found->view, *found->room);
   nlohmann::json content{{"name", found->view.name},
                          {"camera", seen.at("camera")},
                          {"layers", seen.at("layers")},
@@ -184,18 +185,18 @@ Result<Response> create_view(const RouteContext& context, const Request& request
   if (!room) return tl::unexpected(room.error());
   auto content = content_of(**room, *asked, asked->camera);
   if (!content) return tl::unexpected(content.error());
-  NamedView view;
+  NamedPart view;
   view.model_id = (*room)->model().id;
   view.name = asked->name;
   view.text = asked->text.value_or("");
   view.content = std::move(*content);
   view.user = request.user();
-  const auto answer = [&](const NamedView& made) {
-    return json_response(to_json(context, request.role(), made, **room), 201)
+  const auto answer = [&](const NamedPart& made) {
+    return json_response(to_json(context, request, made, **room), 201)
         .with("Location", "/api/v1/models/" + (*room)->model().slug + "/views/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
-  const auto made = context.store.views().create(view, first_answer<NamedView>(request, answer));
+  const auto made = context.store.views().create(view, first_answer<NamedPart>(request, answer));
   if (!made) return tl::unexpected(made.error());
   tell(context, ViewEventEvent::created, *made, request.user());
   return answer(*made);
@@ -206,7 +207,7 @@ Result<Response> change_view(const RouteContext& context, const Request& request
   if (!asked) return tl::unexpected(asked.error());
   auto found = find_own_view(context, request);
   if (!found) return tl::unexpected(found.error());
-  NamedView& view = found->view;
+  NamedPart& view = found->view;
   if (asked->name) view.name = *asked->name;
   if (asked->text) view.text = *asked->text;
   if (asked->camera) {
@@ -214,10 +215,10 @@ Result<Response> change_view(const RouteContext& context, const Request& request
     if (!content) return tl::unexpected(content.error());
     view.content = std::move(*content);
   }
-  const auto answer = [&](const NamedView& now) {
-    return json_response(to_json(context, request.role(), now, *found->room)).with("ETag", etag_of(now.version));
+  const auto answer = [&](const NamedPart& now) {
+    return json_response(to_json(context, request, now, *found->room)).with("ETag", etag_of(now.version));
   };
-  const auto changed = context.store.views().update(view, first_answer<NamedView>(request, answer));
+  const auto changed = context.store.views().update(view, first_answer<NamedPart>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   tell(context, ViewEventEvent::changed, *changed, request.user());
   return answer(*changed);

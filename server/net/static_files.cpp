@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 bool is_page(const Request& request) {
   if (request.path == "/") return true;
   const std::string& first = request.segments.front();
-  return first == "models" || first == "projects" || first == "join";
+  return first == "models" || first == "projects" || first == "join" || first == "kiosk";
 }
 
 bool is_safe(const std::string& segment) {

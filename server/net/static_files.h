@@ -9,7 +9,7 @@ namespace strata::net {
 
 std::string_view media_type(const std::filesystem::path& file);
 
-// The page's files. Only files inside the folder are served, links included; `/`, `/models/…` and `/projects/…` are the page
+// The page's files. Only files inside the folder are served, links included; `/`, `/models/…`, `/projects/…` and `/kiosk/…` are the page
 // itself, which finds its way by the address. Files under /assets/ carry a hash in their name and never change.
 class StaticFiles {
  public:

@@ -254,7 +254,9 @@ Result<void> Store::delete_person(const std::string& name) {
           "UPDATE edits SET user_name = $2 WHERE user_name = $1",
           "UPDATE table_edits SET user_name = $2 WHERE user_name = $1",
           "UPDATE attachments SET user_name = $2 WHERE user_name = $1",
-          "UPDATE views SET user_name = $2 WHERE user_name = $1"})
+          "UPDATE views SET user_name = $2 WHERE user_name = $1",
+          "UPDATE tours SET user_name = $2 WHERE user_name = $1",
+          "UPDATE kiosks SET user_name = $2 WHERE user_name = $1"})
       if (auto done = run(connection, sql, Params().text(person->name).text(former)); !done) return done;
     if (auto done = rename_in_comments(connection, person->name, former); !done) return done;
     if (auto done = rename_in_activity(connection, person->name, former); !done) return done;

@@ -29,7 +29,9 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options, const std::file
 }
 
 Comments& Store::comments() { return impl_->comments; }
-Views& Store::views() { return impl_->views; }
+NamedParts& Store::views() { return impl_->views; }
+NamedParts& Store::tours() { return impl_->tours; }
+Kiosks& Store::kiosks() { return impl_->kiosks; }
 
 Result<StoreInfo> Store::info() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {

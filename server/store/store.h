@@ -32,7 +32,8 @@
 namespace strata::store {
 
 class Comments;
-class Views;
+class Kiosks;
+class NamedParts;
 
 struct StoreOptions {
   std::string dsn;      // libpq connection string
@@ -113,7 +114,9 @@ class Store {
   Result<std::vector<std::uint8_t>> look_picture(std::int64_t id);
 
   Comments& comments();  // threads on models (store/comments.h); lives as long as this
-  Views& views();        // named views of models (store/views.h); the same
+  NamedParts& views();   // of models (store/named_parts.h); the same
+  NamedParts& tours();   // the same
+  Kiosks& kiosks();      // screens that show tours (store/kiosks.h); the same
 
   // --- tools: shapes for the brush, of the whole site
   static constexpr int kMostTools = 200;  // that are not deleted

@@ -5,9 +5,10 @@
 
 #include "core/slug.h"
 #include "store/comments.h"
+#include "store/kiosks.h"
+#include "store/named_parts.h"
 #include "store/pool.h"
 #include "store/store.h"
-#include "store/views.h"
 
 namespace strata::store {
 
@@ -46,7 +47,8 @@ struct Store::Impl {
   const StoreOptions options;
   Pool pool;
   Comments comments{pool};
-  Views views{pool};
+  NamedParts views{pool, NamedParts::kViews}, tours{pool, NamedParts::kTours};
+  Kiosks kiosks{pool};
   std::int64_t schema_version = 0;
 
   template <class Answer, class Work>

@@ -18,6 +18,7 @@ const kFewest = 2000;
 /** What cannot succeed here, or not surely. */
 const kExceptions = {
   live: "it becomes a WebSocket, which live_cases_test.py opens",
+  kiosk_self: "kiosks ask it, and nobody else; kiosks_test.py does",
   cancel_job: "the job may be over before it is asked to stop",
   open_owner_link: "once the owner has chosen a password the link is worthless; the tests in browsers open it",
 };
@@ -36,6 +37,7 @@ const secrets = () =>
     ["(the owner's token)", server.token],
     ["(a viewer's token)", server.viewer],
     ["(the owner's link)", new URL(server.link).searchParams.get("link")],
+    ["(a kiosk's link)", site.kiosk_link],
     ["(a job)", site.job],
     ["(an invitation)", site.invitations?.[0]],
     ["(an invitation to accept)", site.invitations?.[1]],

@@ -12,7 +12,7 @@ from support.meshes import folded_grid
 from support.strata_server import StrataServer
 
 FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
-IN_PROJECTS = ("project", "model", "table", "attachment", "comment", "job")
+IN_PROJECTS = ("project", "model", "table", "attachment", "comment", "job", "kiosk")
 OF_THE_SITE = ("user", "session", "token", "tool")
 
 
@@ -47,7 +47,11 @@ def make_sites(server):
         server.ok("POST", f"/tables/{table['id']}/records", {"records": [{"values": {"what": "a coin"}}]})
         attachment = server.ok("POST", f"/tables/{table['id']}/records/1/attachments?column=photo&name=x.png", PNG).json()["attachments"][0]
         comment = server.ok("POST", f"/models/{model['slug']}/comments", {"text": "Look here.", "position": [0, 0, 0]}).json()
-        sites[slug] = {"comment": comment, "project": project, "model": model, "table": table, "attachment": attachment, "job": {"id": job}}
+        camera = {"view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -300, 1], "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.1, -1, 0, 0, -21, 0], "width": 400, "height": 400}
+        server.ok("POST", f"/models/{model['slug']}/views", {"name": "Plan", "camera": camera})
+        server.ok("POST", f"/models/{model['slug']}/tours", {"name": "Round", "languages": ["en"], "stops": [{"view": "plan", "title": {"en": "Here"}}]})
+        kiosk = server.ok("POST", f"/models/{model['slug']}/tours/round/kiosks", {"name": "Hall"}).json()["kiosk"]
+        sites[slug] = {"comment": comment, "kiosk": {"id": kiosk["id"]}, "project": project, "model": model, "table": table, "attachment": attachment, "job": {"id": job}}
     return sites
 
 

@@ -65,6 +65,9 @@ def make_site(server):
     server.ok("POST", f"/comments/{thread}/replies", {"text": f"Much {CELL}?"})
     column_shown = {"layer": "finds", "highlight": {"filter": f"\"{COLUMN}\" = '{CELL}'"}}
     server.ok("POST", M + "/views", {"name": "Plan", "camera": camera, "layers": [{"layer": LAYER, "opacity": 0.5}, column_shown]})
+    stop = {"view": "plan", "title": {"en": "Here"}, "layers": [LAYER], "records": [{"table": "finds", "keys": [1], "columns": [{"column": COLUMN}, {"column": "name"}]}]}
+    server.ok("POST", M + "/tours", {"name": "Round", "languages": ["en"], "stops": [stop]})
+    server.ok("POST", M + "/tours/round/kiosks", {"name": "Hall"})
     assert hidden["visibility"] == "private" and public["visibility"] == "public"
     return camera, before, public, hidden, thread
 
@@ -74,7 +77,7 @@ def words(server, public):
     job = server.get("/jobs").json()["jobs"][0]["id"]
     look = server.get(M + "/looks").json()["looks"]
     return {"project": ["default"], "model": ["sheet"], "layer": ["cracks", "finds"], "table": ["finds"], "key": ["1"], "column": ["name", "depth", "photo"], "attachment": [str(public["id"])],
-            "job": [str(job)], "look": [each["slug"] for each in look] or ["1"], "comment": ["1"], "view": ["plan"], "name": ["sheet.ply"], "format": ["npy", "png", "tif"], "tool": ["1"], "template": ["1"],
+            "job": [str(job)], "look": [each["slug"] for each in look] or ["1"], "comment": ["1"], "view": ["plan"], "tour": ["round"], "kiosk": ["1"], "name": ["sheet.ply"], "format": ["npy", "png", "tif"], "tool": ["1"], "template": ["1"],
             "user": ["owner"], "session": ["1"], "token": ["1"]}
 
 

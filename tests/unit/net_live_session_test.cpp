@@ -4,6 +4,7 @@
 
 #include <deque>
 
+#include "net/auth.h"
 #include "net/live_sockets.h"
 #include "support/shapes.h"
 
@@ -345,6 +346,47 @@ TEST_F(Live, the_room_hears_who_edits_and_what_they_may) {
     EXPECT_EQ(edit.request.author.user, "anna");
     EXPECT_EQ(edit.request.author.role, Role::annotator);
   }
+}
+
+TEST_F(Live, a_kiosk_looks_and_hears_of_nobody_and_nobody_of_it) {
+  hello();
+  const auto screens_socket = std::make_shared<FakeSocket>();
+  Principal kiosk{kiosk_name(3), Role::viewer};
+  kiosk.kiosk = KioskPass{3, 1, 2};
+  auto screen = std::make_shared<LiveSession>(shared, room, "default", kiosk, "", screens_socket);
+  shared->sockets->add(screens_socket, screen, "link");
+  screen->on_text(json{{"op", "hello"}}.dump());
+  ASSERT_EQ(screens_socket->of("welcome").size(), 1u);
+  EXPECT_TRUE(screens_socket->later.empty()) << "presence is not even scheduled";
+
+  const std::vector<json> refused{begin(stroke),
+                                  extend(stroke, 0, {{1, 1}}),
+                                  {{"op", "undo"}, {"id", to_string(random_uuid())}, {"layer", "cracks"}},
+                                  {{"op", "presence"}, {"pointer", {1, 1}}},
+                                  {{"op", "record.edit"}, {"table", 4}, {"key", 7}, {"editing", true}}};
+  for (const json& message : refused) EXPECT_FALSE(screen->on_text(message.dump()));
+  ASSERT_EQ(screens_socket->of("problem").size(), refused.size());
+  for (const json& problem : screens_socket->of("problem")) EXPECT_EQ(problem["status"], 403);
+  EXPECT_TRUE(room->edits.empty());
+
+  room::Listener::Edit edit;
+  edit.id = random_uuid();
+  edit.layer_id = 7;
+  edit.user = "anna";
+  screen->edit_applied(edit);
+  ASSERT_EQ(screens_socket->of("layer").size(), 1u);
+  EXPECT_FALSE(screens_socket->of("layer")[0].contains("user"));
+  edit_record(*session, 7, true);
+  EXPECT_TRUE(screens_socket->of("record.editors").empty());
+  EXPECT_FALSE(socket->of("record.editors").empty());
+
+  room->people = {{random_uuid(), kiosk.user, "", "#112233"}, {random_uuid(), "bea", "", "#112233"}};
+  session->presence_changed();
+  for (auto work = std::exchange(socket->later, {}); const auto& each : work) each();
+  const json told = socket->of("presence").back()["users"];
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0]["name"], "bea");
+  screen->on_closed();
 }
 
 TEST_F(Live, who_writes_into_a_record_is_told_to_all_of_the_project) {

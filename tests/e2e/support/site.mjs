@@ -156,6 +156,9 @@ export class Site {
     const { id } = await server.json("POST", "/models/wall/comments", { text: "Since when?", position: [10, 10, 0], layer: "units", record: 1 });
     await server.json("POST", `/comments/${id}/replies`, { text: "Since 2019." });
     await this.#view("West");
+    await this.#tour("Round");
+    const { path } = await this.#kiosk("Hall");
+    this.kiosk_link = path.split("/").pop();
     for (const [layer, value, where] of [
       ["cracks", 3, "x < 30"],
       ["moisture", 0.5, "y < 50"],
@@ -181,6 +184,15 @@ export class Site {
     // prettier-ignore
     const camera = { view: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1], projection: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.1, -1, 0, 0, -21, 0], width: 400, height: 400 };
     return this.server.json("POST", "/models/wall/views", { name, text: "The west.", camera, layers: [{ layer: "cracks", opacity: 0.5 }] });
+  }
+
+  #tour(name) {
+    const stops = [{ view: "west", title: { en: "The west" }, layers: ["cracks"], records: [{ table: "units", keys: [1], columns: [{ column: "code" }] }] }];
+    return this.server.json("POST", "/models/wall/tours", { name, languages: ["en", "es"], stops });
+  }
+
+  #kiosk(name) {
+    return this.server.json("POST", "/models/wall/tours/round/kiosks", { name });
   }
 
   async #undo() {
@@ -225,6 +237,10 @@ export class Site {
         );
       case "view":
         return (await this.#view(name)).slug;
+      case "tour":
+        return (await this.#tour(name)).slug;
+      case "kiosk":
+        return String((await this.#kiosk(name)).kiosk.id);
       case "comment":
         return String((await server.json("POST", "/models/wall/comments", { text: name, position: [50, 50, 0] })).id);
       case "user":

@@ -120,6 +120,8 @@ export const path_words = {
   layer: mostly(...kLayers),
   look: mostly("infrared", "1"),
   view: mostly("west", "1"),
+  tour: mostly("round", "1"),
+  kiosk: mostly("1"),
   tool: mostly("leaf", "1"),
   table: mostly("units", "damage", "scratch"),
   column: mostly(...kColumnSlugs),
@@ -203,6 +205,22 @@ const new_records = {
 const form_of = (...names) => ({ "multipart/form-data": file(...names) });
 const attach = { content: { "application/octet-stream": file("letter.txt", "picture.png") } };
 
+const tour_stop = fc.record(
+  {
+    view: mostly("west", "1"),
+    title: one({ en: "Here", es: "Aquí" }, { en: "Here", es: "Aquí" }, { fr: "Ici" }),
+    text: one({}, { en: "Broken\nin 2019." }),
+    layers: one([], ["cracks"], ["cracks", "moisture"], ["nothing"]),
+    records: one([], [{ table: "units", keys: [1, 2], columns: [{ column: "code", labels: { es: "Código" } }] }]),
+    transition: one("cut", "move"),
+  },
+  { requiredKeys: ["view", "title"] },
+);
+const tour = {
+  path: { model: one("wall", "wall", "wall", "nothing") },
+  ...json({ by_schema: { TourStopCreate: tour_stop }, by_name: { languages: one(["en", "es"], ["es", "en"], ["en", "en"]) } }),
+};
+
 const what_of_texels = one({}, { texels: "clear" }, { texels: "reassign", to: "2" });
 
 /** What an operation wants that its schema and the words above do not say. What takes something away takes a spare one; what changes how things are called or kept is done to what others do not need. */
@@ -228,6 +246,13 @@ export const particulars = {
   delete_layer_record: { path: { model: one("wall"), layer: one("units"), ...spare("key", "1") }, queries: what_of_texels },
   delete_attachment: { path: spare("attachment") },
   delete_comment: { path: spare("comment") },
+  login_kiosk: json({ by_name: { link: fc.oneof(one("(a kiosk's link)"), one("(a kiosk's link)"), strange_text) } }),
+  create_tour: tour,
+  change_tour: { ...tour, path: { model: one("wall"), tour: mostly("round", "1") } },
+  delete_tour: { path: { model: one("wall"), ...spare("tour") } },
+  create_kiosk: { path: { model: one("wall"), tour: mostly("round") } },
+  reload_kiosk: { path: spare("kiosk", "1") },
+  revoke_kiosk: { path: spare("kiosk") },
   delete_view: { path: { model: one("wall"), ...spare("view") } },
   change_view: { path: { model: one("wall"), ...spare("view", "west") } },
   change_comment: { path: spare("comment", "2") },

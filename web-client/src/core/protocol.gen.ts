@@ -436,6 +436,8 @@ export interface Tour {
   /** Stays when the tour gets another name. */
   slug: string;
   name: string;
+  /** Plain text: what it is about, for those who choose one. */
+  text: string;
   /** The first one is that of who chooses none. */
   languages: TourLanguage[];
   /** So long after the last touch the tour begins anew and plays by itself. */
@@ -1956,6 +1958,8 @@ export interface TourEntry {
   id: number;
   slug: string;
   name: string;
+  /** Plain text: what it is about, for those who choose one. */
+  text: string;
   languages: TourLanguage[];
   stop_count: number;
   /** Who made it. */
@@ -1993,6 +1997,8 @@ export interface TourStopCreate {
 /** A tour to keep. */
 export interface TourCreate {
   name: string;
+  /** Plain text: what it is about, for those who choose one. */
+  text?: string;
   /** The first one is that of who chooses none; every stop has a title in it. None twice. */
   languages: TourLanguage[];
   /** So long after the last touch the tour begins anew and plays by itself. Default: 60. */
@@ -2003,6 +2009,8 @@ export interface TourCreate {
 /** Changes to a tour. Stops are changed as a whole. Those that stay must fit the languages. */
 export interface TourPatch {
   name?: string;
+  /** Plain text: what it is about, for those who choose one. */
+  text?: string;
   /** The first one is that of who chooses none; every stop has a title in it. None twice. */
   languages?: TourLanguage[];
   idle_s?: number;

@@ -2251,6 +2251,7 @@ nlohmann::json to_json(const TourStopCreate& value) {
 
 void read(const nlohmann::json& json, TourCreate& value) {
   read_member(json, "name", value.name);
+  read_optional_member(json, "text", value.text);
   read_member(json, "languages", value.languages);
   read_optional_member(json, "idle_s", value.idle_s);
   read_member(json, "stops", value.stops);
@@ -2259,6 +2260,7 @@ void read(const nlohmann::json& json, TourCreate& value) {
 nlohmann::json to_json(const TourCreate& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "name", value.name);
+  write_optional_member(json, "text", value.text);
   write_member(json, "languages", value.languages);
   write_member(json, "idle_s", value.idle_s);
   write_member(json, "stops", value.stops);
@@ -2267,6 +2269,7 @@ nlohmann::json to_json(const TourCreate& value) {
 
 void read(const nlohmann::json& json, TourPatch& value) {
   read_optional_member(json, "name", value.name);
+  read_optional_member(json, "text", value.text);
   read_optional_member(json, "languages", value.languages);
   read_optional_member(json, "idle_s", value.idle_s);
   read_optional_member(json, "stops", value.stops);
@@ -2275,6 +2278,7 @@ void read(const nlohmann::json& json, TourPatch& value) {
 nlohmann::json to_json(const TourPatch& value) {
   nlohmann::json json = nlohmann::json::object();
   write_optional_member(json, "name", value.name);
+  write_optional_member(json, "text", value.text);
   write_optional_member(json, "languages", value.languages);
   write_optional_member(json, "idle_s", value.idle_s);
   write_optional_member(json, "stops", value.stops);

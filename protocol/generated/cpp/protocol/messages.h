@@ -1747,6 +1747,7 @@ inline constexpr Schema kSchemaOf<TourStopCreate> = Schema::TourStopCreate;
 // A tour to keep.
 struct TourCreate {
   std::string name;
+  std::optional<std::string> text;  // Plain text: what it is about, for those who choose one.
   std::vector<std::string> languages;  // The first one is that of who chooses none; every stop has a title in it. None twice.
   int idle_s = 60;  // So long after the last touch the tour begins anew and plays by itself.
   std::vector<TourStopCreate> stops;
@@ -1760,6 +1761,7 @@ inline constexpr Schema kSchemaOf<TourCreate> = Schema::TourCreate;
 // Changes to a tour. Stops are changed as a whole. Those that stay must fit the languages.
 struct TourPatch {
   std::optional<std::string> name;
+  std::optional<std::string> text;  // Plain text: what it is about, for those who choose one.
   std::optional<std::vector<std::string>> languages;  // The first one is that of who chooses none; every stop has a title in it. None twice.
   std::optional<int> idle_s;
   std::optional<std::vector<TourStopCreate>> stops;

@@ -1,0 +1,176 @@
+// Links for kiosks: what curators do with them, and what a kiosk asks.
+#include <limits>
+#include <memory>
+
+#include "net/origin.h"
+#include "net/routes.h"
+#include "net/sign_in_gate.h"
+#include "net/tour_wire.h"
+#include "net/wire.h"
+#include "store/kiosks.h"
+
+namespace strata::net {
+
+void end_kiosks(const RouteContext& context, const std::vector<std::int64_t>& kiosks, const std::string& reason) {
+  context.auth.forget();
+  for (const std::int64_t id : kiosks) context.live_sockets.close_user(kiosk_name(id), kClosePolicy, reason);
+}
+
+namespace {
+
+using store::Kiosk;
+
+nlohmann::json to_json(const Kiosk& kiosk) {
+  nlohmann::json json{{"id", kiosk.id},
+                      {"name", kiosk.name},
+                      {"project", kiosk.project},
+                      {"model", kiosk.model},
+                      {"model_name", kiosk.model_name},
+                      {"tour", kiosk.tour},
+                      {"tour_name", kiosk.tour_name},
+                      {"user", kiosk.user},
+                      {"created", utc_text(kiosk.created)},
+                      {"wants_reload", kiosk.wants_reload}};
+  if (kiosk.expires) json["expires"] = utc_text(*kiosk.expires);
+  if (kiosk.last_seen) json["last_seen"] = utc_text(*kiosk.last_seen);
+  if (kiosk.revoked) json["revoked"] = utc_text(*kiosk.revoked);
+  return json;
+}
+
+Result<Response> list_kiosks(const RouteContext& context, const Request& request) {
+  const auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  const Roles& roles = request.principal->roles;
+  std::optional<std::vector<std::int64_t>> projects;
+  if (roles.everywhere < Role::curator) {
+    projects.emplace();
+    for (const auto& [project, role] : roles.in_projects)
+      if (role >= Role::curator) projects->push_back(project);
+  }
+  const auto found = context.store.kiosks().all(projects, page->limit, page->offset);
+  if (!found) return tl::unexpected(found.error());
+  nlohmann::json kiosks = nlohmann::json::array();
+  for (const Kiosk& kiosk : found->kiosks) kiosks.push_back(to_json(kiosk));
+  Response response = json_response({{"kiosks", std::move(kiosks)}, {"total", found->total}});
+  add_page_links(response, request, *page, found->total);
+  return response;
+}
+
+Result<Response> create_kiosk(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::KioskCreate>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  const auto tour = context.store.tours().find(model->id, request.param("tour"));
+  if (!tour) return tl::unexpected(tour.error());
+  std::optional<std::chrono::seconds> lifetime;
+  if (asked->days) lifetime = std::chrono::hours(24 * *asked->days);
+  const auto made = context.store.kiosks().create(tour->id, asked->name, request.user(), lifetime);
+  if (!made) return tl::unexpected(made.error());
+  return json_response({{"path", "/kiosk/" + made->secret}, {"kiosk", to_json(made->kiosk)}}, 201)
+      .with("Location", "/api/v1/kiosks/" + std::to_string(made->kiosk.id))
+      .with("Cache-Control", "no-store");
+}
+
+Result<std::int64_t> id_of(const Request& request) {
+  return parse_integer(request.param("kiosk"), 1, std::numeric_limits<std::int64_t>::max(), "kiosk");
+}
+
+Result<Response> revoke_kiosk(const RouteContext& context, const Request& request) {
+  const auto id = id_of(request);
+  if (!id) return tl::unexpected(id.error());
+  if (auto done = context.store.kiosks().revoke(*id); !done) return tl::unexpected(done.error());
+  end_kiosks(context, {*id}, "the link was revoked");
+  return empty_response(204);
+}
+
+Result<Response> reload_kiosk(const RouteContext& context, const Request& request) {
+  const auto id = id_of(request);
+  if (!id) return tl::unexpected(id.error());
+  const auto kiosk = context.store.kiosks().ask_reload(*id);
+  if (!kiosk) return tl::unexpected(kiosk.error());
+  return json_response(to_json(*kiosk));
+}
+
+// --- from the other side of the link
+
+Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool wants_reload) {
+  const auto tour = context.store.tours().find(kiosk.model_id, std::to_string(kiosk.tour_id));
+  if (!tour) return tl::unexpected(tour.error());
+  auto told = to_json(context, *tour, Role::viewer, {});
+  if (!told) return tl::unexpected(told.error());
+  nlohmann::json json{{"id", kiosk.id},       {"name", kiosk.name},         {"project", kiosk.project},
+                      {"model", kiosk.model}, {"tour", std::move(*told)}, {"wants_reload", wants_reload}};
+  if (kiosk.expires) json["expires"] = utc_text(*kiosk.expires);
+  return json_response(json).with("Cache-Control", "no-store");
+}
+
+Result<Response> sign_in(const RouteContext& context, SignInGate& gate, const Request& request) {
+  const auto asked = body_of<protocol::KioskLogin>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const std::string address = address_of(request);
+  if (auto free = gate.pass(address, {}); !free) return tl::unexpected(free.error());
+  const auto kiosk = context.store.kiosks().find(asked->link);
+  if (!kiosk) return tl::unexpected(kiosk.error());
+  if (!*kiosk)
+    return fail(401, "Link not valid", "This link is unknown, expired or revoked. A curator makes a new one.", "link");
+  gate.was_right(address, {});
+  if (auto seen = context.store.kiosks().seen((*kiosk)->id, true); !seen) return tl::unexpected(seen.error());
+  auto response = self(context, **kiosk, false);
+  if (response)
+    response->with("Set-Cookie", Authenticator::set_kiosk_cookie(asked->link, came_by_https(request)));
+  return response;
+}
+
+Result<Response> kiosk_self(const RouteContext& context, const Request& request) {
+  if (!request.principal->kiosk)
+    return fail(403, "Not a kiosk", "This is told to kiosks: with the cookie of one and `as=kiosk`, or its bearer token.");
+  const auto kiosk = context.store.kiosks().kiosk(request.principal->kiosk->id);
+  if (!kiosk) return tl::unexpected(kiosk.error());
+  // That it was there is only remembered: it gets its answer also where nothing can be written.
+  (void)context.store.kiosks().seen(kiosk->id, false);
+  return self(context, *kiosk, kiosk->wants_reload);
+}
+
+}  // namespace
+
+void add_kiosk_routes(Router& router, const RouteContext& context) {
+  using Answer = Result<Response> (*)(const RouteContext&, const Request&);
+  const auto answer_by = [&context](Answer answer) {
+    return answering([&context, answer](const Request& request) { return answer(context, request); });
+  };
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/tours/{tour}/kiosks",
+              .handler = answer_by(create_kiosk),
+              .role = Role::curator,
+              .check = check_no_script,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/kiosks",
+              .handler = answer_by(list_kiosks),
+              .role = Role::guest,
+              .query = {"limit", "offset"}});
+  router.add({.method = Method::remove,
+              .pattern = "/api/v1/kiosks/{kiosk}",
+              .handler = answer_by(revoke_kiosk),
+              .role = Role::curator});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/kiosks/{kiosk}/reload",
+              .handler = answer_by(reload_kiosk),
+              .role = Role::curator});
+  auto gate = std::make_shared<SignInGate>();
+  router.add(
+      {.method = Method::post,
+       .pattern = "/api/v1/auth/kiosk",
+       .handler = answering([&context, gate](const Request& request) { return sign_in(context, *gate, request); }),
+       .role = std::nullopt,
+       .body = BodyKind::memory,
+       .max_body = context.options.max_json_bytes});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/kiosk",
+              .handler = answer_by(kiosk_self),
+              .role = Role::guest});
+}
+
+}  // namespace strata::net

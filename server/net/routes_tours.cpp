@@ -1,0 +1,132 @@
+// Tours of a model. Everybody reads them, curators make and change them.
+#include "net/annotated_routes.h"
+#include "net/answer_book.h"
+#include "net/routes.h"
+#include "net/tour_wire.h"
+#include "store/kiosks.h"
+
+namespace strata::net {
+namespace {
+
+using store::NamedPart;
+
+struct Found {
+  Model model;
+  NamedPart tour;
+};
+Result<Found> find_tour(const RouteContext& context, const Request& request) {
+  auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  auto tour = context.store.tours().find(model->id, request.param("tour"));
+  if (!tour) return tl::unexpected(tour.error());
+  return Found{std::move(*model), std::move(*tour)};
+}
+Result<Found> find_to_change(const RouteContext& context, const Request& request) {
+  auto found = find_tour(context, request);
+  if (!found) return found;
+  if (auto fresh = check_if_match(request, found->tour.version); !fresh) return tl::unexpected(fresh.error());
+  return found;
+}
+
+// An answer is made within the transaction of what it tells, so that what its tour names is read before.
+Response answer_of(nlohmann::json told, const NamedPart& now, int status) {
+  told.update({{"id", now.id}, {"slug", now.slug}, {"time", utc_text(now.time)}, {"version", now.version}});
+  return json_response(told, status).with("ETag", etag_of(now.version));
+}
+
+Result<Response> list_tours(const RouteContext& context, const Request& request) {
+  const auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  const auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  const auto found = context.store.tours().of_model(model->id, page->limit, page->offset);
+  if (!found) return tl::unexpected(found.error());
+  nlohmann::json tours = nlohmann::json::array();
+  for (const NamedPart& tour : found->parts) tours.push_back(tour_entry(tour, tour.user));
+  Response response = json_response({{"tours", std::move(tours)}, {"total", found->total}});
+  add_page_links(response, request, *page, found->total);
+  return response;
+}
+
+Result<Response> get_tour(const RouteContext& context, const Request& request) {
+  const auto found = find_tour(context, request);
+  if (!found) return tl::unexpected(found.error());
+  const auto told = to_json(context, found->tour, request.role(), told_name(request, found->tour.user));
+  if (!told) return tl::unexpected(told.error());
+  return with_etag(json_response(*told), request, found->tour.version);
+}
+
+Result<Response> create_tour(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::TourCreate>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  auto stops = kept_stops(context, *model, request.role(), asked->stops);
+  if (!stops) return tl::unexpected(stops.error());
+  NamedPart tour;
+  tour.model_id = model->id;
+  tour.name = asked->name;
+  tour.text = asked->text.value_or("");
+  tour.content = {{"languages", asked->languages}, {"idle_s", asked->idle_s}, {"stops", std::move(*stops)}};
+  tour.user = request.user();
+  if (auto good = check_languages(tour.content, true); !good) return tl::unexpected(good.error());
+  const auto told = to_json(context, tour, request.role(), tour.user);
+  if (!told) return tl::unexpected(told.error());
+  const auto answer = [&](const NamedPart& made) {
+    return answer_of(*told, made, 201)
+        .with("Location", "/api/v1/models/" + model->slug + "/tours/" + made.slug);
+  };
+  const auto made = context.store.tours().create(tour, first_answer<NamedPart>(request, answer));
+  if (!made) return tl::unexpected(made.error());
+  return answer(*made);
+}
+
+Result<Response> change_tour(const RouteContext& context, const Request& request) {
+  const auto asked = body_of<protocol::TourPatch>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto found = find_to_change(context, request);
+  if (!found) return tl::unexpected(found.error());
+  NamedPart& tour = found->tour;
+  if (asked->name) tour.name = *asked->name;
+  if (asked->text) tour.text = *asked->text;
+  if (asked->languages) tour.content["languages"] = *asked->languages;
+  if (asked->idle_s) tour.content["idle_s"] = *asked->idle_s;
+  if (asked->stops) {
+    auto stops = kept_stops(context, found->model, request.role(), *asked->stops);
+    if (!stops) return tl::unexpected(stops.error());
+    tour.content["stops"] = std::move(*stops);
+  }
+  if (auto good = check_languages(tour.content, asked->stops.has_value()); !good) return tl::unexpected(good.error());
+  const auto told = to_json(context, tour, request.role(), tour.user);
+  if (!told) return tl::unexpected(told.error());
+  const auto answer = [&](const NamedPart& now) { return answer_of(*told, now, 200); };
+  const auto changed = context.store.tours().update(tour, first_answer<NamedPart>(request, answer));
+  if (!changed) return tl::unexpected(changed.error());
+  return answer(*changed);
+}
+
+Result<Response> delete_tour(const RouteContext& context, const Request& request) {
+  const auto found = find_to_change(context, request);
+  if (!found) return tl::unexpected(found.error());
+  const auto kiosks = context.store.kiosks().of_tour(found->tour.id);
+  if (!kiosks) return tl::unexpected(kiosks.error());
+  const auto answer = [] { return empty_response(204); };
+  const auto gone = context.store.tours().remove(found->tour, first_answer<>(request, answer));
+  if (!gone) return tl::unexpected(gone.error());
+  end_kiosks(context, *kiosks, "the tour was deleted");
+  return answer();
+}
+
+}  // namespace
+
+void add_tour_routes(Router& router, const RouteContext& context) {
+  AnnotatedRoutes routes(router, context, Role::curator);
+  const std::string tours = "/api/v1/models/{model}/tours", tour = tours + "/{tour}";
+  routes.read(tours, list_tours, {"limit", "offset"});
+  routes.change(Method::post, tours, create_tour);
+  routes.read(tour, get_tour);
+  routes.change(Method::patch, tour, change_tour);
+  routes.change(Method::remove, tour, delete_tour);
+}
+
+}  // namespace strata::net

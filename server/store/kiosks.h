@@ -1,0 +1,62 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/problem.h"
+
+namespace strata::store {
+
+class Pool;
+
+// A screen that shows one tour to whoever stands before it.
+struct Kiosk {
+  std::int64_t id = 0;
+  std::string name;  // where it stands
+  std::int64_t tour_id = 0, model_id = 0, project_id = 0;
+  std::string tour, tour_name, model, model_name, project;  // slugs and names
+  std::string user;                                         // who made the link
+  std::chrono::system_clock::time_point created;
+  std::optional<std::chrono::system_clock::time_point> expires, last_seen, revoked;
+  bool wants_reload = false;  // it was asked to, and did not come again since
+};
+
+struct NewKiosk {
+  std::string secret;  // told this once: its SHA-256 is kept, of 256 random bits
+  Kiosk kiosk;
+};
+
+// Links of kiosks; of a Store, and as thread-safe and blocking as that, with the same Problems for what is not there or away.
+class Kiosks {
+ public:
+  static constexpr std::int64_t kMostKiosks = 100;  // good ones of a tour
+
+  explicit Kiosks(Pool& pool) : pool_(pool) {}
+
+  struct Page {
+    std::vector<Kiosk> kiosks;  // in the order in which they were made; bad ones for 30 days
+    std::int64_t total = 0;
+  };
+  // Of these projects, or of all.
+  Result<Page> all(const std::optional<std::vector<std::int64_t>>& projects, int limit, int offset);
+  Result<Kiosk> kiosk(std::int64_t id);
+  Result<std::vector<std::int64_t>> of_tour(std::int64_t tour_id);  // ids, good or not
+
+  // Refused: a blank name (422), a tour that is not there (404), one too many (409).
+  Result<NewKiosk> create(std::int64_t tour_id, const std::string& name, const std::string& user,
+                          std::optional<std::chrono::seconds> lifetime);
+  // Nothing: unknown, expired or revoked.
+  Result<std::optional<Kiosk>> find(const std::string& secret);
+  // That it is there, to a minute. `loaded`: its page was loaded just now, as it may have been asked to.
+  Result<void> seen(std::int64_t id, bool loaded);
+  Result<void> revoke(std::int64_t id);       // again is the same
+  Result<Kiosk> ask_reload(std::int64_t id);  // 409: it is revoked or expired
+
+ private:
+  Pool& pool_;
+};
+
+}  // namespace strata::store
