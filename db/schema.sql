@@ -752,6 +752,30 @@ CREATE TABLE public.detail_levels (
     CONSTRAINT detail_levels_level_check CHECK ((level > 0))
 );
 
+CREATE TABLE public.kiosks (
+    id bigint NOT NULL,
+    tour_id bigint NOT NULL,
+    hash bytea NOT NULL,
+    name text NOT NULL,
+    user_name text NOT NULL,
+    created timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    expires timestamp with time zone,
+    last_seen timestamp with time zone,
+    revoked timestamp with time zone,
+    wants_reload boolean DEFAULT false NOT NULL,
+    CONSTRAINT kiosks_hash_check CHECK ((octet_length(hash) = 32)),
+    CONSTRAINT kiosks_name_check CHECK (((char_length(name) >= 1) AND (char_length(name) <= 200)))
+);
+
+ALTER TABLE public.kiosks ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.kiosks_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.layer_inputs (
     layer_id bigint NOT NULL,
     slug text NOT NULL,
@@ -922,6 +946,29 @@ ALTER TABLE public.tool_shapes ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY 
     CACHE 1
 );
 
+CREATE TABLE public.tours (
+    id bigint NOT NULL,
+    model_id bigint NOT NULL,
+    slug text NOT NULL,
+    name text NOT NULL,
+    text text DEFAULT ''::text NOT NULL,
+    content jsonb NOT NULL,
+    user_name text NOT NULL,
+    "time" timestamp with time zone DEFAULT clock_timestamp() NOT NULL,
+    version bigint DEFAULT 1 NOT NULL,
+    CONSTRAINT tours_name_check CHECK (((char_length(name) >= 1) AND (char_length(name) <= 200))),
+    CONSTRAINT tours_text_check CHECK ((char_length(text) <= 10000))
+);
+
+ALTER TABLE public.tours ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.tours_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.users (
     id bigint NOT NULL,
     name text NOT NULL,
@@ -995,6 +1042,12 @@ ALTER TABLE ONLY public.edits
 
 ALTER TABLE ONLY public.edits
     ADD CONSTRAINT edits_pkey PRIMARY KEY (model_id, sequence);
+
+ALTER TABLE ONLY public.kiosks
+    ADD CONSTRAINT kiosks_hash_key UNIQUE (hash);
+
+ALTER TABLE ONLY public.kiosks
+    ADD CONSTRAINT kiosks_pkey PRIMARY KEY (id);
 
 ALTER TABLE ONLY public.layer_inputs
     ADD CONSTRAINT layer_inputs_pkey PRIMARY KEY (layer_id, slug);
@@ -1074,6 +1127,12 @@ ALTER TABLE ONLY public.tokens
 ALTER TABLE ONLY public.tool_shapes
     ADD CONSTRAINT tool_shapes_pkey PRIMARY KEY (id);
 
+ALTER TABLE ONLY public.tours
+    ADD CONSTRAINT tours_model_id_slug_key UNIQUE (model_id, slug);
+
+ALTER TABLE ONLY public.tours
+    ADD CONSTRAINT tours_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.users
     ADD CONSTRAINT users_name_key UNIQUE (name);
 
@@ -1117,6 +1176,8 @@ CREATE INDEX edits_author ON public.edits USING btree (layer_id, user_name, in_f
 CREATE INDEX edits_layer ON public.edits USING btree (layer_id, sequence);
 
 CREATE INDEX edits_undone ON public.edits USING btree (layer_id, user_name, undone_by) WHERE (NOT in_force);
+
+CREATE INDEX kiosks_by_tour ON public.kiosks USING btree (tour_id);
 
 CREATE INDEX layer_inputs_input ON public.layer_inputs USING btree (input_id);
 
@@ -1224,6 +1285,9 @@ ALTER TABLE ONLY public.edits
 ALTER TABLE ONLY public.edits
     ADD CONSTRAINT edits_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
 
+ALTER TABLE ONLY public.kiosks
+    ADD CONSTRAINT kiosks_tour_id_fkey FOREIGN KEY (tour_id) REFERENCES public.tours(id) ON DELETE CASCADE;
+
 ALTER TABLE ONLY public.layer_inputs
     ADD CONSTRAINT layer_inputs_input_id_fkey FOREIGN KEY (input_id) REFERENCES public.layers(id) ON DELETE SET NULL;
 
@@ -1292,6 +1356,9 @@ ALTER TABLE ONLY public.tile_sums
 
 ALTER TABLE ONLY public.tokens
     ADD CONSTRAINT tokens_user_name_fkey FOREIGN KEY (user_name) REFERENCES public.users(name) ON UPDATE CASCADE ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.tours
+    ADD CONSTRAINT tours_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.views
     ADD CONSTRAINT views_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;

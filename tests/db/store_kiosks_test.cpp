@@ -75,7 +75,7 @@ TEST_F(KiosksOfATour, a_model_has_a_bounded_number_of_tours) {
   more.model_id = new_model(1, "vase");
   EXPECT_TRUE(tours_.create(more));
   more.name = " ";
-  EXPECT_EQ(tours_.create(more).error().status, 422);
+  EXPECT_EQ(tours_.create(more).error().status, 400);
 }
 
 TEST_F(KiosksOfATour, a_link_leads_to_its_kiosk_and_only_its_hash_is_kept) {
@@ -175,7 +175,7 @@ TEST_F(KiosksOfATour, a_tour_has_a_bounded_number_of_good_links) {
   EXPECT_EQ(kiosks_.create(tour_, "Too many", "carl", {}).error().status, 409);
   ASSERT_TRUE(kiosks_.revoke(first.kiosk.id));
   EXPECT_TRUE(kiosks_.create(tour_, "In its place", "carl", {}));
-  EXPECT_EQ(kiosks_.create(tour_, "", "carl", {}).error().status, 422);
+  EXPECT_EQ(kiosks_.create(tour_, "", "carl", {}).error().status, 400);
 }
 
 }  // namespace

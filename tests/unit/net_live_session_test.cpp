@@ -349,7 +349,6 @@ TEST_F(Live, the_room_hears_who_edits_and_what_they_may) {
 }
 
 TEST_F(Live, a_kiosk_looks_and_hears_of_nobody_and_nobody_of_it) {
-  hello();
   const auto screens_socket = std::make_shared<FakeSocket>();
   Principal kiosk{kiosk_name(3), Role::viewer};
   kiosk.kiosk = KioskPass{3, 1, 2};
@@ -358,6 +357,7 @@ TEST_F(Live, a_kiosk_looks_and_hears_of_nobody_and_nobody_of_it) {
   screen->on_text(json{{"op", "hello"}}.dump());
   ASSERT_EQ(screens_socket->of("welcome").size(), 1u);
   EXPECT_TRUE(screens_socket->later.empty()) << "presence is not even scheduled";
+  hello();
 
   const std::vector<json> refused{begin(stroke),
                                   extend(stroke, 0, {{1, 1}}),

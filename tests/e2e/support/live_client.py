@@ -29,7 +29,7 @@ class Closed(Exception):
 
 
 class LiveClient:
-    def __init__(self, server, model, origin=None, token=None, cookie=None, receive_buffer=None, subprotocol="strata.v1"):
+    def __init__(self, server, model, origin=None, token=None, cookie=None, receive_buffer=None, subprotocol="strata.v1", query=""):
         port = server.port
         if port is None:
             raise ConnectionRefusedError("the server is down")
@@ -42,7 +42,7 @@ class LiveClient:
         if server.tls:
             self.socket = server.tls.wrap_socket(self.socket, server_hostname=server.host)
         self.buffer = b""
-        lines = [f"GET /api/v1/models/{model}/live HTTP/1.1", f"Host: {server.host}:{port}", "Upgrade: websocket",
+        lines = [f"GET /api/v1/models/{model}/live{query} HTTP/1.1", f"Host: {server.host}:{port}", "Upgrade: websocket",
                  "Connection: Upgrade", "Sec-WebSocket-Version: 13",
                  "Sec-WebSocket-Key: " + base64.b64encode(os.urandom(16)).decode(), "Sec-WebSocket-Protocol: " + subprotocol]
         secret = server.token if token is None else token
