@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "net/origin.h"
+#include "net/project_gate.h"
 #include "net/routes.h"
 #include "net/sign_in_gate.h"
 #include "net/tour_wire.h"
@@ -73,7 +74,8 @@ Result<Response> create_kiosk(const RouteContext& context, const Request& reques
 }
 
 Result<std::int64_t> id_of(const Request& request) {
-  return parse_integer(request.param("kiosk"), 1, std::numeric_limits<std::int64_t>::max(), "kiosk");
+  const auto id = parse_integer(request.param("kiosk"), 1, std::numeric_limits<std::int64_t>::max(), {});
+  return id ? id : not_there("kiosk", request.param("kiosk"));
 }
 
 Result<Response> revoke_kiosk(const RouteContext& context, const Request& request) {

@@ -45,7 +45,7 @@ class Kiosks {
   Result<Kiosk> kiosk(std::int64_t id);
   Result<std::vector<std::int64_t>> of_tour(std::int64_t tour_id);  // ids, good or not
 
-  // Refused: a blank name (400), a tour that is not there (404), one too many (409).
+  // Refused: an empty name (400), a tour that is not there (404), one too many (409).
   Result<NewKiosk> create(std::int64_t tour_id, const std::string& name, const std::string& user,
                           std::optional<std::chrono::seconds> lifetime);
   // Nothing: unknown, expired or revoked.

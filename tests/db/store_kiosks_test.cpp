@@ -74,7 +74,7 @@ TEST_F(KiosksOfATour, a_model_has_a_bounded_number_of_tours) {
   EXPECT_EQ(tours_.create(more).error().status, 409);
   more.model_id = new_model(1, "vase");
   EXPECT_TRUE(tours_.create(more));
-  more.name = " ";
+  more.name.clear();
   EXPECT_EQ(tours_.create(more).error().status, 400);
 }
 
