@@ -355,6 +355,7 @@ CREATE TABLE public.layers (
     summed boolean DEFAULT true NOT NULL,
     locked boolean DEFAULT false NOT NULL,
     visibility text DEFAULT 'public'::text NOT NULL,
+    review boolean DEFAULT false NOT NULL,
     CONSTRAINT layers_check CHECK (((kind = 'database'::text) = (table_id IS NOT NULL))),
     CONSTRAINT layers_check1 CHECK (((expression IS NOT NULL) OR (NOT automatic))),
     CONSTRAINT layers_expression_check CHECK ((expression <> ''::text)),
@@ -482,8 +483,12 @@ CREATE TABLE public.edits (
     "time" timestamp with time zone NOT NULL,
     in_force boolean DEFAULT true NOT NULL,
     undone_by bigint,
-    writer boolean GENERATED ALWAYS AS ((op <> ALL (ARRAY['undo'::text, 'redo'::text]))) STORED NOT NULL,
+    review text,
+    reviewed_by bigint,
+    writer boolean GENERATED ALWAYS AS ((op <> ALL (ARRAY['undo'::text, 'redo'::text, 'accept'::text, 'reject'::text, 'reopen'::text]))) STORED NOT NULL,
     CONSTRAINT edits_check CHECK ((in_force = (undone_by IS NULL))),
+    CONSTRAINT edits_check1 CHECK (((reviewed_by IS NOT NULL) = COALESCE((review = ANY (ARRAY['accepted'::text, 'rejected'::text])), false))),
+    CONSTRAINT edits_review_check CHECK ((review = ANY (ARRAY['pending'::text, 'accepted'::text, 'rejected'::text]))),
     CONSTRAINT edits_sequence_check CHECK ((sequence > 0))
 );
 
@@ -498,7 +503,8 @@ CREATE VIEW analysis.edits WITH (security_barrier='true') AS
     e.op,
     e.in_force,
     ((e.answer ->> 'texels_changed'::text))::bigint AS texels_changed,
-    ((e.answer ->> 'area_m2'::text))::double precision AS area_m2
+    ((e.answer ->> 'area_m2'::text))::double precision AS area_m2,
+    e.review
    FROM ((public.edits e
      JOIN public.models m ON ((m.id = e.model_id)))
      JOIN public.layers l ON (((l.id = e.layer_id) AND (l.visibility = 'public'::text))));
@@ -1175,6 +1181,8 @@ CREATE INDEX edits_author ON public.edits USING btree (layer_id, user_name, in_f
 
 CREATE INDEX edits_layer ON public.edits USING btree (layer_id, sequence);
 
+CREATE INDEX edits_pending ON public.edits USING btree (layer_id, sequence) WHERE ((review = 'pending'::text) AND in_force);
+
 CREATE INDEX edits_undone ON public.edits USING btree (layer_id, user_name, undone_by) WHERE (NOT in_force);
 
 CREATE INDEX kiosks_by_tour ON public.kiosks USING btree (tour_id);
@@ -1231,7 +1239,7 @@ CREATE TRIGGER comment_is_activity AFTER INSERT OR DELETE OR UPDATE OF resolved,
 
 CREATE TRIGGER edits_are_activity AFTER INSERT ON public.edits REFERENCING NEW TABLE AS added FOR EACH STATEMENT EXECUTE FUNCTION public.edits_are_activity();
 
-CREATE TRIGGER layer_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, slug, type, unit, description, palette, opacity, visible, draw_order, expression, automatic, locked, visibility ON public.layers FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('layer');
+CREATE TRIGGER layer_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, slug, type, unit, description, palette, opacity, visible, draw_order, expression, automatic, locked, review, visibility ON public.layers FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('layer');
 
 CREATE TRIGGER look_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, slug, description, opacity, visible, draw_order ON public.looks FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('look');
 

@@ -9,6 +9,7 @@ void TileResolver::add(const PastRevision& entry) {
     for (int w = 0; w < kMaskWords; ++w) {
       found.words[w] = open_.words[w] & entry.revision.written.words[w];
       open_.words[w] &= ~found.words[w];
+      if (entry.provisional) provisional_.words[w] |= found.words[w];
     }
     copy_texels(past_, found, result_);
   }

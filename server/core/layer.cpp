@@ -18,6 +18,7 @@ nlohmann::json to_json(const Layer& layer) {
                       {"opacity", layer.opacity},
                       {"visible", layer.visible},
                       {"locked", layer.locked},
+                      {"review", layer.review},
                       {"visibility", name(layer.visibility)},
                       {"order", layer.order},
                       {"sequence", layer.sequence}};

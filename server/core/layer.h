@@ -44,6 +44,7 @@ struct Layer {
   double opacity = 1;
   bool visible = true;
   bool locked = false;  // against everybody below curator: neither its texels nor what it is may be changed
+  bool review = false;  // edits of those below curator are provisional until a curator accepts or rejects them
   Visibility visibility = Visibility::everyone;
   int order = 0;                      // drawn ascending: higher is on top
   std::optional<std::int64_t> table;  // database: the project's table whose keys the texels hold

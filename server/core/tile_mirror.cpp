@@ -23,6 +23,11 @@ std::size_t TileMirror::bytes() const {
   return tiles_.size() * (sizeof(TileData) + std::size_t{kTexelsPerTile} * bytes_per_texel(type_));
 }
 
+bool TileMirror::empty() const {
+  std::lock_guard lock(mutex_);
+  return tiles_.empty();
+}
+
 void TileMirror::assign(TileMap tiles, std::int64_t sequence) {
   std::erase_if(tiles, [](const auto& entry) { return !entry.second || !entry.second->valid.any(); });
   std::lock_guard lock(mutex_);

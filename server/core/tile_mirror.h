@@ -29,6 +29,7 @@ class TileMirror {
   std::shared_ptr<const TileData> tile(TileAddress address) const;  // null when nothing in it is valid
   std::int64_t sequence() const;
   std::size_t bytes() const;
+  bool empty() const;  // nothing is valid
 
   // Replaces tiles in one step; a null or empty tile is dropped. Called in sequence order.
   void put(const TileMap& tiles, std::int64_t sequence);

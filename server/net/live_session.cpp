@@ -355,6 +355,7 @@ Message edit_message(const Uuid& id, bool is_batch, const Uuid& stroke, int n, c
   message.sequence = answer.sequence;
   message.texels_changed = static_cast<std::int64_t>(answer.texels_changed);
   message.area_m2 = answer.area_m2;
+  if (answer.provisional) message.provisional = true;
   return message;
 }
 
@@ -416,6 +417,13 @@ void LiveSession::edit_applied(const Edit& edit) {
   event.layer_id = edit.layer_id;
   event.sequence = edit.sequence;
   event.user = edit.user;
+  if (edit.answer.provisional) event.provisional = true;
+  if (edit.review) {
+    protocol::Reviewed& told = event.review.emplace();
+    told.decision = static_cast<protocol::ReviewDecision>(edit.review->decision);
+    told.authors = edit.review->authors;
+    if (!edit.review->reason.empty()) told.reason = edit.review->reason;
+  }
   send(event);
 }
 

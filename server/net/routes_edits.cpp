@@ -30,6 +30,24 @@ Result<Response> history(const RouteContext& context, const Request& request) {
   return response;
 }
 
+Result<Response> list_review(const RouteContext& context, const Request& request) {
+  auto page = page_of(request);
+  if (!page) return tl::unexpected(page.error());
+  auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  auto layer = context.store.layer(model->id, request.param("layer"), request.role());
+  if (!layer) return tl::unexpected(layer.error());
+  std::optional<std::string> user;
+  if (const auto asked = request.query.find("user"); asked != request.query.end()) user = asked->second;
+  if (user && (user->empty() || user->size() > 200))
+    return fail(422, "Bad name", "`user` is the name of a person.", "user");
+  auto queue = context.store.review_queue(layer->id, user, page->limit, page->offset);
+  if (!queue) return tl::unexpected(queue.error());
+  Response response = json_response(to_json(*queue));
+  add_page_links(response, request, *page, queue->total);
+  return response;
+}
+
 struct Target {
   std::shared_ptr<room::Room> room;
   Layer layer;
@@ -61,6 +79,21 @@ room::EditRequest bare_edit(const Request& request, const Target& target, std::s
   return edit;
 }
 
+Result<room::EditRequest> review_edit(const Request& request, const Target& target) {
+  const auto asked = body_of<protocol::Review>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  const auto decision = *parse_decision(name(asked->decision));
+  if (decision == Decision::reopen && !asked->edits)
+    return fail(422, "Edits missing", "Name the edits whose review is to be taken back.", "edits");
+  auto edit = bare_edit(request, target, std::string(name(decision)));
+  if (asked->edits) edit.record["edits"] = *asked->edits;
+  if (asked->user) edit.record["user"] = *asked->user;
+  if (asked->reason) edit.record["reason"] = *asked->reason;
+  edit.edit = room::ReviewEdit{
+      decision, {asked->edits.value_or(std::vector<std::int64_t>{}), asked->user}, asked->reason.value_or("")};
+  return edit;
+}
+
 // Undo and redo take no members; no body is the same as an empty object.
 Result<void> check_empty(const Request& request) {
   if (request.body.empty()) return {};
@@ -73,11 +106,11 @@ Result<void> check_empty(const Request& request) {
 
 void add_edit_routes(Router& router, const RouteContext& context) {
   const std::string layer = "/api/v1/models/{model}/layers/{layer}";
-  auto change = [&](const std::string& pattern, Handler handler) {
+  auto change = [&](const std::string& pattern, Handler handler, Role role = Role::annotator) {
     router.add({.method = Method::post,
                 .pattern = pattern,
                 .handler = std::move(handler),
-                .role = Role::annotator,
+                .role = role,
                 .body = BodyKind::memory,
                 .max_body = context.options.max_json_bytes});
   };
@@ -92,6 +125,11 @@ void add_edit_routes(Router& router, const RouteContext& context) {
            return edit_request(*asked, target.layer, target.room->model(), edit_id(request, target.layer, "edit"),
                                request.author(), [&](const std::string& ref) { return context.tools.find(ref); });
          }));
+  router.add({.method = Method::get,
+              .pattern = layer + "/review",
+              .handler = answering([&context](const Request& request) { return list_review(context, request); }),
+              .query = {"user", "limit", "offset"}});
+  change(layer + "/review", editing(context, review_edit), Role::curator);
   change(layer + "/undo",
          editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
            if (auto empty = check_empty(request); !empty) return tl::unexpected(empty.error());

@@ -78,6 +78,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
   layer.opacity = asked.opacity;
   layer.visible = asked.visible;
   layer.locked = asked.locked;
+  layer.review = asked.review;
   layer.visibility = asked.visibility.value_or(Visibility::everyone);
   layer.order = asked.order.value_or(order_on_top(others));
   return layer;
@@ -183,6 +184,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   if (asked->opacity) layer->opacity = *asked->opacity;
   if (asked->visible) layer->visible = *asked->visible;
   if (asked->locked) layer->locked = *asked->locked;
+  if (asked->review) layer->review = *asked->review;
   const Visibility before = layer->visibility;
   if (asked->visibility) layer->visibility = *asked->visibility;
   if (asked->order) layer->order = *asked->order;

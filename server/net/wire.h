@@ -67,6 +67,7 @@ nlohmann::json to_json(const query::Profile& profile, Unit unit);
 std::string cross_table_csv(const query::CrossTable& table, const std::string& rows, const std::string& columns);
 nlohmann::json to_json(const jobs::JobStatus& job);
 nlohmann::json to_json(const store::JournalRow& row);
+nlohmann::json to_json(const store::ReviewQueue& queue);
 std::string utc_text(std::chrono::system_clock::time_point time);  // RFC 3339 with milliseconds
 
 // Answers of many points in the formats of GET …/position and POST …/positions. `layers`: slugs, one column each.

@@ -1,16 +1,14 @@
 #include "room/computed_edit.h"
 
 #include <algorithm>
-#include <limits>
+#include <set>
 
-#include "core/history.h"
 #include "mesh/parallel.h"
 #include "room/expression_binding.h"
+#include "room/tile_past.h"
 
 namespace strata::room {
 namespace {
-
-constexpr int kRevisionsAtOnce = 32;  // of a tile's history: undo holds no more in memory
 
 template <class... Visitors>
 struct Overloaded : Visitors... {
@@ -19,48 +17,90 @@ struct Overloaded : Visitors... {
 template <class... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
-// Walks back through the tile's history only until every texel has found its author.
-Result<TileChange> undo_in_tile(const store::Store::WrittenTiles& written, const std::vector<std::int64_t>& sequences,
-                                bool redo, const Layer& layer, const TileMap& tiles, store::Store& store) {
+// What becomes of edits. What is not told stays as it is.
+struct Turn {
+  std::vector<std::int64_t> edits;  // ascending
+  std::optional<bool> in_force, provisional;
+};
+
+Result<TileChange> turn_in_tile(const store::Store::WrittenTiles& written, const Turn& turn, const Layer& layer,
+                                const TileMap& tiles, store::Store& store) {
   auto before = tile_or_empty(tiles, written.tile, layer.type);
   TileResolver resolver(*before, written.written);
-  for (std::int64_t newest = std::numeric_limits<std::int64_t>::max(); resolver.is_open();) {
-    auto revisions = store.tile_history(layer, written.tile, newest, kRevisionsAtOnce);
-    if (!revisions) return tl::unexpected(revisions.error());
-    if (revisions->empty()) break;
-    for (auto& revision : *revisions) {
-      if (std::binary_search(sequences.begin(), sequences.end(), revision.sequence)) revision.in_force = redo;
-      resolver.add(revision);
-    }
-    newest = revisions->back().sequence;
-  }
+  const auto walked = walk_back(resolver, layer, written.tile, store, [&](PastRevision& revision) {
+    if (!std::binary_search(turn.edits.begin(), turn.edits.end(), revision.sequence)) return;
+    revision.in_force = turn.in_force.value_or(revision.in_force);
+    revision.provisional = turn.provisional.value_or(revision.provisional);
+  });
+  if (!walked) return tl::unexpected(walked.error());
+  const TileMask provisional = resolver.provisional();
   auto after = std::make_shared<const TileData>(std::move(resolver).finish());
-  return TileChange{written.tile, std::move(before), std::move(after), written.written};
+  return TileChange{written.tile, std::move(before), std::move(after), written.written, provisional};
+}
+
+Result<ComputedEdit> compute_turn(const Turn& turn, const Layer& layer, const TileMap& tiles, store::Store& store) {
+  auto written = store.written_by(layer, turn.edits);
+  if (!written) return tl::unexpected(written.error());
+  ComputedEdit computed;
+  for (const auto& tile : *written) {
+    auto change = turn_in_tile(tile, turn, layer, tiles, store);
+    if (!change) return tl::unexpected(change.error());
+    computed.changes.push_back(std::move(*change));
+  }
+  if (turn.in_force) (*turn.in_force ? computed.enable : computed.disable) = turn.edits;
+  return computed;
 }
 
 Result<ComputedEdit> compute_undo(const EditRequest& request, const Layer& layer, const TileMap& tiles,
                                   store::Store& store, bool redo) {
-  auto sequences = redo ? store.redoable(layer.id, request.author.user) : store.undoable(layer.id, request.author.user);
+  // What was accepted stays until a curator changes it.
+  const bool pending_only = layer.review && request.author.role < Role::curator;
+  auto sequences = redo ? store.redoable(layer.id, request.author.user, pending_only)
+                        : store.undoable(layer.id, request.author.user, pending_only);
   if (!sequences) return tl::unexpected(sequences.error());
+  if (sequences->empty() && pending_only)
+    return fail(409, redo ? "Nothing to redo" : "Nothing to undo",
+                redo ? "You have no undone stroke on this layer that waits for review."
+                     : "You have no stroke on this layer that still waits for review; what was accepted a curator can "
+                       "take back.");
   if (sequences->empty())
     return redo ? fail(409, "Nothing to redo", "You have no undone stroke on this layer that could come back.")
                 : fail(409, "Nothing to undo", "You have no stroke in force on this layer.");
-  auto written = store.written_by(layer, *sequences);
-  if (!written) return tl::unexpected(written.error());
+  return compute_turn({std::move(*sequences), redo, std::nullopt}, layer, tiles, store);
+}
 
-  ComputedEdit computed;
-  for (const auto& tile : *written) {
-    auto change = undo_in_tile(tile, *sequences, redo, layer, tiles, store);
-    if (!change) return tl::unexpected(change.error());
-    computed.changes.push_back(std::move(*change));
+Result<ComputedEdit> compute_review(const ReviewEdit& review, const Layer& layer, const TileMap& tiles,
+                                    store::Store& store) {
+  const auto found = store.under_review(layer.id, review.decision, review.which);
+  if (!found) return tl::unexpected(found.error());
+  const bool reopens = review.decision == Decision::reopen;
+  Turn turn;
+  std::set<std::string> authors;
+  for (const auto& edit : *found) {
+    turn.edits.push_back(edit.sequence);
+    authors.insert(edit.user);
   }
-  (redo ? computed.enable : computed.disable) = std::move(*sequences);
+  for (const std::int64_t named : review.which.edits)
+    if (!std::binary_search(turn.edits.begin(), turn.edits.end(), named))
+      return fail(
+          409, reopens ? "Not reviewed" : "Not waiting for review",
+          "Edit " + std::to_string(named) +
+              (reopens ? " was neither accepted nor rejected, or was taken back since."
+                       : " of this layer does not wait for review: it was taken back, or somebody has decided."),
+          "edits");
+  if (turn.edits.empty()) return fail(409, "Nothing to review", "Nothing of this waits for review on this layer.");
+  if (review.decision != Decision::accept) turn.in_force = reopens;
+  turn.provisional = reopens;
+  auto computed = compute_turn(turn, layer, tiles, store);
+  if (!computed) return computed;
+  computed->reviewed = {std::move(turn.edits), outcome(review.decision)};
+  computed->authors.assign(authors.begin(), authors.end());
   return computed;
 }
 
 Result<ComputedEdit> only_changes(Result<std::vector<TileChange>> changes) {
   if (!changes) return tl::unexpected(changes.error());
-  return ComputedEdit{std::move(*changes), {}, {}};
+  return ComputedEdit{std::move(*changes), {}, {}, {}, {}};
 }
 
 Result<TileMap> computed_content(const ComputeEdit& compute, const Layer& layer, const RegionContext& context) {
@@ -99,6 +139,7 @@ Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer
           },
           [&](const UndoEdit&) { return compute_undo(request, layer, tiles, store, false); },
           [&](const RedoEdit&) { return compute_undo(request, layer, tiles, store, true); },
+          [&](const ReviewEdit& review) { return compute_review(review, layer, tiles, store); },
           [&](const StrokeEdit&) -> Result<ComputedEdit> {
             return fail(500, "Internal error", "A stroke is painted, not computed.");
           },

@@ -1,11 +1,23 @@
 #include "room/contents.h"
 
+#include <algorithm>
 #include <future>
+#include <iterator>
 
 #include "room/await.h"
+#include "room/provisional.h"
 #include "room/tile_changes.h"
 
 namespace strata::room {
+
+LayerState new_state(Layer layer) {
+  LayerState state;
+  state.mirror = std::make_shared<TileMirror>(layer.type, layer.resolution);
+  state.provisional = std::make_shared<TileMirror>(ValueType::u8, layer.resolution);
+  state.palette = std::make_shared<const Palette>(layer.palette);
+  state.layer = std::move(layer);
+  return state;
+}
 
 Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id, const std::vector<LayerState>& held) {
   JournalContents contents;
@@ -18,15 +30,18 @@ Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id,
   for (Layer& layer : *layers) {
     auto tiles = store.load_tiles(layer);
     if (!tiles) return tl::unexpected(tiles.error());
+    auto provisional = read_provisional(store, layer);
+    if (!provisional) return tl::unexpected(provisional.error());
     for (const LayerState& old : held) {
       if (old.layer.id != layer.id) continue;
       auto differing = differing_tiles(old.mirror->snapshot().tiles, tiles->tiles);
+      std::ranges::move(differing_tiles(old.provisional->snapshot().tiles, *provisional),
+                        std::back_inserter(differing));
       if (!differing.empty()) contents.differing[layer.id] = std::move(differing);
     }
-    auto mirror = std::make_shared<TileMirror>(layer.type, layer.resolution);
-    mirror->put(tiles->tiles, tiles->sequence);
-    auto palette = std::make_shared<const Palette>(layer.palette);
-    contents.layers.push_back({std::move(layer), 0, std::move(mirror), std::move(palette)});
+    LayerState& state = contents.layers.emplace_back(new_state(std::move(layer)));
+    state.mirror->put(tiles->tiles, tiles->sequence);
+    state.provisional->put(*provisional, tiles->sequence);
   }
   return contents;
 }
@@ -73,18 +88,34 @@ Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelH
   return await<render::LayerHandle>([&](auto done) { renderer.add_layer(model, std::move(mirror), std::move(done)); });
 }
 
+Result<LayerHandles> add_layer(render::Renderer& renderer, render::ModelHandle model, const LayerState& layer) {
+  auto content = add_layer(renderer, model, layer.mirror);
+  if (!content) return tl::unexpected(content.error());
+  auto provisional = add_layer(renderer, model, layer.provisional);
+  if (!provisional) {
+    renderer.remove_layer(*content);
+    return tl::unexpected(provisional.error());
+  }
+  return LayerHandles{*content, *provisional};
+}
+
+void remove_layer(render::Renderer& renderer, const LayerHandles& handles) {
+  renderer.remove_layer(handles.content);
+  renderer.remove_layer(handles.provisional);
+}
+
 Result<GpuContents> fill_gpu(render::Renderer& renderer, const render::ModelGeometry& geometry,
                              const std::vector<LayerState>& layers) {
   auto model = await<render::ModelHandle>([&](auto done) { renderer.add_model(geometry, std::move(done)); });
   if (!model) return tl::unexpected(model.error());
   GpuContents contents{*model, {}};
   for (const LayerState& layer : layers) {
-    auto handle = add_layer(renderer, *model, layer.mirror);
-    if (!handle) {
+    auto handles = add_layer(renderer, *model, layer);
+    if (!handles) {
       renderer.remove_model(*model);
-      return tl::unexpected(handle.error());
+      return tl::unexpected(handles.error());
     }
-    contents.layers[layer.layer.id] = *handle;
+    contents.layers[layer.layer.id] = *handles;
   }
   return contents;
 }

@@ -39,13 +39,31 @@ std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit
   return {};
 }
 
+bool paints(const EditRequest& edit) {
+  return !std::holds_alternative<UndoEdit>(edit.edit) && !std::holds_alternative<RedoEdit>(edit.edit) &&
+         !std::holds_alternative<ReviewEdit>(edit.edit);
+}
+
+bool waits_for_review(const Layer& layer, const EditRequest& edit) {
+  return layer.review && edit.author.role < Role::curator && paints(edit) &&
+         !std::holds_alternative<ComputeEdit>(edit.edit);
+}
+
 Result<void> check_not_locked(const Layer& layer, Role role) {
   if (!layer.locked || role >= Role::curator) return {};
   return fail(403, "Layer locked", "The layer " + layer.name + " is locked: a curator can unlock it.", "layer");
 }
 
 nlohmann::json to_json(const EditAnswer& answer) {
-  return {{"sequence", answer.sequence}, {"texels_changed", answer.texels_changed}, {"area_m2", answer.area_m2}};
+  nlohmann::json json{
+      {"sequence", answer.sequence}, {"texels_changed", answer.texels_changed}, {"area_m2", answer.area_m2}};
+  if (answer.provisional) json["provisional"] = true;
+  return json;
+}
+
+EditAnswer first_answer(const store::JournalRow& row) {
+  return {row.sequence, row.answer.value("texels_changed", std::uint64_t{0}), row.answer.value("area_m2", 0.0), true,
+          row.answer.value("provisional", false)};
 }
 
 }  // namespace strata::room

@@ -9,11 +9,13 @@
 #include "core/expression.h"
 #include "core/layer.h"
 #include "core/problem.h"
+#include "core/review.h"
 #include "core/role.h"
 #include "core/stroke.h"
 #include "core/tile_mirror.h"
 #include "core/uuid.h"
 #include "query/values.h"
+#include "store/journal.h"
 
 namespace strata::room {
 
@@ -64,6 +66,11 @@ struct ComputeEdit {  // a computed layer's content, from the layers and records
 };
 struct UndoEdit {};  // the author's newest stroke in force on the layer
 struct RedoEdit {};
+struct ReviewEdit {  // of edits that wait for it, or were reviewed before
+  Decision decision = Decision::accept;
+  store::Reviewees which;
+  std::string reason;  // for the authors
+};
 struct RestoreEdit {  // the whole layer as it was after a sequence
   std::int64_t sequence = 0;
 };
@@ -72,12 +79,18 @@ struct EditRequest {
   Uuid id;  // of the message: a repeat gets the first answer and paints nothing
   Author author;
   std::int64_t layer_id = 0;
-  std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit, RestoreEdit> edit{};
+  std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit, RestoreEdit, ReviewEdit>
+      edit{};
   nlohmann::json record{};  // the edit as asked, for the journal
 };
 
 // The keys that an edit of the layer paints: none where it erases, undoes or brings back what was.
 std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit);
+
+// Whether the edit paints by itself: undo, redo and reviews only move what others painted.
+bool paints(const EditRequest& edit);
+// Whether the edit is provisional until a curator has accepted or rejected it.
+bool waits_for_review(const Layer& layer, const EditRequest& edit);
 
 // Refused (403, `layer`): a locked layer, to who is no curator. The pipeline asks before it begins an edit; others only where they
 // would change something else before that.
@@ -88,8 +101,11 @@ struct EditAnswer {
   std::uint64_t texels_changed = 0;  // surface texels whose value or validity changed
   double area_m2 = 0;                // their surface
   bool repeated = false;             // the id was known: nothing was painted now
+  bool provisional = false;          // it waits for review
 };
 
 nlohmann::json to_json(const EditAnswer& answer);
+// What a repeat of an edit in the journal is told.
+EditAnswer first_answer(const store::JournalRow& row);
 
 }  // namespace strata::room

@@ -9,6 +9,7 @@
 
 #include "core/log.h"
 #include "room/gpu_problem.h"
+#include "room/provisional.h"
 
 namespace strata::room {
 namespace {
@@ -28,14 +29,14 @@ const char* op_name(const EditRequest& request) {
   return std::visit(Overloaded{[](const StrokeEdit&) { return "stroke"; }, [](const FillEdit&) { return "fill"; },
                                [](const PolygonEdit&) { return "polygon"; }, [](const ImportEdit&) { return "import"; },
                                [](const ComputeEdit&) { return "compute"; }, [](const UndoEdit&) { return "undo"; },
-                               [](const RedoEdit&) { return "redo"; }, [](const RestoreEdit&) { return "restore"; }},
+                               [](const RedoEdit&) { return "redo"; }, [](const RestoreEdit&) { return "restore"; },
+                               [](const ReviewEdit& review) { return name(review.decision).data(); }},
                     request.edit);
 }
 
-// Undo, redo and restore read the journal, so everything before them must be in it.
+// Undo, redo, reviews and restore read the journal, so everything before them must be in it.
 bool reads_journal(const EditRequest& request) {
-  return std::holds_alternative<UndoEdit>(request.edit) || std::holds_alternative<RedoEdit>(request.edit) ||
-         std::holds_alternative<RestoreEdit>(request.edit);
+  return !paints(request) || std::holds_alternative<RestoreEdit>(request.edit);
 }
 
 // What its content is computed from besides its own layer.
@@ -163,8 +164,7 @@ void EditPipeline::on_known(const std::vector<store::JournalRow>& known) {
             ? std::find_if(known.begin(), known.end(), [&](const auto& r) { return r.id == item.request.id; })
             : known.end();
     if (row != known.end()) {
-      const EditAnswer first{row->sequence, row->answer.value("texels_changed", std::uint64_t{0}),
-                             row->answer.value("area_m2", 0.0), true};
+      const EditAnswer first = first_answer(*row);
       if (item.applied) item.applied(first);
       answer(item.request.id, item.saved, first);
       continue;
@@ -262,7 +262,7 @@ void EditPipeline::start_stroke(Waiting taken, const LayerState& layer) {
   ++in_flight_;
   auto item = std::make_shared<Waiting>(std::move(taken));
   item->hold = layer.mirror->hold();
-  parts_.renderer.paint(layer.handle, std::get<StrokeEdit>(item->request.edit).batch,
+  parts_.renderer.paint(layer.handles.content, std::get<StrokeEdit>(item->request.edit).batch,
                         then([this, item](Result<render::StrokeOutcome> outcome) {
                           --in_flight_;
                           stroke_done(*item, std::move(outcome));
@@ -321,7 +321,7 @@ void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item, Result<
   for (const auto& change : computed->changes) uploads.push_back({change.address, change.after});
   busy_ = true;
   item->hold = layer->mirror->hold();
-  parts_.renderer.write_tiles(layer->handle, std::move(uploads),
+  parts_.renderer.write_tiles(layer->handles.content, std::move(uploads),
                               then([this, item, computed = std::move(*computed)](const Result<void>& uploaded) mutable {
                                 busy_ = false;
                                 computed_uploaded(*item, std::move(computed), uploaded);
@@ -350,10 +350,17 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   const std::int64_t sequence = ++sequence_;
 
   store::JournalEntry entry;
-  EditAnswer answer{sequence, 0, 0, false};
-  TileMap tiles;
+  const bool is_provisional = waits_for_review(layer.layer, item.request);
+  EditAnswer answer{sequence, 0, 0, false, is_provisional};
+  TileMap tiles, provisional_before, provisional;
   auto& since_key_tile = since_key_tile_[layer.layer.id];
-  for (const TileChange& change : computed.changes) {
+  for (TileChange& change : computed.changes) {
+    if (is_provisional) change.provisional = change.written;
+    if (auto marked = layer.provisional->tile(change.address); marked || change.provisional.any()) {
+      provisional[change.address] = with_provisional(marked, change);
+      provisional_before[change.address] = std::move(marked);
+    }
+    if (!paints(item.request) && *change.before == *change.after) continue;  // nothing moves
     if (map) {
       const ChangeCount count = count_changes(change, *map);
       answer.texels_changed += count.texels;
@@ -373,12 +380,12 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
     entry.revisions.push_back(std::move(revision));
   }
   if (map) {
-    std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>> after;
-    for (const TileChange& change : computed.changes) after.emplace_back(change.address, change.after);
+    std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>> after(tiles.begin(), tiles.end());
     entry.sum_tiles = [map, about = layer.layer, after = std::move(after)] { return sum_tiles(about, *map, after); };
   }
   const std::int64_t sequence_before = layer.layer.sequence;
   layer.mirror->put(tiles, sequence);
+  put_provisional(layer, provisional, sequence);
   host_->set_sequence(layer, sequence);
 
   const auto* stroke = std::get_if<StrokeEdit>(&item.request.edit);
@@ -394,15 +401,20 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   entry.time = std::chrono::system_clock::now();
   entry.disable = std::move(computed.disable);
   entry.enable = std::move(computed.enable);
+  if (is_provisional) entry.review = Review::pending;
+  entry.reviewed = std::move(computed.reviewed);
 
-  const Listener::Edit event{
+  Listener::Edit event{
       layer.layer.id,    layer.layer.slug,         sequence, entry.id, entry.stroke, stroke ? stroke->n : 0,
       stroke != nullptr, item.request.author.user, entry.op, answer};
-  if (!tiles.empty()) host_->content_changed(layer, box, sequence);
+  if (auto* review = std::get_if<ReviewEdit>(&item.request.edit))
+    event.review = {review->decision, std::move(review->reason), std::move(computed.authors)};
+  if (!tiles.empty() || !provisional.empty()) host_->content_changed(layer, box, sequence);
   host_->edit_applied(event);
   if (item.applied) item.applied(answer);
 
-  pending_.push_back({event, std::move(computed.changes), sequence_before, std::move(item.saved), false});
+  pending_.push_back({event, std::move(computed.changes), std::move(provisional_before), sequence_before,
+                      std::move(item.saved), false});
   if (failure_) {
     pending_.back().answered = true;
     return;
@@ -413,6 +425,23 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
     failure_ = Problem{503, "Not saved", "The database does not keep up with the edits; they were taken back.", {}};
     pending_.back().answered = true;
   }
+}
+
+void EditPipeline::put_provisional(LayerState& layer, const TileMap& tiles, std::int64_t sequence) {
+  if (tiles.empty()) return;
+  const bool was_empty = layer.provisional->empty();
+  layer.provisional->put(tiles, sequence);
+  if (layer.provisional->empty() != was_empty) host_->styles_changed();
+  std::vector<render::TileUpload> uploads;
+  std::vector<TileAddress> addresses;
+  for (const auto& [address, tile] : tiles) {
+    uploads.push_back({address, tile});
+    addresses.push_back(address);
+  }
+  const auto failed = [this, id = layer.layer.id, addresses = std::move(addresses)](const Result<void>& uploaded) {
+    if (!uploaded) stale_[id].insert(addresses.begin(), addresses.end());
+  };
+  parts_.renderer.write_tiles(layer.handles.provisional, std::move(uploads), then(failed));
 }
 
 void EditPipeline::on_saved(std::int64_t sequence, const Result<void>& result) {
@@ -443,7 +472,7 @@ void EditPipeline::roll_back_when_answered() {
   sequence_ = durable_;
   std::deque<Pending> taken_back = std::exchange(pending_, {});
   struct Before {
-    TileMap tiles;
+    TileMap tiles, provisional;
     std::int64_t sequence = 0;
   };
   std::map<std::int64_t, Before> layers;  // what they were before their oldest pending edit
@@ -451,11 +480,13 @@ void EditPipeline::roll_back_when_answered() {
     Before& before = layers[pending->event.layer_id];
     before.sequence = pending->layer_sequence_before;
     for (const auto& change : pending->changes) before.tiles[change.address] = change.before;
+    for (const auto& [address, tile] : pending->provisional) before.provisional[address] = tile;
   }
   for (auto& [layer_id, before] : layers) {
     LayerState* layer = closed_ ? nullptr : host_->find_layer(layer_id);
     if (!layer) continue;
     layer->mirror->put(before.tiles, before.sequence);
+    put_provisional(*layer, before.provisional, before.sequence);
     host_->set_sequence(*layer, before.sequence);
     since_key_tile_.erase(layer_id);  // the whole copies may be among what was not saved
     for (const auto& [address, data] : before.tiles) stale_[layer_id].insert(address);
@@ -476,20 +507,23 @@ bool EditPipeline::repair() {
   if (stale_.empty()) return false;
   if (repair_waits_ || in_flight_ > 0) return true;
   busy_ = true;
-  auto left = std::make_shared<std::size_t>(2 * stale_.size());
+  auto left = std::make_shared<std::size_t>(4 * stale_.size());
   auto failure = std::make_shared<std::optional<Problem>>();
+  const auto write = [&](render::LayerHandle handle, const TileMirror& mirror, const std::set<TileAddress>& tiles,
+                         bool empty_ones) {
+    std::vector<render::TileUpload> uploads;
+    for (const TileAddress address : tiles)
+      if (auto tile = mirror.tile(address); !tile == empty_ones) uploads.push_back({address, std::move(tile)});
+    parts_.renderer.write_tiles(handle, std::move(uploads), then([this, left, failure](const Result<void>& uploaded) {
+                                  if (!uploaded && !*failure) *failure = uploaded.error();
+                                  if (--*left == 0) repaired(*failure);
+                                }));
+  };
   for (const bool empty_ones : {true, false})
     for (const auto& [layer_id, tiles] : stale_) {
       const LayerState* layer = host_->find_layer(layer_id);
-      std::vector<render::TileUpload> uploads;
-      for (const TileAddress address : tiles)
-        if (auto tile = layer->mirror->tile(address); !tile == empty_ones)
-          uploads.push_back({address, std::move(tile)});
-      parts_.renderer.write_tiles(layer->handle, std::move(uploads),
-                                  then([this, left, failure](const Result<void>& uploaded) {
-                                    if (!uploaded && !*failure) *failure = uploaded.error();
-                                    if (--*left == 0) repaired(*failure);
-                                  }));
+      write(layer->handles.content, *layer->mirror, tiles, empty_ones);
+      write(layer->handles.provisional, *layer->provisional, tiles, empty_ones);
     }
   return true;
 }

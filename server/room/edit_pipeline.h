@@ -31,6 +31,7 @@ class PipelineHost {
   virtual std::vector<query::LayerView> layer_snapshots() = 0;  // of all layers, as their mirrors are now
   virtual const Model& pipeline_model() const = 0;
   virtual render::ModelHandle model_handle() const = 0;
+  virtual void styles_changed() = 0;  // a layer has begun to wait for review, or nothing of it does any more
   virtual void set_sequence(LayerState& layer, std::int64_t sequence) = 0;  // other threads may be reading it
   virtual void content_changed(const LayerState& layer, const std::optional<render::FrameRequest::Box>& box,
                                std::int64_t sequence) = 0;  // no box: everywhere
@@ -103,6 +104,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   struct Pending {
     Listener::Edit event;
     std::vector<TileChange> changes;
+    TileMap provisional;  // the tiles of what waited for review, as they were before
     std::int64_t layer_sequence_before = 0;
     Room::Saved saved;
     bool answered = false;
@@ -125,6 +127,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   // Making durable, or taking back
   void commit(Waiting& item, LayerState& layer, ComputedEdit computed,
               const std::optional<render::FrameRequest::Box>& box);
+  // Null: nothing of the tile waits for review.
+  void put_provisional(LayerState& layer, const TileMap& tiles, std::int64_t sequence);
   void on_saved(std::int64_t sequence, const Result<void>& result);
   void roll_back_when_answered();
   bool repair();  // false: the GPU has all

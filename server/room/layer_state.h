@@ -9,12 +9,17 @@
 
 namespace strata::room {
 
+struct LayerHandles {
+  render::LayerHandle content = 0, provisional = 0;
+};
+
 // One layer of an open room. Copied by any thread under the room's mutex: what the strand changes is changed under it, too.
 struct LayerState {
   Layer layer;
-  render::LayerHandle handle = 0;
+  LayerHandles handles;
   std::shared_ptr<TileMirror> mirror;
-  std::shared_ptr<const Palette> palette;  // of `layer`, shared with the frames that use it
+  std::shared_ptr<TileMirror> provisional;  // what of it waits for review (room/provisional.h), shown over it
+  std::shared_ptr<const Palette> palette;   // of `layer`, shared with the frames that use it
   std::shared_ptr<query::TileSumsCache> sums = std::make_shared<query::TileSumsCache>();
 };
 

@@ -1,6 +1,7 @@
 #include "room/member.h"
 
 #include "room/open_room.h"
+#include "room/provisional.h"
 
 namespace strata::room {
 
@@ -46,11 +47,12 @@ render::ViewStyle RoomMember::style(std::uint32_t view_id, View& view) const {
     const LayerView none;
     const LayerView& mine = own == view.overrides.end() ? none : own->second;
     if (!mine.visible.value_or(state.layer.visible)) continue;
-    style.layers.push_back(
-        {state.handle, palette(view_id, view, state), static_cast<float>(mine.opacity.value_or(state.layer.opacity))});
+    const render::LayerStyle shown{state.handles.content, palette(view_id, view, state),
+                                   static_cast<float>(mine.opacity.value_or(state.layer.opacity))};
+    add_styles(state, shown, style.layers);
     if (!state.layer.table) continue;
     if (auto marks = room_->record_marks().find(*state.layer.table, sight_of(role())))
-      marked.push_back({std::move(marks), style.layers.back().palette, style.layers.back().opacity});
+      marked.push_back({std::move(marks), shown.palette, shown.opacity});
   }
   if (marked != view.marked) {
     view.marks = show_marks(marked);

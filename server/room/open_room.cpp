@@ -87,7 +87,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const s
   room->mirrors_share_ = std::move(*mirrors);
   auto gpu = fill_gpu(parts.renderer, {room->geometry_, room->coarser_}, room->layer_states());
   if (!gpu) return tl::unexpected(gpu.error());
-  for (auto& [id, state] : room->layers_) state.handle = gpu->layers.at(id);
+  for (auto& [id, state] : room->layers_) state.handles = gpu->layers.at(id);
   room->model_handle_ = gpu->model;
   room->maps_->set_model(gpu->model);
   const auto restyle = [weak = std::weak_ptr<OpenRoom>(room)] {
@@ -186,18 +186,21 @@ Result<Layer> OpenRoom::create_layer(Layer layer, const store::FirstAnswer<Layer
   if (auto ok = check_layer(layer, model()); !ok) return tl::unexpected(ok.error());
   auto created = exclusively<Layer>([this, layer, answer, columns]() -> Result<Layer> {
     // The GPU first: of what it refuses nothing is in the database.
-    auto mirror = std::make_shared<TileMirror>(layer.type, layer.resolution);
-    auto handle = add_layer(parts_.renderer, model_handle(), mirror);
-    if (!handle) return tl::unexpected(gpu_problem(handle.error()));
+    LayerState state = new_state(layer);
+    auto handles = add_layer(parts_.renderer, model_handle(), state);
+    if (!handles) return tl::unexpected(gpu_problem(handles.error()));
     auto made = parts_.store.create_layer(layer, answer, columns);
     if (!made) {
-      parts_.renderer.remove_layer(*handle);
+      remove_layer(parts_.renderer, *handles);
       return made;
     }
+    state.handles = *handles;
+    state.layer = *made;
+    state.palette = std::make_shared<const Palette>(made->palette);
     on_strand([&] {
       {
         std::lock_guard lock(mutex_);
-        layers_.emplace(made->id, LayerState{*made, *handle, mirror, std::make_shared<const Palette>(made->palette)});
+        layers_.emplace(made->id, std::move(state));
       }
       tell_layer(std::nullopt, *made);
       sort_layers_changed();
@@ -320,7 +323,7 @@ Result<Layer> OpenRoom::widen_layer(const Layer& layer, ValueType type, const st
         std::lock_guard lock(mutex_);
         const auto found = layers_.find(layer.id);
         if (found == layers_.end()) return;
-        old = std::exchange(found->second.handle, *handle);
+        old = std::exchange(found->second.handles.content, *handle);
         found->second.mirror = mirror;
         found->second.sums = std::make_shared<query::TileSumsCache>();
         found->second.layer.type = type;
@@ -347,7 +350,7 @@ Result<void> OpenRoom::delete_layer(std::int64_t id, const store::FirstAnswer<>&
         layers_.erase(found);
         mirrors_share_.recount(mirror_bytes());
       }
-      parts_.renderer.remove_layer(gone.handle);
+      remove_layer(parts_.renderer, gone.handles);
       tell_seen(gone.layer, [&](Listener& l) { l.layer_changed(Listener::LayerChange::deleted, gone.layer); });
       outdate([&](const LayerFormula& formula) {
         return std::ranges::any_of(formula.inputs, [&](const auto& input) { return input.layer == id; });
@@ -473,7 +476,7 @@ void OpenRoom::set_sequence(LayerState& layer, std::int64_t sequence) {
 
 std::uint64_t OpenRoom::mirror_bytes() const {
   std::uint64_t bytes = 0;
-  for (const auto& [id, state] : layers_) bytes += state.mirror->bytes();
+  for (const auto& [id, state] : layers_) bytes += state.mirror->bytes() + state.provisional->bytes();
   return bytes;
 }
 

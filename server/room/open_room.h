@@ -97,6 +97,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   std::vector<query::LayerView> layer_snapshots() override;
   render::ModelHandle model_handle() const override;  // also for members
   const Model& pipeline_model() const override { return model_; }
+  void styles_changed() override { sort_layers_changed(); }
   void set_sequence(LayerState& layer, std::int64_t sequence) override;
   void content_changed(const LayerState& layer, const std::optional<render::FrameRequest::Box>& box,
                        std::int64_t sequence) override;

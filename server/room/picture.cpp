@@ -2,6 +2,7 @@
 #include "room/await.h"
 #include "room/gpu_problem.h"
 #include "room/open_room.h"
+#include "room/provisional.h"
 
 namespace strata::room {
 namespace {
@@ -43,7 +44,7 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
   render::FrameRequest request;
   std::vector<LayerMarks> marked;
   for (const auto& item : shown) {
-    render::LayerHandle handle = item.handle;
+    render::LayerStyle style{item.handles.content, item.palette, static_cast<float>(item.layer.opacity)};
     if (asked.at) {
       auto past = parts_.store.load_tiles(item.layer, asked.at);
       if (!past) return tl::unexpected(past.error());
@@ -51,24 +52,27 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
       mirror->assign(std::move(past->tiles), *asked.at);
       auto copy = add_layer(parts_.renderer, model, std::move(mirror));
       if (!copy) return tl::unexpected(gpu_problem(copy.error()));
-      handle = *copy;
-      borrowed.layers.push_back(handle);
+      style.layer = *copy;
+      borrowed.layers.push_back(*copy);
     }
     const LayerView& mine = asked.shown.of(item.layer.id);
-    auto palette = mine.palette ? std::make_shared<const Palette>(*mine.palette) : item.palette;
+    if (mine.palette) style.palette = std::make_shared<const Palette>(*mine.palette);
     const auto highlight = mine.highlight ? std::make_shared<const Highlight>(*mine.highlight) : nullptr;
-    if (item.layer.table && RecordColors::needs_records(*palette, highlight)) {
-      auto made = record_colors_->make({*item.layer.table, sight, palette, highlight});
+    if (item.layer.table && RecordColors::needs_records(*style.palette, highlight)) {
+      auto made = record_colors_->make({*item.layer.table, sight, style.palette, highlight});
       if (!made) return tl::unexpected(made.error());
-      palette = std::move(*made);
+      style.palette = std::move(*made);
     }
-    request.layers.push_back(
-        {handle, std::move(palette), static_cast<float>(mine.opacity.value_or(item.layer.opacity))});
+    if (mine.opacity) style.opacity = static_cast<float>(*mine.opacity);
+    if (asked.at)
+      request.layers.push_back(style);  // the past had other things waiting
+    else
+      add_styles(item, style, request.layers);
     if (!item.layer.table) continue;
     auto marks = asked.at ? record_marks_->when(*item.layer.table, sight, *asked.at)
                           : record_marks_->newest(*item.layer.table, sight);
     if (!marks) return tl::unexpected(marks.error());
-    if (*marks) marked.push_back({std::move(*marks), request.layers.back().palette, request.layers.back().opacity});
+    if (*marks) marked.push_back({std::move(*marks), style.palette, style.opacity});
   }
   auto view = await<render::ViewHandle>([&](auto done) { parts_.renderer.add_view(model, std::move(done)); });
   if (!view) return tl::unexpected(gpu_problem(view.error()));

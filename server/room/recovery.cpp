@@ -63,11 +63,13 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
         recovery_.gpu_lacks_all = true;  // made by a request that never heard so; rare enough to start from nothing
         continue;
       }
-      state.handle = known->second.handle;
-      // The GPU knows the layer by this mirror.
-      auto tiles = state.mirror->snapshot();
-      known->second.mirror->assign(std::move(tiles.tiles), tiles.sequence);
-      state.mirror = known->second.mirror;
+      state.handles = known->second.handles;
+      // The GPU knows the layer by these mirrors.
+      for (auto mirror : {&LayerState::mirror, &LayerState::provisional}) {
+        auto tiles = (state.*mirror)->snapshot();
+        (known->second.*mirror)->assign(std::move(tiles.tiles), tiles.sequence);
+        state.*mirror = known->second.*mirror;
+      }
       if (known->second.layer.version > state.layer.version) {  // changed since it was read
         const std::int64_t sequence = state.layer.sequence;
         state.layer = known->second.layer;
@@ -93,7 +95,7 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
     if (!before.contains(id)) tell_layer(Change::created, state.layer);
   for (const auto& [id, state] : before) {
     if (read.contains(id)) continue;
-    parts_.renderer.remove_layer(state.handle);
+    remove_layer(parts_.renderer, state.handles);
     tell_layer(Change::deleted, state.layer);
   }
   sort_layers_changed();
@@ -113,7 +115,7 @@ void OpenRoom::on_gpu_filled(int losses_before, const Result<GpuContents>& conte
   {
     std::lock_guard lock(mutex_);
     model_handle_ = contents->model;
-    for (auto& [id, state] : layers_) state.handle = contents->layers.at(id);
+    for (auto& [id, state] : layers_) state.handles = contents->layers.at(id);
   }
   maps_->set_model(contents->model);
   look_shelf_->set_model(contents->model);

@@ -36,6 +36,12 @@ class Listener {
     bool is_stroke = false;
     std::string user, op;
     EditAnswer answer;
+    struct Review {
+      Decision decision = Decision::accept;
+      std::string reason;
+      std::vector<std::string> authors;  // of what was reviewed
+    };
+    std::optional<Review> review{};
   };
   virtual void edit_applied(const Edit& edit) = 0;                                     // visible, not yet durable
   virtual void edits_unsaved(const std::vector<Edit>& edits, const Problem& why) = 0;  // rolled back

@@ -19,6 +19,7 @@ struct TileChange {
   TileAddress address;
   std::shared_ptr<const TileData> before, after;
   TileMask written;
+  TileMask provisional{};  // of `written`: what waits for review now
 };
 
 // The tile of a snapshot, or an empty one of the type.

@@ -3,9 +3,17 @@
 namespace strata::store {
 namespace {
 
+#define STRATA_EDIT_COLUMNS                                                                                        \
+  "e.sequence, e.id, e.stroke, e.user_name, e.op, e.record, e.answer, e.time, e.in_force, e.review, r.user_name, " \
+  "r.record ->> 'reason', r.time FROM edits e LEFT JOIN edits r ON r.model_id = e.model_id AND r.sequence = e.reviewed_by "
+
 JournalRow read_row(const PgResult& rows, int i) {
-  return {rows.integer(i, 0), rows.uuid(i, 1), rows.uuid(i, 2), rows.text(i, 3),   rows.text(i, 4),
-          rows.json(i, 5),    rows.json(i, 6), rows.time(i, 7), rows.boolean(i, 8)};
+  JournalRow row{rows.integer(i, 0), rows.uuid(i, 1), rows.uuid(i, 2), rows.text(i, 3),   rows.text(i, 4),
+                 rows.json(i, 5),    rows.json(i, 6), rows.time(i, 7), rows.boolean(i, 8)};
+  if (!rows.null(i, 9)) row.review = parse_review(rows.text(i, 9)).value_or(Review::none);
+  if (!rows.null(i, 10))
+    row.reviewer = {rows.text(i, 10), rows.null(i, 11) ? std::string() : rows.text(i, 11), rows.time(i, 12)};
+  return row;
 }
 
 Result<std::vector<std::int64_t>> sequences(PgConnection& connection, const char* sql, const Params& params) {
@@ -25,10 +33,9 @@ Result<Store::HistoryPage> Store::history(std::int64_t layer_id, int limit, int 
                          Params().integer(layer_id));
     if (!total) return tl::unexpected(total.error());
     if (total->rows() == 0) return not_found("layer", std::to_string(layer_id));
-    auto rows = connection.query(
-        "SELECT sequence, id, stroke, user_name, op, record, answer, time, in_force FROM edits "
-        "WHERE layer_id = $1 ORDER BY sequence DESC LIMIT $2 OFFSET $3",
-        Params().integer(layer_id).integer(std::max(limit, 0)).integer(std::max(offset, 0)));
+    auto rows = connection.query("SELECT " STRATA_EDIT_COLUMNS
+                                 "WHERE e.layer_id = $1 ORDER BY e.sequence DESC LIMIT $2 OFFSET $3",
+                                 Params().integer(layer_id).integer(std::max(limit, 0)).integer(std::max(offset, 0)));
     if (!rows) return tl::unexpected(rows.error());
     HistoryPage page;
     page.total = total->integer(0, 0);
@@ -46,42 +53,41 @@ Result<Store::JournalState> Store::journal_state(std::int64_t model_id, std::spa
     if (model->rows() == 0) return not_found("model", std::to_string(model_id));
     JournalState state{model->integer(0, 0), {}};
     if (ids.empty()) return state;
-    auto rows = connection.query(
-        "SELECT sequence, id, stroke, user_name, op, record, answer, time, in_force FROM edits "
-        "WHERE model_id = $1 AND id = any($2)",
-        Params().integer(model_id).array(wanted));
+    auto rows = connection.query("SELECT " STRATA_EDIT_COLUMNS "WHERE e.model_id = $1 AND e.id = any($2)",
+                                 Params().integer(model_id).array(wanted));
     if (!rows) return tl::unexpected(rows.error());
     for (int i = 0; i < rows->rows(); ++i) state.known.push_back(read_row(*rows, i));
     return state;
   });
 }
 
-Result<std::vector<std::int64_t>> Store::undoable(std::int64_t layer_id, const std::string& user) {
+Result<std::vector<std::int64_t>> Store::undoable(std::int64_t layer_id, const std::string& user, bool pending_only) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
   return impl_->pool.read([&](PgConnection& connection) {
-    return sequences(
-        connection,
-        "SELECT sequence FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force AND stroke = "
-        "(SELECT stroke FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
-        "ORDER BY sequence DESC LIMIT 1) ORDER BY sequence",
-        Params().integer(layer_id).text(user));
+    return sequences(connection,
+                     "SELECT sequence FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
+                     "AND (NOT $3 OR review = 'pending') AND stroke = "
+                     "(SELECT stroke FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
+                     "AND (NOT $3 OR review = 'pending') ORDER BY sequence DESC LIMIT 1) ORDER BY sequence",
+                     Params().integer(layer_id).text(user).boolean(pending_only));
   });
 }
 
 // The batches that the newest undo took, unless paint made after that undo is in force. (Strokes that redo brought back
-// are older than it, so that undo, undo, redo, redo works.)
-Result<std::vector<std::int64_t>> Store::redoable(std::int64_t layer_id, const std::string& user) {
+// are older than it, so that undo, undo, redo, redo works.) What was rejected only a curator brings back.
+Result<std::vector<std::int64_t>> Store::redoable(std::int64_t layer_id, const std::string& user, bool pending_only) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
   return impl_->pool.read([&](PgConnection& connection) {
     return sequences(
         connection,
         "WITH undone AS (SELECT stroke, undone_by FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer "
-        "AND NOT in_force ORDER BY undone_by DESC, sequence DESC LIMIT 1) "
+        "AND NOT in_force AND review IS DISTINCT FROM 'rejected' AND (NOT $3 OR review = 'pending') "
+        "ORDER BY undone_by DESC, sequence DESC LIMIT 1) "
         "SELECT e.sequence FROM edits e JOIN undone u ON e.stroke = u.stroke AND e.undone_by = u.undone_by "
         "WHERE e.layer_id = $1 AND e.user_name = $2 AND e.writer AND NOT e.in_force AND NOT EXISTS "
         "(SELECT 1 FROM edits n WHERE n.layer_id = $1 AND n.user_name = $2 AND n.writer AND n.in_force "
         "AND n.sequence > u.undone_by) ORDER BY e.sequence",
-        Params().integer(layer_id).text(user));
+        Params().integer(layer_id).text(user).boolean(pending_only));
   });
 }
 

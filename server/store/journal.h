@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/review.h"
 #include "core/tile.h"
 #include "core/uuid.h"
 
@@ -34,9 +35,9 @@ struct JournalEntry {
   Uuid id;                    // of the message; unique per model
   std::string user;           // display name of the author
   Uuid stroke;                // groups the batches of one stroke; equal to `id` for single edits
-  std::string op;             // "stroke", "fill", "polygon", "import", "undo", "redo", "restore"
-  nlohmann::json record;      // the edit as it was asked for
-  nlohmann::json answer;      // what the caller was told; a repeat of `id` gets this again
+  std::string op;  // "stroke", "fill", "polygon", "import", "undo", "redo", "restore", "accept", "reject", "reopen"
+  nlohmann::json record;  // the edit as it was asked for
+  nlohmann::json answer;  // what the caller was told; a repeat of `id` gets this again
   std::chrono::system_clock::time_point time;
   struct Revision {
     TileAddress tile;
@@ -47,8 +48,14 @@ struct JournalEntry {
   // What the tiles of the revisions hold after the edit; asked for on the writer's thread, at each try. Empty: it is not known, and the
   // layer is to be counted anew (Store::layers_to_sum).
   std::function<std::vector<TileKeys>()> sum_tiles;
-  // undo / redo: the sequences whose `in_force` becomes false / true with this entry
+  // undo, redo, reviews: the sequences whose `in_force` becomes false / true with this entry
   std::vector<std::int64_t> disable, enable;
+  Review review = Review::none;  // of this edit: none or pending
+  struct Reviewed {
+    std::vector<std::int64_t> edits;
+    Review becomes = Review::pending;
+  };
+  std::optional<Reviewed> reviewed;  // what the entry decides
 };
 
 // A row of a layer's history (GET …/edits), newest first.
@@ -59,6 +66,44 @@ struct JournalRow {
   nlohmann::json record, answer;
   std::chrono::system_clock::time_point time;
   bool in_force = true;
+  Review review = Review::none;
+  struct Reviewer {  // of what was accepted or rejected
+    std::string user, reason;
+    std::chrono::system_clock::time_point time;
+  };
+  std::optional<Reviewer> reviewer;
+};
+
+// What waits for review on a layer.
+struct ReviewQueue {
+  struct Stroke {  // or another edit
+    Uuid stroke;
+    std::int64_t sequence = 0;  // of its first batch, by which it is named; of the last one
+    std::int64_t last = 0;
+    std::string user, op;
+    std::chrono::system_clock::time_point begun, time;  // of the first batch and the last
+    std::uint64_t texels = 0;                           // changed one after the other
+    double area_m2 = 0;
+    nlohmann::json record;  // of the first batch
+  };
+  struct Person {
+    std::string user;
+    std::int64_t strokes = 0;
+  };
+  std::vector<Stroke> strokes;  // of a page, the oldest first
+  std::int64_t total = 0;
+  std::vector<Person> people;  // of the whole layer, by name
+};
+
+// Which edits a decision is about: these, those of a person, or where neither is given all.
+struct Reviewees {
+  std::vector<std::int64_t> edits;
+  std::optional<std::string> user;
+};
+struct UnderReview {
+  std::int64_t sequence = 0;
+  Uuid stroke;
+  std::string user;
 };
 
 }  // namespace strata::store

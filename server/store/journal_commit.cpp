@@ -76,7 +76,8 @@ std::size_t advance_layers(std::span<const JournalEntry* const> entries, Stateme
 
 void insert_edits(std::span<const JournalEntry* const> entries, Statements& out) {
   PgArray models(oid::kInt8), sequences(oid::kInt8), ids(oid::kUuid), layers(oid::kInt8), strokes(oid::kUuid),
-      users(oid::kText), ops(oid::kText), records(oid::kJsonb), answers(oid::kJsonb), times(oid::kTimestamptz);
+      users(oid::kText), ops(oid::kText), records(oid::kJsonb), answers(oid::kJsonb), times(oid::kTimestamptz),
+      reviews(oid::kText);
   for (const JournalEntry* entry : entries) {
     models.add(entry->model_id);
     sequences.add(entry->sequence);
@@ -88,6 +89,10 @@ void insert_edits(std::span<const JournalEntry* const> entries, Statements& out)
     records.add(entry->record);
     answers.add(entry->answer);
     times.add(entry->time);
+    if (entry->review == Review::none)
+      reviews.add_null();
+    else
+      reviews.add(name(entry->review));
   }
   Params params;
   params.array(models)
@@ -99,11 +104,12 @@ void insert_edits(std::span<const JournalEntry* const> entries, Statements& out)
       .array(ops)
       .array(records)
       .array(answers)
-      .array(times);
+      .array(times)
+      .array(reviews);
   out.push_back(
-      {"INSERT INTO edits (model_id, sequence, id, layer_id, stroke, user_name, op, record, answer, time) "
+      {"INSERT INTO edits (model_id, sequence, id, layer_id, stroke, user_name, op, record, answer, time, review) "
        "SELECT * FROM unnest($1::bigint[], $2::bigint[], $3::uuid[], $4::bigint[], $5::uuid[], $6::text[], "
-       "$7::text[], $8::jsonb[], $9::jsonb[], $10::timestamptz[])",
+       "$7::text[], $8::jsonb[], $9::jsonb[], $10::timestamptz[], $11::text[])",
        std::move(params)});
 }
 
@@ -164,6 +170,21 @@ void switch_edits(std::span<const JournalEntry* const> entries, Statements& out)
     }
 }
 
+void keep_decisions(std::span<const JournalEntry* const> entries, Statements& out) {
+  for (const JournalEntry* entry : entries) {
+    if (!entry->reviewed) continue;
+    PgArray list(oid::kInt8);
+    for (const std::int64_t sequence : entry->reviewed->edits) list.add(sequence);
+    const Review becomes = entry->reviewed->becomes;
+    Params params;
+    params.integer(entry->layer_id).integer(entry->model_id).array(list).text(name(becomes));
+    params.optional_integer(becomes == Review::pending ? std::nullopt : std::optional(entry->sequence));
+    out.push_back(
+        {"UPDATE edits SET review = $4, reviewed_by = $5 WHERE layer_id = $1 AND model_id = $2 AND sequence = any($3)",
+         std::move(params)});
+  }
+}
+
 }  // namespace
 
 tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
@@ -184,6 +205,7 @@ tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
   insert_edits(entries, statements);
   insert_revisions(entries, statements);
   switch_edits(entries, statements);
+  keep_decisions(entries, statements);
   write_tile_sums(entries, statements);
 
   Transaction transaction = Transaction::adopt(connection);

@@ -292,9 +292,15 @@ class Store {
   };
   Result<JournalState> journal_state(std::int64_t model_id, std::span<const Uuid> ids);
   // The sequences (ascending) of the newest stroke of `user` on the layer that is in force / that is undone and not
-  // followed by a newer in-force stroke of the same user; empty when there is none.
-  Result<std::vector<std::int64_t>> undoable(std::int64_t layer_id, const std::string& user);
-  Result<std::vector<std::int64_t>> redoable(std::int64_t layer_id, const std::string& user);
+  // followed by a newer in-force stroke of the same user; empty when there is none. `pending_only`: of those that wait for review.
+  Result<std::vector<std::int64_t>> undoable(std::int64_t layer_id, const std::string& user, bool pending_only = false);
+  Result<std::vector<std::int64_t>> redoable(std::int64_t layer_id, const std::string& user, bool pending_only = false);
+  // review.cpp: strokes and other edits in force on a layer that wait for review, the oldest first.
+  Result<ReviewQueue> review_queue(std::int64_t layer_id, const std::optional<std::string>& user, int limit,
+                                   int offset);
+  // The edits that a decision is about: those that wait, in force, and with `reopen` those that were accepted or rejected. Batches of a
+  // stroke belong together: one of them stands for all.
+  Result<std::vector<UnderReview>> under_review(std::int64_t layer_id, Decision decision, const Reviewees& which);
   Result<std::int64_t> last_sequence(std::int64_t model_id);
   // Of the last edit until a time (core/timestamp.h's text); 0 before the first.
   Result<std::int64_t> sequence_at(std::int64_t model_id, const std::string& utc);

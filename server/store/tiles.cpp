@@ -144,7 +144,7 @@ Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAd
                                                       int limit) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<PastRevision>> {
     auto rows = connection.query(
-        "SELECT r.sequence, e.writer, e.in_force, r.difference FROM tile_revisions r "
+        "SELECT r.sequence, e.writer, e.in_force, coalesce(e.review = 'pending', false), r.difference FROM tile_revisions r "
         "JOIN edits e ON e.model_id = $2 AND e.sequence = r.sequence "
         "WHERE r.layer_id = $1 AND r.tile_y = $3 AND r.tile_x = $4 AND r.sequence < $5 ORDER BY r.sequence DESC LIMIT $6",
         Params()
@@ -157,9 +157,10 @@ Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAd
     if (!rows) return tl::unexpected(rows.error());
     std::vector<PastRevision> revisions;
     for (int i = 0; i < rows->rows(); ++i) {
-      auto revision = decode_revision(tile, layer.type, rows->bytes(i, 3));
+      auto revision = decode_revision(tile, layer.type, rows->bytes(i, 4));
       if (!revision) return tl::unexpected(revision.error());
-      revisions.push_back({rows->integer(i, 0), rows->boolean(i, 1), rows->boolean(i, 2), std::move(*revision)});
+      revisions.push_back(
+          {rows->integer(i, 0), rows->boolean(i, 1), rows->boolean(i, 2), rows->boolean(i, 3), std::move(*revision)});
     }
     return revisions;
   });

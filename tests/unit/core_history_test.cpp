@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <random>
+#include <set>
 
 #include "core/history.h"
 
@@ -19,7 +20,8 @@ struct OracleWrite {
 // A layer of one tile with many edits, undone and redone in any order.
 class OneTileLayer {
  public:
-  void paint(const TileMask& written, bool erase, std::uint32_t value) {
+  void paint(const TileMask& written, bool erase, std::uint32_t value, bool provisional = false) {
+    if (provisional) waiting_.insert(next_);
     TileData after = tile_;
     for (int i = 0; i < kTexelsPerTile; ++i)
       if (written.test(i)) {
@@ -40,6 +42,7 @@ class OneTileLayer {
     undone_[sequence] = !in_force;
     TileResolver resolver(tile_, written);
     for (const auto& entry : newest_first_) resolver.add(entry);
+    for (int i = 0; i < kTexelsPerTile; ++i) EXPECT_EQ(resolver.provisional().test(i), written.test(i) && waits(i));
     push(false, written, std::move(resolver).finish());
   }
 
@@ -58,13 +61,23 @@ class OneTileLayer {
       ASSERT_EQ(tile_.bits(i), value) << "texel " << i;
     }
   }
+  // The newest write of the texel that is in force waits for review.
+  bool waits(int texel) const {
+    bool found = false;
+    if (auto writes = writes_.find(texel); writes != writes_.end())
+      for (const auto& write : writes->second)
+        if (!is_undone(write.sequence)) found = waiting_.contains(write.sequence);
+    return found;
+  }
   bool is_undone(std::int64_t sequence) const { return undone_.contains(sequence) && undone_.at(sequence); }
   std::int64_t next() const { return next_; }
   const TileData& tile() const { return tile_; }
 
  private:
   void push(bool writer, const TileMask& written, const TileData& after) {
-    newest_first_.insert(newest_first_.begin(), {next_++, writer, true, make_revision({}, tile_, after, written)});
+    const bool provisional = waiting_.contains(next_);
+    newest_first_.insert(newest_first_.begin(),
+                         {next_++, writer, true, provisional, make_revision({}, tile_, after, written)});
     tile_ = after;
   }
   TileData tile_{ValueType::u8};
@@ -72,6 +85,7 @@ class OneTileLayer {
   std::vector<PastRevision> newest_first_;
   std::map<int, std::vector<OracleWrite>> writes_;
   std::map<std::int64_t, bool> undone_;
+  std::set<std::int64_t> waiting_;
 };
 
 TileMask square(int x0, int y0, int size) {
@@ -121,7 +135,7 @@ TEST(History, random_edits_undos_and_redos_equal_the_oracle) {
         edits.push_back(layer.next());
         layer.paint(square(static_cast<int>(random() % 120), static_cast<int>(random() % 120),
                            4 + static_cast<int>(random() % 60)),
-                    random() % 4 == 0, 1 + random() % 255);
+                    random() % 4 == 0, 1 + random() % 255, random() % 2 == 0);
       } else {
         const auto sequence = edits[random() % edits.size()];
         layer.flip(sequence, layer.is_undone(sequence));

@@ -272,6 +272,12 @@ export type ValueType = "u8" | "u16" | "u32" | "i8" | "i16" | "i32" | "f16" | "f
 /** Kind of layer. */
 export type LayerKind = "numeric" | "database";
 
+/** What a curator makes of edits. accept: they stay; reject: they are taken out, also from below what was painted over them; reopen: what was accepted or rejected waits again. */
+export type ReviewDecision = "accept" | "reject" | "reopen";
+
+/** Why, for the authors. */
+export type ReviewReason = string;
+
 /** Texels a side. */
 export type Resolution = 2048 | 4096 | 8192 | 16384;
 
@@ -295,6 +301,8 @@ export interface Layer {
   visible: boolean;
   /** Nobody below curator changes its texels: 403. */
   locked: boolean;
+  /** What annotators change is provisional, and marked in the picture, until a curator accepts or rejects it. */
+  review: boolean;
   visibility: Visibility;
   /** Drawn ascending: higher is on top. */
   order: number;
@@ -747,6 +755,8 @@ export interface Applied {
   sequence: number;
   texels_changed?: number;
   area_m2?: number;
+  /** true: it waits for review. */
+  provisional?: boolean;
 }
 
 /** An edit is durable. `stroke` and `n` name a stroke's batch, `id` any other message. */
@@ -758,6 +768,8 @@ export interface Saved {
   sequence: number;
   texels_changed?: number;
   area_m2?: number;
+  /** true: it waits for review. */
+  provisional?: boolean;
 }
 
 /** Edits that could not be saved and were taken back. */
@@ -769,7 +781,15 @@ export interface Unsaved {
   detail?: string;
 }
 
-/** A layer was created, changed, deleted or edited. `layer` is there for created and changed; `sequence` for edited. */
+/** What a curator has decided about edits. */
+export interface Reviewed {
+  decision: ReviewDecision;
+  /** Whose edits they are. */
+  authors: string[];
+  reason?: ReviewReason;
+}
+
+/** A layer was created, changed, deleted or edited. `layer` is there for created and changed; `sequence` for edited, with `provisional` where the edit waits for review, and `review` where it decides about others. */
 export interface LayerEvent {
   op: "layer";
   event: "created" | "changed" | "deleted" | "edited";
@@ -777,6 +797,8 @@ export interface LayerEvent {
   layer?: Layer;
   sequence?: number;
   user?: string;
+  provisional?: boolean;
+  review?: Reviewed;
 }
 
 /** A look was created, changed or deleted. `look` is there for created and changed. */
@@ -1658,6 +1680,17 @@ export interface TableCellChange {
   after: ChangedCells;
 }
 
+/** Where an edit stands that had to wait for review. */
+export type ReviewState = "pending" | "accepted" | "rejected";
+
+/** Who accepted or rejected an edit. */
+export interface Reviewer {
+  user: string;
+  /** UTC, RFC 3339. */
+  time: string;
+  reason?: ReviewReason;
+}
+
 /** One entry of a table's history. */
 export interface TableEdit {
   sequence: number;
@@ -1665,8 +1698,10 @@ export interface TableEdit {
   /** UTC, RFC 3339. */
   time: string;
   op: "records" | "delete" | "import" | "create-column" | "change-column" | "retype-column" | "drop-column" | "attach" | "detach" | "undo" | "redo";
-  /** False while it is taken back. */
+  /** False while it is taken back, or rejected. */
   in_force: boolean;
+  review?: ReviewState;
+  reviewer?: Reviewer;
   changes: TableCellChange[];
   /** The first hundred are told. */
   total_changes: number;
@@ -1831,6 +1866,8 @@ export interface LayerCreate {
   visible?: boolean;
   /** Nobody below curator changes its texels. Default: false. */
   locked?: boolean;
+  /** What annotators change waits for a curator's review. Default: false. */
+  review?: boolean;
   /** Absent: public. What it reads and is coloured by must be seen by all who see it. */
   visibility?: Visibility;
   /** Absent: on top. */
@@ -2117,6 +2154,8 @@ export interface LayerPatch {
   visible?: boolean;
   /** true: from the answer on nobody below curator changes its texels, until it is unlocked. */
   locked?: boolean;
+  /** true: what annotators change from now on waits for a curator's review. What waits already keeps waiting when it becomes false. */
+  review?: boolean;
   /** Counts at once, for open pages too. */
   visibility?: Visibility;
   order?: number;
@@ -2132,6 +2171,55 @@ export interface EditResult {
   sequence: number;
   texels_changed: number;
   area_m2: number;
+  /** true: it waits for review. */
+  provisional?: boolean;
+}
+
+/** A stroke or another edit that waits for review. */
+export interface WaitingStroke {
+  /** Of its first batch: by this it is reviewed. */
+  sequence: number;
+  /** Of its last batch. */
+  last: number;
+  stroke: string;
+  user: string;
+  op: "stroke" | "fill" | "polygon" | "import" | "restore";
+  /** UTC, RFC 3339. */
+  begun: string;
+  /** Of its last batch. */
+  time: string;
+  /** Of its batches, one after the other. */
+  texels_changed: number;
+  area_m2: number;
+  /** From which it was painted, where it was. */
+  camera?: Camera;
+}
+
+/** Whose strokes wait. */
+export interface ReviewPerson {
+  user: string;
+  strokes: number;
+}
+
+/** What of a layer waits for review, the oldest first. */
+export interface ReviewQueue {
+  strokes: WaitingStroke[];
+  /** Strokes, of all pages. */
+  total: number;
+  /** Everybody whose strokes wait, by name. */
+  people: ReviewPerson[];
+}
+
+/** A decision about edits of a layer. */
+export interface Review {
+  decision: ReviewDecision;
+  /** Sequences: of a stroke any of its batches stands for all. */
+  edits?: number[];
+  /** All that waits of this person. Not with reopen. */
+  user?: string;
+  /** All that waits on the layer. Not with reopen. */
+  all?: true;
+  reason?: ReviewReason;
 }
 
 /** One edit in a layer's history. */
@@ -2142,7 +2230,7 @@ export interface HistoryEntry {
   user: string;
   /** UTC, RFC 3339. */
   time: string;
-  op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore";
+  op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen";
   /** False while it is taken back. */
   in_force?: boolean;
   texels_changed?: number;

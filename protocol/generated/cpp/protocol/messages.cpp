@@ -101,6 +101,24 @@ void read(const nlohmann::json& json, PalettePointPattern& value) {
 
 nlohmann::json to_json(const PalettePointPattern& value) { return name(value); }
 
+std::string_view name(ReviewDecision value) {
+  switch (value) {
+    case ReviewDecision::accept: return "accept";
+    case ReviewDecision::reject: return "reject";
+    case ReviewDecision::reopen: return "reopen";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ReviewDecision& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "accept") value = ReviewDecision::accept;
+  if (text == "reject") value = ReviewDecision::reject;
+  if (text == "reopen") value = ReviewDecision::reopen;
+}
+
+nlohmann::json to_json(const ReviewDecision& value) { return name(value); }
+
 std::string_view name(Recompute value) {
   switch (value) {
     case Recompute::manual: return "manual";
@@ -481,6 +499,24 @@ void read(const nlohmann::json& json, TemplateLayerType& value) {
 
 nlohmann::json to_json(const TemplateLayerType& value) { return name(value); }
 
+std::string_view name(ReviewState value) {
+  switch (value) {
+    case ReviewState::pending: return "pending";
+    case ReviewState::accepted: return "accepted";
+    case ReviewState::rejected: return "rejected";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ReviewState& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "pending") value = ReviewState::pending;
+  if (text == "accepted") value = ReviewState::accepted;
+  if (text == "rejected") value = ReviewState::rejected;
+}
+
+nlohmann::json to_json(const ReviewState& value) { return name(value); }
+
 std::string_view name(ShapeRecipeKind value) {
   switch (value) {
     case ShapeRecipeKind::height: return "height";
@@ -517,6 +553,28 @@ void read(const nlohmann::json& json, ShapeRecipeKind& value) {
 
 nlohmann::json to_json(const ShapeRecipeKind& value) { return name(value); }
 
+std::string_view name(WaitingStrokeOp value) {
+  switch (value) {
+    case WaitingStrokeOp::stroke: return "stroke";
+    case WaitingStrokeOp::fill: return "fill";
+    case WaitingStrokeOp::polygon: return "polygon";
+    case WaitingStrokeOp::import: return "import";
+    case WaitingStrokeOp::restore: return "restore";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, WaitingStrokeOp& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "stroke") value = WaitingStrokeOp::stroke;
+  if (text == "fill") value = WaitingStrokeOp::fill;
+  if (text == "polygon") value = WaitingStrokeOp::polygon;
+  if (text == "import") value = WaitingStrokeOp::import;
+  if (text == "restore") value = WaitingStrokeOp::restore;
+}
+
+nlohmann::json to_json(const WaitingStrokeOp& value) { return name(value); }
+
 std::string_view name(HistoryEntryOp value) {
   switch (value) {
     case HistoryEntryOp::stroke: return "stroke";
@@ -527,6 +585,9 @@ std::string_view name(HistoryEntryOp value) {
     case HistoryEntryOp::undo: return "undo";
     case HistoryEntryOp::redo: return "redo";
     case HistoryEntryOp::restore: return "restore";
+    case HistoryEntryOp::accept: return "accept";
+    case HistoryEntryOp::reject: return "reject";
+    case HistoryEntryOp::reopen: return "reopen";
   }
   return {};
 }
@@ -541,6 +602,9 @@ void read(const nlohmann::json& json, HistoryEntryOp& value) {
   if (text == "undo") value = HistoryEntryOp::undo;
   if (text == "redo") value = HistoryEntryOp::redo;
   if (text == "restore") value = HistoryEntryOp::restore;
+  if (text == "accept") value = HistoryEntryOp::accept;
+  if (text == "reject") value = HistoryEntryOp::reject;
+  if (text == "reopen") value = HistoryEntryOp::reopen;
 }
 
 nlohmann::json to_json(const HistoryEntryOp& value) { return name(value); }
@@ -1206,6 +1270,7 @@ void read(const nlohmann::json& json, Applied& value) {
   read_member(json, "sequence", value.sequence);
   read_optional_member(json, "texels_changed", value.texels_changed);
   read_optional_member(json, "area_m2", value.area_m2);
+  read_optional_member(json, "provisional", value.provisional);
 }
 
 nlohmann::json to_json(const Applied& value) {
@@ -1217,6 +1282,7 @@ nlohmann::json to_json(const Applied& value) {
   write_member(json, "sequence", value.sequence);
   write_optional_member(json, "texels_changed", value.texels_changed);
   write_optional_member(json, "area_m2", value.area_m2);
+  write_optional_member(json, "provisional", value.provisional);
   return json;
 }
 
@@ -1227,6 +1293,7 @@ void read(const nlohmann::json& json, Saved& value) {
   read_member(json, "sequence", value.sequence);
   read_optional_member(json, "texels_changed", value.texels_changed);
   read_optional_member(json, "area_m2", value.area_m2);
+  read_optional_member(json, "provisional", value.provisional);
 }
 
 nlohmann::json to_json(const Saved& value) {
@@ -1238,6 +1305,7 @@ nlohmann::json to_json(const Saved& value) {
   write_member(json, "sequence", value.sequence);
   write_optional_member(json, "texels_changed", value.texels_changed);
   write_optional_member(json, "area_m2", value.area_m2);
+  write_optional_member(json, "provisional", value.provisional);
   return json;
 }
 
@@ -1254,12 +1322,28 @@ nlohmann::json to_json(const Unsaved& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, Reviewed& value) {
+  read_member(json, "decision", value.decision);
+  read_member(json, "authors", value.authors);
+  read_optional_member(json, "reason", value.reason);
+}
+
+nlohmann::json to_json(const Reviewed& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "decision", value.decision);
+  write_member(json, "authors", value.authors);
+  write_optional_member(json, "reason", value.reason);
+  return json;
+}
+
 void read(const nlohmann::json& json, LayerEvent& value) {
   read_member(json, "event", value.event);
   read_member(json, "layer_id", value.layer_id);
   read_optional_member(json, "layer", value.layer);
   read_optional_member(json, "sequence", value.sequence);
   read_optional_member(json, "user", value.user);
+  read_optional_member(json, "provisional", value.provisional);
+  read_optional_member(json, "review", value.review);
 }
 
 nlohmann::json to_json(const LayerEvent& value) {
@@ -1270,6 +1354,8 @@ nlohmann::json to_json(const LayerEvent& value) {
   write_optional_member(json, "layer", value.layer);
   write_optional_member(json, "sequence", value.sequence);
   write_optional_member(json, "user", value.user);
+  write_optional_member(json, "provisional", value.provisional);
+  write_optional_member(json, "review", value.review);
   return json;
 }
 
@@ -2045,6 +2131,20 @@ nlohmann::json to_json(const TemplateUse& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, Reviewer& value) {
+  read_member(json, "user", value.user);
+  read_member(json, "time", value.time);
+  read_optional_member(json, "reason", value.reason);
+}
+
+nlohmann::json to_json(const Reviewer& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "user", value.user);
+  write_member(json, "time", value.time);
+  write_optional_member(json, "reason", value.reason);
+  return json;
+}
+
 void read(const nlohmann::json& json, ShapeRecipe& value) {
   read_member(json, "kind", value.kind);
   read_optional_member(json, "radius_mm", value.radius_mm);
@@ -2081,6 +2181,7 @@ void read(const nlohmann::json& json, LayerCreate& value) {
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "visible", value.visible);
   read_optional_member(json, "locked", value.locked);
+  read_optional_member(json, "review", value.review);
   read_optional_member(json, "visibility", value.visibility);
   read_optional_member(json, "order", value.order);
   read_optional_member(json, "table", value.table);
@@ -2103,6 +2204,7 @@ nlohmann::json to_json(const LayerCreate& value) {
   write_member(json, "opacity", value.opacity);
   write_member(json, "visible", value.visible);
   write_member(json, "locked", value.locked);
+  write_member(json, "review", value.review);
   write_optional_member(json, "visibility", value.visibility);
   write_optional_member(json, "order", value.order);
   write_optional_member(json, "table", value.table);
@@ -2343,6 +2445,7 @@ void read(const nlohmann::json& json, LayerPatch& value) {
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "visible", value.visible);
   read_optional_member(json, "locked", value.locked);
+  read_optional_member(json, "review", value.review);
   read_optional_member(json, "visibility", value.visibility);
   read_optional_member(json, "order", value.order);
   read_optional_member(json, "type", value.type);
@@ -2359,6 +2462,7 @@ nlohmann::json to_json(const LayerPatch& value) {
   write_optional_member(json, "opacity", value.opacity);
   write_optional_member(json, "visible", value.visible);
   write_optional_member(json, "locked", value.locked);
+  write_optional_member(json, "review", value.review);
   write_optional_member(json, "visibility", value.visibility);
   write_optional_member(json, "order", value.order);
   write_optional_member(json, "type", value.type);
@@ -2371,6 +2475,7 @@ void read(const nlohmann::json& json, EditResult& value) {
   read_member(json, "sequence", value.sequence);
   read_member(json, "texels_changed", value.texels_changed);
   read_member(json, "area_m2", value.area_m2);
+  read_optional_member(json, "provisional", value.provisional);
 }
 
 nlohmann::json to_json(const EditResult& value) {
@@ -2378,6 +2483,87 @@ nlohmann::json to_json(const EditResult& value) {
   write_member(json, "sequence", value.sequence);
   write_member(json, "texels_changed", value.texels_changed);
   write_member(json, "area_m2", value.area_m2);
+  write_optional_member(json, "provisional", value.provisional);
+  return json;
+}
+
+void read(const nlohmann::json& json, WaitingStroke& value) {
+  read_member(json, "sequence", value.sequence);
+  read_member(json, "last", value.last);
+  read_member(json, "stroke", value.stroke);
+  read_member(json, "user", value.user);
+  read_member(json, "op", value.op);
+  read_member(json, "begun", value.begun);
+  read_member(json, "time", value.time);
+  read_member(json, "texels_changed", value.texels_changed);
+  read_member(json, "area_m2", value.area_m2);
+  read_optional_member(json, "camera", value.camera);
+}
+
+nlohmann::json to_json(const WaitingStroke& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "sequence", value.sequence);
+  write_member(json, "last", value.last);
+  write_member(json, "stroke", value.stroke);
+  write_member(json, "user", value.user);
+  write_member(json, "op", value.op);
+  write_member(json, "begun", value.begun);
+  write_member(json, "time", value.time);
+  write_member(json, "texels_changed", value.texels_changed);
+  write_member(json, "area_m2", value.area_m2);
+  write_optional_member(json, "camera", value.camera);
+  return json;
+}
+
+Result<void> check(const WaitingStroke& value, const std::string& field) {
+  if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, ReviewPerson& value) {
+  read_member(json, "user", value.user);
+  read_member(json, "strokes", value.strokes);
+}
+
+nlohmann::json to_json(const ReviewPerson& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "user", value.user);
+  write_member(json, "strokes", value.strokes);
+  return json;
+}
+
+void read(const nlohmann::json& json, ReviewQueue& value) {
+  read_member(json, "strokes", value.strokes);
+  read_member(json, "total", value.total);
+  read_member(json, "people", value.people);
+}
+
+nlohmann::json to_json(const ReviewQueue& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "strokes", value.strokes);
+  write_member(json, "total", value.total);
+  write_member(json, "people", value.people);
+  return json;
+}
+
+Result<void> check([[maybe_unused]] const ReviewQueue& value, [[maybe_unused]] const std::string& field) {
+  return {};
+}
+
+void read(const nlohmann::json& json, Review& value) {
+  read_member(json, "decision", value.decision);
+  read_optional_member(json, "edits", value.edits);
+  read_optional_member(json, "user", value.user);
+  read_optional_member(json, "reason", value.reason);
+}
+
+nlohmann::json to_json(const Review& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "decision", value.decision);
+  write_optional_member(json, "edits", value.edits);
+  write_optional_member(json, "user", value.user);
+  json["all"] = "True";
+  write_optional_member(json, "reason", value.reason);
   return json;
 }
 

@@ -62,6 +62,8 @@ enum class Schema {
   ValueType,
   LayerKind,
   Visibility,
+  ReviewDecision,
+  ReviewReason,
   Resolution,
   Recompute,
   Layer,
@@ -110,6 +112,7 @@ enum class Schema {
   Applied,
   Saved,
   Unsaved,
+  Reviewed,
   LayerEvent,
   LookEvent,
   ToolEvent,
@@ -243,6 +246,12 @@ enum class Schema {
   LookPatch,
   LayerPatch,
   EditResult,
+  ReviewState,
+  Reviewer,
+  WaitingStroke,
+  ReviewPerson,
+  ReviewQueue,
+  Review,
   HistoryEntry,
   EditList,
   Empty,
@@ -274,7 +283,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 248;
+constexpr int kSchemaCount = 257;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -423,6 +432,12 @@ inline constexpr Schema kSchemaOf<PalettePoint> = Schema::PalettePoint;
 using ValueType = strata::ValueType;
 
 using LayerKind = strata::LayerKind;
+
+// What a curator makes of edits. accept: they stay; reject: they are taken out, also from below what was painted over them; reopen: what was accepted or rejected waits again.
+enum class ReviewDecision { accept, reject, reopen };
+std::string_view name(ReviewDecision value);
+void read(const nlohmann::json& json, ReviewDecision& value);
+nlohmann::json to_json(const ReviewDecision& value);
 
 // When a computed layer follows its inputs. manual: when it is asked to; automatic: within seconds after something that it reads has changed.
 enum class Recompute { manual, automatic };
@@ -848,6 +863,7 @@ struct Applied {
   std::int64_t sequence = 0;
   std::optional<std::int64_t> texels_changed;
   std::optional<double> area_m2;
+  std::optional<bool> provisional;  // true: it waits for review.
   bool operator==(const Applied&) const = default;
 };
 void read(const nlohmann::json& json, Applied& value);
@@ -864,6 +880,7 @@ struct Saved {
   std::int64_t sequence = 0;
   std::optional<std::int64_t> texels_changed;
   std::optional<double> area_m2;
+  std::optional<bool> provisional;  // true: it waits for review.
   bool operator==(const Saved&) const = default;
 };
 void read(const nlohmann::json& json, Saved& value);
@@ -883,12 +900,24 @@ nlohmann::json to_json(const Unsaved& value);
 template <>
 inline constexpr Schema kSchemaOf<Unsaved> = Schema::Unsaved;
 
+// What a curator has decided about edits.
+struct Reviewed {
+  ReviewDecision decision{};
+  std::vector<std::string> authors;  // Whose edits they are.
+  std::optional<std::string> reason;
+  bool operator==(const Reviewed&) const = default;
+};
+void read(const nlohmann::json& json, Reviewed& value);
+nlohmann::json to_json(const Reviewed& value);
+template <>
+inline constexpr Schema kSchemaOf<Reviewed> = Schema::Reviewed;
+
 enum class LayerEventEvent { created, changed, deleted, edited };
 std::string_view name(LayerEventEvent value);
 void read(const nlohmann::json& json, LayerEventEvent& value);
 nlohmann::json to_json(const LayerEventEvent& value);
 
-// A layer was created, changed, deleted or edited. `layer` is there for created and changed; `sequence` for edited.
+// A layer was created, changed, deleted or edited. `layer` is there for created and changed; `sequence` for edited, with `provisional` where the edit waits for review, and `review` where it decides about others.
 struct LayerEvent {
   static constexpr std::string_view kOp = "layer";
   LayerEventEvent event{};
@@ -896,6 +925,8 @@ struct LayerEvent {
   std::optional<nlohmann::json> layer;
   std::optional<std::int64_t> sequence;
   std::optional<std::string> user;
+  std::optional<bool> provisional;
+  std::optional<Reviewed> review;
   bool operator==(const LayerEvent&) const = default;
 };
 void read(const nlohmann::json& json, LayerEvent& value);
@@ -1590,6 +1621,24 @@ nlohmann::json to_json(const TemplateUse& value);
 template <>
 inline constexpr Schema kSchemaOf<TemplateUse> = Schema::TemplateUse;
 
+// Where an edit stands that had to wait for review.
+enum class ReviewState { pending, accepted, rejected };
+std::string_view name(ReviewState value);
+void read(const nlohmann::json& json, ReviewState& value);
+nlohmann::json to_json(const ReviewState& value);
+
+// Who accepted or rejected an edit.
+struct Reviewer {
+  std::string user;
+  std::string time;  // UTC, RFC 3339.
+  std::optional<std::string> reason;
+  bool operator==(const Reviewer&) const = default;
+};
+void read(const nlohmann::json& json, Reviewer& value);
+nlohmann::json to_json(const Reviewer& value);
+template <>
+inline constexpr Schema kSchemaOf<Reviewer> = Schema::Reviewer;
+
 enum class ShapeRecipeKind { height, slope, azimuth, mean_curvature, gaussian_curvature, max_curvature, min_curvature, roughness, ambient_occlusion, boundary_distance, model_distance, vertex_property };
 std::string_view name(ShapeRecipeKind value);
 void read(const nlohmann::json& json, ShapeRecipeKind& value);
@@ -1625,6 +1674,7 @@ struct LayerCreate {
   double opacity = 1;
   bool visible = true;
   bool locked = false;  // Nobody below curator changes its texels.
+  bool review = false;  // What annotators change waits for a curator's review.
   std::optional<strata::Visibility> visibility;  // Absent: public. What it reads and is coloured by must be seen by all who see it.
   std::optional<int> order;  // Absent: on top.
   std::optional<TableRef> table;  // Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own name.
@@ -1826,6 +1876,7 @@ struct LayerPatch {
   std::optional<double> opacity;
   std::optional<bool> visible;
   std::optional<bool> locked;  // true: from the answer on nobody below curator changes its texels, until it is unlocked.
+  std::optional<bool> review;  // true: what annotators change from now on waits for a curator's review. What waits already keeps waiting when it becomes false.
   std::optional<strata::Visibility> visibility;  // Counts at once, for open pages too.
   std::optional<int> order;
   std::optional<strata::ValueType> type;  // Alone: a layer of u8 or u16 gets room for larger keys or values (u16, u32), its history too.
@@ -1843,6 +1894,7 @@ struct EditResult {
   std::int64_t sequence = 0;
   std::int64_t texels_changed = 0;
   double area_m2 = 0;
+  std::optional<bool> provisional;  // true: it waits for review.
   bool operator==(const EditResult&) const = default;
 };
 void read(const nlohmann::json& json, EditResult& value);
@@ -1850,7 +1902,69 @@ nlohmann::json to_json(const EditResult& value);
 template <>
 inline constexpr Schema kSchemaOf<EditResult> = Schema::EditResult;
 
-enum class HistoryEntryOp { stroke, fill, polygon, import, compute, undo, redo, restore };
+enum class WaitingStrokeOp { stroke, fill, polygon, import, restore };
+std::string_view name(WaitingStrokeOp value);
+void read(const nlohmann::json& json, WaitingStrokeOp& value);
+nlohmann::json to_json(const WaitingStrokeOp& value);
+
+// A stroke or another edit that waits for review.
+struct WaitingStroke {
+  std::int64_t sequence = 0;  // Of its first batch: by this it is reviewed.
+  std::int64_t last = 0;  // Of its last batch.
+  Uuid stroke;
+  std::string user;
+  WaitingStrokeOp op{};
+  std::string begun;  // UTC, RFC 3339.
+  std::string time;  // Of its last batch.
+  std::int64_t texels_changed = 0;  // Of its batches, one after the other.
+  double area_m2 = 0;
+  std::optional<strata::Camera> camera;  // From which it was painted, where it was.
+  bool operator==(const WaitingStroke&) const = default;
+};
+void read(const nlohmann::json& json, WaitingStroke& value);
+nlohmann::json to_json(const WaitingStroke& value);
+Result<void> check(const WaitingStroke& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<WaitingStroke> = Schema::WaitingStroke;
+
+// Whose strokes wait.
+struct ReviewPerson {
+  std::string user;
+  std::int64_t strokes = 0;
+  bool operator==(const ReviewPerson&) const = default;
+};
+void read(const nlohmann::json& json, ReviewPerson& value);
+nlohmann::json to_json(const ReviewPerson& value);
+template <>
+inline constexpr Schema kSchemaOf<ReviewPerson> = Schema::ReviewPerson;
+
+// What of a layer waits for review, the oldest first.
+struct ReviewQueue {
+  std::vector<WaitingStroke> strokes;
+  std::int64_t total = 0;  // Strokes, of all pages.
+  std::vector<ReviewPerson> people;  // Everybody whose strokes wait, by name.
+  bool operator==(const ReviewQueue&) const = default;
+};
+void read(const nlohmann::json& json, ReviewQueue& value);
+nlohmann::json to_json(const ReviewQueue& value);
+Result<void> check(const ReviewQueue& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<ReviewQueue> = Schema::ReviewQueue;
+
+// A decision about edits of a layer.
+struct Review {
+  ReviewDecision decision{};
+  std::optional<std::vector<std::int64_t>> edits;  // Sequences: of a stroke any of its batches stands for all.
+  std::optional<std::string> user;  // All that waits of this person. Not with reopen.
+  std::optional<std::string> reason;
+  bool operator==(const Review&) const = default;
+};
+void read(const nlohmann::json& json, Review& value);
+nlohmann::json to_json(const Review& value);
+template <>
+inline constexpr Schema kSchemaOf<Review> = Schema::Review;
+
+enum class HistoryEntryOp { stroke, fill, polygon, import, compute, undo, redo, restore, accept, reject, reopen };
 std::string_view name(HistoryEntryOp value);
 void read(const nlohmann::json& json, HistoryEntryOp& value);
 nlohmann::json to_json(const HistoryEntryOp& value);

@@ -1,0 +1,50 @@
+#include "room/provisional.h"
+
+#include "core/mask_texels.h"
+#include "room/tile_past.h"
+
+namespace strata::room {
+
+Result<TileMap> read_provisional(store::Store& store, const Layer& layer) {
+  const auto waiting = store.under_review(layer.id, Decision::accept, {});
+  if (!waiting) return tl::unexpected(waiting.error());
+  if (waiting->empty()) return TileMap{};
+  std::vector<std::int64_t> sequences;
+  for (const auto& edit : *waiting) sequences.push_back(edit.sequence);
+  const auto written = store.written_by(layer, sequences);
+  if (!written) return tl::unexpected(written.error());
+  TileMap tiles;
+  for (const auto& [tile, texels] : *written) {
+    TileResolver resolver(TileData(layer.type), texels);  // what the texels hold does not matter here
+    if (auto walked = walk_back(resolver, layer, tile, store, [](PastRevision&) {}); !walked)
+      return tl::unexpected(walked.error());
+    if (resolver.provisional().any())
+      tiles[tile] = with_provisional(nullptr, {tile, nullptr, nullptr, texels, resolver.provisional()});
+  }
+  return tiles;
+}
+
+std::shared_ptr<const TileData> with_provisional(const std::shared_ptr<const TileData>& before,
+                                                 const TileChange& change) {
+  auto after = before ? std::make_shared<TileData>(*before) : std::make_shared<TileData>(ValueType::u8);
+  for_each_texel(change.written, [&](int texel) {
+    if (change.provisional.test(texel))
+      after->write(texel, 1);
+    else
+      after->clear(texel);
+  });
+  return after;
+}
+
+void add_styles(const LayerState& layer, render::LayerStyle style, std::vector<render::LayerStyle>& styles) {
+  // Dark lines that stay apart in greyscale and on colours of any palette, and let what is below be read.
+  static const auto kHatch = std::make_shared<const Palette>(Palette{
+      .mode = PaletteMode::categorical,
+      .points =
+          {{.at = 1, .color = {24, 24, 24, 230}, .label = {}, .value = {}, .pattern = Pattern::hatch, .angle = 135}},
+      .column = {}});
+  styles.push_back(std::move(style));
+  if (!layer.provisional->empty()) styles.push_back({layer.handles.provisional, kHatch, styles.back().opacity});
+}
+
+}  // namespace strata::room

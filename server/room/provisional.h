@@ -1,0 +1,24 @@
+#pragma once
+
+#include <memory>
+
+#include "room/layer_state.h"
+#include "room/tile_changes.h"
+#include "store/store.h"
+
+namespace strata::room {
+
+// The texels of a layer that wait for review, as the content of a layer of u8: 1 where they do, and nothing elsewhere. A texel waits where
+// the newest edit in force that wrote it does, also where that edit has erased it.
+
+// From the journal; blocks.
+Result<TileMap> read_provisional(store::Store& store, const Layer& layer);
+
+// The tile after the change; `before` may be null, which is a tile without any.
+std::shared_ptr<const TileData> with_provisional(const std::shared_ptr<const TileData>& before,
+                                                 const TileChange& change);
+
+// A layer's own style, and over it that of what waits for review, where there is any.
+void add_styles(const LayerState& layer, render::LayerStyle style, std::vector<render::LayerStyle>& styles);
+
+}  // namespace strata::room

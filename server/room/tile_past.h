@@ -1,0 +1,15 @@
+#pragma once
+
+#include <functional>
+
+#include "core/history.h"
+#include "store/store.h"
+
+namespace strata::room {
+
+// Walks back through a tile's history, only until every texel of the resolver has found its author. `turn` may change what an edit is
+// before it is looked at. Blocks.
+Result<void> walk_back(TileResolver& resolver, const Layer& layer, TileAddress tile, store::Store& store,
+                       const std::function<void(PastRevision&)>& turn);
+
+}  // namespace strata::room

@@ -1,0 +1,55 @@
+#include "store/store_impl.h"
+
+namespace strata::store {
+
+Result<ReviewQueue> Store::review_queue(std::int64_t layer_id, const std::optional<std::string>& user, int limit,
+                                        int offset) {
+  if (user)
+    if (auto good = check_text(*user, "user"); !good) return tl::unexpected(good.error());
+  return impl_->pool.read([&](PgConnection& connection) -> Result<ReviewQueue> {
+    auto people = connection.query(
+        "SELECT user_name, count(DISTINCT stroke) FROM edits WHERE layer_id = $1 AND review = 'pending' AND in_force "
+        "GROUP BY user_name ORDER BY user_name",
+        Params().integer(layer_id));
+    if (!people) return tl::unexpected(people.error());
+    ReviewQueue queue;
+    for (int i = 0; i < people->rows(); ++i) {
+      queue.people.push_back({people->text(i, 0), people->integer(i, 1)});
+      if (!user || *user == queue.people.back().user) queue.total += queue.people.back().strokes;
+    }
+    auto rows = connection.query(
+        "SELECT stroke, min(sequence), max(sequence), min(user_name), (array_agg(op ORDER BY sequence))[1], min(time), max(time), "
+        "sum((answer ->> 'texels_changed')::bigint)::bigint, sum((answer ->> 'area_m2')::double precision), "
+        "(array_agg(record ORDER BY sequence))[1] FROM edits WHERE layer_id = $1 AND review = 'pending' AND in_force "
+        "AND ($2::text IS NULL OR user_name = $2) GROUP BY stroke ORDER BY min(sequence) LIMIT $3 OFFSET $4",
+        Params().integer(layer_id).optional_text(user).integer(std::max(limit, 0)).integer(std::max(offset, 0)));
+    if (!rows) return tl::unexpected(rows.error());
+    for (int i = 0; i < rows->rows(); ++i)
+      queue.strokes.push_back({rows->uuid(i, 0), rows->integer(i, 1), rows->integer(i, 2), rows->text(i, 3),
+                               rows->text(i, 4), rows->time(i, 5), rows->time(i, 6),
+                               static_cast<std::uint64_t>(rows->integer(i, 7)), rows->real(i, 8), rows->json(i, 9)});
+    return queue;
+  });
+}
+
+Result<std::vector<UnderReview>> Store::under_review(std::int64_t layer_id, Decision decision, const Reviewees& which) {
+  if (which.user)
+    if (auto good = check_text(*which.user, "user"); !good) return tl::unexpected(good.error());
+  PgArray named(oid::kInt8);
+  for (const std::int64_t sequence : which.edits) named.add(sequence);
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<UnderReview>> {
+    const std::string sql =
+        std::string("SELECT sequence, stroke, user_name FROM edits WHERE layer_id = $1 AND ") +
+        (decision == Decision::reopen ? "((review = 'accepted' AND in_force) OR review = 'rejected')"
+                                      : "review = 'pending' AND in_force") +
+        " AND ($2::text IS NULL OR user_name = $2) AND (cardinality($3) = 0 OR stroke IN "
+        "(SELECT stroke FROM edits WHERE layer_id = $1 AND sequence = any($3))) ORDER BY sequence";
+    auto rows = connection.query(sql.c_str(), Params().integer(layer_id).optional_text(which.user).array(named));
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<UnderReview> found;
+    for (int i = 0; i < rows->rows(); ++i) found.push_back({rows->integer(i, 0), rows->uuid(i, 1), rows->text(i, 2)});
+    return found;
+  });
+}
+
+}  // namespace strata::store
