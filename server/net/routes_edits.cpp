@@ -86,6 +86,7 @@ Result<room::EditRequest> review_edit(const Request& request, const Target& targ
   if (decision == Decision::reopen && !asked->edits)
     return fail(422, "Edits missing", "Name the edits whose review is to be taken back.", "edits");
   auto edit = bare_edit(request, target, std::string(name(decision)));
+  edit.id = edit_id(request, target.layer, "review");  // one key is for one decision, whichever
   if (asked->edits) edit.record["edits"] = *asked->edits;
   if (asked->user) edit.record["user"] = *asked->user;
   if (asked->reason) edit.record["reason"] = *asked->reason;

@@ -14,7 +14,7 @@ import type { Layer, Palette, ValueType } from "../src/core/types";
 
 const layer = (type: ValueType, palette: Palette, unit = ""): Layer => ({
   id: 7, model: 1, name: "L", slug: "l", kind: "numeric", type, resolution: 2048, unit, description: "", palette,
-  opacity: 1, visible: true, locked: false, visibility: "public", order: 0, sequence: 0,
+  opacity: 1, visible: true, locked: false, review: false, visibility: "public", order: 0, sequence: 0,
 }); // prettier-ignore
 const classes = class_palette([
   { at: 2, label: "Plaster", color: "#ffffffff" },

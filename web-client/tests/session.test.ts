@@ -15,7 +15,7 @@ const model = {
 } as unknown as Welcome["model"]; // prettier-ignore
 const layer = (id: number, order: number): Layer => ({
   id, model: 1, name: `L${id}`, slug: `l${id}`, kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "",
-  palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, locked: false, visibility: "public", order, sequence: 0,
+  palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, locked: false, review: false, visibility: "public", order, sequence: 0,
 }); // prettier-ignore
 
 let sockets: FakeSocket[];

@@ -21,7 +21,7 @@ const bounds = { min: [500_000, 4_100_000, 600] as [number, number, number], max
 const model = { id: 1, name: "House", unit: "m", up: "z", scale_verified: true, bounds } as unknown as Welcome["model"];
 const layer = (id: number, more: Partial<Layer> = {}): Layer => ({
   id, model: 1, name: `L${id}`, slug: `l${id}`, kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "",
-  palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, locked: false, visibility: "public", order: id, sequence: 0, ...more,
+  palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, locked: false, review: false, visibility: "public", order: id, sequence: 0, ...more,
 }); // prettier-ignore
 const look = (id: number, more: Partial<Look> = {}): Look =>
   ({ id, model: 1, name: `Look ${id}`, slug: `look-${id}`, description: "", media_type: "image/png", visible: id === 1, opacity: 1, order: id, ...more }) as Look;

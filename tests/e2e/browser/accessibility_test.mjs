@@ -326,6 +326,18 @@ function screens_of({ page }, w, site) {
       await choose_layer("Finds");
       await page.locator("strata-layer-panel .more").getByText(w.layers.locked_to_others).waitFor();
     }, end: () => server.json("PATCH", `/models/${site.model}/layers/finds`, { locked: false }) },
+    { name: "review", start: async () => {
+      await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: true });
+      await site.fill_as_bea("finds");
+      await page.getByRole("button", { name: w.review.title }).click();
+      await page.locator("strata-review-panel").getByRole("button", exact(w.review.reject_all)).click();
+      await page.locator("strata-review-panel textarea").waitFor();
+    }, end: async () => {
+      await page.keyboard.press("Escape");
+      await page.getByRole("button", { name: w.review.title }).click();
+      await server.json("POST", `/models/${site.model}/layers/finds/review`, { decision: "reject", all: true });
+      await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: false });
+    }, keyboard: true },
     { name: "new comment", start: async () => {
       await tool("c");
       await page.mouse.click(...(await stage_centre()));
@@ -418,12 +430,14 @@ async function make_site() {
   const person = await server.add_person("bea", "annotator");
   await server.json("PATCH", "/users/bea", { full_name: "Bea Ost" });
   await bea.sign_in(server, person);
-  const reply = async (thread, text) => {
+  const as_bea = async (path, body) => {
     const headers = { Authorization: `Bearer ${person.token}`, "Content-Type": "application/json" };
-    const answer = await fetch(`${server.url}/api/v1/comments/${thread}/replies`, { method: "POST", headers, body: JSON.stringify({ text }) });
-    assert.equal(answer.status, 201);
+    const answer = await fetch(`${server.url}/api/v1${path}`, { method: "POST", headers, body: JSON.stringify(body) });
+    assert.ok(answer.ok, `${path}: ${answer.status}`);
   };
-  return { model, invitation: path, terms: made.layers[0].name, reply };
+  const reply = (thread, text) => as_bea(`/comments/${thread}/replies`, { text });
+  const fill_as_bea = (layer) => as_bea(`/models/${model}/layers/${layer}/edits`, { op: "fill", mode: "where", where: "true", value: 1 });
+  return { model, invitation: path, terms: made.layers[0].name, reply, fill_as_bea };
 }
 
 async function bea_at(model) {

@@ -34,10 +34,6 @@ export class StrataCommentPanel extends FoldingPanel {
       :host {
         position: relative; /* of what is hidden for eyes */
       }
-      .number {
-        font: 600 0.82rem var(--sans, inherit);
-        color: var(--ink-soft);
-      }
       .dot {
         flex: none;
         width: 9px;

@@ -39,6 +39,10 @@ export const folding_styles = [
     h2 button[aria-expanded="true"] svg.glyph {
       transform: rotate(180deg);
     }
+    .number {
+      font: 600 0.82rem var(--sans, inherit);
+      color: var(--ink-soft);
+    }
     .parts {
       display: grid;
       grid-template-columns: minmax(0, 1fr);

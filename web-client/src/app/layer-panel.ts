@@ -3,7 +3,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { value_range, type Layer } from "../core/types";
+import { value_range, type Layer, type LayerPatch } from "../core/types";
 import { ask } from "./dialog";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
@@ -297,9 +297,14 @@ export class StrataLayerPanel extends LitElement {
             ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "edit", layer })}>
                   ${icon("edit")}${words.edit}
                 </button>
-                <button class="quiet" role="menuitem" @click=${() => void this.set_locked(layer, !layer.locked)}>
+                <button class="quiet" role="menuitem" @click=${() => void this.change(layer, { locked: !layer.locked })}>
                   ${icon(layer.locked ? "unlock" : "lock")}${layer.locked ? words.unlock : words.lock}
-                </button>`
+                </button>
+                ${layer.expression === undefined
+                  ? html`<button class="quiet" role="menuitem" @click=${() => void this.change(layer, { review: !layer.review })}>
+                      ${icon("shield")}${layer.review ? texts.review.end : texts.review.begin}
+                    </button>`
+                  : nothing}`
             : nothing}
           ${can_be_colored(layer)
             ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "colors", layer })}>${icon("palette")}${texts.colors.open}</button>`
@@ -361,7 +366,7 @@ export class StrataLayerPanel extends LitElement {
     const { session } = this;
     const opacity = session.layers.opacity(layer);
     return html`<div class="more">
-      ${layer.locked ? this.lock_told(layer) : nothing}
+      ${layer.locked ? this.lock_told(layer) : nothing} ${layer.review ? this.review_told(layer) : nothing}
       ${layer.description ? html`<p class="description">${layer.description}</p>` : nothing} ${legend(layer, session.layers.palette(layer), session.tables)}
       ${layer.expression === undefined ? nothing : this.formula(layer)}
       ${layer.table === undefined
@@ -389,15 +394,23 @@ export class StrataLayerPanel extends LitElement {
   }
 
   private lock_told(layer: Layer): TemplateResult {
-    const unlock = (): void => void this.set_locked(layer, false);
+    const unlock = (): void => void this.change(layer, { locked: false });
     return html`<p class="locked">
       ${icon("lock")}<span>${this.who_is_locked(layer)}</span>
       ${this.session.can_curate ? html`<button class="link" @click=${unlock}>${texts.layers.unlock}</button>` : nothing}
     </p>`;
   }
 
-  private async set_locked(layer: Layer, locked: boolean): Promise<void> {
-    await this.session.layers.change(layer, { locked }).catch((error: unknown) => notices.error(error));
+  private review_told(layer: Layer): TemplateResult {
+    const { can_curate, reviews } = this.session;
+    const waiting = reviews.waiting_on(layer);
+    return html`<p class="locked">
+      ${icon("shield")}<span>${can_curate ? texts.review.asked : texts.review.asked_of_you} ${waiting > 0 ? texts.review.waiting(waiting) : nothing}</span>
+    </p>`;
+  }
+
+  private async change(layer: Layer, change: LayerPatch): Promise<void> {
+    await this.session.layers.change(layer, change).catch((error: unknown) => notices.error(error));
   }
 
   private formula(layer: Layer): TemplateResult {

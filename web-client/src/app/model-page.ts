@@ -19,6 +19,7 @@ import "./comment-card";
 import "./comment-panel";
 import "./comment-pins";
 import "./activity-panel";
+import "./review-panel";
 import "./csv-dialog";
 import "./delete-record-dialog";
 import { ask, modal_is_open } from "./dialog";
@@ -345,6 +346,7 @@ export class StrataModelPage extends LitElement {
             @request=${request}
           ></strata-layer-panel>
         </section>
+        ${session.can_paint && session.reviews.is_used ? html`<section><strata-review-panel .session=${session}></strata-review-panel></section>` : nothing}
         <section><strata-comment-panel .session=${session}></strata-comment-panel></section>
         <section><strata-activity-panel .session=${session}></strata-activity-panel></section>
         <section>

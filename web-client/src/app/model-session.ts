@@ -34,6 +34,7 @@ import { PeopleCursors } from "./people-cursors";
 import { PointerWatch } from "./pointer-watch";
 import { RecordEditors } from "./record-editors";
 import { RecordHover, type RecordAt } from "./record-hover";
+import { Reviews } from "./reviews";
 import { forget, remember } from "./sessions";
 import { Tables } from "./tables";
 import { texts } from "./texts";
@@ -65,6 +66,7 @@ export class ModelSession {
   readonly measuring: Measuring;
   readonly comments: Comments;
   readonly activity: Activities;
+  readonly reviews: Reviews;
   readonly hovered: RecordHover;
   readonly together: Together;
   readonly cursors: PeopleCursors;
@@ -182,6 +184,14 @@ export class ModelSession {
       model: () => this.model,
       changed,
     });
+    this.reviews = new Reviews(api, model_id, {
+      view: this.view,
+      layers: this.layers,
+      me: () => this.user,
+      can_paint: () => this.can_paint,
+      can_curate: () => this.can_curate,
+      changed,
+    });
     this.hovered = new RecordHover({
       here: () => this.record_here(),
       settled: () => this.pointer.settled,
@@ -247,6 +257,7 @@ export class ModelSession {
           this.pointer.ask_again();
         },
         saved: () => {
+          if (this.layers.selected?.review) this.reviews.outdated(this.layers.selected.id);
           this.tables.refresh_areas(); // with the areas that this person's own strokes leave
           this.activity.outdated();
         },
@@ -369,6 +380,7 @@ export class ModelSession {
     this.cursors.stop();
     this.hovered.end();
     this.activity.close();
+    this.reviews.close();
     this.tables.close();
     this.listeners_.clear();
     this.on_frame = this.on_reset_frames = () => {};
@@ -613,6 +625,7 @@ export class ModelSession {
     this.together.connected();
     this.comments.welcome(message.user);
     this.activity.outdated();
+    this.reviews.welcome();
     this.views.welcome(message.user);
   }
 
@@ -628,6 +641,7 @@ export class ModelSession {
 
   private on_layer(event: LayerEvent): void {
     this.layers.on_event(event);
+    this.reviews.on_event(event);
     this.activity.outdated();
     if (event.event === "edited") {
       this.pointer.ask_again();

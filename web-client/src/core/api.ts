@@ -330,6 +330,13 @@ export class Api {
   }
 
   /** All named views of a model. */
+  /** What of the layer waits for review, the oldest first. */
+  async review_queue(model: Id, layer: Id, limit: number): Promise<wire.ReviewQueue> {
+    return this.json("GET", `${layer_path(model, layer)}/review?limit=${limit}`);
+  }
+  async review(model: Id, layer: Id, decision: wire.Review): Promise<wire.EditResult> {
+    return this.json("POST", `${layer_path(model, layer)}/review`, decision);
+  }
   async views(model: Id): Promise<wire.View[]> {
     return (await this.json<wire.ViewList>("GET", `${views_path(model)}?limit=1000`)).views; // it has no more
   }

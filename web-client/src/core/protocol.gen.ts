@@ -1680,17 +1680,6 @@ export interface TableCellChange {
   after: ChangedCells;
 }
 
-/** Where an edit stands that had to wait for review. */
-export type ReviewState = "pending" | "accepted" | "rejected";
-
-/** Who accepted or rejected an edit. */
-export interface Reviewer {
-  user: string;
-  /** UTC, RFC 3339. */
-  time: string;
-  reason?: ReviewReason;
-}
-
 /** One entry of a table's history. */
 export interface TableEdit {
   sequence: number;
@@ -1698,10 +1687,8 @@ export interface TableEdit {
   /** UTC, RFC 3339. */
   time: string;
   op: "records" | "delete" | "import" | "create-column" | "change-column" | "retype-column" | "drop-column" | "attach" | "detach" | "undo" | "redo";
-  /** False while it is taken back, or rejected. */
+  /** False while it is taken back. */
   in_force: boolean;
-  review?: ReviewState;
-  reviewer?: Reviewer;
   changes: TableCellChange[];
   /** The first hundred are told. */
   total_changes: number;
@@ -2175,6 +2162,17 @@ export interface EditResult {
   provisional?: boolean;
 }
 
+/** Where an edit stands that had to wait for review. */
+export type ReviewState = "pending" | "accepted" | "rejected";
+
+/** Who accepted or rejected an edit. */
+export interface Reviewer {
+  user: string;
+  /** UTC, RFC 3339. */
+  time: string;
+  reason?: ReviewReason;
+}
+
 /** A stroke or another edit that waits for review. */
 export interface WaitingStroke {
   /** Of its first batch: by this it is reviewed. */
@@ -2231,8 +2229,10 @@ export interface HistoryEntry {
   /** UTC, RFC 3339. */
   time: string;
   op: "stroke" | "fill" | "polygon" | "import" | "compute" | "undo" | "redo" | "restore" | "accept" | "reject" | "reopen";
-  /** False while it is taken back. */
+  /** False while it is taken back, or rejected. */
   in_force?: boolean;
+  review?: ReviewState;
+  reviewer?: Reviewer;
   texels_changed?: number;
   area_m2?: number;
   recipe?: Recipe;

@@ -499,24 +499,6 @@ void read(const nlohmann::json& json, TemplateLayerType& value) {
 
 nlohmann::json to_json(const TemplateLayerType& value) { return name(value); }
 
-std::string_view name(ReviewState value) {
-  switch (value) {
-    case ReviewState::pending: return "pending";
-    case ReviewState::accepted: return "accepted";
-    case ReviewState::rejected: return "rejected";
-  }
-  return {};
-}
-
-void read(const nlohmann::json& json, ReviewState& value) {
-  const auto& text = json.get_ref<const std::string&>();
-  if (text == "pending") value = ReviewState::pending;
-  if (text == "accepted") value = ReviewState::accepted;
-  if (text == "rejected") value = ReviewState::rejected;
-}
-
-nlohmann::json to_json(const ReviewState& value) { return name(value); }
-
 std::string_view name(ShapeRecipeKind value) {
   switch (value) {
     case ShapeRecipeKind::height: return "height";
@@ -552,6 +534,24 @@ void read(const nlohmann::json& json, ShapeRecipeKind& value) {
 }
 
 nlohmann::json to_json(const ShapeRecipeKind& value) { return name(value); }
+
+std::string_view name(ReviewState value) {
+  switch (value) {
+    case ReviewState::pending: return "pending";
+    case ReviewState::accepted: return "accepted";
+    case ReviewState::rejected: return "rejected";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ReviewState& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "pending") value = ReviewState::pending;
+  if (text == "accepted") value = ReviewState::accepted;
+  if (text == "rejected") value = ReviewState::rejected;
+}
+
+nlohmann::json to_json(const ReviewState& value) { return name(value); }
 
 std::string_view name(WaitingStrokeOp value) {
   switch (value) {
@@ -2131,20 +2131,6 @@ nlohmann::json to_json(const TemplateUse& value) {
   return json;
 }
 
-void read(const nlohmann::json& json, Reviewer& value) {
-  read_member(json, "user", value.user);
-  read_member(json, "time", value.time);
-  read_optional_member(json, "reason", value.reason);
-}
-
-nlohmann::json to_json(const Reviewer& value) {
-  nlohmann::json json = nlohmann::json::object();
-  write_member(json, "user", value.user);
-  write_member(json, "time", value.time);
-  write_optional_member(json, "reason", value.reason);
-  return json;
-}
-
 void read(const nlohmann::json& json, ShapeRecipe& value) {
   read_member(json, "kind", value.kind);
   read_optional_member(json, "radius_mm", value.radius_mm);
@@ -2487,6 +2473,20 @@ nlohmann::json to_json(const EditResult& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, Reviewer& value) {
+  read_member(json, "user", value.user);
+  read_member(json, "time", value.time);
+  read_optional_member(json, "reason", value.reason);
+}
+
+nlohmann::json to_json(const Reviewer& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "user", value.user);
+  write_member(json, "time", value.time);
+  write_optional_member(json, "reason", value.reason);
+  return json;
+}
+
 void read(const nlohmann::json& json, WaitingStroke& value) {
   read_member(json, "sequence", value.sequence);
   read_member(json, "last", value.last);
@@ -2575,6 +2575,8 @@ void read(const nlohmann::json& json, HistoryEntry& value) {
   read_member(json, "time", value.time);
   read_member(json, "op", value.op);
   read_optional_member(json, "in_force", value.in_force);
+  read_optional_member(json, "review", value.review);
+  read_optional_member(json, "reviewer", value.reviewer);
   read_optional_member(json, "texels_changed", value.texels_changed);
   read_optional_member(json, "area_m2", value.area_m2);
   read_optional_member(json, "recipe", value.recipe);
@@ -2593,6 +2595,8 @@ nlohmann::json to_json(const HistoryEntry& value) {
   write_member(json, "time", value.time);
   write_member(json, "op", value.op);
   write_optional_member(json, "in_force", value.in_force);
+  write_optional_member(json, "review", value.review);
+  write_optional_member(json, "reviewer", value.reviewer);
   write_optional_member(json, "texels_changed", value.texels_changed);
   write_optional_member(json, "area_m2", value.area_m2);
   write_optional_member(json, "recipe", value.recipe);

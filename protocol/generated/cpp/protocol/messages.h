@@ -1621,24 +1621,6 @@ nlohmann::json to_json(const TemplateUse& value);
 template <>
 inline constexpr Schema kSchemaOf<TemplateUse> = Schema::TemplateUse;
 
-// Where an edit stands that had to wait for review.
-enum class ReviewState { pending, accepted, rejected };
-std::string_view name(ReviewState value);
-void read(const nlohmann::json& json, ReviewState& value);
-nlohmann::json to_json(const ReviewState& value);
-
-// Who accepted or rejected an edit.
-struct Reviewer {
-  std::string user;
-  std::string time;  // UTC, RFC 3339.
-  std::optional<std::string> reason;
-  bool operator==(const Reviewer&) const = default;
-};
-void read(const nlohmann::json& json, Reviewer& value);
-nlohmann::json to_json(const Reviewer& value);
-template <>
-inline constexpr Schema kSchemaOf<Reviewer> = Schema::Reviewer;
-
 enum class ShapeRecipeKind { height, slope, azimuth, mean_curvature, gaussian_curvature, max_curvature, min_curvature, roughness, ambient_occlusion, boundary_distance, model_distance, vertex_property };
 std::string_view name(ShapeRecipeKind value);
 void read(const nlohmann::json& json, ShapeRecipeKind& value);
@@ -1902,6 +1884,24 @@ nlohmann::json to_json(const EditResult& value);
 template <>
 inline constexpr Schema kSchemaOf<EditResult> = Schema::EditResult;
 
+// Where an edit stands that had to wait for review.
+enum class ReviewState { pending, accepted, rejected };
+std::string_view name(ReviewState value);
+void read(const nlohmann::json& json, ReviewState& value);
+nlohmann::json to_json(const ReviewState& value);
+
+// Who accepted or rejected an edit.
+struct Reviewer {
+  std::string user;
+  std::string time;  // UTC, RFC 3339.
+  std::optional<std::string> reason;
+  bool operator==(const Reviewer&) const = default;
+};
+void read(const nlohmann::json& json, Reviewer& value);
+nlohmann::json to_json(const Reviewer& value);
+template <>
+inline constexpr Schema kSchemaOf<Reviewer> = Schema::Reviewer;
+
 enum class WaitingStrokeOp { stroke, fill, polygon, import, restore };
 std::string_view name(WaitingStrokeOp value);
 void read(const nlohmann::json& json, WaitingStrokeOp& value);
@@ -1977,7 +1977,9 @@ struct HistoryEntry {
   std::string user;
   std::string time;  // UTC, RFC 3339.
   HistoryEntryOp op{};
-  std::optional<bool> in_force;  // False while it is taken back.
+  std::optional<bool> in_force;  // False while it is taken back, or rejected.
+  std::optional<ReviewState> review;
+  std::optional<Reviewer> reviewer;
   std::optional<std::int64_t> texels_changed;
   std::optional<double> area_m2;
   std::optional<nlohmann::json> recipe;

@@ -1,0 +1,136 @@
+// A curator has the edits of a layer reviewed: what an annotator paints is hatched, listed, accepted, rejected with a reason she reads, and put back.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser, rgb } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kEnough = 150; // pixels of a stroke that is there
+
+const [cleo, ada, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ viewport: { width: 390, height: 844 } })];
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+async function shoot({ page }, name) {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `review_${name}.png`) });
+}
+const notice = ({ page }, text) => page.locator("strata-notices").getByText(text);
+const panel = ({ page }) => page.locator("strata-review-panel");
+/** Dark pixels of the stage, which lines of a hatch are. */
+async function dark(who) {
+  const { data } = await who.picture(await who.stage_box());
+  let count = 0;
+  for (let at = 0; at < data.length; at += 4) if (Math.max(data[at], data[at + 1], data[at + 2]) < 62) ++count;
+  return count;
+}
+const listed = (who) => panel(who).locator("[data-waiting]");
+async function stroke_by_ada(from, to) {
+  await ada.page.keyboard.press("b");
+  await ada.drag([from, to]);
+  await ada.saved();
+}
+
+try {
+  await server.start();
+  const model = (await server.json("GET", "/models")).models[0];
+  const layers = `/models/${model.id}/layers`;
+  for (const other of (await server.json("GET", layers)).layers) await server.json("PATCH", `${layers}/${other.id}`, { visible: false });
+  const palette = { mode: "categorical", points: [{ at: 1, color: "#d55e00", label: "Bone" }] };
+  await server.json("POST", layers, { name: "Finds", type: "u8", palette });
+  const finds = `${layers}/finds`;
+  const bone = rgb(palette.points[0].color);
+  const texels = async () => (await server.json("GET", `${finds}/statistics`)).texels;
+
+  say("the curator asks for review by the layer's menu; an annotator is told so");
+  await cleo.sign_in(server, await server.add_person("cleo", "curator"));
+  const adas = await server.add_person("ada", "annotator");
+  for (const who of [ada, phone]) await who.sign_in(server, adas);
+  for (const who of [cleo, ada, phone]) {
+    await who.page.goto(`${server.url}/models/${model.id}`);
+    await who.drawn();
+  }
+  assert.equal(await panel(cleo).count(), 0, "no layer asks for review yet");
+  for (const who of [ada, cleo]) await who.page.getByRole("button", { name: "Paint on Finds" }).click();
+  await ada.page.getByRole("button", { name: "Options for Finds" }).click();
+  assert.equal(await ada.page.getByRole("menuitem", { name: "Have edits reviewed" }).count(), 0, "an annotator is offered to ask for review");
+  await ada.page.keyboard.press("Escape");
+  await cleo.page.getByRole("button", { name: "Options for Finds" }).click();
+  await cleo.page.getByRole("menuitem", { name: "Have edits reviewed" }).click();
+  await ada.page.locator("strata-layer-panel").getByText("What you paint here is hatched until a curator accepts it.").waitFor();
+  await panel(cleo).getByRole("button", { name: "Review" }).click();
+  await panel(cleo).getByText("Nothing waits for review.").waitFor();
+
+  say("what she paints is hatched for both, and the curator's list has it");
+  const bare = await dark(ada);
+  await stroke_by_ada([0.46, 0.5], [0.56, 0.52]);
+  await stroke_by_ada([0.46, 0.6], [0.56, 0.62]);
+  for (const who of [ada, cleo]) {
+    await wait_for(async () => (await who.count(bone)) > kEnough, "the strokes", 150);
+    await wait_for(async () => (await dark(who)) > bare + kEnough, "their hatch", 150);
+  }
+  await wait_for(async () => (await listed(cleo).count()) === 2, "both strokes in the curator's list");
+  await cleo.page.locator("strata-layer-panel").getByText("2 strokes wait for review.").waitFor();
+  await panel(ada).getByRole("button", { name: "Review" }).click();
+  assert.equal(await listed(ada).count(), 2);
+  assert.equal(await panel(ada).getByRole("button", { name: /Accept/ }).count(), 0, "an annotator is offered to decide");
+  await shoot(ada, "annotator");
+  await shoot(cleo, "curator");
+
+  say("the curator looks at a stroke as its author saw it");
+  await cleo.page.keyboard.press("6"); // another view
+  await cleo.drawn();
+  await listed(cleo).first().click();
+  await wait_for(async () => (await cleo.count(bone)) > kEnough, "the strokes, from where they were painted", 150);
+
+  say("she accepts one: its hatch is gone, and its author hears so");
+  const painted = await texels();
+  await panel(cleo).getByRole("button", { name: "Accept: stroke, ada" }).first().click();
+  await notice(cleo, "1 edit accepted").waitFor();
+  await notice(ada, "cleo accepted what you painted on Finds").waitFor();
+  await wait_for(async () => (await listed(cleo).count()) === 1, "one stroke left");
+  assert.equal(await texels(), painted);
+
+  say("and rejects the other with a reason");
+  await panel(cleo).getByRole("button", { name: "Reject: stroke, ada" }).click();
+  await shoot(cleo, "reason");
+  await cleo.page.keyboard.type("This is the old restoration");
+  await panel(cleo).getByRole("button", { name: "Reject", exact: true }).click();
+  await notice(ada, "cleo rejected what you painted on Finds").waitFor();
+  await notice(ada, "This is the old restoration").waitFor();
+  await shoot(ada, "told");
+  await wait_for(async () => (await texels()) < painted, "the stroke to go");
+  for (const who of [ada, cleo]) await wait_for(async () => (await dark(who)) < bare + kEnough / 3, "no hatch any more", 150);
+
+  say("she takes that back, and accepts all");
+  await cleo.page.locator("strata-notices").getByRole("button", { name: "Take back" }).last().click();
+  await wait_for(async () => (await texels()) === painted, "the stroke to be back");
+  await wait_for(async () => (await listed(cleo).count()) === 1, "it waits again");
+  await notice(ada, "waits for review again").waitFor();
+  await panel(cleo).getByRole("button", { name: "Accept all" }).click();
+  await panel(cleo).getByText("Nothing waits for review.").waitFor();
+  assert.equal(await texels(), painted);
+
+  say("what was accepted the annotator cannot take back");
+  await ada.page.keyboard.press("Control+z");
+  await notice(ada, "what was accepted a curator can take back").waitFor();
+  assert.equal(await texels(), painted);
+
+  say("on a phone");
+  await stroke_by_ada([0.48, 0.4], [0.54, 0.42]);
+  await phone.page.getByRole("button", { name: "Show the panel" }).click();
+  await panel(phone).getByRole("button", { name: "Review" }).click();
+  await wait_for(async () => (await listed(phone).count()) === 1, "her stroke on her phone");
+  await panel(phone).scrollIntoViewIfNeeded();
+  await shoot(phone, "phone");
+
+  for (const who of [cleo, ada, phone]) who.assert_no_complaints();
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
+  for (const [name, who] of Object.entries({ cleo, ada, phone })) await shoot(who, `failed_${name}`).catch(() => {});
+  throw error;
+} finally {
+  for (const who of [cleo, ada, phone]) await who.close();
+  await server.remove();
+}

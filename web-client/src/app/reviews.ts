@@ -1,0 +1,148 @@
+// What of the open model's layers waits for review, and what curators decide about it. It is read anew soon after something changed on a layer.
+
+import { ApiError, type Api } from "../core/api";
+import { place_like } from "../core/look-along";
+import type { LayerEvent, Review, ReviewQueue, WaitingStroke } from "../core/protocol.gen";
+import type { Layer } from "../core/types";
+import type { LayerList } from "./layer-list";
+import { notices } from "./notices";
+import { texts } from "./texts";
+import type { ViewControl } from "./view-control";
+
+const words = texts.review;
+const kAtOnce = 200; // strokes of a layer that are listed; the oldest come first
+const kSettled_ms = 1000; // what happens in one go is read once
+
+export interface ReviewsHost {
+  readonly view: ViewControl;
+  readonly layers: LayerList;
+  me(): string;
+  can_paint(): boolean;
+  can_curate(): boolean;
+  changed(): void;
+}
+
+/** Of a layer. */
+export interface Waiting {
+  layer: Layer;
+  queue: ReviewQueue;
+}
+
+export class Reviews {
+  failed = false;
+
+  private readonly queues_ = new Map<number, ReviewQueue>(); // by layer
+  private readonly outdated_ = new Set<number>();
+  private timer_: ReturnType<typeof setTimeout> | null = null;
+
+  constructor(
+    private readonly api_: Api,
+    private readonly model_id_: string,
+    private readonly host_: ReviewsHost,
+  ) {}
+
+  /** Some layer asks for review, or something still waits. */
+  get is_used(): boolean {
+    return this.host_.layers.all.some((layer) => layer.review) || this.count > 0;
+  }
+  /** Layers of which something waits. */
+  get waiting(): Waiting[] {
+    return this.host_.layers.all.flatMap((layer) => {
+      const queue = this.queues_.get(layer.id);
+      return queue && queue.total > 0 ? [{ layer, queue }] : [];
+    });
+  }
+  /** Strokes, on all layers. */
+  get count(): number {
+    return this.waiting.reduce((sum, { queue }) => sum + queue.total, 0);
+  }
+  waiting_on(layer: Layer): number {
+    return this.queues_.get(layer.id)?.total ?? 0;
+  }
+
+  welcome(): void {
+    this.queues_.clear();
+    void this.load_all();
+  }
+
+  on_event({ layer_id, event, user, review }: LayerEvent): void {
+    if (event === "deleted") this.queues_.delete(layer_id);
+    else this.outdated(layer_id);
+    const me = this.host_.me();
+    const layer = this.host_.layers.find(layer_id);
+    if (!review || !layer || user === undefined || user === me || !review.authors.includes(me)) return;
+    notices.show(review.decision === "reject" ? "problem" : "info", words.told[review.decision](user, layer.name), review.reason ?? "");
+  }
+
+  /** Something changed there. */
+  outdated(layer: number): void {
+    this.outdated_.add(layer);
+    this.timer_ ??= setTimeout(() => void this.load(), kSettled_ms);
+  }
+
+  close(): void {
+    if (this.timer_ !== null) clearTimeout(this.timer_);
+    this.timer_ = null;
+  }
+
+  /** What curators see holds layers, too, that ask for no review any more, of which something still waits. */
+  async load_all(): Promise<void> {
+    if (!this.host_.can_paint()) return;
+    const layers = this.host_.layers.all.filter((layer) => layer.review || this.host_.can_curate());
+    await Promise.all(layers.map((layer) => this.read(layer.id)));
+  }
+
+  private async load(): Promise<void> {
+    this.timer_ = null;
+    const layers = this.host_.can_paint() ? [...this.outdated_].filter((id) => this.host_.layers.find(id)?.review || this.waits_on(id)) : [];
+    this.outdated_.clear();
+    await Promise.all(layers.map((id) => this.read(id)));
+  }
+  private waits_on(layer: number): boolean {
+    return (this.queues_.get(layer)?.total ?? 0) > 0;
+  }
+
+  private async read(layer: number): Promise<void> {
+    try {
+      this.queues_.set(layer, await this.api_.review_queue(this.model_id_, layer, kAtOnce));
+      this.failed = false;
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (error.status === 404) this.queues_.delete(layer);
+      else this.failed = true;
+    }
+    this.host_.changed();
+  }
+
+  /** The layer, as its author saw it. */
+  go_to(layer: Layer, { camera }: WaitingStroke): void {
+    const { layers, view } = this.host_;
+    layers.select(layer);
+    if (!layers.visible(layer)) layers.set_visible(layer, true);
+    if (camera) view.fly(place_like(camera, view.camera));
+  }
+
+  /** True: it is decided, which the person can take back for a moment. Otherwise why not was told. */
+  async decide(layer: Layer, decision: Review): Promise<boolean> {
+    const { strokes = [] } = this.queues_.get(layer.id) ?? {};
+    const about = strokes.filter(({ sequence, user }) => (decision.edits ? decision.edits.includes(sequence) : decision.user === undefined || decision.user === user));
+    const done = await this.send(layer, decision);
+    if (!done) return false;
+    const edits = about.map(({ sequence }) => sequence);
+    const act = (): void => void this.send(layer, { decision: "reopen", edits });
+    notices.show("success", words.done[decision.decision as "accept" | "reject"](about.length), layer.name, edits.length > 0 ? { label: words.take_back, act } : null);
+    return true;
+  }
+
+  private async send(layer: Layer, decision: Review): Promise<boolean> {
+    let done = true;
+    try {
+      await this.api_.review(this.model_id_, layer.id, decision);
+    } catch (error) {
+      notices.error(error);
+      done = false;
+    }
+    await this.read(layer.id); // also where somebody else was quicker
+    return done;
+  }
+}
