@@ -92,7 +92,8 @@ Result<void> list_people(store::Store& store, const PeopleOptions& options) {
 }
 
 // Changes of one who is there.
-Work<PeopleOptions> changing(std::function<Result<void>(store::Store&, const PeopleOptions&, const store::Person&)> change) {
+Work<PeopleOptions> changing(
+    std::function<Result<void>(store::Store&, const PeopleOptions&, const store::Person&)> change) {
   return [change = std::move(change)](store::Store& store, const PeopleOptions& options) -> Result<void> {
     const auto person = store.person(options.name);
     if (!person) return tl::unexpected(person.error());
@@ -211,7 +212,8 @@ Command add_token(CLI::App& app) {
   made->add_option("--days", options->days, "Until it expires")->check(CLI::Range(1, 3650))->capture_default_str();
   add_of("list", "Tokens of a person");
   add_of("revoke", "Makes a token worthless")->add_option("id", options->id, "As `list` tells it")->required();
-  return choosing<PeopleOptions>(parent, options, {{"add", add_token_of}, {"list", list_tokens}, {"revoke", revoke_token}});
+  return choosing<PeopleOptions>(parent, options,
+                                 {{"add", add_token_of}, {"list", list_tokens}, {"revoke", revoke_token}});
 }
 
 }  // namespace strata::cli

@@ -28,8 +28,9 @@ Principal principal_of(const store::Kiosk& kiosk) {
 }
 
 std::string cookie_of(std::string_view name, const std::string& value, std::chrono::seconds lifetime, bool secure) {
-  return std::string(name) + "=" + value + "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" +
-         std::to_string(lifetime.count()) + (secure ? "; Secure" : "");
+  return std::string(name) + "=" + value +
+         "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(lifetime.count()) +
+         (secure ? "; Secure" : "");
 }
 
 }  // namespace
@@ -80,7 +81,8 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
 
 std::string Authenticator::secret_of(const Request& request) {
   const std::string authorization(request.header("authorization"));
-  if (authorization.empty()) return cookie_value(request.header("cookie"), request.as_kiosk ? kKioskCookie : kSessionCookie);
+  if (authorization.empty())
+    return cookie_value(request.header("cookie"), request.as_kiosk ? kKioskCookie : kSessionCookie);
   return to_lower(authorization.substr(0, kScheme.size())) == kScheme ? authorization.substr(kScheme.size())
                                                                       : std::string();
 }

@@ -56,8 +56,8 @@ struct Request {
   std::filesystem::path body_file;            // …in a file that is removed after the answer unless a handler moves it
   std::uint64_t body_bytes = 0;
   std::optional<Principal> principal;
-  std::string peer;     // address at the other end of the connection
-  bool by_tls = false;  // the connection speaks TLS
+  std::string peer;       // address at the other end of the connection
+  bool by_tls = false;    // the connection speaks TLS
   bool as_kiosk = false;  // the query had `as=kiosk`: of all cookies that of the kiosk counts, which otherwise does not
 
   std::string_view header(std::string_view lower_case_name) const;  // empty when absent

@@ -64,8 +64,9 @@ constexpr Place kPlaces[] = {
      }},
     {"kiosk",
      [](const RouteContext& context, const std::string& ref) {
-       return project_of_number(
-           ref, [&](std::int64_t id) -> Result<std::int64_t> { return project_id_of(context.store.kiosks().kiosk(id)); });
+       return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
+         return project_id_of(context.store.kiosks().kiosk(id));
+       });
      }},
 };
 

@@ -101,7 +101,7 @@ Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool want
   if (!tour) return tl::unexpected(tour.error());
   auto told = to_json(context, *tour, Role::viewer, {});
   if (!told) return tl::unexpected(told.error());
-  nlohmann::json json{{"id", kiosk.id},       {"name", kiosk.name},         {"project", kiosk.project},
+  nlohmann::json json{{"id", kiosk.id},       {"name", kiosk.name},       {"project", kiosk.project},
                       {"model", kiosk.model}, {"tour", std::move(*told)}, {"wants_reload", wants_reload}};
   if (kiosk.expires) json["expires"] = utc_text(*kiosk.expires);
   return json_response(json).with("Cache-Control", "no-store");
@@ -119,14 +119,14 @@ Result<Response> sign_in(const RouteContext& context, SignInGate& gate, const Re
   gate.was_right(address, {});
   if (auto seen = context.store.kiosks().seen((*kiosk)->id, true); !seen) return tl::unexpected(seen.error());
   auto response = self(context, **kiosk, false);
-  if (response)
-    response->with("Set-Cookie", Authenticator::set_kiosk_cookie(asked->link, came_by_https(request)));
+  if (response) response->with("Set-Cookie", Authenticator::set_kiosk_cookie(asked->link, came_by_https(request)));
   return response;
 }
 
 Result<Response> kiosk_self(const RouteContext& context, const Request& request) {
   if (!request.principal->kiosk)
-    return fail(403, "Not a kiosk", "This is told to kiosks: with the cookie of one and `as=kiosk`, or its bearer token.");
+    return fail(403, "Not a kiosk",
+                "This is told to kiosks: with the cookie of one and `as=kiosk`, or its bearer token.");
   const auto kiosk = context.store.kiosks().kiosk(request.principal->kiosk->id);
   if (!kiosk) return tl::unexpected(kiosk.error());
   // That it was there is only remembered: it gets its answer also where nothing can be written.
@@ -169,10 +169,8 @@ void add_kiosk_routes(Router& router, const RouteContext& context) {
        .role = std::nullopt,
        .body = BodyKind::memory,
        .max_body = context.options.max_json_bytes});
-  router.add({.method = Method::get,
-              .pattern = "/api/v1/kiosk",
-              .handler = answer_by(kiosk_self),
-              .role = Role::guest});
+  router.add(
+      {.method = Method::get, .pattern = "/api/v1/kiosk", .handler = answer_by(kiosk_self), .role = Role::guest});
 }
 
 }  // namespace strata::net

@@ -73,8 +73,7 @@ Result<Response> create_tour(const RouteContext& context, const Request& request
   const auto told = to_json(context, tour, request.role(), tour.user);
   if (!told) return tl::unexpected(told.error());
   const auto answer = [&](const NamedPart& made) {
-    return answer_of(*told, made, 201)
-        .with("Location", "/api/v1/models/" + model->slug + "/tours/" + made.slug);
+    return answer_of(*told, made, 201).with("Location", "/api/v1/models/" + model->slug + "/tours/" + made.slug);
   };
   const auto made = context.store.tours().create(tour, first_answer<NamedPart>(request, answer));
   if (!made) return tl::unexpected(made.error());

@@ -134,8 +134,7 @@ Result<Response> list_views(const RouteContext& context, const Request& request)
 Result<Response> get_view(const RouteContext& context, const Request& request) {
   const auto found = find_view(context, request);
   if (!found) return tl::unexpected(found.error());
-  return with_etag(json_response(to_json(context, request, found->view, *found->room)), request,
-                   found->view.version);
+  return with_etag(json_response(to_json(context, request, found->view, *found->room)), request, found->view.version);
 }
 
 // What the view shows today, to who asks.

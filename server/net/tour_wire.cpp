@@ -30,8 +30,7 @@ Result<nlohmann::json> kept_columns(const Table& table, const std::vector<protoc
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const std::string here = at(field, i) + ".column";
     const Column* column = find_column(table.columns, columns[i].column);
-    if (!column)
-      return fail(422, "No such column", table.name + " has no column `" + columns[i].column + "`.", here);
+    if (!column) return fail(422, "No such column", table.name + " has no column `" + columns[i].column + "`.", here);
     if (auto fresh = once(known, column->id, "column", here); !fresh) return tl::unexpected(fresh.error());
     kept.push_back({{"column", column->id}});
     if (columns[i].labels) kept.back()["labels"] = *columns[i].labels;

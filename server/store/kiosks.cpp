@@ -6,13 +6,14 @@
 namespace strata::store {
 namespace {
 
-#define STRATA_KIOSKS                                                                                             \
-  "SELECT k.id, k.name, t.id, m.id, p.id, t.slug, t.name, m.slug, m.name, p.slug, k.user_name, k.created, "      \
-  "k.expires, k.last_seen, k.revoked, k.wants_reload FROM kiosks k JOIN tours t ON t.id = k.tour_id "            \
+#define STRATA_KIOSKS                                                                                       \
+  "SELECT k.id, k.name, t.id, m.id, p.id, t.slug, t.name, m.slug, m.name, p.slug, k.user_name, k.created, " \
+  "k.expires, k.last_seen, k.revoked, k.wants_reload FROM kiosks k JOIN tours t ON t.id = k.tour_id "       \
   "JOIN models m ON m.id = t.model_id JOIN projects p ON p.id = m.project_id "
 #define STRATA_GOOD_KIOSK "(k.revoked IS NULL AND (k.expires IS NULL OR k.expires > now()))"
 // Others are cleared away when the next link is made; none is listed longer.
-#define STRATA_LISTED_KIOSK "(least(k.revoked, k.expires) IS NULL OR least(k.revoked, k.expires) > now() - interval '30 days')"
+#define STRATA_LISTED_KIOSK \
+  "(least(k.revoked, k.expires) IS NULL OR least(k.revoked, k.expires) > now() - interval '30 days')"
 
 Kiosk read_kiosk(const PgResult& rows, int i) {
   Kiosk kiosk;
@@ -134,9 +135,9 @@ Result<void> Kiosks::seen(std::int64_t id, bool loaded) {
 
 Result<void> Kiosks::revoke(std::int64_t id) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
-    auto done = connection.query(
-        "UPDATE kiosks SET revoked = coalesce(revoked, now()), wants_reload = false WHERE id = $1",
-        Params().integer(id));
+    auto done =
+        connection.query("UPDATE kiosks SET revoked = coalesce(revoked, now()), wants_reload = false WHERE id = $1",
+                         Params().integer(id));
     if (!done) return tl::unexpected(done.error());
     if (done->affected() == 0) return not_found("kiosk", std::to_string(id));
     return {};

@@ -31,12 +31,12 @@ std::string NamedParts::sql(std::string text) const {
 
 Result<NamedParts::Page> NamedParts::of_model(std::int64_t model_id, int limit, int offset) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
-    auto total = connection.query(sql("SELECT count(*) FROM TABLE WHERE model_id = $1").c_str(),
-                                  Params().integer(model_id));
+    auto total =
+        connection.query(sql("SELECT count(*) FROM TABLE WHERE model_id = $1").c_str(), Params().integer(model_id));
     if (!total) return tl::unexpected(total.error());
-    auto rows = connection.query(
-        sql("SELECT PART FROM TABLE WHERE model_id = $1 ORDER BY id LIMIT $2 OFFSET $3").c_str(),
-        Params().integer(model_id).integer(limit).integer(offset));
+    auto rows =
+        connection.query(sql("SELECT PART FROM TABLE WHERE model_id = $1 ORDER BY id LIMIT $2 OFFSET $3").c_str(),
+                         Params().integer(model_id).integer(limit).integer(offset));
     if (!rows) return tl::unexpected(rows.error());
     Page page;
     page.total = total->integer(0, 0);
@@ -116,15 +116,11 @@ tl::unexpected<Problem> missed(const Result<PgResult>& known, const NamedParts::
 Result<NamedPart> NamedParts::update(const NamedPart& part, const FirstAnswer<NamedPart>& answer) {
   if (auto good = check_part(part); !good) return tl::unexpected(good.error());
   return change(pool_, answer, [&](PgConnection& connection) -> Result<NamedPart> {
-    auto row = connection.query(sql("UPDATE TABLE SET name = $3, text = $4, content = $5, version = version + 1 "
-                                    "WHERE id = $1 AND version = $2 RETURNING PART")
-                                    .c_str(),
-                                Params()
-                                    .integer(part.id)
-                                    .integer(part.version)
-                                    .text(part.name)
-                                    .text(part.text)
-                                    .json(part.content));
+    auto row = connection.query(
+        sql("UPDATE TABLE SET name = $3, text = $4, content = $5, version = version + 1 "
+            "WHERE id = $1 AND version = $2 RETURNING PART")
+            .c_str(),
+        Params().integer(part.id).integer(part.version).text(part.name).text(part.text).json(part.content));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) return read_part(*row, 0);
     return missed(connection.query(sql("SELECT 1 FROM TABLE WHERE id = $1").c_str(), Params().integer(part.id)), kind_,

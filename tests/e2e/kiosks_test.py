@@ -230,6 +230,8 @@ def cookies(server, tour):
     assert own == signed.json() and own["id"] == kiosk["id"] and own["name"] == "Cookie" and own["tour"]["user"] == "" and own["model"] == "sheet" and own["project"] == "default", own
     assert own["tour"]["stops"][0]["layers"] == ["cracks"] and "expires" not in own, own
     assert screen.ok("GET", M).json()["slug"] == "sheet"
+    picture = screen.ok("GET", "/tables/finds/records/1/attachments").json()["attachments"]
+    assert [each["name"] for each in picture] == ["public.png"] and screen.ok("GET", f"/attachments/{picture[0]['id']}?thumbnail=64").body, picture
     told(server.request("PATCH", M + "?as=kiosk", {"name": "x"}, token=False, headers={"Cookie": screen.cookie, "Origin": "https://elsewhere.example"}), 403)
     # Without the mark it is nobody, and so is a person's session with it.
     told(server.get("/kiosk", token=False, headers={"Cookie": screen.cookie}), 401)

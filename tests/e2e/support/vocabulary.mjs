@@ -208,9 +208,9 @@ const attach = { content: { "application/octet-stream": file("letter.txt", "pict
 const tour_stop = fc.record(
   {
     view: mostly("west", "1"),
-    title: one({ en: "Here", es: "Aquí" }, { en: "Here", es: "Aquí" }, { fr: "Ici" }),
+    title: fc.oneof({ weight: 12, arbitrary: one({ en: "Here", es: "Aquí" }) }, { weight: 1, arbitrary: one({ fr: "Ici" }) }),
     text: one({}, { en: "Broken\nin 2019." }),
-    layers: one([], ["cracks"], ["cracks", "moisture"], ["nothing"]),
+    layers: one([], ["cracks"], ["cracks", "moisture"], ["moisture", "units"]),
     records: one([], [{ table: "units", keys: [1, 2], columns: [{ column: "code", labels: { es: "Código" } }] }]),
     transition: one("cut", "move"),
   },
@@ -218,7 +218,7 @@ const tour_stop = fc.record(
 );
 const tour = {
   path: { model: one("wall", "wall", "wall", "nothing") },
-  ...json({ by_schema: { TourStopCreate: tour_stop }, by_name: { languages: one(["en", "es"], ["es", "en"], ["en", "en"]) } }),
+  ...json({ by_name: { languages: one(["en", "es"], ["es", "en"]), stops: fc.array(tour_stop, { minLength: 1, maxLength: 2 }) } }),
 };
 
 const what_of_texels = one({}, { texels: "clear" }, { texels: "reassign", to: "2" });
