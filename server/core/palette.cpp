@@ -9,28 +9,6 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 4096;
 
-Result<Rgba> parse_color(const nlohmann::json& json, const std::string& field) {
-  auto wrong = [&] { return fail(422, "Not a colour", "A colour is \"#rrggbb\" or \"#rrggbbaa\".", field); };
-  if (!json.is_string()) return wrong();
-  const auto& text = json.get_ref<const std::string&>();
-  if ((text.size() != 7 && text.size() != 9) || text[0] != '#') return wrong();
-  Rgba color{0, 0, 0, 255};
-  for (std::size_t i = 1; i < text.size(); i += 2) {
-    int byte = 0;
-    for (std::size_t k = i; k < i + 2; ++k) {
-      const char c = static_cast<char>(std::tolower(static_cast<unsigned char>(text[k])));
-      if (c >= '0' && c <= '9')
-        byte = byte * 16 + (c - '0');
-      else if (c >= 'a' && c <= 'f')
-        byte = byte * 16 + (c - 'a' + 10);
-      else
-        return wrong();
-    }
-    color[i / 2] = static_cast<std::uint8_t>(byte);
-  }
-  return color;
-}
-
 std::string format_color(const Rgba& color) {
   static constexpr char kDigits[] = "0123456789abcdef";
   std::string text = "#";
@@ -87,6 +65,28 @@ Rgba mix(const Rgba& a, const Rgba& b, double t) {
 }
 
 }  // namespace
+
+Result<Rgba> parse_color(const nlohmann::json& json, const std::string& field) {
+  auto wrong = [&] { return fail(422, "Not a colour", "A colour is \"#rrggbb\" or \"#rrggbbaa\".", field); };
+  if (!json.is_string()) return wrong();
+  const auto& text = json.get_ref<const std::string&>();
+  if ((text.size() != 7 && text.size() != 9) || text[0] != '#') return wrong();
+  Rgba color{0, 0, 0, 255};
+  for (std::size_t i = 1; i < text.size(); i += 2) {
+    int byte = 0;
+    for (std::size_t k = i; k < i + 2; ++k) {
+      const char c = static_cast<char>(std::tolower(static_cast<unsigned char>(text[k])));
+      if (c >= '0' && c <= '9')
+        byte = byte * 16 + (c - '0');
+      else if (c >= 'a' && c <= 'f')
+        byte = byte * 16 + (c - 'a' + 10);
+      else
+        return wrong();
+    }
+    color[i / 2] = static_cast<std::uint8_t>(byte);
+  }
+  return color;
+}
 
 Result<Palette> palette_from_json(const nlohmann::json& json, const std::string& field) {
   auto wrong = [&](const char* member, std::string detail) {

@@ -24,9 +24,10 @@ struct StrokeBatch {
   ToolShape shape = ToolShape::disc;
   std::shared_ptr<const ShapeTexture> texture;  // of ToolShape::texture
   double radius_px = 0;                         // > 0: radius in window pixels; 0: radius_world is used
-  double radius_world = 0;  // radius in model units around the surface point under each path point, measured
-                            // in the plane facing the camera at that point's depth
-  bool through = false;     // paint what is hidden, too: no depth test
+  double radius_world = 0;     // radius in model units around the surface point under each path point, measured
+                               // in the plane facing the camera at that point's depth
+  std::vector<double> widths;  // of the radius, one a path point, above 0, 1 at most (a pen's pressure); empty: 1
+  bool through = false;        // paint what is hidden, too: no depth test
   // How much nearer than the depth buffer a texel counts as, in window depth (0…1), as the paper has it. Absent: the bias follows
   // the model's size and the slope of what is seen, so that it does not depend on the camera's planes.
   std::optional<double> fixed_depth_bias;

@@ -156,6 +156,9 @@ void LiveSession::on(const protocol::LayersUpdate& message) {
   if (!has_view(message.view_id, std::string())) return;
   auto settings = view_settings(*room_, message.layers, message.looks, message.light);
   if (!settings) return refuse(settings.error(), std::string());
+  const auto background = background_of(message.background);
+  if (!background) return refuse(background.error(), std::string());
+  settings->background = *background;
   if (auto done = member()->show(static_cast<std::uint32_t>(message.view_id), std::move(*settings)); !done)
     refuse(done.error(), std::string());
 }
@@ -300,7 +303,8 @@ void LiveSession::on(const protocol::Pick& message) {
 
 void LiveSession::paint(const protocol::StrokeExtend& message) {
   const std::vector<glm::dvec2> path(message.path.begin(), message.path.end());
-  auto batch = shared_->strokes->extend(owner_, message.stroke, message.id, message.n, path);
+  auto batch = shared_->strokes->extend(owner_, message.stroke, message.id, message.n, path,
+                                        message.widths.value_or(std::vector<double>{}));
   if (!batch) return refuse(batch.error(), message.id);
   submit(batch_request(std::move(*batch), message.stroke, message.id, message.n, author()),
          BatchName{message.stroke, message.n});

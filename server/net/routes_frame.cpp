@@ -51,6 +51,9 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   }
   if (asked->light) wanted.shown.light = *asked->light;
   if (auto lit = validate(wanted.shown.light); !lit) return tl::unexpected(lit.error());
+  const auto background = background_of(asked->background);
+  if (!background) return tl::unexpected(background.error());
+  wanted.shown.background = *background;
   auto picture = (*room)->picture(wanted);
   if (!picture) return tl::unexpected(picture.error());
   Response response = picture_response(*picture, asked->format == protocol::FrameRequestFormat::png);

@@ -56,16 +56,17 @@ bool StrokeBook::lacks_start(const Owner& owner, const Uuid& stroke, int n) cons
   return known && known->batches.empty() && !known->last && n > 0;
 }
 
-void StrokeBook::continue_from(const Owner& owner, const Uuid& stroke, int n, const glm::dvec2& point) {
+void StrokeBook::continue_from(const Owner& owner, const Uuid& stroke, int n, const End& end) {
   std::lock_guard lock(mutex_);
   Stroke* known = find(owner, stroke);
   if (!known || !known->batches.empty()) return;
   known->first_n = n;
-  known->last = point;
+  known->last = end;
 }
 
 Result<StrokeBook::Batch> StrokeBook::extend(const Owner& owner, const Uuid& stroke, const Uuid& id, int n,
-                                             const std::vector<glm::dvec2>& path, Clock::time_point now) {
+                                             const std::vector<glm::dvec2>& path, const std::vector<double>& widths,
+                                             Clock::time_point now) {
   std::lock_guard lock(mutex_);
   Stroke* known = find(owner, stroke);
   if (!known) return fail(404, "Unknown stroke", "Send stroke.begin for this stroke first.", "stroke");
@@ -84,24 +85,30 @@ Result<StrokeBook::Batch> StrokeBook::extend(const Owner& owner, const Uuid& str
   if (!is_new && known->batches[static_cast<std::size_t>(n - known->first_n)].id != id)
     return fail(409, "Batch number taken", "This number of the stroke was sent with another id.", "n");
 
-  const std::optional<glm::dvec2> start =
+  const std::optional<End> start =
       is_new ? known->last : known->batches[static_cast<std::size_t>(n - known->first_n)].start;
   if (path.empty() || path.size() + (start ? 1 : 0) > kMaxPath)
     return fail(422, "Path too long",
                 "A batch has 1 to " + std::to_string(kMaxPath - 1) + " points; send more batches.", "path");
+  if (!widths.empty() && widths.size() != path.size())
+    return fail(422, "Widths do not fit", "Give one width for each point of the path, or none.", "widths");
   known->touched = now;
   if (is_new) {
     known->batches.push_back({id, start});
-    known->last = path.back();
+    known->last = End{path.back(), widths.empty() ? 1 : widths.back()};
     if (known->batches.size() > kMaxBatches) {
       known->batches.pop_front();
       ++known->first_n;
     }
   }
-  Batch batch{known->tool, {}};
+  Batch batch{known->tool, {}, widths};
   batch.path.reserve(path.size() + 1);
-  if (start) batch.path.push_back(*start);
+  if (start) batch.path.push_back(start->point);
   batch.path.insert(batch.path.end(), path.begin(), path.end());
+  if (start && (start->width != 1 || !widths.empty())) {
+    if (widths.empty()) batch.widths.assign(path.size(), 1);
+    batch.widths.insert(batch.widths.begin(), start->width);
+  }
   return batch;
 }
 

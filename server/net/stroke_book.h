@@ -46,16 +46,23 @@ class StrokeBook {
   // True when the batch follows one that this book has not seen (the server was restarted in between): tell the
   // point where batch n-1 ended by `continue_from`, if it can be found, before `extend`.
   bool lacks_start(const Owner& owner, const Uuid& stroke, int n) const;
-  void continue_from(const Owner& owner, const Uuid& stroke, int n, const glm::dvec2& point);
+  struct End {  // of a batch
+    glm::dvec2 point{0};
+    double width = 1;
+    bool operator==(const End&) const = default;
+  };
+  void continue_from(const Owner& owner, const Uuid& stroke, int n, const End& end);
 
   struct Batch {
     StrokeTool tool;
     std::vector<glm::dvec2> path;  // joined to the batch before
+    std::vector<double> widths{};  // of its points; none: all are 1
   };
   // Refused: an unknown stroke (404), a batch out of order, a number already taken by another id, an ended stroke (409),
-  // a path that is too long with the joining point (422). A repeated id gives the same batch again and advances nothing.
+  // a path that is too long with the joining point, widths that do not fit it (422). A repeated id gives the same batch again and advances nothing.
   Result<Batch> extend(const Owner& owner, const Uuid& stroke, const Uuid& id, int n,
-                       const std::vector<glm::dvec2>& path, Clock::time_point now = Clock::now());
+                       const std::vector<glm::dvec2>& path, const std::vector<double>& widths = {},
+                       Clock::time_point now = Clock::now());
   void saved(const Owner& owner, const Uuid& stroke, int n);
   Result<void> end(const Owner& owner, const Uuid& stroke);
 
@@ -69,14 +76,14 @@ class StrokeBook {
  private:
   struct PastBatch {
     Uuid id;
-    std::optional<glm::dvec2> start;  // where the batch before ended
+    std::optional<End> start;  // where the batch before ended
     bool is_saved = false;
   };
   struct Stroke {
     StrokeTool tool;
     int first_n = 0;  // number of batches.front()
     std::deque<PastBatch> batches;
-    std::optional<glm::dvec2> last;  // where the newest batch ended
+    std::optional<End> last;  // where the newest batch ended
     bool ended = false;
     Clock::time_point touched;
     int saved_through()

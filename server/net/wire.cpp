@@ -129,6 +129,7 @@ Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& 
     if (!batch) return tl::unexpected(batch.error());
     if (tool->shape) request.record["shape"] = tool->id;
     batch->path.assign(stroke->path.begin(), stroke->path.end());
+    if (stroke->widths) batch->widths.assign(stroke->widths->begin(), stroke->widths->end());
     request.edit = room::StrokeEdit{std::move(*batch), id, 0};
     return request;
   }
@@ -167,7 +168,9 @@ room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, con
   nlohmann::json path = nlohmann::json::array();
   for (const auto& point : batch.path) path.push_back({point.x, point.y});
   request.record["path"] = std::move(path);
+  if (!batch.widths.empty()) request.record["widths"] = batch.widths;
   batch.tool.batch.path = std::move(batch.path);
+  batch.tool.batch.widths = std::move(batch.widths);
   request.edit = room::StrokeEdit{std::move(batch.tool.batch), stroke, n};
   return request;
 }
@@ -209,6 +212,14 @@ Result<std::vector<room::LookView>> look_views(const room::Room& room, const std
   return views;
 }
 
+Result<Background> background_of(const std::optional<protocol::Background>& asked) {
+  if (!asked) return Background{};
+  const auto top = parse_color(asked->top, "background.top"), bottom = parse_color(asked->bottom, "background.bottom");
+  if (!top) return tl::unexpected(top.error());
+  if (!bottom) return tl::unexpected(bottom.error());
+  return Background{*top, *bottom};
+}
+
 Result<room::ViewSettings> view_settings(const room::Room& room, const std::vector<protocol::LayerOverride>& layers,
                                          const std::optional<std::vector<protocol::LookShown>>& looks,
                                          const std::optional<Light>& light) {
@@ -245,13 +256,17 @@ Result<room::ViewSettings> view_settings(const room::Room& room, const std::vect
   return settings;
 }
 
-std::optional<glm::dvec2> end_of_path(const nlohmann::json& record) {
+std::optional<StrokeBook::End> end_of_path(const nlohmann::json& record) {
   if (!record.is_object()) return std::nullopt;
   const auto path = record.find("path");
   if (path == record.end() || !path->is_array() || path->empty()) return std::nullopt;
   const auto& point = path->back();
   if (!point.is_array() || point.size() != 2 || !point[0].is_number() || !point[1].is_number()) return std::nullopt;
-  return glm::dvec2(point[0].get<double>(), point[1].get<double>());
+  StrokeBook::End end{{point[0].get<double>(), point[1].get<double>()}};
+  const auto widths = record.find("widths");
+  if (widths != record.end() && widths->is_array() && !widths->empty() && widths->back().is_number())
+    end.width = widths->back().get<double>();
+  return end;
 }
 
 protocol::SurfacePoint to_protocol(const query::SurfacePoint& point) {

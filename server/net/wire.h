@@ -49,12 +49,13 @@ Result<std::vector<room::LookView>> look_views(const room::Room& room, const std
 Result<room::ViewSettings> view_settings(const room::Room& room, const std::vector<protocol::LayerOverride>& layers,
                                          const std::optional<std::vector<protocol::LookShown>>& looks,
                                          const std::optional<Light>& light);
+Result<Background> background_of(const std::optional<protocol::Background>& asked);
 
 // Of a layer of records, for `field`; the filter's columns are found when it is first drawn.
 Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Layer& layer, const std::string& field);
 
 // Where the path of a stroke's batch ended, from its journal record; nothing when the record is of another kind.
-std::optional<glm::dvec2> end_of_path(const nlohmann::json& record);
+std::optional<StrokeBook::End> end_of_path(const nlohmann::json& record);
 
 protocol::SurfacePoint to_protocol(const query::SurfacePoint& point);
 protocol::Picked to_picked(const query::SurfacePoint& point, const std::optional<std::string>& id);

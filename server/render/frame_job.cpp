@@ -230,8 +230,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
                    view.shading,
                    band,
                    intersection(band, surface_),
-                   request.background_top,
-                   request.background_bottom,
+                   request.background,
                    {},
                    patterns_of(request, (*model)->mesh().geometry())};
   for (const LayerStyle& style : request.layers) {
@@ -256,8 +255,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   pixels_.submit();
   view.picture_complete = true;
   view.layers = request.layers;
-  view.background_top = request.background_top;
-  view.background_bottom = request.background_bottom;
+  view.background = request.background;
   view.unit_mm = request.unit_mm;
   view.marks = request.marks;
   return true;

@@ -25,6 +25,11 @@ Result<void> validate(const StrokeBatch& stroke) {
       return fail(422, "Path not finite", "Every coordinate of the path must be a finite number.", "path");
     }
   }
+  if (!stroke.widths.empty() && stroke.widths.size() != stroke.path.size())
+    return fail(422, "Widths do not fit", "Give one width for each point of the path, or none.", "widths");
+  for (const double width : stroke.widths)
+    if (!(width > 0 && width <= 1))
+      return fail(422, "Width out of range", "A width is a share of the radius: above 0, 1 at most.", "widths");
   const double radius = stroke.radius_px > 0 ? stroke.radius_px : stroke.radius_world;
   if (!std::isfinite(radius) || radius <= 0) {
     return fail(422, "Radius out of range", "Give radius_px or radius_world as a number above 0.", "radius");

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/background.h"
 #include "core/camera.h"
 #include "core/light.h"
 #include "core/palette.h"
@@ -89,6 +90,7 @@ struct ViewStyle {  // what a view shows of its model
   std::vector<LookStyle> looks;  // kMaxLooksShown at most
   MarksShown marks;              // over the layers, the last ones on top
   Light light;
+  Background background;
   double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
   bool operator==(const ViewStyle&) const = default;
 };
@@ -114,7 +116,7 @@ struct FrameRequest {
     glm::vec3 min, max;
   };
   std::optional<std::vector<Box>> changed;
-  Rgba background_top{242, 240, 236, 255}, background_bottom{214, 211, 205, 255};
+  Background background;
   bool align_to_16 = true;  // grow the rectangle to multiples of 16 for JPEG parts
 };
 struct Frame {

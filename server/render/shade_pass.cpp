@@ -177,8 +177,8 @@ Result<void> ShadePass::draw(const ShadeInput& input, const gl::Program& program
 
 Result<void> ShadePass::draw_background(const ShadeInput& input) {
   shader::ShadeUniforms uniforms{};
-  uniforms.background_top = color(input.background_top);
-  uniforms.background_bottom = color(input.background_bottom);
+  uniforms.background_top = color(input.background.top);
+  uniforms.background_bottom = color(input.background.bottom);
   uniforms.picture_height = static_cast<std::uint32_t>(input.uv.height());
   return draw(input, background_, input.rect, uniforms);
 }

@@ -34,7 +34,7 @@ struct ShadeInput {
   const gl::Framebuffer& target;  // RGBA8 picture and the g-buffer's depth; row 0 lowest
   PixelRect rect;                 // origin top left, as all rectangles of pictures
   PixelRect surface_rect;         // holds all pixels of `rect` that may show surface
-  Rgba background_top, background_bottom;
+  Background background;
   std::vector<Layer> layers;  // bottom to top
   Patterns patterns{};
 };

@@ -46,7 +46,10 @@ ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii
   const auto point = [&](std::size_t i) {
     return glm::dvec2(stroke.path[i].x, stroke.camera.height - stroke.path[i].y);
   };
-  const auto radius = [&](std::size_t i) { return std::clamp(radii_px[i], kSmallestRadius_px, kLargestRadius_px); };
+  const auto radius = [&](std::size_t i) {
+    const double width = stroke.widths.empty() ? 1 : stroke.widths[i];
+    return std::clamp(radii_px[i] * width, kSmallestRadius_px, kLargestRadius_px);
+  };
   std::size_t from = 0;
   for (std::size_t i = 1; i < stroke.path.size(); ++i) {
     if (point(i) == point(from) && radius(i) == radius(from)) continue;

@@ -26,7 +26,7 @@ struct ToolPath {
       1;  // of the disc about the tool's centre that lies in the tool wholly, as a share of its radius
 };
 
-// `radii_px` is one a point. Points that do not move are joined.
+// `radii_px` is one a point, before the stroke's widths. Points that do not move are joined.
 ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii_px);
 
 // How many units of view space one of the model's is: 1 unless the view matrix scales.

@@ -16,8 +16,8 @@ void View::drop_buffers() {
 }
 
 bool View::shows(const FrameRequest& request) const {
-  return picture_complete && unit_mm == request.unit_mm && background_top == request.background_top &&
-         background_bottom == request.background_bottom && layers == request.layers && marks == request.marks;
+  return picture_complete && unit_mm == request.unit_mm && background == request.background &&
+         layers == request.layers && marks == request.marks;
 }
 
 Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths, GpuMemory& memory) {

@@ -26,7 +26,7 @@ struct View {
 
   bool picture_complete = false;
   std::vector<LayerStyle> layers;  // of the picture
-  Rgba background_top{}, background_bottom{};
+  Background background;
   double unit_mm = 0;
   MarksShown marks;
   std::vector<shader::MarkSegment> mark_segments;  // of the marks, as the camera of the g-buffer sees them

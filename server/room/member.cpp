@@ -39,6 +39,7 @@ render::ViewStyle RoomMember::style(std::uint32_t view_id, View& view) const {
   render::ViewStyle style;
   style.looks = room_->look_shelf().styles(view.looks);
   style.light = view.light;
+  style.background = view.background;
   style.unit_mm = room_->model().metres() * 1000;
   std::vector<LayerMarks> marked;
   for (const auto& state : room_->layer_states()) {
@@ -105,6 +106,7 @@ Result<void> RoomMember::show(std::uint32_t view_id, ViewSettings settings) {
   v->told.clear();
   v->looks = std::move(settings.looks);
   v->light = settings.light;
+  v->background = settings.background;
   for (auto& own : settings.layers) {
     if (own.palette) v->palettes[own.layer_id] = std::make_shared<const Palette>(*own.palette);
     if (own.highlight) {

@@ -53,6 +53,7 @@ class RoomMember final : public Member {
     std::set<std::shared_ptr<const Problem>> told;  // why one cannot be made
     std::optional<std::vector<LookView>> looks;
     Light light;
+    Background background;
   };
   View* view(std::uint32_t view_id, bool make);
   render::ViewStyle style(std::uint32_t view_id, View& view) const;

@@ -84,6 +84,7 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
   if (!looks) return tl::unexpected(gpu_problem(looks.error()));
   request.looks = std::move(*looks);
   request.light = asked.shown.light;
+  request.background = asked.shown.background;
   request.marks = show_marks(marked);
   request.unit_mm = this->model().metres() * 1000;
   auto frame = await<render::Frame>([&](auto done) { parts_.renderer.draw(std::move(request), std::move(done)); });

@@ -81,6 +81,7 @@ struct ViewSettings {
   std::vector<LayerView> layers;
   std::optional<std::vector<LookView>> looks;  // bottom to top; nothing: those visible by default
   Light light;
+  Background background{};
 
   // What it says of a layer; of one that it does not name, nothing.
   const LayerView& of(std::int64_t layer_id) const {

@@ -285,6 +285,7 @@ void Viewer::step() {
     request.layers = impl_->style.layers;
     request.looks = impl_->style.looks;
     request.light = impl_->style.light;
+    request.background = impl_->style.background;
     request.marks = impl_->style.marks;
     request.unit_mm = impl_->style.unit_mm;
   }

@@ -90,6 +90,8 @@ StrokeBatch random_stroke(std::mt19937& random) {
   for (int i = 0, count = std::uniform_int_distribution(1, most)(random); i < count; ++i)
     stroke.path.emplace_back(in(100, 700), in(50, 550));
   stroke.radius_px = in(1, 80);
+  if (random() % 3 == 0)
+    for (std::size_t i = 0; i < stroke.path.size(); ++i) stroke.widths.push_back(in(0.05, 1));
   if (random() % 3 == 0) stroke.shape = ToolShape::square;
   return stroke;
 }

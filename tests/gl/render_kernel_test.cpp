@@ -31,6 +31,8 @@ StrokeBatch random_stroke(std::mt19937& random) {
   for (std::size_t i = 0; i < 1 + random() % 4; ++i) stroke.path.emplace_back(in(150, 650), in(100, 500));
   (random() % 2 ? stroke.radius_px : stroke.radius_world) = random() % 2 ? in(0.02, 0.2) : in(0.2, 0.6);
   if (stroke.radius_px > 0) stroke.radius_px *= 300;
+  if (random() % 3 == 0)
+    for (std::size_t i = 0; i < stroke.path.size(); ++i) stroke.widths.push_back(in(0.05, 1));
   stroke.shape = static_cast<ToolShape>(random() % 3);
   if (stroke.shape == ToolShape::texture) stroke.texture = shape(random() % 2 ? in_flag : in_dots);
   stroke.through = random() % 5 == 0;

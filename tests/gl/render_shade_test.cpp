@@ -297,8 +297,7 @@ TEST_F(Shade, a_large_picture_is_shaded_in_bands_without_a_seam) {
 
 TEST_F(Shade, the_background_is_a_gradient_from_top_to_bottom) {
   request_.camera = orthographic_camera({0, 0, 2}, {5, 0, 0}, kSize, kSize, 0.5);
-  request_.background_top = {250, 0, 0, 255};
-  request_.background_bottom = {0, 0, 250, 255};
+  request_.background = {{250, 0, 0, 255}, {0, 0, 250, 255}};
   const auto frame = renderer_.draw(request_);
   EXPECT_NEAR(pixel(frame, 0, 0)[0], 250, 2);
   EXPECT_NEAR(pixel(frame, 0, 255)[2], 250, 2);

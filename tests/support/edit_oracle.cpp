@@ -181,12 +181,16 @@ bool decide(const Scene& scene, const StrokeBatch& stroke, const std::vector<dou
 
 // In window pixels, one a path point.
 std::vector<double> radii_of(const StrokeBatch& stroke, const std::vector<float>& depth) {
-  if (stroke.radius_px > 0) return std::vector<double>(stroke.path.size(), stroke.radius_px);
+  const auto narrowed = [&](std::vector<double> radii) {
+    for (std::size_t i = 0; i < stroke.widths.size(); ++i) radii[i] *= stroke.widths[i];
+    return radii;
+  };
+  if (stroke.radius_px > 0) return narrowed(std::vector<double>(stroke.path.size(), stroke.radius_px));
   std::vector<float> depths;
   for (const auto& point : stroke.path)
     depths.push_back(depth[std::size_t(stroke.camera.height - 1 - int(point.y)) * std::size_t(stroke.camera.width) +
                            std::size_t(point.x)]);
-  return render::radii_from_depths(stroke, depths, 1);
+  return narrowed(render::radii_from_depths(stroke, depths, 1));
 }
 
 }  // namespace

@@ -120,13 +120,25 @@ TEST_F(Book, after_a_restart_a_stroke_goes_on_from_the_journals_point) {
   ASSERT_TRUE(book.begin(kAnna, stroke, tool()));
   EXPECT_FALSE(book.lacks_start(kAnna, stroke, 0));
   ASSERT_TRUE(book.lacks_start(kAnna, stroke, 7));
-  book.continue_from(kAnna, stroke, 7, {9, 9});
+  book.continue_from(kAnna, stroke, 7, {{9, 9}});
   EXPECT_FALSE(book.lacks_start(kAnna, stroke, 7));
   const auto batch = book.extend(kAnna, stroke, ids[0], 7, {{10, 10}});
   ASSERT_TRUE(batch);
   EXPECT_EQ(batch->path, (Path{{9, 9}, {10, 10}}));
   EXPECT_EQ(book.extend(kAnna, stroke, ids[1], 8, {{11, 11}})->path, (Path{{10, 10}, {11, 11}}));
   EXPECT_EQ(book.extend(kAnna, stroke, ids[2], 3, {{1, 1}}).error().status, 409);
+}
+
+TEST_F(Book, a_batch_starts_with_the_width_that_the_one_before_ended_with) {
+  ASSERT_TRUE(book.begin(kAnna, stroke, tool()));
+  EXPECT_TRUE(book.extend(kAnna, stroke, ids[0], 0, {{1, 1}, {2, 2}})->widths.empty());
+  using Widths = std::vector<double>;
+  EXPECT_EQ(book.extend(kAnna, stroke, ids[1], 1, {{3, 3}, {4, 4}}, {0.5, 0.25})->widths, (Widths{1, 0.5, 0.25}));
+  EXPECT_EQ(book.extend(kAnna, stroke, ids[2], 2, {{5, 5}})->widths, (Widths{0.25, 1}));
+  const auto odd = book.extend(kAnna, stroke, random_uuid(), 3, {{6, 6}}, {0.5, 0.5});
+  ASSERT_FALSE(odd);
+  EXPECT_EQ(odd.error().field, "widths");
+  EXPECT_TRUE(book.extend(kAnna, stroke, random_uuid(), 3, {{6, 6}})) << "what was refused took no number";
 }
 
 TEST_F(Book, the_joining_point_counts_in_the_longest_path) {

@@ -34,6 +34,7 @@ beforeEach(() => {
       this.ended += 1;
     },
     radius_px: () => 20,
+    width_of: (pressure) => pressure / 2,
     next_frame: (callback) => void frames.push(callback),
   };
 });
@@ -64,6 +65,19 @@ describe("brush", () => {
     brush.move([1, 1.5, 2.5, 3, 6, 7].map((x) => ({ x, y: 0 })));
     brush.up();
     expect(paths()).toEqual([[0], [2.5, 6, 7]]);
+  });
+
+  it("a pen's pressure goes with its points, and is nobody else's", () => {
+    const widths = (): (readonly number[] | undefined)[] => messages.flatMap((message) => (message.op === "stroke.extend" ? [message.widths] : []));
+    const brush = new BrushTool("brush", host);
+    brush.down({ x: 0, y: 0, pressure: 0.5 });
+    brush.move([{ x: 10, y: 0, pressure: 1 }, { x: 11, y: 0, pressure: 0.2 }]); // prettier-ignore
+    brush.up();
+    expect(widths()).toEqual([[0.25], [0.5, 0.1]]);
+    messages = [];
+    brush.down({ x: 0, y: 0 });
+    brush.up();
+    expect(widths()).toEqual([undefined]);
   });
 
   it("nothing is sent while there is nothing to paint on", () => {

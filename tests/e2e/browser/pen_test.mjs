@@ -47,6 +47,31 @@ try {
   assert.equal(await camera(), stood, "the hand turned the model");
   if (process.env.STRATA_TEST_OUTPUT) await tilda.page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "pen.png") });
 
+  say("pressed half as hard the pen paints a narrower line, and as wide as ever where its pressure is not to count");
+  const area_of_line = async (y, force) => {
+    const painted = async () => (await server.json("GET", `/models/${model.id}/layers/cracks/edits?limit=1000`)).edits.filter(({ user }) => user === "tilda");
+    const known = (await painted()).length;
+    await pen("mousePressed", [0.42, y], { button: "left", buttons: 1, clickCount: 1, force });
+    for (const x of [0.45, 0.48, 0.52]) await pen("mouseMoved", [x, y], { button: "left", buttons: 1, force });
+    await pen("mouseReleased", [0.52, y], { button: "left", buttons: 0, clickCount: 1 });
+    await tilda.saved();
+    await wait_for(async () => (await painted()).length > known, "the line to be saved");
+    await tilda.saved();
+    const edits_now = await painted();
+    return edits_now.slice(0, edits_now.length - known).reduce((sum, { area_m2 }) => sum + area_m2, 0);
+  };
+  const clear = () => server.json("POST", `/models/${model.id}/layers/cracks/edits`, { op: "fill", mode: "where", where: "true", erase: true });
+  await clear();
+  const hard = await area_of_line(0.56, 1);
+  const soft = await area_of_line(0.62, 0.4);
+  assert.ok(soft > 0 && soft < 0.6 * hard, `the soft line has ${soft / hard} of the hard one's area`);
+  await clear();
+  if ((await tilda.page.getByLabel("A pen that is pressed less paints a narrower line").count()) === 0)
+    await tilda.page.getByRole("button", { name: "Show the panel" }).click();
+  await tilda.page.getByLabel("A pen that is pressed less paints a narrower line").uncheck();
+  const wide = await area_of_line(0.62, 0.4);
+  assert.ok(wide > 1.5 * soft, `the line is ${wide / soft} of the soft one's area`);
+
   say("away with the pen: two fingers move the model, one turns it, and neither paints");
   await pen("mouseMoved", [-0.02, 0.5]); // over the tools
   const painted = await edits();

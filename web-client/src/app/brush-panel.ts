@@ -103,7 +103,7 @@ export class StrataBrushPanel extends LitElement {
   private strokes(layer: Layer, erases: boolean): TemplateResult {
     return html`<h2>${erases ? texts.brush.eraser_title : texts.brush.title}</h2>
       ${erases ? html`<p class="hint">${texts.brush.erases(layer.name)}</p>` : this.value(layer)} ${this.width()}
-      ${this.through()} ${this.slant()} ${erases ? nothing : this.whole(layer)}`;
+      ${this.through()} ${this.slant()} ${this.session.painting.pen_used ? this.pressure() : nothing} ${erases ? nothing : this.whole(layer)}`;
   }
 
   private areas(layer: Layer, tool: "bucket" | "lasso" | "polygon"): TemplateResult {
@@ -182,6 +182,21 @@ export class StrataBrushPanel extends LitElement {
         }}
       />
       <span>${texts.areas.through}</span>
+    </label>`;
+  }
+
+  private pressure(): TemplateResult {
+    const { painting } = this.session;
+    return html`<label class="check">
+      <input
+        type="checkbox"
+        .checked=${painting.brush.pressure}
+        @change=${(event: Event) => {
+          const { checked } = event.target as HTMLInputElement;
+          painting.set_brush((brush) => (brush.pressure = checked));
+        }}
+      />
+      <span>${texts.brush.pressure}</span>
     </label>`;
   }
 

@@ -15,6 +15,7 @@ export class BrushSettings {
   width: Record<WidthUnit, number> = { px: 40, mm: 5 }; // diameters; px are CSS pixels
   shape: ToolShape = "disc";
   through = false; // what is hidden, too
+  pressure = true; // a pen that is pressed less paints a narrower line
   /** What is seen at more of a slant is left out, where that is wanted. Not together with what is hidden. */
   slant = { limited: false, max_deg: 60 };
   /** Of polygon, lasso and bucket. */

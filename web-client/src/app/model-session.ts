@@ -8,7 +8,7 @@ import { Api, ApiError, type Versioned } from "../core/api";
 import { Connection, type ConnectionState, type Point, type SavingState, type SocketLike } from "../core/connection";
 import type { FrameMessage } from "../core/frame-header";
 import type { GestureHandler, PointerSample } from "../core/input";
-import type { LayerEvent, ModelEvent, Picked, ProblemMessage, Welcome } from "../core/protocol.gen";
+import type { Background, LayerEvent, ModelEvent, Picked, ProblemMessage, Welcome } from "../core/protocol.gen";
 import { complete_layer, may_curate, may_paint, type Column, type Layer, type Model, type ModelPatch, type Role } from "../core/types";
 import { BrushTool } from "../tools/brush";
 import { BucketTool } from "../tools/bucket";
@@ -300,6 +300,7 @@ export class ModelSession {
       begin_stroke: (erase: boolean) => this.painting.begin_stroke(erase),
       stroke_ended: () => this.painting.stroke_ended(),
       radius_px: () => this.painting.radius_window_px(),
+      width_of: (pressure: number) => this.painting.width_of(pressure),
       next_frame: (callback: () => void) => void requestAnimationFrame(callback),
     };
     const comment = (sample: PointerSample): void => void this.comments.begin(sample);
@@ -503,6 +504,11 @@ export class ModelSession {
     if (this.refuses_changes()) return;
     if (kMarkingTools.includes(this.tools.active)) this.marks.redo();
     else this.painting.redo();
+  }
+
+  /** Behind the model; null: as the server has it. */
+  set_background(background: Background | null): void {
+    this.connection_.set_background(background);
   }
 
   frame_drawn(part: FrameMessage): void {

@@ -25,9 +25,12 @@ export interface PaintingHost {
   changed(): void;
 }
 
+const kThinnest = 0.08; // of the radius, however softly a pen is pressed
+
 export class Painting {
   readonly brush = new BrushSettings();
   stroking = false; // or an outline is being drawn
+  pen_used = false; // whose pressure counts
 
   private stroke_: StrokeHandle | null = null;
   private after_stroke_: (() => void)[] = [];
@@ -86,6 +89,15 @@ export class Painting {
     this.stroke_ = stroke;
     this.host_.changed();
     return stroke;
+  }
+
+  /** Of the brush, as a pen presses. That one is used is known from then on. */
+  width_of(pressure: number): number {
+    if (!this.pen_used) {
+      this.pen_used = true;
+      this.host_.changed();
+    }
+    return this.brush.pressure ? Math.min(1, Math.max(kThinnest, pressure)) : 1;
   }
 
   /** Nothing more of the stroke is sent, whatever is still drawn. What was painted stays. */

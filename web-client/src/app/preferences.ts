@@ -1,6 +1,7 @@
 // What this person chose for the page at this browser: its language and its theme, and that they have seen the tour. Nothing of it is told to the server.
 
 import { kPageLanguages, type PageLanguage } from "../core/locale";
+import type { Background } from "../core/protocol.gen";
 import { Kept } from "./kept";
 
 const kLanguageKey = "strata.language";
@@ -44,6 +45,22 @@ const contrast = "(prefers-contrast: more)";
 function show_theme(): void {
   const system = { dark: matchMedia(dark).matches, contrast: matchMedia(contrast).matches };
   document.documentElement.dataset["theme"] = theme_of(chosen_theme(), system);
+  for (const listener of listeners) listener();
+}
+
+const listeners = new Set<() => void>();
+
+/** Calls it whenever another theme is shown; returns what ends that. */
+export function on_theme(listener: () => void): () => void {
+  listeners.add(listener);
+  return () => listeners.delete(listener);
+}
+
+/** What the theme has behind the model; null: as the server has it. */
+export function stage_background(): Background | null {
+  const style = getComputedStyle(document.documentElement);
+  const [top, bottom] = [style.getPropertyValue("--stage-top").trim(), style.getPropertyValue("--stage-bottom").trim()];
+  return top && bottom ? { top, bottom } : null;
 }
 
 /** Shows the theme, and follows the system from then on. */

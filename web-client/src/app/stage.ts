@@ -12,6 +12,7 @@ import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
 import { measure_overlay } from "./measure-overlay";
 import { notices } from "./notices";
+import { on_theme, stage_background } from "./preferences";
 import { outline_overlay } from "./outline-overlay";
 import "./people-overlay";
 import { styled } from "./styled";
@@ -32,6 +33,7 @@ export class StrataStage extends LitElement {
   private input_: StageInput | null = null;
   private frames_: FrameCanvas | null = null;
   private observer_: ResizeObserver | null = null;
+  private end_theme_: (() => void) | null = null;
 
   constructor() {
     super();
@@ -163,12 +165,16 @@ export class StrataStage extends LitElement {
     this.observer_ = new ResizeObserver(() => this.measure());
     this.observer_.observe(this);
     this.measure();
+    const show_background = (): void => this.session.set_background(stage_background());
+    this.end_theme_ = on_theme(show_background);
+    show_background();
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     this.observer_?.disconnect();
     this.input_?.detach();
+    this.end_theme_?.();
   }
 
   set orbit_held(held: boolean) {

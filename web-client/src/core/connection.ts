@@ -10,6 +10,7 @@ import {
   parse_server_message,
   SUBPROTOCOL,
   type Applied,
+  type Background,
   type ClientMessage,
   type CommentEvent,
   type LayerEvent,
@@ -134,6 +135,7 @@ export class Connection {
   private overrides_: LayerOverride[] = [];
   private looks_: LookShown[] | null = null; // null: those that everyone sees at first
   private light_: Light | null = null; // null: the server's own
+  private background_: Background | null = null;
 
   constructor(
     private readonly options_: ConnectionOptions,
@@ -225,6 +227,13 @@ export class Connection {
     this.send_settings();
   }
 
+  /** Null: the server's own. */
+  set_background(background: Background | null): void {
+    if (JSON.stringify(background) === JSON.stringify(this.background_)) return;
+    this.background_ = background;
+    this.send_settings();
+  }
+
   private send_settings(): void {
     if (this.state_ !== "open") return;
     this.send({
@@ -232,6 +241,7 @@ export class Connection {
       layers: this.overrides_,
       ...(this.looks_ ? { looks: this.looks_ } : {}),
       ...(this.light_ && this.light_.mode !== "museum" ? { light: this.light_ } : {}),
+      ...(this.background_ ? { background: this.background_ } : {}),
     });
   }
 
@@ -398,7 +408,7 @@ export class Connection {
     this.looks_ = this.looks_?.filter(({ look }) => looks.has(look)) ?? null;
     for (const { stroke, n } of message.strokes) this.outbox_.saved_through(stroke, n);
     this.callbacks_.welcome(message);
-    const has_settings = this.overrides_.length > 0 || this.looks_ || (this.light_ && this.light_.mode !== "museum");
+    const has_settings = this.overrides_.length > 0 || this.looks_ || (this.light_ && this.light_.mode !== "museum") || this.background_;
     if (has_settings) this.send_settings();
     if (this.camera_) this.send_camera();
     this.resend();
@@ -531,11 +541,12 @@ export class StrokeHandle {
     private readonly change_: (message: ChangeMessage) => void,
   ) {}
 
-  extend(points: readonly Point[]): void {
+  /** `widths`: what share of the radius the brush has at each of them; absent: the whole. */
+  extend(points: readonly Point[], widths?: readonly number[]): void {
     if (this.ended_ || points.length === 0) return;
     for (let start = 0; start < points.length; start += this.path_points_) {
       const path = points.slice(start, start + this.path_points_);
-      this.change_({ op: "stroke.extend", id: new_id(), stroke: this.stroke, n: this.n_++, path });
+      this.change_({ op: "stroke.extend", id: new_id(), stroke: this.stroke, n: this.n_++, path, ...(widths ? { widths: widths.slice(start, start + this.path_points_) } : {}) });
     }
   }
 

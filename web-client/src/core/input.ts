@@ -7,6 +7,8 @@
 export interface PointerSample {
   x: number;
   y: number;
+  /** Of a pen: 0…1. */
+  pressure?: number;
 }
 
 export interface GestureHandler {
@@ -121,6 +123,12 @@ export class StageInput {
     return { x: css.x * scale, y: css.y * scale };
   }
 
+  /** Where it is, and how strongly a pen is pressed on. */
+  private pressed(event: PointerEvent): PointerSample {
+    const at = this.to_window(this.css_position(event));
+    return event.pointerType === "pen" && event.pressure > 0 ? { ...at, pressure: event.pressure } : at;
+  }
+
   private on_down(event: PointerEvent): void {
     if (event.pointerType === "pen") {
       this.pen_used_ = true;
@@ -145,7 +153,7 @@ export class StageInput {
     const kind = drag_of(event, this.orbit_held);
     if (!kind) return;
     this.drag_ = { kind, pointer: event.pointerId, last: at };
-    if (kind === "tool") this.handler_.tool_down(this.to_window(at));
+    if (kind === "tool") this.handler_.tool_down(this.pressed(event));
   }
 
   private on_touch_down(pointer: number, at: PointerSample): void {
@@ -200,7 +208,7 @@ export class StageInput {
     else if (drag.kind === "pan") this.handler_.pan(dx, dy);
     else {
       const events = event.getCoalescedEvents?.() ?? [];
-      const samples = (events.length > 0 ? events : [event]).map((each) => this.to_window(this.css_position(each)));
+      const samples = (events.length > 0 ? events : [event]).map((each) => this.pressed(each));
       if (event.pointerType === "touch") this.handler_.hover(this.to_window(at));
       this.handler_.tool_move(samples);
     }

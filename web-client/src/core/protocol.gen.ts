@@ -18,6 +18,18 @@ export type Section = Plane[];
 /** Pointer path. Pixels of the camera's window; consecutive points are joined, one point is a dab. */
 export type Path = Point2[];
 
+/** #rrggbb, sRGB. */
+export type BackgroundColor = string;
+
+/** What a picture has behind the model. A gradient from its top to its bottom. */
+export interface Background {
+  top: BackgroundColor;
+  bottom: BackgroundColor;
+}
+
+/** What share of the radius the brush has at each point. As many as the path has points: a pen's pressure. Absent: the whole radius. */
+export type Widths = number[];
+
 /** Table by id or slug. */
 export type TableRef = number | string;
 
@@ -191,6 +203,7 @@ export interface EditStroke {
   /** Default: "disc". */
   shape?: ToolShape;
   path: Path;
+  widths?: Widths;
   /** Paint hidden surface, too. Default: false. */
   through?: boolean;
   depth_bias?: DepthBias;
@@ -598,6 +611,8 @@ export interface LayersUpdate {
   looks?: LookShown[];
   /** Absent: museum. */
   light?: Light;
+  /** Absent: light grey. */
+  background?: Background;
 }
 
 /** Start of a stroke. Fixes layer, value, camera and brush. Needs a value unless it erases, and one radius. */
@@ -630,6 +645,7 @@ export interface StrokeExtend {
   /** Number of the batch: 0, 1, 2… */
   n: number;
   path: Path;
+  widths?: Widths;
 }
 
 /** End of a stroke. */
@@ -2467,6 +2483,8 @@ export interface FrameRequest {
   looks?: LookShown[];
   /** Absent: museum. */
   light?: Light;
+  /** Absent: light grey. */
+  background?: Background;
   highlights?: LayerHighlight[];
   at?: At;
   /** Default: "jpeg". */

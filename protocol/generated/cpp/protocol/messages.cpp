@@ -643,6 +643,18 @@ void read(const nlohmann::json& json, FrameRequestFormat& value) {
 
 nlohmann::json to_json(const FrameRequestFormat& value) { return name(value); }
 
+void read(const nlohmann::json& json, Background& value) {
+  read_member(json, "top", value.top);
+  read_member(json, "bottom", value.bottom);
+}
+
+nlohmann::json to_json(const Background& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "top", value.top);
+  write_member(json, "bottom", value.bottom);
+  return json;
+}
+
 void read(const nlohmann::json& json, EditStroke& value) {
   read_optional_member(json, "value", value.value);
   read_optional_member(json, "erase", value.erase);
@@ -651,6 +663,7 @@ void read(const nlohmann::json& json, EditStroke& value) {
   read_optional_member(json, "radius_mm", value.radius_mm);
   read_optional_member(json, "shape", value.shape);
   read_member(json, "path", value.path);
+  read_optional_member(json, "widths", value.widths);
   read_optional_member(json, "through", value.through);
   read_optional_member(json, "depth_bias", value.depth_bias);
   read_optional_member(json, "max_angle_deg", value.max_angle_deg);
@@ -666,6 +679,7 @@ nlohmann::json to_json(const EditStroke& value) {
   write_optional_member(json, "radius_mm", value.radius_mm);
   write_member(json, "shape", value.shape);
   write_member(json, "path", value.path);
+  write_optional_member(json, "widths", value.widths);
   write_member(json, "through", value.through);
   write_optional_member(json, "depth_bias", value.depth_bias);
   write_optional_member(json, "max_angle_deg", value.max_angle_deg);
@@ -1005,6 +1019,7 @@ void read(const nlohmann::json& json, LayersUpdate& value) {
   read_member(json, "layers", value.layers);
   read_optional_member(json, "looks", value.looks);
   read_optional_member(json, "light", value.light);
+  read_optional_member(json, "background", value.background);
 }
 
 nlohmann::json to_json(const LayersUpdate& value) {
@@ -1014,6 +1029,7 @@ nlohmann::json to_json(const LayersUpdate& value) {
   write_member(json, "layers", value.layers);
   write_optional_member(json, "looks", value.looks);
   write_optional_member(json, "light", value.light);
+  write_optional_member(json, "background", value.background);
   return json;
 }
 
@@ -1060,6 +1076,7 @@ void read(const nlohmann::json& json, StrokeExtend& value) {
   read_member(json, "stroke", value.stroke);
   read_member(json, "n", value.n);
   read_member(json, "path", value.path);
+  read_optional_member(json, "widths", value.widths);
 }
 
 nlohmann::json to_json(const StrokeExtend& value) {
@@ -1069,6 +1086,7 @@ nlohmann::json to_json(const StrokeExtend& value) {
   write_member(json, "stroke", value.stroke);
   write_member(json, "n", value.n);
   write_member(json, "path", value.path);
+  write_optional_member(json, "widths", value.widths);
   return json;
 }
 
@@ -2998,6 +3016,7 @@ void read(const nlohmann::json& json, FrameRequest& value) {
   read_optional_member(json, "layers", value.layers);
   read_optional_member(json, "looks", value.looks);
   read_optional_member(json, "light", value.light);
+  read_optional_member(json, "background", value.background);
   read_optional_member(json, "highlights", value.highlights);
   read_optional_member(json, "at", value.at);
   read_optional_member(json, "format", value.format);
@@ -3009,6 +3028,7 @@ nlohmann::json to_json(const FrameRequest& value) {
   write_optional_member(json, "layers", value.layers);
   write_optional_member(json, "looks", value.looks);
   write_optional_member(json, "light", value.light);
+  write_optional_member(json, "background", value.background);
   write_optional_member(json, "highlights", value.highlights);
   write_optional_member(json, "at", value.at);
   write_member(json, "format", value.format);

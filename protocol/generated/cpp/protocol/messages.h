@@ -31,6 +31,9 @@ enum class Schema {
   Plane,
   Section,
   Path,
+  BackgroundColor,
+  Background,
+  Widths,
   TableRef,
   Labels,
   ColumnKind,
@@ -283,7 +286,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 257;
+constexpr int kSchemaCount = 260;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -293,6 +296,20 @@ extern const Schema kSchemaOf;
 
 // Pointer path. Pixels of the camera's window; consecutive points are joined, one point is a dab.
 using Path = std::vector<glm::dvec2>;
+
+// What a picture has behind the model. A gradient from its top to its bottom.
+struct Background {
+  std::string top;
+  std::string bottom;
+  bool operator==(const Background&) const = default;
+};
+void read(const nlohmann::json& json, Background& value);
+nlohmann::json to_json(const Background& value);
+template <>
+inline constexpr Schema kSchemaOf<Background> = Schema::Background;
+
+// What share of the radius the brush has at each point. As many as the path has points: a pen's pressure. Absent: the whole radius.
+using Widths = std::vector<double>;
 
 // Table by id or slug.
 using TableRef = std::variant<std::int64_t, std::string>;
@@ -335,6 +352,7 @@ struct EditStroke {
   std::optional<double> radius_mm;  // Radius in millimetres on the object.
   ToolShape shape = "disc";
   Path path;
+  std::optional<Widths> widths;
   bool through = false;  // Paint hidden surface, too.
   std::optional<double> depth_bias;
   std::optional<double> max_angle_deg;
@@ -658,6 +676,7 @@ struct LayersUpdate {
   std::vector<LayerOverride> layers;
   std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top, over the colours of the vertices; absent: those visible by default.
   std::optional<strata::Light> light;  // Absent: museum.
+  std::optional<Background> background;  // Absent: light grey.
   bool operator==(const LayersUpdate&) const = default;
 };
 void read(const nlohmann::json& json, LayersUpdate& value);
@@ -695,6 +714,7 @@ struct StrokeExtend {
   Uuid stroke;
   int n = 0;  // Number of the batch: 0, 1, 2…
   Path path;
+  std::optional<Widths> widths;
   bool operator==(const StrokeExtend&) const = default;
 };
 void read(const nlohmann::json& json, StrokeExtend& value);
@@ -2309,6 +2329,7 @@ struct FrameRequest {
   std::optional<std::vector<LayerRef>> layers;  // Exactly these are drawn, bottom to top; absent: those visible by default.
   std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top; absent: those visible by default.
   std::optional<strata::Light> light;  // Absent: museum.
+  std::optional<Background> background;  // Absent: light grey.
   std::optional<std::vector<LayerHighlight>> highlights;
   std::optional<At> at;
   FrameRequestFormat format = FrameRequestFormat::jpeg;

@@ -415,6 +415,7 @@ export const texts = {
     slant: "Flächen auslassen, die schräger zu sehen sind als",
     slant_degrees: "Größter Winkel zwischen Oberfläche und Blick, in Grad",
     slant_through: "Verdecktes ist unter keinem Winkel zu sehen: das geht nicht zusammen mit dem Bemalen von Verdecktem.",
+    pressure: "Wird der Stift weniger gedrückt, malt er schmaler",
     value: "Wert",
     class: "Klasse, die gemalt wird",
     paints: (label) => `Malt „${label}“`,

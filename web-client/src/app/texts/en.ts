@@ -402,6 +402,7 @@ export const texts = {
     slant: "Skip surfaces seen at a slant of more than",
     slant_degrees: "Largest angle between the surface and your view, in degrees",
     slant_through: "What is hidden is seen at no angle: this does not go with painting what is hidden.",
+    pressure: "A pen that is pressed less paints a narrower line",
     value: "Value",
     class: "Class to paint",
     paints: (label: string) => `Paints “${label}”`,

@@ -421,6 +421,7 @@ export const texts = {
     slant: "Omitir superficies vistas con una inclinación mayor que",
     slant_degrees: "Ángulo máximo entre la superficie y su mirada, en grados",
     slant_through: "Lo oculto no se ve desde ningún ángulo: esto no es compatible con pintar lo oculto.",
+    pressure: "Con menos presión, el lápiz pinta más fino",
     value: "Valor",
     class: "Clase que se pinta",
     paints: (label) => `Pinta «${label}»`,
