@@ -126,6 +126,7 @@ std::optional<protocol::ServerMessage> told_to_kiosk(const protocol::ServerMessa
     if (event) event->user.reset();
     return event != nullptr;
   };
+  if (auto* layer = std::get_if<LayerEvent>(&told)) layer->review.reset();  // it names people, too
   if (without_user(std::get_if<LayerEvent>(&told)) || without_user(std::get_if<ViewEvent>(&told)) ||
       std::holds_alternative<Welcome>(told) || std::holds_alternative<LookEvent>(told) ||
       std::holds_alternative<ModelEvent>(told) || std::holds_alternative<Picked>(told) ||

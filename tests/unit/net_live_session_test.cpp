@@ -373,9 +373,15 @@ TEST_F(Live, a_kiosk_looks_and_hears_of_nobody_and_nobody_of_it) {
   edit.id = random_uuid();
   edit.layer_id = 7;
   edit.user = "anna";
+  edit.review = {Decision::reject, "Too wide", {"bea"}};
   screen->edit_applied(edit);
   ASSERT_EQ(screens_socket->of("layer").size(), 1u);
   EXPECT_FALSE(screens_socket->of("layer")[0].contains("user"));
+  EXPECT_FALSE(screens_socket->of("layer")[0].contains("review"));
+  edit.id = random_uuid();
+  session->edit_applied(edit);
+  EXPECT_EQ(socket->of("layer").back()["review"],
+            (json{{"decision", "reject"}, {"reason", "Too wide"}, {"authors", {"bea"}}}));
   edit_record(*session, 7, true);
   EXPECT_TRUE(screens_socket->of("record.editors").empty());
   EXPECT_FALSE(socket->of("record.editors").empty());
