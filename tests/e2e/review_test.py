@@ -133,6 +133,7 @@ def check_refusals(site):
     server.ok("POST", M + "/layers/graves/edits", {"op": "fill", "mode": "where", "where": "true", "value": 1}, token=site.anna)
     assert server.get(M + "/layers/graves/review", token=site.vera).status == 404
     assert waiting(server, site.ben, M + "/layers/graves")["strokes"][0]["op"] == "fill"
+    server.ok("DELETE", M + "/layers/graves")
     print("refusals: ok", flush=True)
 
 
@@ -166,7 +167,7 @@ def check_live(site, camera):
 def check_restart(site, camera):
     server = site.server
     made = site.dab(camera, 360, site.anna)
-    picture = lambda: hashlib.sha256(server.ok("POST", M + "/frame?format=png", {"camera": camera}).body).hexdigest()
+    picture = lambda: hashlib.sha256(server.ok("POST", M + "/frame", {"camera": camera, "format": "png"}).body).hexdigest()
     marked = picture()
     assert server.stop() == 0
     server.start()
