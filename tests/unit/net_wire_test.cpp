@@ -183,8 +183,9 @@ TEST(Wire, a_batch_keeps_in_the_journal_all_that_made_it) {
   EXPECT_EQ(request.record["camera"]["width"], 640);
   EXPECT_FALSE(request.record.contains("id"));
   EXPECT_EQ(end_of_path(request.record), (StrokeBook::End{{2, 3}}));
-  request.record["widths"] = {0.5, 0.25};
-  EXPECT_EQ(end_of_path(request.record), (StrokeBook::End{{2, 3}, 0.25}));
+  auto pressed = request.record;
+  pressed["widths"] = {0.5, 0.25};
+  EXPECT_EQ(end_of_path(pressed), (StrokeBook::End{{2, 3}, 0.25}));
 }
 
 TEST(Wire, a_tool_of_the_site_gives_its_shape_and_its_id_to_the_record) {

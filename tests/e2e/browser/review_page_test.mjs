@@ -101,11 +101,18 @@ try {
   await wait_for(async () => (await texels()) < painted, "the stroke to go");
   for (const who of [ada, cleo]) await wait_for(async () => (await dark(who)) < bare + kEnough / 3, "no hatch any more", 150);
 
-  say("she takes that back, and accepts all");
-  await cleo.page.locator("strata-notices").getByRole("button", { name: "Take back" }).last().click();
-  await wait_for(async () => (await texels()) === painted, "the stroke to be back");
+  say("the decision is taken back; once more by the notice, as long as it is there");
+  const { edits } = await server.json("GET", `${finds}/edits?limit=1000`);
+  const rejected = edits.find(({ review }) => review === "rejected").sequence;
+  await server.json("POST", `${finds}/review`, { decision: "reopen", edits: [rejected] });
   await wait_for(async () => (await listed(cleo).count()) === 1, "it waits again");
   await notice(ada, "waits for review again").waitFor();
+  const close = cleo.page.locator("strata-notices").getByRole("button", { name: "Close" });
+  while ((await close.count()) > 0) await close.first().click();
+  await panel(cleo).getByRole("button", { name: "Reject: stroke, ada" }).click();
+  await panel(cleo).getByRole("button", { name: "Reject", exact: true }).click();
+  await cleo.page.locator("strata-notices").getByRole("button", { name: "Take back" }).click();
+  await wait_for(async () => (await texels()) === painted && (await listed(cleo).count()) === 1, "the stroke to be back, and to wait again");
   await panel(cleo).getByRole("button", { name: "Accept all" }).click();
   await panel(cleo).getByText("Nothing waits for review.").waitFor();
   assert.equal(await texels(), painted);
