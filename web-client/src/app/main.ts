@@ -1,8 +1,10 @@
 import { page_language } from "../core/locale";
 import { chosen_language, follow_theme } from "./preferences";
+import { is_kiosk } from "./routes";
 import { load_texts } from "./texts";
 
 async function start(): Promise<void> {
+  if (is_kiosk(location.pathname)) return (await import("../kiosk/main")).start_kiosk();
   follow_theme();
   const chosen = chosen_language();
   const language = page_language(chosen, navigator.languages);

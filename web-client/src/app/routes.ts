@@ -1,4 +1,4 @@
-// The page's addresses: /, /projects/{slug}, /models/{id}, and /join#SECRET for who is invited.
+// The page's addresses: /, /projects/{slug}, /models/{id}, and /join#SECRET for who is invited; /kiosk/SECRET is another page (kiosk/).
 
 /** `project`: the one whose models are looked at; null: all that there is. */
 export type Route = { page: "home"; project: string | null } | { page: "join" } | { page: "model"; model: string };
@@ -16,6 +16,9 @@ export function route_of(path: string): Route {
     return kHome;
   }
 }
+
+/** For a screen in an exhibition, which loads nothing of this page. */
+export const is_kiosk = (path: string): boolean => path.startsWith("/kiosk/");
 
 export const path_now = (): string => location.pathname;
 export const path_of_project = (slug: string): string => `/projects/${encodeURIComponent(slug)}`;

@@ -90,12 +90,12 @@ export class ViewControl {
     Object.assign(this.camera, from);
     this.fly(to);
   }
-  /** To where a camera stands, in a moment; at once for people who want less motion. Any other move ends the flight. */
-  fly(to: Place): void {
+  /** To where a camera stands, in so long; at once for people who want less motion. Any other move ends the flight. */
+  fly(to: Place, flight_ms = kFlight_ms): void {
     if (this.host_.is_painting()) return;
     this.go_own_way();
     this.end_flight();
-    if (wants_less_motion()) {
+    if (flight_ms <= 0 || wants_less_motion()) {
       Object.assign(this.camera, to);
       this.moved(false);
       return;
@@ -104,7 +104,7 @@ export class ViewControl {
     this.flight_to_ = to;
     const start = performance.now();
     const step = (): void => {
-      const share = Math.min(1, (performance.now() - start) / kFlight_ms);
+      const share = Math.min(1, (performance.now() - start) / flight_ms);
       Object.assign(this.camera, share < 1 ? between(from, to, share * share * (3 - 2 * share)) : to);
       if (share < 1 && !this.host_.is_painting()) this.flight_ = requestAnimationFrame(step);
       else this.end_flight();

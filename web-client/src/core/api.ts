@@ -358,6 +358,14 @@ export class Api {
   async delete_view(model: Id, view: Id, version: number): Promise<void> {
     await this.request("DELETE", view_path(model, view), undefined, { "If-Match": etag_of(version) });
   }
+  /** Of a screen that shows a tour; sets its cookie. */
+  async sign_in_kiosk(link: string): Promise<wire.KioskSelf> {
+    return this.json("POST", "/auth/kiosk", { link });
+  }
+  async kiosk_self(): Promise<wire.KioskSelf> {
+    return this.json("GET", "/kiosk");
+  }
+
   async tables(project: Id): Promise<wire.Table[]> {
     return (await this.json<wire.TableList>("GET", `${project_path(project)}/tables?limit=1000`)).tables;
   }
@@ -649,7 +657,7 @@ export class Api {
 }
 
 /** What is sent or answered there is not for the server to keep, as it does for an `Idempotency-Key`. */
-const kWithSecrets = /^\/(login|invitations\/.+|me\/.+|users|users\/.+)$/;
+const kWithSecrets = /^\/(login|auth\/.+|invitations\/.+|me\/.+|users|users\/.+)$/;
 
 const kFile = { "Content-Type": "application/octet-stream" };
 

@@ -11,13 +11,17 @@ export interface Navigator {
   tap(sample: PointerSample): void;
 }
 
-const kTapReach = 7; // window pixels that a hand trembles
+const kTapReach = 7; // window pixels that a hand with a mouse or pen trembles
 
 export abstract class DragTool {
   private last_: PointerSample | null = null;
   private start_: PointerSample | null = null; // null: it was dragged away from there
 
-  constructor(protected readonly navigator_: Navigator) {}
+  constructor(
+    protected readonly navigator_: Navigator,
+    /** Window pixels from where it was pressed that are still a tap. */
+    private readonly tap_reach_: () => number = () => kTapReach,
+  ) {}
 
   activate(): void {}
   deactivate(): void {}
@@ -27,7 +31,7 @@ export abstract class DragTool {
   move(samples: PointerSample[]): void {
     const now = samples[samples.length - 1];
     if (!now || !this.last_) return;
-    if (this.start_ && Math.hypot(now.x - this.start_.x, now.y - this.start_.y) > kTapReach) this.start_ = null;
+    if (this.start_ && Math.hypot(now.x - this.start_.x, now.y - this.start_.y) > this.tap_reach_()) this.start_ = null;
     this.dragged(now.x - this.last_.x, now.y - this.last_.y);
     this.last_ = now;
   }

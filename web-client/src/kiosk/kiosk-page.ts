@@ -1,0 +1,216 @@
+// <strata-kiosk>: the whole screen: the object, and below or beside it what the stop says and what visitors can do.
+
+import { html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { name_of_language } from "../core/languages";
+import { direction_of_language } from "./languages";
+import { kiosk_styles } from "./kiosk-styles";
+import type { KioskSession } from "./kiosk-session";
+import "./stage";
+import { follow_swipes } from "./swipe";
+import { texts_in } from "./texts";
+
+const kMostDots = 12;
+const kMostInvitations = 3; // languages in which one is asked to begin
+
+const arrow_back = svg`<svg class="turns" viewBox="0 0 24 24" aria-hidden="true"><path d="M15 5l-7 7 7 7" /></svg>`;
+const arrow_on = svg`<svg class="turns" viewBox="0 0 24 24" aria-hidden="true"><path d="m9 5 7 7-7 7" /></svg>`;
+
+@customElement("strata-kiosk")
+export class StrataKiosk extends LitElement {
+  @property({ attribute: false }) session!: KioskSession;
+  @state() private changes_ = 0;
+  @query(".panel") private panel_!: HTMLElement | null;
+  private stop_following_: (() => void) | null = null;
+  private stop_swipes_: (() => void) | null = null;
+  private swiped_panel_: HTMLElement | null = null;
+
+  static override styles = kiosk_styles;
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.stop_following_ = this.session.subscribe(() => (this.changes_ += 1));
+    for (const name of ["pointerdown", "pointermove", "pointerup", "keydown", "wheel"]) addEventListener(name, this.touched, { capture: true, passive: true });
+  }
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.stop_following_?.();
+    this.stop_swipes_?.();
+    for (const name of ["pointerdown", "pointermove", "pointerup", "keydown", "wheel"]) removeEventListener(name, this.touched, { capture: true });
+  }
+
+  /** Whoever does anything is there. What begins the tour is its button alone, so that the same touch does nothing else. */
+  private readonly touched = (event: Event): void => {
+    const rests_a_mouse = event.type === "pointermove" && (event as PointerEvent).buttons === 0; // on a table that shakes
+    if (!rests_a_mouse && this.session.idle.presence.is === "visited") this.session.touched();
+  };
+
+  protected override updated(changed: PropertyValues): void {
+    super.updated(changed);
+    const { session, panel_: panel } = this;
+    const root = document.documentElement;
+    root.lang = session.language;
+    root.dir = direction_of_language(session.language);
+    const title = session.tour?.name ?? "Strata";
+    if (document.title !== title) document.title = title;
+    if (panel !== this.swiped_panel_) {
+      this.stop_swipes_?.();
+      this.swiped_panel_ = panel;
+      this.stop_swipes_ = panel ? follow_swipes(panel, (by) => session.swipe(root.dir === "rtl" ? (-by as 1 | -1) : by)) : null;
+    }
+    this.renderRoot.querySelector('.layers [aria-pressed="true"]')?.scrollIntoView({ inline: "center", block: "nearest" });
+    this.hold_focus();
+  }
+
+  /** Each thing that opens over the others has the focus, once. */
+  private hold_focus(): void {
+    const { session } = this;
+    const open = session.idle.presence.is === "asked" ? ".asking button" : session.resting ? ".begin" : session.enlarged ? ".enlarged button" : session.card ? ".card h2" : "";
+    if (open === this.focused_) return;
+    this.focused_ = open;
+    (this.renderRoot.querySelector<HTMLElement>(open || ".panel h1"))?.focus({ preventScroll: true });
+  }
+  private focused_ = "";
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const { words, show } = session;
+    if (session.worthless) return this.alone(words.worthless, words.worthless_detail);
+    if (!session.ready || !show) return this.alone(words.waiting, "");
+    if (!session.stop) return this.alone(words.nothing, words.nothing_detail);
+    const asked = session.idle.presence.is === "asked";
+    const covered = asked || session.resting || session.enlarged !== null;
+    return html`
+      ${repeat([show], (each) => each, () => html`<strata-kiosk-stage .session=${session} .show=${show} .changes=${this.changes_} ?inert=${covered}></strata-kiosk-stage>`)}
+      ${show.away ? html`<p class="sign away" role="status">${words.stored}</p>` : nothing}
+      ${!session.resting && session.index === 0 && show.untouched && show.drawn ? html`<p class="sign">${words.hint}</p>` : nothing}
+      ${this.panel(covered)} ${session.enlarged ? this.enlarged(asked) : nothing} ${session.resting ? this.invitation() : nothing}
+      ${asked ? this.question() : nothing}
+    `;
+  }
+
+  private alone(title: string, detail: string): TemplateResult {
+    return html`<main class="alone" role="status">
+      <h1>${title}</h1>
+      ${detail ? html`<p>${detail}</p>` : nothing}
+    </main>`;
+  }
+
+  private panel(covered: boolean): TemplateResult {
+    const { session } = this;
+    const { words, stops, index, resting } = session;
+    const place = words.stop(index + 1, stops.length);
+    return html`<main class="panel ${resting ? "resting" : ""}" ?inert=${covered}>
+      <div class="words" ?inert=${session.card !== null} tabindex=${resting ? nothing : "0"} role="region" aria-label=${session.title || place}>
+        ${resting ? html`<p class="tour">${session.tour?.name}</p>` : html`<p class="where">${place}</p>`}
+        <h1 tabindex="-1">${session.title}</h1>
+        ${session.text ? html`<p>${session.text}</p>` : nothing}
+      </div>
+      ${resting ? nothing : this.controls()} ${session.card ? this.card() : nothing}
+    </main>`;
+  }
+
+  private controls(): TemplateResult {
+    const { session } = this;
+    const { words, index, stops } = session;
+    const behind = session.card !== null;
+    return html`${session.named.length > 0
+        ? html`<div class="row scrolls" role="group" aria-label=${words.records} ?inert=${behind}>
+            <span class="label" aria-hidden="true">${words.records}</span>
+            ${session.named.map(({ table, key, name }) => html`<button class="record" @click=${() => void session.open_card(table, key)}>${name}</button>`)}
+          </div>`
+        : nothing}
+      ${session.choices.length > 1 && session.show && !session.show.away
+        ? html`<div class="row scrolls layers" role="group" aria-label=${words.layers} ?inert=${behind}>
+            ${session.choices.map(
+              (choice) =>
+                html`<button aria-pressed=${String(choice === session.choice)} @click=${() => session.choose_layer(choice)}>${choice?.name ?? words.as_kept}</button>`,
+            )}
+          </div>`
+        : nothing}
+      ${session.languages.length > 1
+        ? html`<div class="row scrolls languages" role="group" aria-label=${words.languages} ?inert=${behind}>
+            ${session.languages.map(
+              (tag) =>
+                html`<button lang=${tag} aria-pressed=${String(tag === session.language)} @click=${() => session.choose_language(tag)}>
+                  ${name_of_language(tag) || tag}
+                </button>`,
+            )}
+          </div>`
+        : nothing}
+      <div class="row steps" ?inert=${behind}>
+        <button class="previous" ?disabled=${index === 0} @click=${() => session.step(-1)}>${arrow_back}${words.previous}</button>
+        <span class="dots" aria-hidden="true">${stops.length > 1 && stops.length <= kMostDots ? stops.map((_, at) => html`<i class=${at === index ? "here" : ""}></i>`) : nothing}</span>
+        <button class="next main" ?disabled=${index === stops.length - 1} @click=${() => session.step(1)}>${words.next}${arrow_on}</button>
+      </div>`;
+  }
+
+  private card(): TemplateResult {
+    const { session } = this;
+    const { words } = session;
+    const card = session.card!;
+    return html`<section class="card" aria-label=${card.title}>
+      <div class="words" tabindex="0" role="region" aria-label=${card.title}>
+        <h2 tabindex="-1">${card.title}</h2>
+        <dl>
+          ${card.lines.map(
+            ({ label, text }) =>
+              html`<dt>${label}</dt>
+                <dd>${text}</dd>`,
+          )}
+        </dl>
+      </div>
+      ${card.pictures.length > 0
+        ? html`<div class="row scrolls pictures">
+            ${card.pictures.map(
+              (picture) =>
+                html`<button aria-label=${words.enlarge(picture.name)} @click=${() => session.enlarge(picture)}><img src=${picture.small} alt="" draggable="false" /></button>`,
+            )}
+          </div>`
+        : nothing}
+      <div class="row ends"><button class="main close" @click=${() => session.close_card()}>${words.close}</button></div>
+    </section>`;
+  }
+
+  private enlarged(asked: boolean): TemplateResult {
+    const { session } = this;
+    const { name, large } = session.enlarged!;
+    return html`<section class="over enlarged" role="dialog" aria-modal="true" aria-label=${name} ?inert=${asked} @click=${() => session.enlarge(null)}>
+      <img src=${large} alt=${name} draggable="false" />
+      <button>${session.words.close}</button>
+    </section>`;
+  }
+
+  /** In the first languages of the tour of which the page has words. */
+  private invitation(): TemplateResult {
+    const { session } = this;
+    const { languages } = session;
+    const [first, ...others] = [...new Set(languages.map((tag) => texts_in(tag, languages).begin))].slice(0, kMostInvitations);
+    return html`<button class="begin" @click=${() => session.touched()}>
+      <b>${first}</b>
+      ${others.length > 0 ? html`<span>${others.join(" · ")}</span>` : nothing}
+    </button>`;
+  }
+
+  private question(): TemplateResult {
+    const { session } = this;
+    const { words } = session;
+    const { presence } = session.idle;
+    const left_s = presence.is === "asked" ? presence.left_s : 0;
+    return html`<div class="over asking" @click=${() => session.touched()}>
+      <section role="alertdialog" aria-modal="true" aria-labelledby="asked" aria-describedby="anew">
+        <h2 id="asked">${words.still_there}</h2>
+        <span class="count" aria-hidden="true">${left_s}</span>
+        <p id="anew">${words.begins_anew(left_s)}</p>
+        <button class="main">${words.here}</button>
+      </section>
+    </div>`;
+  }
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "strata-kiosk": StrataKiosk;
+  }
+}

@@ -1,0 +1,130 @@
+// <strata-kiosk-stage>: the streamed picture and the fingers on it. While there is no live picture, the stored one of the stop stands in its place.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, query } from "lit/decorators.js";
+import { FrameCanvas } from "../core/frame-canvas";
+import type { FrameMessage } from "../core/frame-header";
+import { StageInput } from "../core/input";
+import { picture_of_view } from "./as-kiosk";
+import type { KioskSession } from "./kiosk-session";
+import type { KioskShow } from "./show";
+
+const kMostWindowPixels = 1920 * 1200;
+const kMostScale = 2; // window pixels per CSS pixel
+const kKeyStep = 24; // window pixels
+const kKeyZoom = 0.85;
+
+@customElement("strata-kiosk-stage")
+export class StrataKioskStage extends LitElement {
+  @property({ attribute: false }) session!: KioskSession;
+  @property({ attribute: false }) show!: KioskShow;
+  @property({ type: Number }) changes = 0; // counted up by who holds it: the session draws by being told
+  @query("canvas") private canvas_!: HTMLCanvasElement;
+  @query(".surface") private surface_!: HTMLElement;
+
+  private input_: StageInput | null = null;
+  private frames_: FrameCanvas | null = null;
+  private observer_: ResizeObserver | null = null;
+
+  static override styles = css`
+    :host {
+      display: block;
+      position: relative;
+      overflow: hidden;
+    }
+    .surface {
+      position: absolute;
+      inset: 0;
+      touch-action: none;
+      outline-offset: -6px;
+    }
+    .surface:focus-visible {
+      outline: 4px solid var(--accent);
+    }
+    canvas,
+    img {
+      position: absolute;
+      inset: 0;
+      width: 100%;
+      height: 100%;
+      object-fit: contain;
+      pointer-events: none;
+    }
+    canvas {
+      opacity: 0;
+      transition: opacity 500ms;
+    }
+    canvas.live {
+      opacity: 1;
+    }
+    @media (prefers-reduced-motion: reduce) {
+      canvas {
+        transition: none;
+      }
+    }
+  `;
+
+  override firstUpdated(): void {
+    const { show } = this;
+    this.frames_ = new FrameCanvas(this.canvas_, {
+      drawn: (part) => this.on_drawn(part),
+      failed: (reason) => console.info("a picture could not be drawn:", reason),
+    });
+    show.on_frame = (part) => this.frames_?.push(part);
+    show.on_reset_frames = () => this.frames_?.reset();
+    this.input_ = new StageInput(this.surface_, show.gestures, () => show.view.scale);
+    this.observer_ = new ResizeObserver(() => this.measure());
+    this.observer_.observe(this);
+    this.measure();
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.observer_?.disconnect();
+    this.input_?.detach();
+    this.show.on_frame = this.show.on_reset_frames = () => {};
+  }
+
+  /** What the canvas shows is told in its data attributes, for tests and tools. */
+  private on_drawn(part: FrameMessage): void {
+    this.show.frame_drawn(part);
+    const { dataset } = this.canvas_;
+    dataset["frames"] = String(this.show.view.frames_drawn);
+    dataset["still"] = String(part.header.still);
+  }
+
+  private measure(): void {
+    const { clientWidth: width, clientHeight: height } = this;
+    if (width < 2 || height < 2) return;
+    const most = Math.sqrt(kMostWindowPixels / (width * height));
+    this.show.set_viewport(width, height, Math.min(window.devicePixelRatio || 1, kMostScale, most));
+  }
+
+  private readonly on_key = (event: KeyboardEvent): void => {
+    const { orbit, zoom } = this.show.gestures;
+    const { width, height } = this.show.view.camera;
+    const moves: Record<string, () => void> = {
+      ArrowLeft: () => orbit(-kKeyStep, 0),
+      ArrowRight: () => orbit(kKeyStep, 0),
+      ArrowUp: () => orbit(0, -kKeyStep),
+      ArrowDown: () => orbit(0, kKeyStep),
+      "+": () => zoom(kKeyZoom, width / 2, height / 2),
+      "-": () => zoom(1 / kKeyZoom, width / 2, height / 2),
+    };
+    const move = event.ctrlKey || event.metaKey || event.altKey ? undefined : moves[event.key];
+    if (!move) return;
+    event.preventDefault();
+    move();
+  };
+
+  override render(): TemplateResult {
+    const { session, show } = this;
+    const view = session.stop?.view;
+    const live = show.drawn && !show.away;
+    // Behind the live picture it would only take memory; the browser has it at hand when it is wanted.
+    return html`${view && !live ? html`<img src=${picture_of_view(show.model_ref, view.slug)} alt="" />` : nothing}
+      <div class="surface" tabindex="0" role="application" aria-label=${session.words.stage} @keydown=${this.on_key}>
+        <canvas class=${live ? "live" : ""} width="2" height="2"></canvas>
+      </div>`;
+  }
+}

@@ -1,0 +1,37 @@
+// A finger that is drawn sideways over something. Up and down it scrolls as ever.
+
+const kReach = 48; // CSS pixels
+
+/** Tells +1 for what lies to the right, which is drawn in by going left; −1 for the other side. Returns how to stop. */
+export function follow_swipes(element: HTMLElement, swiped: (by: 1 | -1) => void): () => void {
+  let start: { pointer: number; x: number; y: number } | null = null;
+  let just_swiped = false;
+  const down = (event: PointerEvent): void => {
+    just_swiped = false;
+    start = event.isPrimary ? { pointer: event.pointerId, x: event.clientX, y: event.clientY } : null;
+  };
+  const up = (event: PointerEvent): void => {
+    if (start?.pointer !== event.pointerId) return;
+    const [dx, dy] = [event.clientX - start.x, event.clientY - start.y];
+    start = null;
+    if (Math.abs(dx) < kReach || Math.abs(dx) < 1.5 * Math.abs(dy)) return;
+    just_swiped = true;
+    swiped(dx < 0 ? 1 : -1);
+  };
+  const cancel = (): void => void (start = null);
+  /** It was no tap on the button beneath. */
+  const click = (event: Event): void => {
+    if (just_swiped) event.stopPropagation();
+    just_swiped = false;
+  };
+  element.addEventListener("pointerdown", down);
+  addEventListener("pointerup", up);
+  element.addEventListener("pointercancel", cancel);
+  element.addEventListener("click", click, true);
+  return () => {
+    element.removeEventListener("pointerdown", down);
+    removeEventListener("pointerup", up);
+    element.removeEventListener("pointercancel", cancel);
+    element.removeEventListener("click", click, true);
+  };
+}
