@@ -47,8 +47,7 @@ export async function card_of(api: Api, asked: CardAsked): Promise<Card | null> 
 async function read_card(api: Api, asked: CardAsked): Promise<Card> {
   const table = await api.table(asked.table);
   const [record, files] = await Promise.all([api.record({ table: table.id }, asked.key), api.attachments(table.id, asked.key)]);
-  const order = [asked.language, ...asked.languages];
-  const title = label_of_record(table, record, order) || texts_in(asked.language, asked.languages).record(asked.key);
+  const title = label_of_record(table, record, [asked.language]) || texts_in(asked.language, asked.languages).record(asked.key);
   const shown = columns_shown(table, asked.stop.records.find((records) => records.table === table.slug)?.columns);
   const lines: Card["lines"] = [];
   for (const { column, chosen } of shown) {
@@ -56,9 +55,15 @@ async function read_card(api: Api, asked: CardAsked): Promise<Card> {
     const text = await text_of(api, asked, column, record.values[column.slug] ?? null);
     // What is the card's heading is not said again, unless the tour wants it so.
     if (text === "" || (!chosen && text === title) || (!chosen && lines.length >= kMostLines)) continue;
-    lines.push({ label: (chosen && words_in(chosen.labels, asked.language, asked.languages)) || label_of(column, order), text });
+    lines.push({ label: label_on_card(column, chosen, asked), text });
   }
   return { table: table.slug, key: asked.key, title, lines, pictures: pictures_of(shown.map(({ column }) => column), record, files) };
+}
+
+/** As the tour or the table call it in the visitor's language; else as the tour calls it in its first one, or by its name, whatever language that is. */
+function label_on_card(column: Column, chosen: TourColumn | null, { language, languages }: CardAsked): string {
+  const in_language = chosen?.labels?.[language] || label_of({ name: "", labels: column.labels }, [language]);
+  return in_language || words_in(chosen?.labels, language, languages.slice(0, 1)) || column.name;
 }
 
 interface ShownColumn {
@@ -84,12 +89,12 @@ async function text_of(api: Api, asked: CardAsked, column: Column, value: CellVa
 }
 
 /** Those that visitors may know. */
-async function names_of(api: Api, { language, languages }: CardAsked, table: number, keys: readonly number[]): Promise<string[]> {
+async function names_of(api: Api, { language }: CardAsked, table: number, keys: readonly number[]): Promise<string[]> {
   if (keys.length === 0) return [];
   try {
     const target = await api.table(table);
     const records = await Promise.all(keys.map((key) => api.record({ table }, key)));
-    return records.map((record) => label_of_record(target, record, [language, ...languages])).filter((name) => name !== "");
+    return records.map((record) => label_of_record(target, record, [language])).filter((name) => name !== "");
   } catch (error) {
     if (error instanceof ApiError && (error.status === 403 || error.status === 404)) return [];
     throw error;

@@ -11,10 +11,10 @@ export const kiosk_styles = css`
     position: fixed;
     inset: 0;
     display: grid;
-    grid-template: minmax(0, 57fr) minmax(0, 43fr) / minmax(0, 1fr);
-    background: linear-gradient(#f4f1ea, #ddd7ca);
+    grid-template: minmax(0, 58fr) minmax(0, 42fr) / minmax(0, 1fr);
+    background: linear-gradient(rgb(241 240 236), rgb(214 211 204)); /* as the server draws it behind the model */
     color: var(--ink);
-    font: clamp(17px, 1.15vmin + 9px, 30px) / 1.5 var(--sans);
+    font: clamp(17px, 1.7vmin + 7px, 34px) / 1.5 var(--sans);
     overflow: hidden;
     user-select: none;
     -webkit-user-select: none;
@@ -63,7 +63,12 @@ export const kiosk_styles = css`
     outline: 4px solid var(--accent);
     outline-offset: 3px;
   }
-  button[aria-pressed="true"],
+  button[aria-pressed="true"] {
+    border-color: var(--calm);
+    color: var(--calm);
+    background: var(--calm-soft);
+  }
+  .layers button[aria-pressed="true"],
   button.main {
     border-color: var(--calm);
     background: var(--calm);
@@ -323,10 +328,17 @@ export const kiosk_styles = css`
       animation: none;
     }
   }
-  .resting .words {
-    flex: none;
-    max-height: calc(100% - 8.5em);
+  .panel.resting {
+    padding-bottom: calc(2.5 * var(--rim) + 1.25 * var(--target) + 2em); /* for what invites to begin */
+    text-align: center;
+  }
+  .panel.resting .words {
+    flex: 0 1 auto;
+    margin-block: auto;
     overflow: hidden;
+  }
+  .panel.resting .words p {
+    margin-inline: auto;
   }
   .tour {
     color: var(--accent);
@@ -344,6 +356,17 @@ export const kiosk_styles = css`
     text-align: center;
   }
 
+  @media (max-width: 600px) and (orientation: portrait) {
+    :host {
+      --target: 58px;
+      grid-template: minmax(0, 42fr) minmax(0, 58fr) / minmax(0, 1fr);
+    }
+    .dots,
+    .row.scrolls > .label {
+      display: none;
+    }
+  }
+
   @media (orientation: landscape) {
     :host {
       grid-template: minmax(0, 1fr) / minmax(360px, 36fr) minmax(0, 64fr);
@@ -354,29 +377,38 @@ export const kiosk_styles = css`
     }
     .panel {
       grid-area: 1 / 1;
-      justify-content: flex-end;
-      border-radius: 0 28px 28px 0;
-      box-shadow: 8px 0 40px rgb(32 41 42 / 0.1);
-    }
-    .panel > .words {
-      flex: 0 1 auto;
-      margin-top: auto;
+      align-self: end;
+      min-height: 50%;
+      max-height: calc(100% - 2 * var(--rim));
+      margin: var(--rim);
+      margin-inline-end: 0;
+      border-radius: 28px;
+      box-shadow: 0 8px 40px rgb(32 41 42 / 0.12);
     }
     .begin {
       inset-inline-end: auto;
-      align-items: center;
-      width: 100%;
+      width: 36%;
+      min-width: 360px;
+      padding: calc(2.5 * var(--rim)) calc(2 * var(--rim));
+      padding-inline-end: var(--rim);
     }
-    .begin b,
-    .begin span {
-      margin-inline-end: auto;
+    .begin::before {
+      position: fixed;
+      inset: 0;
+      content: "";
     }
-    .card {
-      justify-content: flex-end;
+  }
+  @media (orientation: landscape) and (max-height: 560px) {
+    :host {
+      --rim: 8px;
+      --gap: 6px;
+      --target: 58px;
     }
-    .card > .words {
-      flex: 0 1 auto;
-      margin-top: auto;
+    .panel {
+      overflow-y: auto;
+    }
+    .panel > .words {
+      flex: none;
     }
   }
 `;
