@@ -85,7 +85,7 @@ export class KioskStore {
     };
     const get = this.options_.fetch ?? patient_fetch;
     await put(await this.self_key(), async () => new Response(JSON.stringify(self)));
-    await put(kPageKey, () => get(location_path()));
+    await put(kPageKey, () => get(kPageKey));
     for (const file of (this.options_.files ?? files_of_page)()) await put(file, () => get(file));
     try {
       await keep_tour(self, get, put);
@@ -136,8 +136,6 @@ async function unless_gone(asked: Promise<unknown>): Promise<void> {
     if (!(error instanceof ApiError) || error.status !== 404) throw error;
   }
 }
-
-const location_path = (): string => location.pathname;
 
 /** What the page has loaded under names that never change, and its icon. */
 function files_of_page(): string[] {
