@@ -316,7 +316,9 @@ export const kiosk_styles = css`
   }
   .begin span {
     color: var(--ink-soft);
+    font-size: 0.85em;
     font-weight: 400;
+    text-wrap: balance;
   }
   @keyframes breathe {
     50% {
@@ -329,7 +331,7 @@ export const kiosk_styles = css`
     }
   }
   .panel.resting {
-    padding-bottom: calc(2.5 * var(--rim) + 1.25 * var(--target) + 2em); /* for what invites to begin */
+    padding-bottom: calc(2.5 * var(--rim) + 1.25 * var(--target) + 3em); /* for what invites to begin */
     text-align: center;
   }
   .panel.resting .words {
@@ -356,6 +358,11 @@ export const kiosk_styles = css`
     text-align: center;
   }
 
+  @media (orientation: portrait) and (max-height: 1300px) {
+    :host {
+      grid-template: minmax(0, 1fr) minmax(0, 1fr) / minmax(0, 1fr);
+    }
+  }
   @media (max-width: 600px) and (orientation: portrait) {
     :host {
       --target: 58px;

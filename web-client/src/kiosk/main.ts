@@ -31,7 +31,6 @@ export function start_kiosk(): void {
   const page = document.createElement("strata-kiosk");
   page.session = session;
   document.querySelector("strata-app")?.replaceWith(page);
-  document.querySelector<HTMLMetaElement>('meta[name="viewport"]')?.setAttribute("content", "width=device-width, initial-scale=1, maximum-scale=1, user-scalable=no, viewport-fit=cover");
   keep_on_page();
   void stay_awake();
   void start_worker();

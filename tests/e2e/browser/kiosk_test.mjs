@@ -1,0 +1,334 @@
+// A kiosk in a real browser: by its link alone, with fingers, left alone and come back to, without its server and with it again, loaded anew from afar and
+// revoked. The page's clock is the test's. STRATA_KIOSK_ROUNDS: how often it is visited and left while its memory is looked at.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { findings } from "../support/accessible.mjs";
+import { Browser, kOfLostServer } from "../support/browser.mjs";
+import { kModel, kTour, make_kiosk_site } from "../support/kiosk-site.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kRounds = Number(process.env.STRATA_KIOSK_ROUNDS ?? 40);
+const kUpright = { width: 1080, height: 1920 };
+const kTarget_px = 57; // 15 mm
+const kMostHeapGrowth = 1.5; // MB, and of the server below: what the allocators of both make of the same work, and no leak of a picture a round
+const kMostServerGrowth = 48; // MB
+const kMostNodeGrowth = 60;
+
+const browser = await Browser.open({ viewport: kUpright, hasTouch: true });
+const server = new StrataServer({ demo: true });
+const { page } = browser;
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const shot = async (name) => {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `kiosk_${name}.png`) });
+};
+const button = (name) => page.getByRole("button", { name, exact: true });
+const heading = (name) => page.getByRole("heading", { level: 1, name, exact: true });
+const begin = page.getByRole("button", { name: /^Touch to begin/ });
+const here = button("I am still here");
+const canvas = page.locator("strata-kiosk-stage canvas");
+const frames = () => canvas.evaluate(({ dataset }) => Number(dataset.frames ?? 0));
+const live = () => wait_for(() => page.locator("strata-kiosk-stage canvas.live[data-still=true]").count(), "a live picture that is still");
+/** A time that the page's timers see pass, in steps between which it hears what the server says. */
+const pass = async (seconds) => {
+  for (let left = seconds; left > 0; left -= 5) {
+    await page.clock.fastForward(Math.min(5, left) * 1000);
+    await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 0)));
+  }
+};
+const sent = { camera: null, layers: null };
+page.on("websocket", (socket) =>
+  socket.on("framesent", ({ payload }) => {
+    const message = JSON.parse(String(payload));
+    sent[message.op] = message;
+  }),
+);
+const eye = ({ view }) => [0, 1, 2].map((c) => -[0, 1, 2].reduce((sum, row) => sum + view[4 * c + row] * view[12 + row], 0));
+const apart = (a, b) => Math.hypot(...a.map((each, index) => each - b[index]));
+
+const cdp = await page.context().newCDPSession(page);
+/** Fingers along paths of equally many points, as a screen tells of them. */
+async function touch(...paths) {
+  const points = (at) => paths.map((path, id) => ({ id, x: path[at][0], y: path[at][1] }));
+  await cdp.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: points(0) });
+  for (let at = 1; at < paths[0].length; ++at) await cdp.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: points(at) });
+  await cdp.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+}
+const line = ([x0, y0], [x1, y1], steps = 8) => Array.from({ length: steps + 1 }, (_, n) => [x0 + ((x1 - x0) * n) / steps, y0 + ((y1 - y0) * n) / steps]);
+const middle = async (locator) => {
+  const { x, y, width, height } = await locator.boundingBox();
+  return [x + width / 2, y + height / 2];
+};
+
+/** All that can be touched is large enough, in the lower half, and leads nowhere. */
+async function assert_within_reach(where) {
+  const found = await page.evaluate(() => {
+    const all = (root) => [...root.querySelectorAll("*")].flatMap((each) => [each, ...(each.shadowRoot ? all(each.shadowRoot) : [])]);
+    const seen = all(document).filter((each) => each.checkVisibility({ visibilityProperty: true }));
+    return {
+      links: seen.filter((each) => each.matches("a[href], form, iframe")).length,
+      buttons: seen.filter((each) => each.matches("button")).map((each) => ({ name: each.textContent.trim(), ...each.getBoundingClientRect().toJSON() })),
+      overflow: document.scrollingElement.scrollHeight > innerHeight || document.scrollingElement.scrollWidth > innerWidth,
+    };
+  });
+  assert.equal(found.links, 0, `${where}: something leads away`);
+  assert.equal(found.overflow, false, `${where}: the page scrolls`);
+  assert.ok(found.buttons.length > 0, where);
+  const { height } = page.viewportSize();
+  for (const { name, width, height: high, bottom, top } of found.buttons) {
+    assert.ok(width >= kTarget_px && high >= kTarget_px, `${where}: ${name} is ${width} × ${high}`);
+    assert.ok(high > height * 0.9 || (top + bottom) / 2 > height / 2, `${where}: ${name} is not in the lower half`);
+  }
+}
+const assert_accessible = async (where) => assert.deepEqual(await findings(page), [], where);
+
+try {
+  await server.start();
+  const { path, kiosk } = await make_kiosk_site(server, { idle_s: 30 });
+  await page.clock.install();
+
+  say("the link alone opens it, and nobody is signed in; it plays by itself");
+  await page.goto(server.url + path);
+  await begin.waitFor();
+  await live();
+  await heading("The pot from the well").waitFor();
+  await assert_within_reach("attract");
+  await assert_accessible("attract");
+  await shot("attract");
+  await pass(13);
+  await heading("Fourteen sherds").waitFor();
+  assert.equal((await page.context().cookies()).filter(({ name }) => name !== "strata_kiosk").length, 0);
+
+  say("who wants less motion sees none of its own");
+  await live();
+  const still = await frames();
+  await pass(3);
+  assert.equal(await frames(), still);
+  await page.emulateMedia({ reducedMotion: "no-preference" });
+  await pass(40); // so that the next stops begin to turn
+  const turned = await frames();
+  await wait_for(async () => (await frames()) > turned + 3, "the slow turn");
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await pass(40);
+
+  say("a touch begins at the first stop, and does nothing else");
+  await page.touchscreen.tap(540, 400);
+  await heading("The pot from the well").waitFor();
+  assert.equal(await begin.count(), 0);
+  await live();
+  await assert_within_reach("first stop");
+  await assert_accessible("first stop");
+  await shot("first");
+
+  say("one finger turns, two move, enlarge and tilt");
+  const stage = await page.locator("strata-kiosk-stage").boundingBox();
+  const [x, y] = [stage.x + stage.width / 2, stage.y + stage.height / 2];
+  const at_first = sent.camera;
+  await touch(line([x, y], [x + 200, y + 40]));
+  await wait_for(() => apart(eye(sent.camera), eye(at_first)) > 20, "one finger to turn it");
+  await live();
+  const after_turn = sent.camera;
+  await touch(line([x - 60, y], [x - 200, y]), line([x + 60, y], [x + 200, y]));
+  await wait_for(() => apart(eye(sent.camera), eye(after_turn)) > 60, "two fingers to come nearer");
+  const near = sent.camera;
+  await touch(line([x - 60, y], [x - 60, y + 150]), line([x + 60, y], [x + 60, y + 150]));
+  await wait_for(() => apart(eye(sent.camera), eye(near)) > 3 && Math.abs(sent.camera.view[0] - near.view[0]) < 1e-9, "two fingers to move it");
+  const moved = sent.camera;
+  await touch([[x - 100, y], [x - 70, y - 70], [x, y - 100]], [[x + 100, y], [x + 70, y + 70], [x, y + 100]]); // prettier-ignore
+  await wait_for(() => Math.abs(sent.camera.view[0] - moved.view[0]) > 0.1, "two fingers to tilt it");
+  assert.equal(await page.evaluate(() => visualViewport.scale), 1, "the page was zoomed");
+  for (const name of ["contextmenu", "selectstart", "dragstart"])
+    assert.equal(await page.evaluate((event) => document.querySelector("strata-kiosk").dispatchEvent(new Event(event, { bubbles: true, cancelable: true, composed: true })), name), false, name);
+
+  say("the next stop is there where its view has it, whatever was turned before; buttons and swipes choose its layers");
+  await button("Next").tap();
+  await heading("Fourteen sherds").waitFor();
+  const is_shown = (name) => wait_for(async () => (await button(name).getAttribute("aria-pressed")) === "true", `the layer ${name}`);
+  await is_shown("Sherds");
+  await live();
+  await assert_within_reach("second stop");
+  await assert_accessible("second stop");
+  await shot("second");
+  await button("cracks").tap();
+  await is_shown("cracks");
+  const visible = () => sent.layers.layers.filter((layer) => layer.visible).length;
+  await wait_for(() => visible() === 1, "one layer to be shown");
+  const text = await page.locator(".panel .words").boundingBox();
+  await touch(line([text.x + 700, text.y + 100], [text.x + 300, text.y + 110]));
+  await is_shown("pieces");
+  await touch(line([text.x + 700, text.y + 100], [text.x + 300, text.y + 110]));
+  await is_shown("pieces"); // the last one
+  const row = await page.locator(".layers").boundingBox();
+  await touch(line([row.x + 200, row.y + 30], [row.x + 500, row.y + 32]));
+  await is_shown("cracks");
+  await touch(line([row.x + 200, row.y + 30], [row.x + 500, row.y + 32]));
+  await is_shown("Sherds");
+
+  say("a tap tells of what is there, with its picture");
+  await live();
+  await page.touchscreen.tap(x, y);
+  const card = page.locator(".card");
+  await card.getByRole("heading", { name: /^Sherd \d+$/ }).waitFor();
+  await card.getByText(/^\d+(\.5)? mm$/).waitFor();
+  await assert_within_reach("card");
+  await assert_accessible("card");
+  await shot("card");
+  await card.getByRole("button", { name: /^Enlarge: sherd-\d+\.png$/ }).tap();
+  const large = page.locator(".enlarged img");
+  await wait_for(() => large.evaluate(({ naturalWidth }) => naturalWidth > 0), "the enlarged picture");
+  await assert_accessible("enlarged");
+  await page.getByRole("dialog").getByRole("button", { name: "Close" }).tap();
+  await card.getByRole("button", { name: "Close", exact: true }).tap();
+  await card.waitFor({ state: "detached" });
+  await button("Sherd 3").tap();
+  await card.getByRole("heading", { name: "Sherd 3" }).waitFor();
+  await card.getByText("Inventory", { exact: true }).waitFor();
+  await card.getByRole("button", { name: "Close", exact: true }).tap();
+
+  say("its words are in the visitor's language");
+  await button("Deutsch").tap();
+  await heading("Vierzehn Scherben").waitFor();
+  await button("Sherd 3").tap();
+  await card.getByText("Wandstärke", { exact: true }).waitFor();
+  await shot("german");
+  await button("Schließen").tap();
+  await button("español").tap();
+  await heading("Fourteen sherds").waitFor(); // which nobody has translated
+  await button("Siguiente").waitFor();
+
+  say("who touches nothing is asked, and stays by saying so");
+  await pass(25);
+  assert.equal(await button("Sigo aquí").count(), 0);
+  await pass(10);
+  await button("Sigo aquí").waitFor();
+  await assert_within_reach("asked");
+  await assert_accessible("asked");
+  await shot("asked");
+  await button("Sigo aquí").tap();
+  await button("Siguiente").waitFor();
+  await pass(25);
+  assert.equal(await button("Sigo aquí").count(), 0, "the time begins anew");
+
+  say("otherwise it begins anew, in its own language");
+  await pass(45);
+  await begin.waitFor();
+  await heading("The pot from the well").waitFor();
+  assert.equal(await page.evaluate(() => document.documentElement.lang), "en");
+
+  say("it keeps what it shows");
+  const stored = () => page.evaluate(async () => (await (await caches.open("strata-kiosk")).keys()).map(({ url }) => new URL(url).pathname));
+  await wait_for(async () => {
+    await pass(31); // a heartbeat
+    const keys = await stored();
+    return keys.filter((key) => key.endsWith("/picture")).length === 3 && keys.includes("/api/v1/tables/sherds") && keys.filter((key) => key.startsWith("/api/v1/attachments/")).length >= 2 && keys.some((key) => key.startsWith("/kiosk/told/"));
+  }, "the store to be full", 300);
+  assert.ok((await stored()).every((key) => !key.includes(path.split("/").at(-1))), "the secret is stored");
+  await page.evaluate(() => navigator.serviceWorker.ready);
+
+  say("without its server the tour goes on with stored pictures");
+  await begin.tap();
+  await button("Next").waitFor();
+  await server.signal("SIGTERM");
+  const sign = page.getByText("Still pictures for a moment");
+  await wait_for(async () => (await pass(2), await sign.count()), "the sign", 200);
+  const picture = page.locator("strata-kiosk-stage img");
+  const is_loaded = () => wait_for(() => picture.evaluate(({ complete, naturalWidth }) => complete && naturalWidth > 0), "the stored picture");
+  await is_loaded();
+  await assert_accessible("away");
+  await shot("away");
+  await button("Next").tap();
+  await heading("Fourteen sherds").waitFor();
+  await is_loaded();
+  await button("Sherd 3").tap();
+  await card.getByRole("heading", { name: "Sherd 3" }).waitFor();
+  await wait_for(() => card.locator("img").evaluate(({ naturalWidth }) => naturalWidth > 0), "the stored picture of the record");
+  await shot("away_card");
+  await card.getByRole("button", { name: "Close", exact: true }).tap();
+
+  say("even when its browser begins anew");
+  await page.reload();
+  await wait_for(async () => (await pass(2), await begin.count()), "the stored tour", 200);
+  await is_loaded();
+  await pass(13);
+  await heading("Fourteen sherds").waitFor();
+  await is_loaded();
+
+  say("and is live again by itself");
+  await server.start();
+  await wait_for(async () => (await pass(10), await page.locator("strata-kiosk-stage canvas.live").count()), "live pictures", 300);
+  await wait_for(async () => (await sign.count()) === 0, "no sign");
+  assert.equal(await picture.count(), 0);
+
+  say("a changed tour is shown without anybody's doing");
+  const tour = await server.json("GET", kTour);
+  tour.stops[0].title.en = "The vessel from the well";
+  await server.json("PATCH", kTour, { stops: tour.stops });
+  await wait_for(async () => (await pass(31), await begin.tap(), await button("Next").waitFor(), (await heading("The vessel from the well").count()) > 0 || (await pass(31), await pass(15), false)), "the new title", 300);
+  await wait_for(async () => (await pass(15), await begin.count()), "the visitor to be gone", 100);
+
+  say("an administrator has it loaded anew");
+  await page.evaluate(() => (globalThis.before = true));
+  await server.json("POST", `/kiosks/${kiosk.id}/reload`);
+  const is_new = () => page.evaluate(() => globalThis.before === undefined).catch(() => false);
+  await wait_for(async () => (await is_new()) || (await page.clock.fastForward(31_000).catch(() => {}), false), "the page to be loaded anew", 300);
+  await begin.waitFor();
+  await wait_for(async () => (await server.json("GET", "/kiosks")).kiosks[0].wants_reload === false, "the wish to be gone");
+
+  say(`memory stays flat over ${kRounds} visitors`);
+  await live();
+  const server_mb = () => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${server.process.pid}/status`, "utf8"))[1]) / 1024;
+  const used = async () => {
+    await cdp.send("HeapProfiler.collectGarbage");
+    const { metrics } = await cdp.send("Performance.getMetrics");
+    const of = (name) => metrics.find((metric) => metric.name === name).value;
+    return { heap_mb: of("JSHeapUsedSize") / 2 ** 20, nodes: of("Nodes"), listeners: of("JSEventListeners"), server_mb: server_mb() };
+  };
+  await cdp.send("Performance.enable");
+  const visit = async () => {
+    await begin.tap();
+    await button("Deutsch").tap();
+    await button("Weiter").tap();
+    await button("Sherd 3").tap();
+    await card.getByRole("heading", { name: "Sherd 3" }).waitFor();
+    await wait_for(async () => (await pass(15), await begin.count()), "the visitor to be gone", 20);
+    for (const title of ["Fourteen sherds", "The rim"]) await wait_for(async () => (await pass(3), await heading(title).count()), title, 20);
+  };
+  for (let round = 0; round < 8; ++round) await visit(); // until all is loaded and compiled
+  const before = await used();
+  const clock = () => page.evaluate(() => performance.now());
+  const from_ms = await clock();
+  for (let round = 0; round < kRounds; ++round) await visit();
+  const after = await used();
+  const hours = ((await clock()) - from_ms) / 3600_000;
+  const told = ({ heap_mb, nodes, listeners, server_mb: rss }) => `page ${heap_mb.toFixed(2)} MB, ${nodes} nodes, ${listeners} listeners; server ${rss.toFixed(0)} MB`;
+  console.log(`  before: ${told(before)}\n  after ${kRounds} visitors in ${hours.toFixed(1)} h of the page's clock: ${told(after)}`);
+  assert.ok(after.heap_mb - before.heap_mb < kMostHeapGrowth, "the page's memory grows");
+  assert.ok(after.nodes - before.nodes < kMostNodeGrowth && after.listeners - before.listeners < kMostNodeGrowth, "the page holds on to what is gone");
+  assert.ok(after.server_mb - before.server_mb < kMostServerGrowth, "the server's memory grows");
+
+  say("revoked, it says so in plain words, and keeps nothing");
+  await server.request("DELETE", `/kiosks/${kiosk.id}`);
+  await page.getByRole("heading", { name: "This screen has no tour any more" }).waitFor();
+  await assert_accessible("revoked");
+  await shot("revoked");
+  await wait_for(async () => (await stored()).length === 0, "the store to be empty");
+  await page.goto(`${server.url}/kiosk/nothing`);
+  await page.getByRole("heading", { name: "This screen has no tour any more" }).waitFor();
+  assert.equal(new URL(page.url()).pathname, "/kiosk/nothing");
+
+  browser.assert_no_complaints([...kOfLostServer, "status of 401", "Failed to load resource"]);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+  assert.ok(server.log.every((entry) => !entry.includes(path)), "the secret is in the log");
+  console.log("ok");
+} catch (error) {
+  await shot("failed");
+  console.error(`failed at: ${step} (${kModel})\n${error.stack}\n${browser.complaints.join("\n")}\nserver log:\n${server.log.slice(-20).join("\n")}`);
+  process.exitCode = 1;
+} finally {
+  await browser.close();
+  await server.remove();
+}
+process.exit();
