@@ -102,10 +102,10 @@ try {
   assert.equal((await page.context().cookies()).filter(({ name }) => name !== "strata_kiosk").length, 0);
 
   say("who wants less motion sees none of its own");
-  await live();
-  const still = await frames();
+  let seq = -1;
+  await wait_for(() => seq === (seq = sent.camera.seq), "the camera to be at the stop", 400);
   await pass(3);
-  assert.equal(await frames(), still);
+  assert.equal(sent.camera.seq, seq);
   await page.emulateMedia({ reducedMotion: "no-preference" });
   await pass(40); // so that the next stops begin to turn
   const turned = await frames();
@@ -265,8 +265,7 @@ try {
   const tour = await server.json("GET", kTour);
   tour.stops[0].title.en = "The vessel from the well";
   await server.json("PATCH", kTour, { stops: tour.stops });
-  await wait_for(async () => (await pass(31), await begin.tap(), await button("Next").waitFor(), (await heading("The vessel from the well").count()) > 0 || (await pass(31), await pass(15), false)), "the new title", 300);
-  await wait_for(async () => (await pass(15), await begin.count()), "the visitor to be gone", 100);
+  await wait_for(async () => (await pass(10), await heading("The vessel from the well").count()), "the new title", 100);
 
   say("an administrator has it loaded anew");
   await page.evaluate(() => (globalThis.before = true));

@@ -2,9 +2,11 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
+import { styled } from "../app/styled";
 import { FrameCanvas } from "../core/frame-canvas";
 import type { FrameMessage } from "../core/frame-header";
 import { StageInput } from "../core/input";
+import type { View } from "../core/protocol.gen";
 import { picture_of_view } from "./as-kiosk";
 import type { KioskSession } from "./kiosk-session";
 import type { KioskShow } from "./show";
@@ -31,6 +33,7 @@ export class StrataKioskStage extends LitElement {
       display: block;
       position: relative;
       overflow: hidden;
+      container-type: size;
     }
     .surface {
       position: absolute;
@@ -45,12 +48,20 @@ export class StrataKioskStage extends LitElement {
     img {
       position: absolute;
       inset: 0;
+      pointer-events: none;
+    }
+    img {
+      margin: auto;
+      /* Of another shape than the stage, it ends nowhere. */
+      mask:
+        linear-gradient(transparent, #000 9%, #000 91%, transparent),
+        linear-gradient(to right, transparent, #000 9%, #000 91%, transparent);
+      mask-composite: intersect;
+    }
+    canvas {
       width: 100%;
       height: 100%;
       object-fit: contain;
-      pointer-events: none;
-    }
-    canvas {
       opacity: 0;
       transition: opacity 500ms;
     }
@@ -122,9 +133,15 @@ export class StrataKioskStage extends LitElement {
     const view = session.stop?.view;
     const live = show.drawn && !show.away;
     // Behind the live picture it would only take memory; the browser has it at hand when it is wanted.
-    return html`${view && !live ? html`<img src=${picture_of_view(show.model_ref, view.slug)} alt="" />` : nothing}
+    return html`${view && !live ? this.stored_picture(view) : nothing}
       <div class="surface" tabindex="0" role="application" aria-label=${session.words.stage} @keydown=${this.on_key}>
         <canvas class=${live ? "live" : ""} width="2" height="2"></canvas>
       </div>`;
+  }
+
+  private stored_picture({ slug, camera }: View): TemplateResult {
+    const shape = camera.width / camera.height;
+    const size = { "aspect-ratio": shape, width: `min(100cqw, calc(100cqh * ${shape}))` };
+    return html`<img src=${picture_of_view(this.show.model_ref, slug)} alt="" ${styled(size)} />`;
   }
 }
