@@ -87,7 +87,7 @@ export const kiosk_styles = css`
     stroke-linecap: round;
     stroke-linejoin: round;
   }
-  [dir="rtl"] .turns {
+  .turns:dir(rtl) {
     transform: scaleX(-1);
   }
 
