@@ -192,7 +192,7 @@ try {
   await card.getByText("Wandstärke", { exact: true }).waitFor();
   await shot("german");
   await button("Schließen").tap();
-  await button("español").tap();
+  await button("Español").tap();
   await heading("Fourteen sherds").waitFor(); // which nobody has translated
   await button("Siguiente").waitFor();
 

@@ -14,6 +14,12 @@ import { texts_in } from "./texts";
 const kMostDots = 12;
 const kMostInvitations = 3; // languages in which one is asked to begin
 
+/** Many languages write their own name small within a sentence. */
+function name_on_button(tag: string): string {
+  const name = name_of_language(tag) || tag;
+  return name.charAt(0).toLocaleUpperCase(tag) + name.slice(1);
+}
+
 const arrow_back = svg`<svg class="turns" viewBox="0 0 24 24" aria-hidden="true"><path d="M15 5l-7 7 7 7" /></svg>`;
 const arrow_on = svg`<svg class="turns" viewBox="0 0 24 24" aria-hidden="true"><path d="m9 5 7 7-7 7" /></svg>`;
 
@@ -134,7 +140,7 @@ export class StrataKiosk extends LitElement {
             ${session.languages.map(
               (tag) =>
                 html`<button lang=${tag} aria-pressed=${String(tag === session.language)} @click=${() => session.choose_language(tag)}>
-                  ${name_of_language(tag) || tag}
+                  ${name_on_button(tag)}
                 </button>`,
             )}
           </div>`

@@ -230,8 +230,7 @@ export class KioskSession {
     const before = this.self;
     this.self = self;
     if (!before || before.tour.version !== self.tour.version || before.tour.id !== self.tour.id) await this.take_tour();
-    // While visitors watch, nothing else is asked of a small machine than what they see: it keeps what it needs when they have seen something.
-    else if (this.show?.drawn || !this.ready) this.keep();
+    else if (this.show?.drawn) this.keep(); // what is seen comes first
     if (!this.ready) await this.read_views();
     this.changed();
   }
