@@ -405,6 +405,16 @@ export const kiosk_styles = css`
       content: "";
     }
   }
+  @media (orientation: landscape) and (max-width: 1300px) {
+    .dots,
+    .row.scrolls > .label {
+      display: none;
+    }
+    .steps button {
+      min-width: calc(1.6 * var(--target));
+      padding-inline: 0.8em;
+    }
+  }
   @media (orientation: landscape) and (max-height: 560px) {
     :host {
       --rim: 8px;
