@@ -8,7 +8,7 @@ import { Browser, kOfLostServer } from "../support/browser.mjs";
 import { kModel, kTour, make_kiosk_site } from "../support/kiosk-site.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
-const kRounds = Number(process.env.STRATA_KIOSK_ROUNDS ?? 12);
+const kRounds = Number(process.env.STRATA_KIOSK_ROUNDS ?? 4);
 const kUpright = { width: 1080, height: 1920 };
 const kTarget_px = 57; // 15 mm
 const kMostHeapGrowth = 1.5; // MB, and of the server below: what the allocators of both make of the same work, and no leak of a picture a round
