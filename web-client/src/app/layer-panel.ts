@@ -5,6 +5,7 @@ import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { value_range, type Layer, type LayerPatch } from "../core/types";
 import { ask } from "./dialog";
+import { DragOrder } from "./drag-order";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import { layer_job_row, layer_job_styles } from "./layer-job-row";
@@ -13,7 +14,7 @@ import { layer_chip, legend, legend_styles } from "./legend";
 import "./menu";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
-import { shared_styles } from "./styles";
+import { drag_styles, shared_styles } from "./styles";
 import { choose_raster, formats_of, save_raster } from "./raster-files";
 import type { TermsRequest } from "./terms-dialog";
 import { texts } from "./texts";
@@ -27,9 +28,15 @@ export type LayerPanelRequest =
 @customElement("strata-layer-panel")
 export class StrataLayerPanel extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
-  @state() private dragged_: number | null = null;
   @state() private computing_: number | null = null;
-  @state() private drop_before_: number | null = null; // index in the shown list
+  private readonly drag_ = new DragOrder<number>(
+    this,
+    () => this.shown.map(({ id }) => id),
+    (id, to) => {
+      const layer = this.session.layers.find(id);
+      if (layer) this.move(layer, to);
+    },
+  );
 
   constructor() {
     super();
@@ -40,6 +47,7 @@ export class StrataLayerPanel extends LitElement {
     shared_styles,
     legend_styles,
     layer_job_styles,
+    drag_styles,
     css`
       :host {
         display: block;
@@ -62,7 +70,6 @@ export class StrataLayerPanel extends LitElement {
         list-style: none;
       }
       li.layer {
-        position: relative;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
@@ -71,32 +78,11 @@ export class StrataLayerPanel extends LitElement {
         border-color: var(--accent);
         box-shadow: inset 3px 0 0 var(--accent);
       }
-      li.layer.dragged {
-        opacity: 0.4;
-      }
-      li.layer.drop-before::before {
-        content: "";
-        position: absolute;
-        left: 0;
-        right: 0;
-        top: -5px;
-        height: 3px;
-        border-radius: 2px;
-        background: var(--accent);
-      }
       .line {
         display: flex;
         align-items: center;
         gap: 2px;
         padding: 3px 4px 3px 2px;
-      }
-      .grip {
-        display: grid;
-        place-items: center;
-        width: 22px;
-        height: 34px;
-        color: var(--line-strong);
-        cursor: grab;
       }
       .name {
         flex: 1;
@@ -231,7 +217,7 @@ export class StrataLayerPanel extends LitElement {
               ? html`<button @click=${() => this.request({ dialog: "template" })}>${icon("layers")}${texts.templates.open}</button>`
               : nothing}
           </div>`
-        : html`<ul class="list" @dragover=${this.on_list_over} @drop=${this.on_drop}>
+        : html`<ul class="list" @dragover=${this.drag_.over_list} @drop=${this.drag_.drop}>
             ${repeat(
               shown,
               (layer) => layer.id,
@@ -256,10 +242,8 @@ export class StrataLayerPanel extends LitElement {
     const visible = session.layers.visible(layer);
     const count = session.layers.all.length;
     return html`<li
-      class="layer ${selected ? "selected" : ""} ${this.dragged_ === layer.id ? "dragged" : ""} ${this.drop_before_ === index
-        ? "drop-before"
-        : ""}"
-      @dragover=${(event: DragEvent) => this.on_row_over(event, index)}
+      class="layer ${selected ? "selected" : ""} ${this.drag_.classes(layer.id, index)}"
+      @dragover=${(event: DragEvent) => this.drag_.over_row(event, index)}
     >
       <div class="line">
         ${session.can_curate && count > 1
@@ -267,8 +251,8 @@ export class StrataLayerPanel extends LitElement {
               class="grip"
               draggable="true"
               title=${words.drag(layer.name)}
-              @dragstart=${(event: DragEvent) => this.on_drag_start(event, layer)}
-              @dragend=${this.on_drag_end}
+              @dragstart=${(event: DragEvent) => this.drag_.start(event, layer.id, layer.name)}
+              @dragend=${this.drag_.end}
               >${icon("grip")}</span
             >`
           : nothing}
@@ -473,38 +457,4 @@ export class StrataLayerPanel extends LitElement {
     if (!(await ask({ heading: words.delete_title(layer.name), lead: words.delete_lead, yes: texts.delete, danger: true }))) return;
     await this.session.layers.remove(layer).catch((error: unknown) => notices.error(error));
   }
-
-  private on_drag_start(event: DragEvent, layer: Layer): void {
-    this.dragged_ = layer.id;
-    event.dataTransfer?.setData("text/plain", layer.name);
-    const row = (event.target as HTMLElement).closest("li");
-    if (row) event.dataTransfer?.setDragImage(row, 12, 18);
-  }
-
-  private on_row_over(event: DragEvent, index: number): void {
-    if (this.dragged_ === null) return;
-    event.preventDefault();
-    const box = (event.currentTarget as HTMLElement).getBoundingClientRect();
-    this.drop_before_ = event.clientY < box.top + box.height / 2 ? index : index + 1;
-  }
-
-  private on_list_over(event: DragEvent): void {
-    if (this.dragged_ !== null) event.preventDefault();
-  }
-
-  private on_drop(event: DragEvent): void {
-    const layer = this.session.layers.all.find((each) => each.id === this.dragged_);
-    const before = this.drop_before_;
-    this.on_drag_end();
-    if (!layer || before === null) return;
-    event.preventDefault();
-    const from = this.shown.findIndex((each) => each.id === layer.id);
-    const to = before > from ? before - 1 : before;
-    if (to !== from) this.move(layer, to);
-  }
-
-  private readonly on_drag_end = (): void => {
-    this.dragged_ = null;
-    this.drop_before_ = null;
-  };
 }

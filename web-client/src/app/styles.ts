@@ -317,6 +317,34 @@ export const number_field_styles = css`
   }
 `;
 
+/** A list whose rows are dragged to another place (`DragOrder`). */
+export const drag_styles = css`
+  li {
+    position: relative;
+  }
+  li.dragged {
+    opacity: 0.4;
+  }
+  li.drop-before::before {
+    content: "";
+    position: absolute;
+    left: 0;
+    right: 0;
+    top: -5px;
+    height: 3px;
+    border-radius: 2px;
+    background: var(--accent);
+  }
+  .grip {
+    display: grid;
+    place-items: center;
+    width: 22px;
+    height: 34px;
+    color: var(--line-strong);
+    cursor: grab;
+  }
+`;
+
 /** A word or two about what stands beside it. */
 export const chip_styles = css`
   .chip {

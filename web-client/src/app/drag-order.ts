@@ -1,0 +1,63 @@
+// A row of a list that is dragged by its grip to another place. For the mouse; menus or buttons say the same for keys and fingers.
+
+import type { ReactiveController, ReactiveControllerHost } from "lit";
+
+export class DragOrder<Id extends number | string> implements ReactiveController {
+  dragged: Id | null = null;
+  /** Index of the row that it would stand before. */
+  before: number | null = null;
+
+  /** `move`: from an index to one in the list without it. */
+  constructor(
+    private readonly host_: ReactiveControllerHost,
+    private readonly shown_: () => readonly Id[],
+    private readonly move_: (id: Id, to: number) => void,
+  ) {
+    host_.addController(this);
+  }
+
+  hostDisconnected(): void {
+    this.dragged = this.before = null;
+  }
+
+  /** Of a row, which has a mark where the dragged one would go. */
+  classes(id: Id, index: number): string {
+    return `${this.dragged === id ? "dragged" : ""} ${this.before === index ? "drop-before" : ""}`;
+  }
+
+  start(event: DragEvent, id: Id, name: string): void {
+    this.put(id, null);
+    event.dataTransfer?.setData("text/plain", name);
+    const row = (event.target as HTMLElement).closest("li");
+    if (row) event.dataTransfer?.setDragImage(row, 12, 18);
+  }
+
+  over_row(event: DragEvent, index: number): void {
+    if (this.dragged === null) return;
+    event.preventDefault();
+    const box = (event.currentTarget as HTMLElement).getBoundingClientRect();
+    this.put(this.dragged, event.clientY < box.top + box.height / 2 ? index : index + 1);
+  }
+
+  readonly over_list = (event: DragEvent): void => {
+    if (this.dragged !== null) event.preventDefault();
+  };
+
+  readonly drop = (event: DragEvent): void => {
+    const { dragged, before } = this;
+    this.end();
+    const from = dragged === null ? -1 : this.shown_().indexOf(dragged);
+    if (dragged === null || before === null || from < 0) return;
+    event.preventDefault();
+    const to = before > from ? before - 1 : before;
+    if (to !== from) this.move_(dragged, to);
+  };
+
+  readonly end = (): void => this.put(null, null);
+
+  private put(dragged: Id | null, before: number | null): void {
+    if (dragged === this.dragged && before === this.before) return;
+    [this.dragged, this.before] = [dragged, before];
+    this.host_.requestUpdate();
+  }
+}
