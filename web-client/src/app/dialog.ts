@@ -17,10 +17,16 @@ export class StrataDialog extends LitElement {
   @property({ type: Boolean, reflect: true }) wide = false;
   /** For tables. */
   @property({ type: Boolean, reflect: true }) broad = false;
+  /** For an editor of many parts. */
+  @property({ type: Boolean, reflect: true }) vast = false;
   /** Holds words to read and hardly a control: it is scrolled by keys as well. */
   @property({ type: Boolean }) prose = false;
   /** Leaves the picture behind it visible: for questions about what is seen. */
   @property({ type: Boolean, reflect: true }) aside = false;
+  /** Asked before a person closes it by Escape, its cross or beside it; null: it closes. close() does not ask. */
+  @property({ attribute: false }) may_close: (() => Promise<boolean>) | null = null;
+  private asking_ = false;
+  private closes_ = false; // what closes it was asked, or need not ask
 
   @query("dialog") private dialog_!: HTMLDialogElement;
 
@@ -47,6 +53,9 @@ export class StrataDialog extends LitElement {
       }
       :host([broad]) dialog {
         width: min(820px, calc(100vw - 24px));
+      }
+      :host([vast]) dialog {
+        width: min(1060px, calc(100vw - 24px));
       }
       dialog::backdrop {
         background: var(--veil);
@@ -95,7 +104,8 @@ export class StrataDialog extends LitElement {
           border-radius: 16px 16px 0 0;
         }
         :host([wide]) dialog,
-        :host([broad]) dialog {
+        :host([broad]) dialog,
+        :host([vast]) dialog {
           width: 100vw;
         }
         :host([aside]) dialog {
@@ -117,14 +127,26 @@ export class StrataDialog extends LitElement {
 
   /** Closes and tells: the owner removes the element on "closed". */
   close(): void {
+    this.closes_ = true;
     this.dialog_.close();
   }
 
+  /** As a person closes it. */
+  async leave(): Promise<void> {
+    if (this.asking_) return;
+    this.asking_ = true;
+    try {
+      if (!this.may_close || (await this.may_close())) this.close();
+    } finally {
+      this.asking_ = false;
+    }
+  }
+
   override render(): TemplateResult {
-    return html`<dialog aria-labelledby="heading" @close=${this.on_close} @click=${this.on_click}>
+    return html`<dialog aria-labelledby="heading" @cancel=${this.on_cancel} @close=${this.on_close} @click=${this.on_click}>
       <div class="head">
         <h2 id="heading">${this.heading}</h2>
-        <button class="icon quiet" aria-label=${texts.close} title=${texts.close} @click=${this.close}>
+        <button class="icon quiet" aria-label=${texts.close} title=${texts.close} @click=${() => void this.leave()}>
           ${icon("close")}
         </button>
       </div>
@@ -145,13 +167,24 @@ export class StrataDialog extends LitElement {
     slot.parentElement?.classList.toggle("empty", slot.assignedElements().length === 0);
   }
 
+  private on_cancel(event: Event): void {
+    if (!this.may_close || event.target !== this.dialog_) return; // a file field, too, tells that nothing was chosen
+    event.preventDefault();
+    void this.leave();
+  }
+
   private on_close(): void {
+    if (this.may_close && !this.closes_) {
+      this.dialog_.showModal(); // browsers close it at a second Escape whatever the page says
+      void this.leave();
+      return;
+    }
     open_dialogs.delete(this.dialog_);
     this.dispatchEvent(new CustomEvent("closed"));
   }
 
   private on_click(event: MouseEvent): void {
-    if (event.target === this.dialog_) this.close(); // the backdrop
+    if (event.target === this.dialog_) void this.leave(); // the backdrop
   }
 }
 
