@@ -230,6 +230,46 @@ function screens_of({ page }, w, site) {
       await page.locator("strata-view-list").evaluate((list) => list.scrollIntoView());
     }, keyboard: true },
     { name: "menu of a view", start: () => button(w.layers.options("Inscription beside the handle, upper register")).click(), end: escape },
+    { name: "new tour", start: async () => {
+      await open(button(w.tours.new));
+      const languages = page.locator("strata-tour-languages");
+      await page.getByRole("textbox", exact(w.tours.name)).fill("Once around the pot, and into it");
+      await page.locator("strata-tour-stops").getByRole("button", exact(w.tours.add)).click();
+      for (const tag of ["fr", "zh-Hant"]) {
+        await languages.getByRole("combobox").selectOption(tag);
+        await languages.getByRole("button", exact(w.tours.language_add)).click();
+      }
+      const fields = page.locator("strata-tour-stop-fields");
+      await fields.getByRole("button", exact(w.tours.layer_add)).click();
+      await fields.getByRole("button", exact(w.tours.table_add)).click();
+      await fields.getByRole("button", exact(w.tours.column_add)).click();
+    }, keyboard: true },
+    { name: "tour: a stop that is refused", start: async () => {
+      await page.locator("strata-tour-stop-fields").getByRole("textbox", { name: w.tours.transition_takes }).fill("99");
+      await button(w.save).click();
+      await page.getByText(w.tours.wrong_seconds(0, 30)).waitFor();
+    } },
+    { name: "tour: closing without saving", start: async () => {
+      await escape();
+      await page.locator("strata-question dialog[open]").waitFor();
+    }, end: async () => {
+      await page.locator("strata-question").getByRole("button", exact(w.cancel)).click();
+      await page.locator("strata-tour-stop-fields").getByRole("textbox", { name: w.tours.transition_takes }).fill("2");
+    } },
+    { name: "tour: a stop is tried", start: async () => {
+      await page.locator("strata-tour-stop-fields").getByRole("button", exact(w.tours.try_stop)).click();
+      await page.locator("strata-tour-trial section").waitFor();
+    }, end: async () => {
+      await button(w.tours.trial_end).click();
+      await page.locator("strata-tour-dialog").getByRole("button", exact(w.save)).click();
+      await wait_for(async () => (await dialog.count()) === 0, "the editor to close");
+    } },
+    { name: "tours", start: async () => {
+      await page.locator("strata-tour-list").getByRole("listitem").waitFor();
+      await page.locator("strata-tour-list").evaluate((list) => list.scrollIntoView());
+    }, end: async () => {
+      for (const { id } of (await server.json("GET", `/models/${site.model}/tours`)).tours) await server.request("DELETE", `/models/${site.model}/tours/${id}`);
+    } },
     { name: "view with a section of its own", start: async () => {
       const [view] = (await server.json("GET", `/models/${site.model}/views`)).views;
       await server.json("PATCH", `/models/${site.model}/views/${view.id}`, { camera: { ...view.camera, section: [[0.6, 0.6, 0.5, 0]] } });

@@ -6,7 +6,7 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
 import { ApiError, type Api } from "../core/api";
 import { label_of } from "../core/cells";
-import type { Project } from "../core/protocol.gen";
+import type { Project, TourEntry } from "../core/protocol.gen";
 import type { Column, Layer, Me, Model, Role } from "../core/types";
 import { kPaintingTools } from "../tools/tool";
 import "./account-menu";
@@ -58,6 +58,8 @@ import "./together-bar";
 import "./tool-rail";
 import "./tour";
 import type { StrataTour } from "./tour";
+import "./tour-dialog";
+import type { TourRequest } from "./tour-list";
 import "./transfer-dialog";
 import "./value-readout";
 import "./view-dialog";
@@ -67,6 +69,7 @@ import "./where-dialog";
 
 type OpenDialog = LayerPanelRequest | TablePanelRequest | ViewRequest | WhereRequest | { dialog: "scale" | "help" | "about" | "orthophoto" } | null;
 
+const kNarrow = 820; // pixels of a window where the panel lies over the model
 const kPanelWidth = { least: 270, first: 330, most: 620 };
 const kPanelKey = "strata.panel_width";
 const kTableHeight = { least: 120, first: 280 };
@@ -81,10 +84,11 @@ export class StrataModelPage extends LitElement {
   /** All that this person sees. */
   @property({ attribute: false }) projects: readonly Project[] = [];
   @state() private dialog_: OpenDialog = null;
+  @state() private tour_editor_: { tour: TourEntry | null } | null = null; // beside dialogs: while a stop is tried, views may be kept
   @state() private missing_: { heading: string; lead: string } | null = null;
   @state() private panel_width_ = Number(localStorage.getItem(kPanelKey)) || kPanelWidth.first;
   @state() private table_height_ = Number(localStorage.getItem(kTableKey)) || kTableHeight.first;
-  @state() private panel_shown_ = window.innerWidth > 820;
+  @state() private panel_shown_ = window.innerWidth > kNarrow;
   @query("strata-stage") private stage_!: StrataStage | null;
   @query("strata-tour") private tour_!: StrataTour | null;
   private session_: ModelSession | null = null;
@@ -119,7 +123,7 @@ export class StrataModelPage extends LitElement {
     if (!changed.has("model_id")) return;
     this.session_?.close();
     this.session_ = new ModelSession(this.api, this.model_id);
-    this.missing_ = null;
+    this.missing_ = this.tour_editor_ = null;
     this.asked_scale_ = false;
     this.read_address();
     void this.open(this.session_);
@@ -128,7 +132,7 @@ export class StrataModelPage extends LitElement {
   override updated(): void {
     this.tour_?.requestUpdate(); // what it speaks of may be elsewhere now
     const session = this.session_;
-    const narrow = matchMedia("(max-width: 820px)").matches;
+    const narrow = matchMedia(`(max-width: ${kNarrow}px)`).matches;
     if (session?.tables.view) this.lift_notices(narrow ? "52dvh" : `${this.table_height_}px`);
     else this.lift_notices(narrow && session && session.comments.card !== null ? "calc(48dvh - 56px)" : null); // its sheet lies over the tools
   }
@@ -220,7 +224,7 @@ export class StrataModelPage extends LitElement {
         ${styled({ "--panel": `${this.panel_width_}px`, "--table": `${this.table_height_}px` })}
         @click=${{ handleEvent: give_back_keyboard, capture: true }}
       >
-        <strata-tour .session=${session} .held=${this.dialog_ !== null}></strata-tour>
+        <strata-tour .session=${session} .held=${this.dialog_ !== null || this.tour_editor_ !== null}></strata-tour>
         ${this.header(session)}
         <strata-tool-rail role="toolbar" aria-label=${texts.model.tools} .session=${session}></strata-tool-rail>
         <main>
@@ -242,7 +246,20 @@ export class StrataModelPage extends LitElement {
         </main>
         ${session.tables.view ? this.table(session, session.tables.view) : nothing} ${this.panel_shown_ ? this.panel(session) : nothing}
       </div>
-      ${this.dialog(session)}`;
+      ${this.dialog(session)}
+      ${this.tour_editor_
+        ? html`<strata-tour-dialog .session=${session} .tour=${this.tour_editor_.tour} @try=${this.on_try} @closed=${() => (this.tour_editor_ = null)}></strata-tour-dialog>`
+        : nothing}`;
+  }
+
+  /** A stop of a tour is looked at: a narrow window has no room for the panel as well. */
+  private on_try(): void {
+    if (window.innerWidth <= kNarrow) this.panel_shown_ = false;
+  }
+
+  private on_view_request(request: ViewRequest | TourRequest): void {
+    if (request.dialog === "tour") this.tour_editor_ ??= { tour: request.tour };
+    else this.dialog_ = request;
   }
 
   private header(session: ModelSession): TemplateResult {
@@ -353,7 +370,7 @@ export class StrataModelPage extends LitElement {
           <strata-view-panel
             .session=${session}
             @orthophoto=${() => (this.dialog_ = { dialog: "orthophoto" })}
-            @request=${(event: CustomEvent<ViewRequest>) => (this.dialog_ = event.detail)}
+            @request=${(event: CustomEvent<ViewRequest | TourRequest>) => this.on_view_request(event.detail)}
           ></strata-view-panel>
         </section>
       </div>

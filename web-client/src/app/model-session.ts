@@ -1,7 +1,8 @@
 // One open model on this page: its life, and the messages between its parts. `view` is the camera, `layers` what is painted on,
 // `tables` the records that layers hold the keys of, `comments` what people wrote on the surface, `hovered` the one that the mouse rests
 // on, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits, `together` who
-// else is here and whose view this is, `cursors` where they point, `views` what was kept to come back to, `measuring` what is measured. Elements subscribe and draw themselves from their state; they change it
+// else is here and whose view this is, `cursors` where they point, `views` what was kept to come back to, `tours` what
+// curators make of views, `measuring` what is measured. Elements subscribe and draw themselves from their state; they change it
 // only through their methods.
 
 import { Api, ApiError, type Versioned } from "../core/api";
@@ -40,6 +41,7 @@ import { Tables } from "./tables";
 import { texts } from "./texts";
 import { Together, type Shown } from "./together";
 import { ToolShapes } from "./tool-shapes";
+import { Tours } from "./tours";
 import { ViewControl, wants_less_motion } from "./view-control";
 import { Views } from "./views";
 
@@ -71,6 +73,7 @@ export class ModelSession {
   readonly together: Together;
   readonly cursors: PeopleCursors;
   readonly views: Views;
+  readonly tours: Tours;
   readonly tools: ToolManager;
   /** Set by the stage. */
   on_frame: (part: FrameMessage) => void = () => {};
@@ -221,6 +224,7 @@ export class ModelSession {
       can_curate: () => this.can_curate,
       changed,
     });
+    this.tours = new Tours(api, model_id, changed);
     this.tools = this.make_tools();
   }
 

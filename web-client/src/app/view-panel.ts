@@ -11,6 +11,8 @@ import "./light-pad";
 import "./look-list";
 import { radio_group } from "./radio-group";
 import { texts } from "./texts";
+import "./tour-list";
+import type { TourRequest } from "./tour-list";
 import type { ViewRequest } from "./view-list";
 import "./view-list";
 
@@ -86,7 +88,7 @@ export class StrataViewPanel extends FoldingPanel {
   }
 
   protected content(): TemplateResult[] {
-    return [this.views(), this.looks(), this.light(), this.section()];
+    return [this.views(), ...(this.session.can_curate ? [this.tours()] : []), this.looks(), this.light(), this.section()];
   }
 
   private views(): TemplateResult {
@@ -94,6 +96,13 @@ export class StrataViewPanel extends FoldingPanel {
       .session=${this.session}
       @request=${(event: CustomEvent<ViewRequest>) => this.dispatchEvent(new CustomEvent("request", { detail: event.detail }))}
     ></strata-view-list>`;
+  }
+
+  private tours(): TemplateResult {
+    return html`<strata-tour-list
+      .session=${this.session}
+      @request=${(event: CustomEvent<TourRequest>) => this.dispatchEvent(new CustomEvent("request", { detail: event.detail }))}
+    ></strata-tour-list>`;
   }
 
   private looks(): TemplateResult {

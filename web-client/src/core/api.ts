@@ -366,6 +366,24 @@ export class Api {
     return this.json("GET", "/kiosk");
   }
 
+  /** All tours of a model. */
+  async tours(model: Id): Promise<wire.TourEntry[]> {
+    return (await this.json<wire.TourList>("GET", `${tours_path(model)}?limit=1000`)).tours; // it has no more
+  }
+  async tour(model: Id, tour: Id): Promise<wire.Tour> {
+    return this.json("GET", tour_path(model, tour));
+  }
+  /** `key`: the same for each attempt at one tour. */
+  async create_tour(model: Id, tour: wire.TourCreate, key: string): Promise<wire.Tour> {
+    return this.parsed(await this.request("POST", tours_path(model), tour, { "Idempotency-Key": key }));
+  }
+  /** Where nobody changed it since `version`. */
+  async change_tour(model: Id, tour: Id, change: wire.TourPatch, version: number): Promise<wire.Tour> {
+    return (await this.versioned<wire.Tour>("PATCH", tour_path(model, tour), change, etag_of(version))).value;
+  }
+  async delete_tour(model: Id, tour: Id, version: number): Promise<void> {
+    await this.request("DELETE", tour_path(model, tour), undefined, { "If-Match": etag_of(version) });
+  }
   async tables(project: Id): Promise<wire.Table[]> {
     return (await this.json<wire.TableList>("GET", `${project_path(project)}/tables?limit=1000`)).tables;
   }
@@ -678,6 +696,9 @@ const comment_path = (id: number): string => `/comments/${id}`;
 
 const views_path = (model: Id): string => `/models/${encodeURIComponent(model)}/views`;
 const view_path = (model: Id, view: Id): string => `${views_path(model)}/${encodeURIComponent(view)}`;
+
+const tours_path = (model: Id): string => `/models/${encodeURIComponent(model)}/tours`;
+const tour_path = (model: Id, tour: Id): string => `${tours_path(model)}/${encodeURIComponent(tour)}`;
 
 const etag_of = (version: number): string => `"v${version}"`;
 

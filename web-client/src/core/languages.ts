@@ -1,5 +1,6 @@
 // Languages by their tags (BCP 47), and names of things in several of them.
 
+import { page_locale } from "./locale";
 import type { Labels } from "./protocol.gen";
 
 /** Those that are offered; any other tag may be written. */
@@ -23,6 +24,12 @@ export function name_of_language(tag: string): string {
   if (!locale) return "";
   return new Intl.DisplayNames([locale], { type: "language", fallback: "none" }).of(locale) ?? "";
 }
+
+/** What this person's page calls it: "Spanish"; the tag itself where that is not known. */
+export const language_in_words = (tag: string): string => {
+  const locale = well_written_tag(tag);
+  return locale ? (new Intl.DisplayNames([page_locale()], { type: "language" }).of(locale) ?? tag) : tag;
+};
 
 export interface LabelRow {
   language: string; // as it was written

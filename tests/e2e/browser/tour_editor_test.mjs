@@ -1,0 +1,299 @@
+// Tours on the page: made of kept views, translated, put in another order, tried on the model; what somebody else saved meanwhile, and what the server refuses,
+// is told where it belongs and loses nothing. On a phone, too. Who does not curate is offered none of it.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kBase = "/models/demo-pot";
+const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+const kExpected = ["status of 412", "status of 422", "status of 404"]; // answers that the test wants
+
+const [ada, bea, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ ...kPhone, colorScheme: "dark" })];
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const shot = async ({ page }, name) => {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `tours_${name}.png`) });
+};
+const exact = (name) => ({ name, exact: true });
+const list = ({ page }) => page.locator("strata-tour-list");
+const row = (who, name) => list(who).locator("li", { hasText: name });
+const editor = ({ page }) => page.locator("strata-tour-dialog");
+const stops = (who) => editor(who).locator("strata-tour-stops");
+const fields = (who) => editor(who).locator("strata-tour-stop-fields");
+const trial = (who) => editor(who).locator("strata-tour-trial");
+const button = (where, name) => where.getByRole("button", exact(name));
+const gone = (locator) => locator.waitFor({ state: "detached" });
+const titles = async (who) => (await stops(who).locator("li b").allTextContents()).map((text) => text.trim());
+const tours = async () => (await server.json("GET", `${kBase}/tours`)).tours;
+const tour = (slug) => server.json("GET", `${kBase}/tours/${slug}`);
+const choose_stop = (who, title) => stops(who).locator("button.stop", { hasText: title }).click();
+const of_stop = async (who, title, item) => {
+  await stops(who).getByRole("button", exact(`Options for ${title}`)).click();
+  await stops(who).getByRole("menuitem", exact(item)).click();
+};
+const from_menu = async (who, name, item) => {
+  await row(who, name).getByRole("button", exact(`Options for ${name}`)).click();
+  await row(who, name).getByRole("menuitem", exact(item)).click();
+};
+const save = (who) => button(editor(who), "Save").click();
+const refused = (who, text) => editor(who).getByRole("alert").getByText(text).waitFor();
+const question = ({ page }) => page.locator("strata-question");
+
+async function open_panel(who) {
+  await who.page.goto(`${server.url}/models/${id}`);
+  await who.drawn();
+  if (who === phone) await who.page.getByRole("button", { name: "Show the panel" }).click();
+  await who.page.locator("strata-view-panel").getByRole("button", exact("View")).click();
+  await who.page.locator("strata-view-list").waitFor();
+}
+async function keep_view(who, name, keys) {
+  await who.page.locator("strata-stage .surface").focus();
+  for (const key of keys) await who.page.keyboard.press(key);
+  await button(who.page.locator("strata-view-list"), "Keep this view…").click();
+  const dialog = who.page.locator("strata-view-dialog");
+  await dialog.getByLabel("Name").fill(name);
+  await button(dialog, "Keep").click();
+  await gone(dialog);
+}
+let id;
+
+try {
+  await server.start();
+  id = (await server.json("PATCH", kBase, { scale_verified: true })).id; // or curators are asked for it
+  const layers = (await server.json("GET", `${kBase}/layers`)).layers;
+  const { project } = await server.json("GET", kBase);
+  const columns = [{ name: "Name", kind: "text", required: true }, { name: "State", kind: "text" }];
+  const pieces = await server.json("POST", `/projects/${project}/tables`, { name: "Pieces", columns });
+  for (const name of ["Handle", "Rim"]) await server.json("POST", `/tables/${pieces.id}/records`, { values: { name, state: "whole" } });
+  await ada.sign_in(server, await server.add_person("ada", "curator"));
+  await bea.sign_in(server, await server.add_person("bea", "annotator"));
+  await phone.sign_in(server, await server.add_person("cleo", "curator"));
+
+  say("a tour needs views, and says how they are had");
+  await open_panel(ada);
+  await list(ada).getByText(/^None is made yet/).waitFor();
+  await button(list(ada), "New tour…").click();
+  await editor(ada).getByText(/^No view is kept yet/).waitFor();
+  await shot(ada, "no_views");
+  await button(editor(ada), "Cancel").click(); // nothing was written: nothing is asked
+  await gone(editor(ada));
+  await keep_view(ada, "West wall", ["4"]);
+  await keep_view(ada, "From above", ["7"]);
+  await keep_view(ada, "The handle", ["1", "ArrowLeft"]);
+
+  say("it is made of views, and what it lacks is told at its field");
+  await button(list(ada), "New tour…").click();
+  await button(stops(ada), "Add a stop").waitFor();
+  await save(ada);
+  await refused(ada, "Give it a name.");
+  await editor(ada).getByLabel("Name", { exact: true }).fill("Around the pot");
+  await save(ada);
+  await refused(ada, /^Add a stop/);
+  for (const [index, name] of ["West wall", "From above", "The handle"].entries()) {
+    await button(stops(ada), "Add a stop").click();
+    await stops(ada).locator("li b").nth(index).getByText(`${index + 1}. ${name}`).waitFor();
+  }
+  await fields(ada).getByLabel("Title", { exact: true }).fill("");
+  await save(ada);
+  await refused(ada, "Give the stop a title in the first language.");
+  await wait_for(() => fields(ada).getByLabel("Title", { exact: true }).evaluate((input) => input.getRootNode().activeElement === input), "the title to have the focus");
+  await fields(ada).getByLabel("Title", { exact: true }).fill("The handle");
+  await fields(ada).getByLabel("Text", { exact: true }).fill("Made apart, and set on when the wall was dry.");
+  await fields(ada).getByLabel("Shown while it plays by itself").fill("0");
+  await save(ada);
+  await refused(ada, "Seconds from 1 to 600.");
+  await shot(ada, "refused");
+  await fields(ada).getByLabel("Shown while it plays by itself").fill("12.5");
+  await editor(ada).getByLabel("Without a touch it begins anew after").fill("90");
+
+  say("layers and records are chosen in an order, with columns that are called otherwise");
+  await fields(ada).getByRole("combobox", exact("Add a layer")).selectOption({ label: layers[0].name });
+  await button(fields(ada), "Add a layer").click();
+  await button(fields(ada), "Add a layer").click();
+  await fields(ada).getByRole("list", exact("Layers to swipe between")).getByRole("button", { name: /^Move .* up$/ }).last().click();
+  await button(fields(ada), "Add a table").click();
+  await fields(ada).getByRole("combobox", exact("Records of Pieces")).fill("Rim");
+  await fields(ada).getByRole("option", { name: "Rim" }).click();
+  await ada.page.keyboard.press("Tab");
+  await fields(ada).getByRole("combobox", exact("Add a column")).selectOption({ label: "State" });
+  await button(fields(ada), "Add a column").click();
+  await fields(ada).getByLabel(/^What State is called on the card/).fill("Condition");
+  await shot(ada, "things");
+  await save(ada);
+  await gone(editor(ada));
+  await row(ada, "Around the pot").getByText("3 stops · en").waitFor();
+  const made = await tour("around-the-pot");
+  assert.deepEqual([made.languages, made.idle_s, made.stops.map(({ view }) => view)], [["en"], 90, ["west-wall", "from-above", "the-handle"]]);
+  const last = made.stops[2];
+  assert.equal(last.attract_s, 12.5);
+  assert.equal(last.layers.length, 2);
+  assert.equal(last.layers[1], layers[0].slug);
+  assert.deepEqual(last.records, [{ table: "pieces", keys: [2], columns: [{ column: "state", labels: { en: "Condition" } }] }]);
+
+  say("stops are put in another order, taken out and brought back");
+  await row(ada, "Around the pot").locator("button.open").click();
+  await stops(ada).locator("li").nth(2).waitFor();
+  await of_stop(ada, "The handle", "Move up");
+  assert.deepEqual(await titles(ada), ["1. West wall", "2. The handle", "3. From above"]);
+  await stops(ada).locator("li .grip").nth(2).dragTo(stops(ada).locator("li").nth(0), { targetPosition: { x: 60, y: 6 } });
+  assert.deepEqual(await titles(ada), ["1. From above", "2. West wall", "3. The handle"]);
+  await of_stop(ada, "West wall", "Remove the stop");
+  assert.deepEqual(await titles(ada), ["1. From above", "2. The handle"]);
+  await stops(ada).getByText("“West wall” is removed.").waitFor();
+  await shot(ada, "removed");
+  await button(stops(ada), "Undo").click();
+  assert.deepEqual(await titles(ada), ["1. From above", "2. West wall", "3. The handle"]);
+
+  say("it is translated, and what lacks is marked");
+  await editor(ada).getByRole("combobox", exact("Add a language")).selectOption({ label: "Spanish" });
+  await button(editor(ada).locator("strata-tour-languages"), "Add a language").click();
+  await stops(ada).locator("li", { hasText: "From above" }).getByText("Not complete in: Spanish").waitFor();
+  await choose_stop(ada, "The handle");
+  await fields(ada).getByLabel("Title, Spanish").fill("El asa");
+  await fields(ada).getByText("Not complete in this language").waitFor(); // the text
+  await fields(ada).getByLabel("Text, Spanish").fill("Hecha aparte.");
+  await gone(stops(ada).locator("li", { hasText: "The handle" }).getByText("Not complete in: Spanish"));
+  await fields(ada).getByLabel("What State is called on the card, Spanish").fill("Estado");
+  await editor(ada).getByRole("combobox", exact("Add a language")).selectOption({ label: "German" });
+  await button(editor(ada).locator("strata-tour-languages"), "Add a language").click();
+  await fields(ada).getByLabel("Title, German").fill("Der Henkel");
+  await fields(ada).getByRole("radio", { name: "Spanish" }).click();
+  assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+  await shot(ada, "translated");
+  for (const [width, height, name] of [[820, 1180, "tablet"], [390, 844, "narrow"]]) {
+    await ada.page.setViewportSize({ width, height });
+    await shot(ada, name);
+  }
+  await ada.page.setViewportSize({ width: 1280, height: 800 });
+  await button(editor(ada), "Remove German").click();
+  await button(question(ada), "Cancel").click();
+  assert.equal(await fields(ada).getByRole("radio").count() > 0, true);
+  await button(editor(ada), "Remove German").click();
+  await button(question(ada), "Remove").click();
+  await gone(button(editor(ada), "Remove German"));
+
+  say("a stop is tried on the model, and the editor comes back as it was left");
+  await button(fields(ada), "Try the stop").click();
+  await trial(ada).getByText("Made apart, and set on when the wall was dry.").waitFor();
+  await wait_for(async () => (await ada.page.locator('strata-view-list button.go[aria-current="true"]').textContent().catch(() => "")).includes("The handle"), "the stop's view", 400);
+  await shot(ada, "trial");
+  await button(trial(ada), "Stop before").click();
+  await trial(ada).getByText("2. West wall").waitFor();
+  await ada.page.keyboard.press("Escape");
+  await choose_stop(ada, "The handle");
+  assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+
+  say("closing with changes asks, by Escape, too, and again");
+  await ada.page.keyboard.press("Escape");
+  await shot(ada, "leave");
+  await button(question(ada), "Cancel").click();
+  await gone(question(ada));
+  await button(editor(ada), "Close").click();
+  await ada.page.keyboard.press("Escape"); // answers no
+  await gone(question(ada));
+  assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+
+  say("what somebody else saved meanwhile is told, and nothing is lost");
+  await server.json("PATCH", `${kBase}/tours/around-the-pot`, { name: "Twice around" });
+  await save(ada);
+  await refused(ada, /^Somebody changed this tour meanwhile/);
+  await shot(ada, "conflict");
+  assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+  await save(ada);
+  await gone(editor(ada));
+  const again = await tour("around-the-pot");
+  assert.deepEqual([again.name, again.languages, again.stops.map(({ view }) => view)], ["Around the pot", ["en", "es"], ["from-above", "west-wall", "the-handle"]]);
+  assert.deepEqual(again.stops[2].title, { en: "The handle", es: "El asa" });
+  assert.deepEqual(again.stops[2].records[0].columns, [{ column: "state", labels: { en: "Condition", es: "Estado" } }]);
+
+  say("what the server refuses is said at its field of the right stop");
+  await row(ada, "Around the pot").locator("button.open").click();
+  await choose_stop(ada, "From above");
+  await fields(ada).getByLabel("Title, English").fill("Above");
+  await ada.page.route(`**/tours/${again.id}`, async (route) => {
+    if (route.request().method() !== "PATCH") return route.continue();
+    const body = JSON.parse(route.request().postData());
+    body.stops[2].layers.push("ghost"); // a layer that somebody deleted just now
+    return route.continue({ postData: JSON.stringify(body) });
+  });
+  await save(ada);
+  await wait_for(async () => (await fields(ada).getByLabel("Title, English").inputValue()) === "The handle", "the stop that was refused");
+  await fields(ada).getByRole("alert").waitFor();
+  await shot(ada, "server_refusal");
+  await ada.page.unroute(`**/tours/${again.id}`);
+  await ada.page.route(`**/tours/${again.id}`, async (route) => {
+    if (route.request().method() !== "PATCH") return route.continue();
+    const body = JSON.parse(route.request().postData());
+    body.stops[1].title.es = "x".repeat(201);
+    return route.continue({ postData: JSON.stringify(body) });
+  });
+  await save(ada);
+  await wait_for(async () => (await fields(ada).getByLabel("Title, Spanish").getAttribute("aria-invalid")) === "true", "the title in Spanish to be refused");
+  assert.equal(await fields(ada).getByLabel("Title, English").inputValue(), "West wall");
+  await ada.page.unroute(`**/tours/${again.id}`);
+
+  say("a stop whose view is gone is marked, and says what to do");
+  const views = (await server.json("GET", `${kBase}/views`)).views;
+  await server.request("DELETE", `${kBase}/views/${views.find(({ slug }) => slug === "west-wall").id}`);
+  await stops(ada).locator("li", { hasText: "West wall" }).getByText("Its view was deleted").waitFor();
+  await fields(ada).getByText(/^The view of this stop was deleted/).waitFor();
+  await shot(ada, "view_gone");
+  await fields(ada).getByRole("combobox", exact("View")).selectOption({ label: "From above" });
+  await save(ada);
+  await gone(editor(ada));
+  assert.deepEqual((await tour("around-the-pot")).stops.map(({ view }) => view), ["from-above", "from-above", "the-handle"]);
+
+  say("on a phone a stop has the window to itself");
+  await open_panel(phone);
+  await row(phone, "Around the pot").scrollIntoViewIfNeeded();
+  await shot(phone, "phone_list");
+  await row(phone, "Around the pot").locator("button.open").tap();
+  await stops(phone).locator("li").nth(2).waitFor();
+  await shot(phone, "phone_editor");
+  await stops(phone).locator("button.stop", { hasText: "The handle" }).tap();
+  await fields(phone).getByLabel("Title, Spanish").fill("El asa de la vasija");
+  assert.equal(await stops(phone).isVisible(), false);
+  await shot(phone, "phone_stop");
+  await button(fields(phone), "Try the stop").tap();
+  await shot(phone, "phone_trial");
+  await button(trial(phone), "Back to the tour").tap();
+  await button(editor(phone), "All stops").tap();
+  await stops(phone).locator("button.stop", { hasText: "Above" }).waitFor();
+  await save(phone);
+  await gone(editor(phone));
+  assert.equal((await tour("around-the-pot")).stops[2].title.es, "El asa de la vasija");
+
+  say("annotators are offered none of it");
+  await open_panel(bea);
+  await bea.page.locator("strata-view-list button.go").first().waitFor();
+  assert.equal(await list(bea).count(), 0);
+
+  say("a tour that was deleted meanwhile is made anew");
+  await row(ada, "Around the pot").locator("button.open").click();
+  await editor(ada).getByLabel("Name", { exact: true }).fill("Once more");
+  await server.request("DELETE", `${kBase}/tours/around-the-pot`);
+  await save(ada);
+  await refused(ada, /^This tour was deleted meanwhile/);
+  await save(ada);
+  await gone(editor(ada));
+  assert.deepEqual((await tours()).map(({ name }) => name), ["Once more"]);
+  await from_menu(ada, "Once more", "Delete…");
+  await button(question(ada), "Delete").click();
+  await list(ada).getByText(/^None is made yet/).waitFor();
+  assert.deepEqual(await tours(), []);
+
+  say("the end");
+  for (const who of [ada, bea, phone]) who.assert_no_complaints(kExpected);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
+  for (const [name, who] of Object.entries({ ada, bea, phone })) await shot(who, `failed_${name}`).catch(() => {});
+  throw error;
+} finally {
+  for (const who of [ada, bea, phone]) await who.close();
+  await server.remove();
+}

@@ -1,0 +1,111 @@
+// <strata-tour-languages>: the languages of a tour, of which the first is that of who chooses none.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, query } from "lit/decorators.js";
+import { kCommonLanguages, language_in_words } from "../core/languages";
+import { compare_words } from "../core/locale";
+import { kMostLanguages } from "../core/tours";
+import { icon } from "./icons";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+const words = texts.tours;
+const offered = kCommonLanguages.map((tag) => ({ tag, name: language_in_words(tag) })).sort((a, b) => compare_words(a.name, b.name));
+
+@customElement("strata-tour-languages")
+export class StrataTourLanguages extends LitElement {
+  @property({ attribute: false }) languages: readonly string[] = [];
+  @query("select") private select_!: HTMLSelectElement | null;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: grid;
+        gap: 6px;
+      }
+      ul,
+      .add {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 6px;
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      li {
+        display: inline-flex;
+        align-items: center;
+        gap: 4px;
+        padding-left: 12px;
+        border-radius: 99px;
+        background: var(--accent-soft);
+        font-size: 0.9rem;
+      }
+      li:only-child {
+        padding: 6px 12px;
+      }
+      li small {
+        color: var(--ink-soft);
+      }
+      li button.icon {
+        width: 30px;
+        min-height: 30px;
+        border-radius: 50%;
+      }
+      .add select {
+        flex: 0 1 240px;
+        width: auto;
+        min-width: 0;
+      }
+      @media (pointer: coarse) {
+        li button.icon {
+          width: 40px;
+          min-height: 40px;
+        }
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { languages } = this;
+    const others = offered.filter(({ tag }) => !languages.includes(tag));
+    return html`<span class="caption" id="caption">${words.languages}</span>
+      <ul aria-labelledby="caption">
+        ${languages.map((tag, index) => this.chip(tag, index))}
+      </ul>
+      ${languages.length < kMostLanguages
+        ? html`<div class="add">
+            <select aria-label=${words.language_add}>
+              ${others.map(({ tag, name }) => html`<option value=${tag}>${name}</option>`)}
+            </select>
+            <button type="button" @click=${this.add}>${icon("plus")}${words.language_add}</button>
+          </div>`
+        : nothing}`;
+  }
+
+  private chip(tag: string, index: number): TemplateResult {
+    const name = language_in_words(tag);
+    if (this.languages.length === 1) return html`<li>${name}</li>`;
+    return html`<li>
+      ${name}
+      ${index === 0
+        ? html`<small>${words.first_language}</small>`
+        : html`<button type="button" class="icon quiet" aria-label=${words.make_first(name)} title=${words.make_first(name)} @click=${() => this.put([tag, ...this.languages.filter((each) => each !== tag)])}>
+            ${icon("up")}
+          </button>`}
+      <button type="button" class="icon quiet" aria-label=${words.language_remove(name)} title=${words.language_remove(name)} @click=${() => this.dispatchEvent(new CustomEvent<string>("remove", { detail: tag }))}>
+        ${icon("close")}
+      </button>
+    </li>`;
+  }
+
+  private add(): void {
+    const tag = this.select_?.value;
+    if (tag) this.put([...this.languages, tag]);
+  }
+
+  private put(languages: readonly string[]): void {
+    this.dispatchEvent(new CustomEvent<readonly string[]>("chosen", { detail: languages }));
+  }
+}
