@@ -1,8 +1,10 @@
 import fc from "fast-check";
 import { describe, expect, it } from "vitest";
 
+import { told_ago } from "../src/app/times";
 import { Tours } from "../src/app/tours";
 import { Api, ApiError } from "../src/core/api";
+import { kSilent_ms, state_of_kiosk } from "../src/core/kiosks";
 import type { Tour, TourEntry } from "../src/core/protocol.gen";
 import { body_of, differs, draft_of, empty_tour, is_about, language_of_field, moved, new_stop, place_of, problem_of, untranslated, without_language, writes_in } from "../src/core/tours"; // prettier-ignore
 import type { TourDraft } from "../src/core/tours";
@@ -166,5 +168,37 @@ describe("the tours of a model", () => {
     const { tours, told } = made_of(() => [500, { title: "No" }]);
     await tours.load();
     expect([tours.failed, tours.loaded, tours.all, told()]).toEqual([true, false, [], 1]);
+  });
+});
+
+describe("a kiosk's link", () => {
+  const now = new Date("2026-05-04T12:00:00Z");
+  const ago = (ms: number): string => new Date(now.getTime() - ms).toISOString();
+  it("is told to be what it is", () => {
+    expect(state_of_kiosk({}, now)).toBe("unopened");
+    expect(state_of_kiosk({ last_seen: ago(kSilent_ms) }, now)).toBe("running");
+    expect(state_of_kiosk({ last_seen: ago(kSilent_ms + 1) }, now)).toBe("silent");
+    expect(state_of_kiosk({ last_seen: ago(0), expires: ago(0) }, now)).toBe("expired");
+    expect(state_of_kiosk({ expires: ago(-1) }, now)).toBe("unopened");
+    expect(state_of_kiosk({ revoked: ago(5), expires: ago(9), last_seen: ago(0) }, now)).toBe("revoked");
+  });
+
+  it("was seen so long ago, in words", () => {
+    expect(told_ago(ago(30_000), now)).toBe("this minute");
+    expect(told_ago(ago(-30_000), now)).toBe("this minute"); // its clock and the server's differ
+    expect(told_ago(ago(5 * 60_000), now)).toBe("5 minutes ago");
+    expect(told_ago(ago(3 * 3_600_000), now)).toBe("3 hours ago");
+    expect(told_ago(ago(50 * 3_600_000), now)).toMatch(/^2 May 2026, /);
+  });
+
+  it("is asked for without a key by which the server would keep the answer", async () => {
+    let keys: (string | undefined)[] = [];
+    const api = new Api(async (_, init) => {
+      keys = [...keys, (init!.headers as Record<string, string>)["Idempotency-Key"]];
+      return new Response("{}", { status: 201 });
+    });
+    await api.create_kiosk("pot", "round", { name: "Hall" });
+    await api.reload_kiosk(3);
+    expect([keys[0], typeof keys[1]]).toEqual([undefined, "string"]);
   });
 });

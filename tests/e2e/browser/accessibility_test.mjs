@@ -267,7 +267,21 @@ function screens_of({ page }, w, site) {
     { name: "tours", start: async () => {
       await page.locator("strata-tour-list").getByRole("listitem").waitFor();
       await page.locator("strata-tour-list").evaluate((list) => list.scrollIntoView());
+    } },
+    { name: "kiosk links of a tour", start: async () => {
+      await from_menu(w.layers.options("Once around the pot, and into it"), w.kiosks.of_tour)();
+      await button(w.kiosks.new).click();
+      await page.getByRole("textbox", exact(w.kiosks.name)).fill("Entrance hall, beside the ticket desk on the left");
+      await button(w.kiosks.make).click();
+      await page.locator("strata-kiosks-dialog strata-copy-field").waitFor();
+      await page.locator("strata-kiosks-dialog").getByRole("listitem").waitFor();
+    }, end: close_dialog, keyboard: true },
+    { name: "kiosks", start: async () => {
+      await account(w.kiosks.open)();
+      await page.locator("strata-kiosks-dialog").getByRole("listitem").first().waitFor();
     }, end: async () => {
+      await close_dialog();
+      for (const { id } of (await server.json("GET", "/kiosks")).kiosks) await server.request("DELETE", `/kiosks/${id}`);
       for (const { id } of (await server.json("GET", `/models/${site.model}/tours`)).tours) await server.request("DELETE", `/models/${site.model}/tours/${id}`);
     } },
     { name: "view with a section of its own", start: async () => {

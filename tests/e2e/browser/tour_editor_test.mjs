@@ -1,5 +1,5 @@
 // Tours on the page: made of kept views, translated, put in another order, tried on the model; what somebody else saved meanwhile, and what the server refuses,
-// is told where it belongs and loses nothing. On a phone, too. Who does not curate is offered none of it.
+// is told where it belongs and loses nothing. Links for kiosks: shown once, asked to reload, revoked. On a phone, too. Who does not curate is offered none of it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
@@ -24,6 +24,7 @@ const editor = ({ page }) => page.locator("strata-tour-dialog");
 const stops = (who) => editor(who).locator("strata-tour-stops");
 const fields = (who) => editor(who).locator("strata-tour-stop-fields");
 const trial = (who) => editor(who).locator("strata-tour-trial");
+const kiosks = ({ page }) => page.locator("strata-kiosks-dialog");
 const button = (where, name) => where.getByRole("button", exact(name));
 const gone = (locator) => locator.waitFor({ state: "detached" });
 const titles = async (who) => (await stops(who).locator("li b").allTextContents()).map((text) => text.trim());
@@ -246,6 +247,51 @@ try {
   await gone(editor(ada));
   assert.deepEqual((await tour("around-the-pot")).stops.map(({ view }) => view), ["from-above", "from-above", "the-handle"]);
 
+  say("a link for a kiosk is made, and shown once");
+  await from_menu(ada, "Around the pot", "Kiosk links…");
+  await kiosks(ada).getByText("There is no link for this tour yet.").waitFor();
+  await button(kiosks(ada), "New link").click();
+  await button(kiosks(ada), "Make link").click();
+  await kiosks(ada).getByText("Say where the screen stands.").waitFor();
+  await kiosks(ada).getByLabel("Where the screen stands").fill("Entrance hall");
+  await kiosks(ada).getByLabel("Good for").fill("4000");
+  await button(kiosks(ada), "Make link").click();
+  await kiosks(ada).getByText(/^A whole number of days/).waitFor();
+  await kiosks(ada).getByLabel("Good for").fill("30");
+  await button(kiosks(ada), "Make link").click();
+  const link = await kiosks(ada).getByLabel("Link for “Entrance hall”").inputValue();
+  assert.match(link, /^http:\/\/[^/]+\/kiosk\/.+$/);
+  await kiosks(ada).getByRole("listitem").getByText("not opened yet").waitFor();
+  await shot(ada, "kiosk_made");
+  await button(kiosks(ada), "Done").click();
+  assert.equal(await kiosks(ada).locator("strata-copy-field").count(), 0);
+  await ada.page.keyboard.press("Escape");
+  await gone(kiosks(ada));
+
+  say("who sees to kiosks finds all of them in their menu: seen, asked to reload, revoked");
+  const secret = link.split("/").pop();
+  const as_kiosk = (path, how = {}) => fetch(`${server.url}/api/v1${path}`, { ...how, headers: { Authorization: `Bearer ${secret}`, ...how.headers } });
+  assert.equal((await as_kiosk("/kiosk")).status, 200);
+  await button(ada.page, "Account of ada").click();
+  await ada.page.getByRole("menuitem", exact("Kiosks…")).click();
+  const entry = kiosks(ada).getByRole("listitem", exact("Entrance hall"));
+  await entry.getByText("running", { exact: true }).waitFor();
+  await entry.getByText("Around the pot").waitFor();
+  await button(entry, "Reload Entrance hall").click();
+  await entry.getByText("asked to reload").waitFor();
+  assert.equal((await (await as_kiosk("/kiosk")).json()).wants_reload, true);
+  await shot(ada, "kiosks");
+  await button(entry, "Revoke the link of Entrance hall").click();
+  await button(question(ada), "Cancel").click();
+  assert.equal((await as_kiosk("/kiosk")).status, 200);
+  await button(entry, "Revoke the link of Entrance hall").click();
+  await button(question(ada), "Revoke").click();
+  await entry.getByText("revoked", { exact: true }).waitFor();
+  assert.equal((await as_kiosk("/kiosk")).status, 401);
+  assert.equal(await entry.getByRole("button").count(), 0);
+  await shot(ada, "kiosk_revoked");
+  await ada.page.keyboard.press("Escape");
+
   say("on a phone a stop has the window to itself");
   await open_panel(phone);
   await row(phone, "Around the pot").scrollIntoViewIfNeeded();
@@ -265,11 +311,21 @@ try {
   await save(phone);
   await gone(editor(phone));
   assert.equal((await tour("around-the-pot")).stops[2].title.es, "El asa de la vasija");
+  await phone.page.getByRole("button", { name: "Show the panel" }).tap(); // it made way for the model
+  await row(phone, "Around the pot").scrollIntoViewIfNeeded();
+  await from_menu(phone, "Around the pot", "Kiosk links…");
+  await kiosks(phone).getByText("revoked", { exact: true }).waitFor();
+  await shot(phone, "phone_kiosks");
+  await phone.page.keyboard.press("Escape");
 
   say("annotators are offered none of it");
   await open_panel(bea);
   await bea.page.locator("strata-view-list button.go").first().waitFor();
   assert.equal(await list(bea).count(), 0);
+  await button(bea.page, "Account of bea").click();
+  await bea.page.getByRole("menuitem", exact("Account…")).waitFor();
+  assert.equal(await bea.page.getByRole("menuitem", exact("Kiosks…")).count(), 0);
+  await bea.page.keyboard.press("Escape");
 
   say("a tour that was deleted meanwhile is made anew");
   await row(ada, "Around the pot").locator("button.open").click();

@@ -9,7 +9,7 @@ import "./menu";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
-export type AccountRequest = "account" | "people" | "preferences" | "sign-out";
+export type AccountRequest = "account" | "people" | "kiosks" | "preferences" | "sign-out";
 
 /** To whatever element of the page takes it. */
 export const ask_account = (from: EventTarget, detail: AccountRequest): boolean =>
@@ -18,6 +18,8 @@ export const ask_account = (from: EventTarget, detail: AccountRequest): boolean 
 @customElement("strata-account-menu")
 export class StrataAccountMenu extends LitElement {
   @property({ attribute: false }) me!: Me;
+  /** They see to links for kiosks. */
+  @property({ type: Boolean }) kiosks = false;
 
   static override styles = [
     shared_styles,
@@ -62,6 +64,9 @@ export class StrataAccountMenu extends LitElement {
       <button class="quiet" role="menuitem" @click=${() => ask_account(this, "account")}>${icon("person")}${words.open}</button>
       ${may_administer(me.role)
         ? html`<button class="quiet" role="menuitem" @click=${() => ask_account(this, "people")}>${icon("people")}${words.people}</button>`
+        : nothing}
+      ${this.kiosks
+        ? html`<button class="quiet" role="menuitem" @click=${() => ask_account(this, "kiosks")}>${icon("picture")}${texts.kiosks.open}</button>`
         : nothing}
       <button class="quiet" role="menuitem" @click=${() => ask_account(this, "preferences")}>${icon("language")}${texts.settings.open}</button>
       <hr />

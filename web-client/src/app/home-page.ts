@@ -18,7 +18,7 @@ import "./menu";
 import { notices } from "./notices";
 import "./project-card";
 import { ask_project } from "./project-dialog";
-import { kDefaultProject, list_projects, type ListedProject } from "./project-list";
+import { kDefaultProject, list_projects, sees_to_kiosks, type ListedProject } from "./project-list";
 import { follow, path_of_model, path_of_project } from "./routes";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
@@ -132,7 +132,7 @@ export class StrataHomePage extends LitElement {
     return html`<header>
         <a class="brand" href="/" @click=${follow}>${logo()}<b>${texts.product}</b></a>
         <span class="grow tagline">${texts.tagline}</span>
-        <strata-account-menu .me=${this.me}></strata-account-menu>
+        <strata-account-menu .me=${this.me} .kiosks=${sees_to_kiosks(this.me, this.projects)}></strata-account-menu>
       </header>
       <main>
         ${this.me.has_password

@@ -26,6 +26,7 @@ import { ask, modal_is_open } from "./dialog";
 import { icon, logo } from "./icons";
 import { handle_key, is_for_field } from "./keyboard";
 import "./hover-card";
+import "./kiosks-dialog";
 import "./layer-dialog";
 import type { LayerPanelRequest } from "./layer-panel";
 import "./layer-panel";
@@ -38,7 +39,7 @@ import { notices } from "./notices";
 import "./record-card";
 import "./people-menu";
 import "./photos-dialog";
-import { is_one_of_several } from "./project-list";
+import { is_one_of_several, sees_to_kiosks } from "./project-list";
 import "./record-dialog";
 import { comment_of, follow, hash_of_comment, hash_of_view, path_of_project, put_hash, view_of } from "./routes";
 import "./scale-dialog";
@@ -67,7 +68,7 @@ import type { ViewRequest } from "./view-list";
 import "./view-panel";
 import "./where-dialog";
 
-type OpenDialog = LayerPanelRequest | TablePanelRequest | ViewRequest | WhereRequest | { dialog: "scale" | "help" | "about" | "orthophoto" } | null;
+type OpenDialog = LayerPanelRequest | TablePanelRequest | ViewRequest | WhereRequest | Extract<TourRequest, { dialog: "kiosks" }> | { dialog: "scale" | "help" | "about" | "orthophoto" } | null;
 
 const kNarrow = 820; // pixels of a window where the panel lies over the model
 const kPanelWidth = { least: 270, first: 330, most: 620 };
@@ -303,7 +304,7 @@ export class StrataModelPage extends LitElement {
           ? html`<span class="unread" role="img" aria-label=${texts.comments.unread(session.comments.unread_count)}></span>`
           : nothing}
       </button>
-      <strata-account-menu .me=${this.me}></strata-account-menu>
+      <strata-account-menu .me=${this.me} .kiosks=${sees_to_kiosks(this.me, this.projects)}></strata-account-menu>
     </header>`;
   }
 
@@ -465,6 +466,15 @@ export class StrataModelPage extends LitElement {
         ></strata-map-dialog>`;
       case "view":
         return html`<strata-view-dialog .session=${session} .view=${dialog.view} @closed=${closed}></strata-view-dialog>`;
+      case "kiosks":
+        return session.model
+          ? html`<strata-kiosks-dialog
+              .api=${session.api}
+              .tour=${{ project: session.model.project, model: session.model.slug, ...dialog.tour }}
+              @closed=${closed}
+              @signed-out=${() => this.dispatchEvent(new CustomEvent("signed-out"))}
+            ></strata-kiosks-dialog>`
+          : html``;
       case "orthophoto":
         return html`<strata-orthophoto-dialog .session=${session} @closed=${closed}></strata-orthophoto-dialog>`;
       case "scale":

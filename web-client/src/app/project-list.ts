@@ -2,7 +2,7 @@
 
 import { page_locale } from "../core/locale";
 import type { Project } from "../core/protocol.gen";
-import { may_curate, type Model } from "../core/types";
+import { may_administer, may_curate, type Me, type Model } from "../core/types";
 
 export const kDefaultProject = "default"; // every site has it
 
@@ -13,6 +13,9 @@ export interface ListedProject {
 
 /** Whether they may import scans there, and delete models. */
 export const curates = ({ role }: Project): boolean => role !== undefined && may_curate(role);
+
+/** Whether there may be links for kiosks that are theirs to revoke. */
+export const sees_to_kiosks = ({ role }: Pick<Me, "role">, projects: readonly Project[]): boolean => may_administer(role) || projects.some(curates);
 
 /** Those with models first, each part by name. The project that every site has is left out while it is empty and there are others. */
 export function list_projects(projects: readonly Project[], models: readonly Model[]): ListedProject[] {

@@ -16,6 +16,7 @@ import { icon } from "./icons";
 import { dropped_files, without_folders, type DroppedFile } from "./drop";
 import { choose_scans, Imports, type Scan } from "./imports";
 import "./join-page";
+import "./kiosks-dialog";
 import "./model-page";
 import { notices } from "./notices";
 import "./notices-view";
@@ -38,7 +39,7 @@ export class StrataApp extends LitElement {
   @state() private chosen_project_ = ""; // for imports
   @state() private session_: "unknown" | "signed-in" | "signed-out" | "unreachable" = "unknown";
   @state() private problem_ = "";
-  @state() private dialog_: "account" | "people" | "preferences" | null = null;
+  @state() private dialog_: "account" | "people" | "kiosks" | "preferences" | null = null;
   @state() private dropping_ = false;
   @state() private imported_ = 0;
   private drag_depth_ = 0;
@@ -243,6 +244,9 @@ export class StrataApp extends LitElement {
     }
     if (this.dialog_ === "people") {
       return html`<strata-people-dialog .api=${this.api_} .me=${me} @closed=${closed} @signed-out=${this.signed_out}></strata-people-dialog>`;
+    }
+    if (this.dialog_ === "kiosks") {
+      return html`<strata-kiosks-dialog .api=${this.api_} @closed=${closed} @signed-out=${this.signed_out}></strata-kiosks-dialog>`;
     }
     if (this.dialog_ === "preferences") return html`<strata-preferences-dialog @closed=${closed}></strata-preferences-dialog>`;
     return nothing;

@@ -16,6 +16,18 @@ export function told_day(iso: string, now = new Date()): string {
 /** "today, 14:05", "yesterday, 9:30" or "4 May 2026, 14:05". */
 export const told_time = (iso: string, now = new Date()): string => `${told_day(iso, now)}, ${time_of(new Date(iso))}`;
 
+const kAgo = [["minute", 60], ["hour", 24]] as const; // each with how many make the next
+
+/** "2 minutes ago", "3 hours ago", from a day on as told_time(). */
+export function told_ago(iso: string, now = new Date()): string {
+  let ago = Math.max(0, now.getTime() - new Date(iso).getTime()) / 60_000;
+  for (const [unit, most] of kAgo) {
+    if (ago < most) return new Intl.RelativeTimeFormat(page_locale(), { numeric: "auto" }).format(-Math.floor(ago), unit);
+    ago /= most;
+  }
+  return told_time(iso, now);
+}
+
 /** "14:05". */
 export const told_clock = (iso: string): string => time_of(new Date(iso));
 

@@ -14,11 +14,8 @@ import { list_head_styles } from "./panel-styles";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
-/** The tour's editor; without `tour`, of a new one. */
-export interface TourRequest {
-  dialog: "tour";
-  tour: TourEntry | null;
-}
+/** The tour's editor (without `tour`, of a new one), or its links for kiosks. */
+export type TourRequest = { dialog: "tour"; tour: TourEntry | null } | { dialog: "kiosks"; tour: TourEntry };
 
 const words = texts.tours;
 
@@ -98,6 +95,7 @@ export class StrataTourList extends LitElement {
       </button>
       <strata-menu label=${texts.layers.options(tour.name)}>
         <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "tour", tour })}>${icon("edit")}${words.edit}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "kiosks", tour })}>${icon("link")}${texts.kiosks.of_tour}</button>
         <hr />
         <button class="quiet" role="menuitem" @click=${() => void this.delete_tour(tour)}>${icon("trash")}${texts.layers.delete}</button>
       </strata-menu>

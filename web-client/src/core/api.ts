@@ -381,8 +381,29 @@ export class Api {
   async change_tour(model: Id, tour: Id, change: wire.TourPatch, version: number): Promise<wire.Tour> {
     return (await this.versioned<wire.Tour>("PATCH", tour_path(model, tour), change, etag_of(version))).value;
   }
+  /** With its links for kiosks. */
   async delete_tour(model: Id, tour: Id, version: number): Promise<void> {
     await this.request("DELETE", tour_path(model, tour), undefined, { "If-Match": etag_of(version) });
+  }
+  /** Those that this person may see to: administrators all, curators those of their projects. */
+  async kiosks(): Promise<wire.Kiosk[]> {
+    const kiosks: wire.Kiosk[] = [];
+    for (;;) {
+      const page = await this.json<wire.KioskList>("GET", `/kiosks?limit=1000&offset=${kiosks.length}`);
+      kiosks.push(...page.kiosks);
+      if (kiosks.length >= page.total || page.kiosks.length === 0) return kiosks;
+    }
+  }
+  /** The link is told this once. */
+  async create_kiosk(model: Id, tour: Id, kiosk: wire.KioskCreate): Promise<wire.KioskMade> {
+    return this.json("POST", `${tour_path(model, tour)}/kiosks`, kiosk);
+  }
+  async revoke_kiosk(kiosk: number): Promise<void> {
+    await this.request("DELETE", kiosk_path(kiosk));
+  }
+  /** Asks it to load its page anew, at its next heartbeat. */
+  async reload_kiosk(kiosk: number): Promise<wire.Kiosk> {
+    return this.json("POST", `${kiosk_path(kiosk)}/reload`);
   }
   async tables(project: Id): Promise<wire.Table[]> {
     return (await this.json<wire.TableList>("GET", `${project_path(project)}/tables?limit=1000`)).tables;
@@ -675,7 +696,7 @@ export class Api {
 }
 
 /** What is sent or answered there is not for the server to keep, as it does for an `Idempotency-Key`. */
-const kWithSecrets = /^\/(login|auth\/.+|invitations\/.+|me\/.+|users|users\/.+)$/;
+const kWithSecrets = /^\/(login|auth\/.+|invitations\/.+|me\/.+|users|users\/.+|models\/[^/]+\/tours\/[^/]+\/kiosks)$/;
 
 const kFile = { "Content-Type": "application/octet-stream" };
 
@@ -699,6 +720,7 @@ const view_path = (model: Id, view: Id): string => `${views_path(model)}/${encod
 
 const tours_path = (model: Id): string => `/models/${encodeURIComponent(model)}/tours`;
 const tour_path = (model: Id, tour: Id): string => `${tours_path(model)}/${encodeURIComponent(tour)}`;
+const kiosk_path = (kiosk: number): string => `/kiosks/${kiosk}`;
 
 const etag_of = (version: number): string => `"v${version}"`;
 
