@@ -188,7 +188,15 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   const Visibility before = layer->visibility;
   if (asked->visibility) layer->visibility = *asked->visibility;
   if (asked->order) layer->order = *asked->order;
+  const bool was_painted = !layer->formula;
   if (auto set = set_formula(**room, *asked, before, *layer); !set) return tl::unexpected(set.error());
+  if (was_painted && layer->formula) {
+    const auto queue = context.store.review_queue(layer->id, {}, 0, 0);
+    if (!queue) return tl::unexpected(queue.error());
+    if (queue->total > 0)
+      return fail(409, "Edits wait for review", "Accept or reject what waits on this layer before it is computed.",
+                  "expression");
+  }
   if (auto good = check_shows_nothing(context, *layer, (*room)->layers()); !good) return tl::unexpected(good.error());
   auto changed = (*room)->update_layer(std::move(*layer), first_answer<Layer>(request, answer));
   if (!changed) return tl::unexpected(changed.error());

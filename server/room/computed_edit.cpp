@@ -34,7 +34,8 @@ Result<TileChange> turn_in_tile(const store::Store::WrittenTiles& written, const
   });
   if (!walked) return tl::unexpected(walked.error());
   const TileMask provisional = resolver.provisional();
-  auto after = std::make_shared<const TileData>(std::move(resolver).finish());
+  TileData resolved = std::move(resolver).finish();
+  auto after = resolved == *before ? before : std::make_shared<const TileData>(std::move(resolved));
   return TileChange{written.tile, std::move(before), std::move(after), written.written, provisional};
 }
 

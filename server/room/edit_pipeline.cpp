@@ -318,7 +318,8 @@ void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item, Result<
   LayerState* layer = host_->find_layer(item->request.layer_id);
   if (!layer) return refuse(*item, {404, "No such layer", "The layer was deleted.", "layer"});
   std::vector<render::TileUpload> uploads;
-  for (const auto& change : computed->changes) uploads.push_back({change.address, change.after});
+  for (const auto& change : computed->changes)
+    if (change.after != change.before) uploads.push_back({change.address, change.after});
   busy_ = true;
   item->hold = layer->mirror->hold();
   parts_.renderer.write_tiles(layer->handles.content, std::move(uploads),
@@ -360,7 +361,7 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
       provisional[change.address] = with_provisional(marked, change);
       provisional_before[change.address] = std::move(marked);
     }
-    if (!paints(item.request) && *change.before == *change.after) continue;  // nothing moves
+    if (change.before == change.after) continue;  // nothing moves
     if (map) {
       const ChangeCount count = count_changes(change, *map);
       answer.texels_changed += count.texels;
@@ -432,14 +433,12 @@ void EditPipeline::put_provisional(LayerState& layer, const TileMap& tiles, std:
   const bool was_empty = layer.provisional->empty();
   layer.provisional->put(tiles, sequence);
   if (layer.provisional->empty() != was_empty) host_->styles_changed();
+  std::set<TileAddress> addresses = std::exchange(stale_marks_[layer.layer.id], {});
+  for (const auto& [address, tile] : tiles) addresses.insert(address);
   std::vector<render::TileUpload> uploads;
-  std::vector<TileAddress> addresses;
-  for (const auto& [address, tile] : tiles) {
-    uploads.push_back({address, tile});
-    addresses.push_back(address);
-  }
+  for (const TileAddress address : addresses) uploads.push_back({address, layer.provisional->tile(address)});
   const auto failed = [this, id = layer.layer.id, addresses = std::move(addresses)](const Result<void>& uploaded) {
-    if (!uploaded) stale_[id].insert(addresses.begin(), addresses.end());
+    if (!uploaded) stale_marks_[id].insert(addresses.begin(), addresses.end());
   };
   parts_.renderer.write_tiles(layer.handles.provisional, std::move(uploads), then(failed));
 }

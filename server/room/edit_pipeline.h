@@ -82,7 +82,10 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   // Starts nothing more, and tells the host as soon as nothing is under way: then the layers' handles and mirrors may be
   // changed. Journal entries may still be on their way, but none is taken back before `resume`.
   void pause();
-  void gpu_filled() { stale_.clear(); }  // while paused: from the mirrors
+  void gpu_filled() {  // while paused: from the mirrors
+    stale_.clear();
+    stale_marks_.clear();
+  }
   // While paused: the mirrors now hold what the journal has, up to `last_sequence`; the GPU has not got `tiles` of a layer yet.
   void journal_read(std::int64_t last_sequence);
   void gpu_lacks(std::int64_t layer_id, const std::vector<TileAddress>& tiles);
@@ -158,6 +161,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   std::deque<Pending> pending_;     // sequence order
   std::map<std::int64_t, std::set<TileAddress>>
       stale_;  // by layer: where the GPU may hold something else than the mirror
+  // The same of what waits for review. It is tried again with the next of the layer, and holds back no edit.
+  std::map<std::int64_t, std::set<TileAddress>> stale_marks_;
   boost::asio::steady_timer repair_timer_;
   bool repair_waits_ = false;  // for the timer
   // By layer: revisions since the last whole tile was stored, in this room.

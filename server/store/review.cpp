@@ -18,10 +18,14 @@ Result<ReviewQueue> Store::review_queue(std::int64_t layer_id, const std::option
       if (!user || *user == queue.people.back().user) queue.total += queue.people.back().strokes;
     }
     auto rows = connection.query(
-        "SELECT stroke, min(sequence), max(sequence), min(user_name), (array_agg(op ORDER BY sequence))[1], min(time), max(time), "
-        "sum((answer ->> 'texels_changed')::bigint)::bigint, sum((answer ->> 'area_m2')::double precision), "
-        "(array_agg(record ORDER BY sequence))[1] FROM edits WHERE layer_id = $1 AND review = 'pending' AND in_force "
-        "AND ($2::text IS NULL OR user_name = $2) GROUP BY stroke ORDER BY min(sequence) LIMIT $3 OFFSET $4",
+        // A stroke's id is its author's choice: two people's strokes are two. Records, which hold whole paths, are read of a page only.
+        "SELECT w.stroke, w.first, w.last, w.user_name, e.op, w.begun, w.time, w.texels, w.area, e.record FROM "
+        "(SELECT model_id, stroke, user_name, min(sequence) AS first, max(sequence) AS last, min(time) AS begun, "
+        "max(time) AS time, sum((answer ->> 'texels_changed')::bigint)::bigint AS texels, "
+        "sum((answer ->> 'area_m2')::double precision) AS area FROM edits WHERE layer_id = $1 AND review = 'pending' "
+        "AND in_force AND ($2::text IS NULL OR user_name = $2) GROUP BY model_id, stroke, user_name "
+        "ORDER BY min(sequence) LIMIT $3 OFFSET $4) w "
+        "JOIN edits e ON e.model_id = w.model_id AND e.sequence = w.first ORDER BY w.first",
         Params().integer(layer_id).optional_text(user).integer(std::max(limit, 0)).integer(std::max(offset, 0)));
     if (!rows) return tl::unexpected(rows.error());
     for (int i = 0; i < rows->rows(); ++i)
@@ -42,8 +46,10 @@ Result<std::vector<UnderReview>> Store::under_review(std::int64_t layer_id, Deci
         std::string("SELECT sequence, stroke, user_name FROM edits WHERE layer_id = $1 AND ") +
         (decision == Decision::reopen ? "((review = 'accepted' AND in_force) OR review = 'rejected')"
                                       : "review = 'pending' AND in_force") +
-        " AND ($2::text IS NULL OR user_name = $2) AND (cardinality($3) = 0 OR stroke IN "
-        "(SELECT stroke FROM edits WHERE layer_id = $1 AND sequence = any($3))) ORDER BY sequence";
+        // With the batches of the same stroke that stand alike: of one that was decided in parts, one decision is meant.
+        " AND ($2::text IS NULL OR user_name = $2) AND (cardinality($3) = 0 OR "
+        "(stroke, user_name, coalesce(reviewed_by, 0)) IN (SELECT stroke, user_name, coalesce(reviewed_by, 0) "
+        "FROM edits WHERE layer_id = $1 AND sequence = any($3))) ORDER BY sequence";
     auto rows = connection.query(sql.c_str(), Params().integer(layer_id).optional_text(which.user).array(named));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<UnderReview> found;

@@ -197,6 +197,31 @@ TEST_F(Reviews, a_batch_stands_for_its_stroke_and_what_does_not_wait_is_refused)
   EXPECT_TRUE(test::equal(tiles(), then));
 }
 
+TEST_F(Reviews, a_strokes_id_is_its_authors_and_each_decision_is_taken_back_by_itself) {
+  auto annas = dab(1, 300), bens = dab(2, 340, "ben");
+  std::get<room::StrokeEdit>(bens.edit).stroke = std::get<room::StrokeEdit>(annas.edit).stroke;
+  ASSERT_TRUE(send(annas));
+  ASSERT_TRUE(send(bens));
+  const auto queue = store_->review_queue(layer_.id, {}, 10, 0);
+  ASSERT_EQ(queue->strokes.size(), 2u);
+  EXPECT_EQ(queue->strokes[1].user, "ben");
+  EXPECT_EQ(queue->strokes[1].sequence, 2);
+  ASSERT_TRUE(send(review(Decision::accept, {{1}, {}})));
+  EXPECT_EQ(row(2).review, Review::pending) << "ben's edit under the id of anna's stroke";
+  ASSERT_TRUE(send(review(Decision::reject, {{2}, {}})));
+
+  auto begun = dab(3, 300), ended = dab(4, 340);
+  std::get<room::StrokeEdit>(ended.edit).stroke = std::get<room::StrokeEdit>(begun.edit).stroke;
+  std::get<room::StrokeEdit>(ended.edit).n = 1;
+  ASSERT_TRUE(send(begun));
+  ASSERT_TRUE(send(review(Decision::accept, {{5}, {}})));
+  ASSERT_TRUE(send(ended));
+  ASSERT_TRUE(send(review(Decision::reject, {{7}, {}})));
+  ASSERT_TRUE(send(review(Decision::reopen, {{7}, {}})));
+  EXPECT_EQ(row(7).review, Review::pending);
+  EXPECT_EQ(row(5).review, Review::accepted) << "it was decided by itself";
+}
+
 TEST_F(Reviews, what_waits_keeps_waiting_when_the_layer_asks_for_no_review_any_more) {
   ASSERT_TRUE(send(dab(1, 300)));
   layer_ = waits(layer_, false);
@@ -291,9 +316,13 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
         for (int texel = 0; texel < kTexelsPerTile; ++texel)
           if (written.test(texel)) tile->write(texel, stroke.value);
         content[address] = tile;
-        marks[address] = room::with_provisional(
-            marks[address],
-            {address, nullptr, nullptr, written, stroke.review == Review::pending ? written : TileMask{}});
+        auto mark = std::make_shared<TileData>(marks[address] ? *marks[address] : TileData(ValueType::u8));
+        for (int texel = 0; texel < kTexelsPerTile; ++texel)
+          if (written.test(texel) && stroke.review == Review::pending)
+            mark->write(texel, 1);
+          else if (written.test(texel))
+            mark->clear(texel);
+        marks[address] = mark;
       }
     }
     const auto drop_empty = [](TileMap& map) {

@@ -37,9 +37,9 @@ function make(role: "annotator" | "curator") {
   const sent: Review[] = [];
   let refusal: ApiError | null = null;
   const api = {
-    review_queue: (_: string, layer: number) => {
+    review_queue: (_: string, layer: number, __: number, user: string | null) => {
       asked.push(layer);
-      return Promise.resolve(queues.get(layer)!);
+      return Promise.resolve(queue_of(queues.get(layer)!.strokes.filter((each) => user === null || each.user === user)));
     },
     review: (_: string, layer: number, decision: Review) => {
       if (refusal) return Promise.reject(refusal);
@@ -71,11 +71,12 @@ describe("what waits for review", () => {
     const annotator = make("annotator");
     await annotator.reviews.load_all();
     expect(annotator.asked).toEqual([1]);
-    expect(annotator.reviews.count).toBe(2);
+    expect(annotator.reviews.count).toBe(1); // her own
     expect(annotator.reviews.waiting.map(({ layer }) => layer.id)).toEqual([1]);
     const curator = make("curator");
     await curator.reviews.load_all();
     expect(curator.asked).toEqual([1, 2]);
+    expect(curator.reviews.count).toBe(2);
   });
 
   it("is read once for what happens in one go", async () => {

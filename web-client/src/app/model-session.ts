@@ -261,7 +261,7 @@ export class ModelSession {
           this.pointer.ask_again();
         },
         saved: () => {
-          if (this.layers.selected?.review) this.reviews.outdated(this.layers.selected.id);
+          this.reviews.saved();
           this.tables.refresh_areas(); // with the areas that this person's own strokes leave
           this.activity.outdated();
         },

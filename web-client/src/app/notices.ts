@@ -36,7 +36,7 @@ class Notices {
 
   /** Returns its id. */
   show(kind: NoticeKind, title: string, detail = "", link: NoticeLink | null = null): number {
-    const same = this.notices_.find((notice) => notice.title === title && notice.detail === detail);
+    const same = this.notices_.find((notice) => notice.title === title && notice.detail === detail && !(notice.link && "act" in notice.link)); // what one may do stays
     if (same) this.dismiss(same.id);
     const notice = { id: this.next_id_++, kind, title, detail, link };
     this.notices_ = [...this.notices_, notice].slice(-kMostNotices);

@@ -104,9 +104,8 @@ export class StrataReviewPanel extends FoldingPanel {
   }
 
   private layer({ layer, queue }: Waiting): TemplateResult {
-    const { can_curate, user } = this.session;
-    const strokes = can_curate ? queue.strokes : queue.strokes.filter((stroke) => stroke.user === user);
-    const hidden = can_curate ? queue.total - queue.strokes.length : 0;
+    const { can_curate } = this.session;
+    const hidden = queue.total - queue.strokes.length;
     const all: Rejecting["what"] = { all: true };
     return html`<div class="layer">
         <h3>${layer.name}</h3>
@@ -128,7 +127,7 @@ export class StrataReviewPanel extends FoldingPanel {
         : nothing}
       <ul aria-label=${layer.name}>
         ${repeat(
-          strokes,
+          queue.strokes,
           ({ sequence }) => sequence,
           (stroke) => this.stroke(layer, stroke),
         )}
@@ -209,7 +208,9 @@ export class StrataReviewPanel extends FoldingPanel {
 
   private async decide(layer: Layer, decision: Review): Promise<void> {
     this.busy_ = true;
-    if (await this.session.reviews.decide(layer, decision)) this.give_up();
+    const done = await this.session.reviews.decide(layer, decision);
+    const { decision: _, reason: __, ...what } = decision;
+    if (done && decision.decision === "reject" && same(this.rejecting_, layer, what)) this.give_up();
     this.busy_ = false;
   }
 }

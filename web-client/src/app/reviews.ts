@@ -29,8 +29,8 @@ export interface Waiting {
 }
 
 export class Reviews {
-  failed = false;
-
+  private readonly failed_ = new Set<number>(); // layers of which it could not be read
+  private readonly told_ = new Set<number>(); // layers on which something waited, or was decided, since the page is open
   private readonly queues_ = new Map<number, ReviewQueue>(); // by layer
   private readonly outdated_ = new Set<number>();
   private timer_: ReturnType<typeof setTimeout> | null = null;
@@ -41,11 +41,14 @@ export class Reviews {
     private readonly host_: ReviewsHost,
   ) {}
 
+  get failed(): boolean {
+    return this.failed_.size > 0;
+  }
   /** Some layer asks for review, or something still waits. */
   get is_used(): boolean {
     return this.host_.layers.all.some((layer) => layer.review) || this.count > 0;
   }
-  /** Layers of which something waits. */
+  /** Layers of which something waits: for curators of anybody, for others of their own. */
   get waiting(): Waiting[] {
     return this.host_.layers.all.flatMap((layer) => {
       const queue = this.queues_.get(layer.id);
@@ -65,13 +68,19 @@ export class Reviews {
     void this.load_all();
   }
 
-  on_event({ layer_id, event, user, review }: LayerEvent): void {
+  on_event({ layer_id, event, user, review, provisional }: LayerEvent): void {
     if (event === "deleted") this.queues_.delete(layer_id);
     else this.outdated(layer_id);
+    if (review || provisional) this.told_.add(layer_id);
     const me = this.host_.me();
     const layer = this.host_.layers.find(layer_id);
     if (!review || !layer || user === undefined || user === me || !review.authors.includes(me)) return;
     notices.show(review.decision === "reject" ? "problem" : "info", words.told[review.decision](user, layer.name), review.reason ?? "");
+  }
+
+  /** This person changed something, somewhere. */
+  saved(): void {
+    for (const { id } of this.host_.layers.all) this.outdated(id);
   }
 
   /** Something changed there. */
@@ -94,7 +103,7 @@ export class Reviews {
 
   private async load(): Promise<void> {
     this.timer_ = null;
-    const layers = this.host_.can_paint() ? [...this.outdated_].filter((id) => this.host_.layers.find(id)?.review || this.waits_on(id)) : [];
+    const layers = this.host_.can_paint() ? [...this.outdated_].filter((id) => this.host_.layers.find(id)?.review || this.told_.has(id) || this.waits_on(id)) : [];
     this.outdated_.clear();
     await Promise.all(layers.map((id) => this.read(id)));
   }
@@ -104,12 +113,14 @@ export class Reviews {
 
   private async read(layer: number): Promise<void> {
     try {
-      this.queues_.set(layer, await this.api_.review_queue(this.model_id_, layer, kAtOnce));
-      this.failed = false;
+      const whose = this.host_.can_curate() ? null : this.host_.me();
+      this.queues_.set(layer, await this.api_.review_queue(this.model_id_, layer, kAtOnce, whose));
+      this.failed_.delete(layer);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
+      this.failed_.delete(layer);
       if (error.status === 404) this.queues_.delete(layer);
-      else this.failed = true;
+      else this.failed_.add(layer);
     }
     this.host_.changed();
   }
@@ -124,13 +135,17 @@ export class Reviews {
 
   /** True: it is decided, which the person can take back for a moment. Otherwise why not was told. */
   async decide(layer: Layer, decision: Review): Promise<boolean> {
-    const { strokes = [] } = this.queues_.get(layer.id) ?? {};
-    const about = strokes.filter(({ sequence, user }) => (decision.edits ? decision.edits.includes(sequence) : decision.user === undefined || decision.user === user));
+    const { strokes, total, people } = this.queues_.get(layer.id) ?? { strokes: [], total: 0, people: [] };
+    const is_about = ({ sequence, user }: WaitingStroke): boolean =>
+      decision.edits ? decision.edits.includes(sequence) : decision.user === undefined || decision.user === user;
+    const edits = strokes.filter(is_about).map(({ sequence }) => sequence);
+    const count = decision.edits ? edits.length : decision.user === undefined ? total : (people.find(({ user }) => user === decision.user)?.strokes ?? 0);
     const done = await this.send(layer, decision);
     if (!done) return false;
-    const edits = about.map(({ sequence }) => sequence);
+    // What is not listed cannot be named.
     const act = (): void => void this.send(layer, { decision: "reopen", edits });
-    notices.show("success", words.done[decision.decision as "accept" | "reject"](about.length), layer.name, edits.length > 0 ? { label: words.take_back, act } : null);
+    const take_back = edits.length === count && count > 0 ? { label: words.take_back, act } : null;
+    notices.show("success", words.done[decision.decision as "accept" | "reject"](count), layer.name, take_back);
     return true;
   }
 

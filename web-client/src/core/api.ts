@@ -330,9 +330,10 @@ export class Api {
   }
 
   /** All named views of a model. */
-  /** What of the layer waits for review, the oldest first. */
-  async review_queue(model: Id, layer: Id, limit: number): Promise<wire.ReviewQueue> {
-    return this.json("GET", `${layer_path(model, layer)}/review?limit=${limit}`);
+  /** What of the layer waits for review, of one person or (null) of all, the oldest first. */
+  async review_queue(model: Id, layer: Id, limit: number, user: string | null): Promise<wire.ReviewQueue> {
+    const of = user === null ? "" : `&user=${encodeURIComponent(user)}`;
+    return this.json("GET", `${layer_path(model, layer)}/review?limit=${limit}${of}`);
   }
   async review(model: Id, layer: Id, decision: wire.Review): Promise<wire.EditResult> {
     return this.json("POST", `${layer_path(model, layer)}/review`, decision);

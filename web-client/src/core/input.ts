@@ -126,7 +126,7 @@ export class StageInput {
   /** Where it is, and how strongly a pen is pressed on. */
   private pressed(event: PointerEvent): PointerSample {
     const at = this.to_window(this.css_position(event));
-    return event.pointerType === "pen" && event.pressure > 0 ? { ...at, pressure: event.pressure } : at;
+    return event.pointerType === "pen" ? { ...at, pressure: event.pressure } : at;
   }
 
   private on_down(event: PointerEvent): void {

@@ -15,6 +15,8 @@ export interface BrushHost {
   next_frame(callback: () => void): void;
 }
 
+const kWidthStep = 0.1; // of the radius
+
 export class BrushTool implements Tool {
   private stroke_: StrokeHandle | null = null;
   private waiting_: Point[] = [];
@@ -22,6 +24,7 @@ export class BrushTool implements Tool {
   private last_: Point | null = null; // the last point taken
   private newest_: Point | null = null; // where the pointer is
   private newest_width_ = 1;
+  private last_width_ = 1;
   private scheduled_ = false;
 
   constructor(
@@ -50,7 +53,8 @@ export class BrushTool implements Tool {
     const spacing = Math.max(0.5, this.host_.radius_px() * 0.1);
     for (const sample of samples) {
       this.see(sample);
-      if (Math.hypot(sample.x - this.last_[0], sample.y - this.last_[1]) >= spacing) this.take();
+      const pressed = Math.abs(this.newest_width_ - this.last_width_) >= kWidthStep; // in place, too
+      if (pressed || Math.hypot(sample.x - this.last_[0], sample.y - this.last_[1]) >= spacing) this.take();
     }
     this.schedule();
   }
@@ -64,6 +68,7 @@ export class BrushTool implements Tool {
     this.last_ = this.newest_;
     this.waiting_.push(this.last_);
     this.widths_.push(this.newest_width_);
+    this.last_width_ = this.newest_width_;
   }
 
   up(): void {
