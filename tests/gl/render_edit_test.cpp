@@ -46,6 +46,20 @@ TEST(Edit, a_swept_square_writes_the_texels_that_the_oracle_says) {
   expect_as_oracle(renderer, make_scene(bumpy_sphere(60), kResolution), stroke, {.at_least = 1000});
 }
 
+TEST(Edit, a_pens_widths_write_the_texels_that_the_oracle_says) {
+  TestRenderer renderer;
+  const auto scene = make_scene(bumpy_sphere(60), kResolution);
+  for (const auto shape : {ToolShape::disc, ToolShape::square})
+    for (const bool on_surface : {false, true}) {
+      auto stroke = dab(perspective_camera({0.4, -1.5, 2.4}, {0, 0, 0}, 1280, 720), 0, 0, 50);
+      stroke.path = {{400, 300}, {500, 330}, {600, 360}, {720, 420}};
+      stroke.widths = {0.1, 1, 0.4, 0.08};
+      stroke.shape = shape;
+      if (on_surface) stroke.radius_px = 0, stroke.radius_world = 0.12;
+      expect_as_oracle(renderer, scene, stroke, {.at_least = 800});
+    }
+}
+
 TEST(Edit, a_path_of_4096_points_writes_the_texels_that_the_oracle_says) {
   TestRenderer renderer;
   auto stroke = dab(orthographic_camera({0, 0, 3}, {0, 0, 0}, 640, 480, 0.7), 0, 0, 6);

@@ -64,7 +64,7 @@ TEST(Kernel, writes_the_texels_that_the_compute_pass_writes) {
     }
   }
   std::printf("kernel and compute: %ld texels written, %ld differ\n", written, differ);
-  EXPECT_GT(written, 500'000);
+  EXPECT_GT(written, 400'000);
   EXPECT_LE(differ * 20'000, written) << "each within rounding of a threshold; the oracle's tests hold either to that";
 }
 
