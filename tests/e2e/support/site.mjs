@@ -207,6 +207,16 @@ export class Site {
       await server.json("POST", "/models/wall-2/layers/undone/undo");
       await server.json("POST", "/tables/undone/undo");
     }
+    await server.json("POST", "/models/wall-2/layers", { name: "Reviewed", type: "u8", resolution: 2048, review: true });
+    const annotator = await server.add_person("rita", "annotator");
+    for (const value of [1, 2, 3, 4]) {
+      const waits = await fetch(`${server.url}/api/v1/models/wall-2/layers/reviewed/edits`, {
+        method: "POST",
+        headers: { "Content-Type": "application/json", Authorization: `Bearer ${annotator.token}` },
+        body: JSON.stringify({ op: "fill", mode: "where", where: `x < ${20 * value}`, value }),
+      });
+      if (!waits.ok) throw new Error(`an edit that waits for review: ${waits.status} ${await waits.text()}`);
+    }
   }
 
   /** One more of a kind, of its own, as a path names it. */

@@ -281,6 +281,20 @@ export const particulars = {
   change_table: scratch,
   undo_table: scratch,
   redo: { path: { model: one("wall-2"), layer: one("undone", "cracks") } },
+  list_review: { path: { model: one("wall-2"), layer: one("reviewed", "reviewed", "cracks") }, queries: one({}, { user: "rita" }) },
+  review_edits: {
+    path: { model: one("wall-2"), layer: one("reviewed", "reviewed", "reviewed", "cracks") },
+    ...json({
+      by_schema: {
+        Review: one(
+          { decision: "accept", user: "rita" },
+          { decision: "reject", all: true, reason: "Not a crack" },
+          { decision: "accept", user: "nobody" },
+          { decision: "reopen", edits: [1] },
+        ),
+      },
+    }),
+  },
   redo_table: { path: { table: one("undone", "scratch") } },
   compute_layer: { path: { model: one("wall"), layer: one("risk", "risk", "cracks") } },
   transfer_layers: { path: { model: one("wall-2") }, ...json({ by_name: { layers: one(["cracks"], ["moisture"], ["cracks", "units"]) } }) },
