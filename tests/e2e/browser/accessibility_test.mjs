@@ -383,6 +383,7 @@ function screens_of({ page }, w, site) {
     { name: "review", start: async () => {
       await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: true });
       await site.fill_as_bea("finds");
+      await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: true }); // of which the page hears when the edit is durable
       await page.getByRole("button", { name: w.review.title }).click();
       await page.locator("strata-review-panel").getByRole("button", exact(w.review.reject_all)).click();
       await page.locator("strata-review-panel textarea").waitFor();
