@@ -217,6 +217,7 @@ try {
   await click(190, 30);
   await desk.places(2);
   await page.keyboard.press("Enter");
+  await desk.panel.getByLabel("Shows").waitFor(); // with the profile, which the server answers
   assert.deepEqual(await desk.panel.getByLabel("Shows").locator("option").allInnerTexts(), ["Height (z)", "Moisture (%)"]);
   await desk.panel.getByLabel("Shows").selectOption("Moisture (%)");
   await wait_for(async () => {
