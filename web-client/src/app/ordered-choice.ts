@@ -1,9 +1,10 @@
 // <strata-ordered-choice>: some of several things, in an order of one's own. What more there is to say of each is given by its owner.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, query } from "lit/decorators.js";
+import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { moved } from "../core/tours";
+import { add_from, add_from_styles } from "./add-from";
 import { icon, type IconName } from "./icons";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -28,10 +29,10 @@ export class StrataOrderedChoice extends LitElement {
   @property({ attribute: false }) wrong: readonly string[] = [];
   /** Below the name of each that is chosen. */
   @property({ attribute: false }) more: ((value: string) => unknown) | null = null;
-  @query("select") private select_!: HTMLSelectElement | null;
 
   static override styles = [
     shared_styles,
+    add_from_styles,
     css`
       :host {
         display: grid;
@@ -88,16 +89,6 @@ export class StrataOrderedChoice extends LitElement {
         min-height: 34px;
         font-size: 0.88rem;
       }
-      .add {
-        display: flex;
-        flex-wrap: wrap;
-        gap: 6px 8px;
-      }
-      .add select {
-        flex: 1 1 190px;
-        width: auto;
-        min-width: 0;
-      }
       @media (pointer: coarse) {
         .buttons button.icon {
           width: 40px;
@@ -120,12 +111,7 @@ export class StrataOrderedChoice extends LitElement {
             )}
           </ol>`}
       ${others.length > 0 && chosen.length < this.most
-        ? html`<div class="add">
-            <select aria-label=${this.add_label}>
-              ${others.map(({ value, name }) => html`<option value=${value}>${name}</option>`)}
-            </select>
-            <button type="button" @click=${this.add}>${icon("plus")}${this.add_label}</button>
-          </div>`
+        ? add_from(this.add_label, others, (value) => this.put([...chosen, value]))
         : nothing}`;
   }
 
@@ -147,11 +133,6 @@ export class StrataOrderedChoice extends LitElement {
       </span>
       ${more ? html`<div class="more">${more}</div>` : nothing}
     </li>`;
-  }
-
-  private add(): void {
-    const value = this.select_?.value;
-    if (value) this.put([...this.chosen, value]);
   }
 
   private put(chosen: readonly string[]): void {

@@ -1,31 +1,31 @@
 // <strata-tour-languages>: the languages of a tour, of which the first is that of who chooses none.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, query } from "lit/decorators.js";
+import { customElement, property } from "lit/decorators.js";
 import { kCommonLanguages, language_in_words } from "../core/languages";
 import { compare_words } from "../core/locale";
 import { kMostLanguages } from "../core/tours";
+import { add_from, add_from_styles } from "./add-from";
 import { icon } from "./icons";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
 const words = texts.tours;
-const offered = kCommonLanguages.map((tag) => ({ tag, name: language_in_words(tag) })).sort((a, b) => compare_words(a.name, b.name));
+const offered = kCommonLanguages.map((tag) => ({ value: tag, name: language_in_words(tag) })).sort((a, b) => compare_words(a.name, b.name));
 
 @customElement("strata-tour-languages")
 export class StrataTourLanguages extends LitElement {
   @property({ attribute: false }) languages: readonly string[] = [];
-  @query("select") private select_!: HTMLSelectElement | null;
 
   static override styles = [
     shared_styles,
+    add_from_styles,
     css`
       :host {
         display: grid;
         gap: 6px;
       }
-      ul,
-      .add {
+      ul {
         display: flex;
         flex-wrap: wrap;
         gap: 6px;
@@ -55,8 +55,6 @@ export class StrataTourLanguages extends LitElement {
       }
       .add select {
         flex: 0 1 240px;
-        width: auto;
-        min-width: 0;
       }
       @media (pointer: coarse) {
         li button.icon {
@@ -69,18 +67,13 @@ export class StrataTourLanguages extends LitElement {
 
   override render(): TemplateResult {
     const { languages } = this;
-    const others = offered.filter(({ tag }) => !languages.includes(tag));
+    const others = offered.filter(({ value }) => !languages.includes(value));
     return html`<span class="caption" id="caption">${words.languages}</span>
       <ul aria-labelledby="caption">
         ${languages.map((tag, index) => this.chip(tag, index))}
       </ul>
       ${languages.length < kMostLanguages
-        ? html`<div class="add">
-            <select aria-label=${words.language_add}>
-              ${others.map(({ tag, name }) => html`<option value=${tag}>${name}</option>`)}
-            </select>
-            <button type="button" @click=${this.add}>${icon("plus")}${words.language_add}</button>
-          </div>`
+        ? add_from(words.language_add, others, (tag) => this.put([...languages, tag]))
         : nothing}`;
   }
 
@@ -98,11 +91,6 @@ export class StrataTourLanguages extends LitElement {
         ${icon("close")}
       </button>
     </li>`;
-  }
-
-  private add(): void {
-    const tag = this.select_?.value;
-    if (tag) this.put([...this.languages, tag]);
   }
 
   private put(languages: readonly string[]): void {

@@ -1,13 +1,14 @@
 // <strata-tour-records>: the records that a stop of a tour shows: of which tables, which of them, with which columns, and what these are called there.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, query, state } from "lit/decorators.js";
+import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError } from "../core/api";
 import { label_of } from "../core/cells";
 import { language_in_words } from "../core/languages";
 import type { Table, TourRecords } from "../core/protocol.gen";
 import { is_about, kMostKeys, kMostRecordTables } from "../core/tours";
+import { add_from, add_from_styles } from "./add-from";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
@@ -29,10 +30,10 @@ export class StrataTourRecords extends LitElement {
   @property() wrong = "";
   @property() problem = "";
   @state() private tables_: readonly Table[] = [];
-  @query("select.tables") private select_!: HTMLSelectElement | null;
 
   static override styles = [
     shared_styles,
+    add_from_styles,
     css`
       :host {
         display: grid;
@@ -54,16 +55,6 @@ export class StrataTourRecords extends LitElement {
         flex: 1;
         min-width: 0;
         overflow-wrap: anywhere;
-      }
-      .add {
-        display: flex;
-        flex-wrap: wrap;
-        gap: 6px 8px;
-      }
-      .add select {
-        flex: 1 1 190px;
-        width: auto;
-        min-width: 0;
       }
     `,
   ];
@@ -88,12 +79,11 @@ export class StrataTourRecords extends LitElement {
         (each, index) => this.of_table(each, index),
       )}
       ${others.length > 0 && records.length < kMostRecordTables
-        ? html`<div class="add">
-            <select class="tables" aria-label=${words.table_add}>
-              ${others.map((table) => html`<option value=${table.slug}>${label_of(table)}</option>`)}
-            </select>
-            <button type="button" @click=${this.add}>${icon("plus")}${words.table_add}</button>
-          </div>`
+        ? add_from(
+            words.table_add,
+            others.map((table) => ({ value: table.slug, name: label_of(table) })),
+            (table) => this.put([...records, { table, keys: [], columns: [] }]),
+          )
         : nothing}
       ${tables_.length === 0 && records.length === 0 ? html`<p class="hint">${words.no_tables}</p>` : nothing}`;
   }
@@ -163,11 +153,6 @@ export class StrataTourRecords extends LitElement {
   private choose_columns(index: number, slugs: readonly string[]): void {
     const { columns } = this.records[index]!;
     this.change(index, { columns: slugs.map((column) => columns.find((each) => each.column === column) ?? { column }) });
-  }
-
-  private add(): void {
-    const table = this.select_?.value;
-    if (table) this.put([...this.records, { table, keys: [], columns: [] }]);
   }
 
   private change(index: number, change: Partial<TourRecords>): void {

@@ -1,0 +1,31 @@
+// One of several things is chosen, and a button adds it to those that are there.
+
+import { css, html, type TemplateResult } from "lit";
+import { icon } from "./icons";
+
+export const add_from_styles = css`
+  .add {
+    display: flex;
+    flex-wrap: wrap;
+    gap: 6px 8px;
+  }
+  .add select {
+    flex: 1 1 190px;
+    width: auto;
+    min-width: 0;
+  }
+`;
+
+/** `label`: of the choice, and on the button. */
+export function add_from(label: string, options: readonly { value: string; name: string }[], add: (value: string) => void): TemplateResult {
+  const add_chosen = (event: Event): void => {
+    const value = (event.currentTarget as HTMLElement).parentElement?.querySelector("select")?.value;
+    if (value) add(value);
+  };
+  return html`<div class="add">
+    <select aria-label=${label}>
+      ${options.map(({ value, name }) => html`<option value=${value}>${name}</option>`)}
+    </select>
+    <button type="button" @click=${add_chosen}>${icon("plus")}${label}</button>
+  </div>`;
+}
