@@ -12,7 +12,7 @@ import { ask } from "./dialog";
 import { icon } from "./icons";
 import { number_input } from "./number-input";
 import { follow, path_of_model } from "./routes";
-import { chip_styles, number_field_styles, shared_styles } from "./styles";
+import { chip_styles, link_making_styles, number_field_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 import { told_ago, told_date } from "./times";
 
@@ -39,34 +39,16 @@ export class StrataKiosksDialog extends LitElement {
   static override styles = [
     shared_styles,
     chip_styles,
+    link_making_styles,
     number_field_styles,
     css`
-      form,
-      .made {
-        display: grid;
-        gap: 12px;
-        padding: 14px;
-        border-radius: var(--radius);
-      }
-      form {
-        border: var(--edge) solid var(--line);
-      }
       .fields {
-        display: grid;
         grid-template-columns: minmax(0, 1fr) 150px;
         align-items: end;
-        gap: 12px;
       }
       .number input {
         padding-right: 56px;
       }
-      .made {
-        background: var(--calm-soft);
-      }
-      .made b {
-        overflow-wrap: anywhere;
-      }
-      .made button,
       button.new {
         justify-self: start;
       }

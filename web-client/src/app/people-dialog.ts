@@ -12,7 +12,7 @@ import { ask } from "./dialog";
 import { icon } from "./icons";
 import "./menu";
 import "./project-roles-dialog";
-import { chip_styles, shared_styles } from "./styles";
+import { chip_styles, link_making_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 import { told_time } from "./times";
 
@@ -39,6 +39,7 @@ export class StrataPeopleDialog extends LitElement {
   static override styles = [
     shared_styles,
     chip_styles,
+    link_making_styles,
     css`
       .bar {
         position: sticky;
@@ -56,34 +57,13 @@ export class StrataPeopleDialog extends LitElement {
         flex: 1 1 180px;
         max-width: 300px;
       }
-      form,
-      .made {
-        display: grid;
-        gap: 12px;
-        padding: 14px;
-        border-radius: var(--radius);
-      }
-      form {
-        border: var(--edge) solid var(--line);
-      }
       .fields {
-        display: grid;
         grid-template-columns: 1fr 1fr 1fr;
         align-items: start;
-        gap: 12px;
       }
       .fields small {
         display: block;
         margin-top: 5px;
-      }
-      .made {
-        background: var(--calm-soft);
-      }
-      .made b {
-        overflow-wrap: anywhere;
-      }
-      .made button {
-        justify-self: start;
       }
       table {
         width: 100%;

@@ -285,6 +285,33 @@ export const form_styles = css`
   }
 `;
 
+/** A form inside a dialog that makes a link, and the link, which is shown once. How many fields are beside each other is the dialog's. */
+export const link_making_styles = css`
+  form,
+  .made {
+    display: grid;
+    gap: 12px;
+    padding: 14px;
+    border-radius: var(--radius);
+  }
+  form {
+    border: var(--edge) solid var(--line);
+  }
+  .fields {
+    display: grid;
+    gap: 12px;
+  }
+  .made {
+    background: var(--calm-soft);
+  }
+  .made b {
+    overflow-wrap: anywhere;
+  }
+  .made button {
+    justify-self: start;
+  }
+`;
+
 /** Fields of a dialog, two beside each other. */
 export const choices_styles = css`
   .choices {
