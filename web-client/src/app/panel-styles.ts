@@ -53,3 +53,28 @@ export const list_head_styles = css`
     list-style: none;
   }
 `;
+
+/** Rows of such a list: a button with a name, as wide as the panel, and its menu. */
+export const list_row_styles = css`
+  ul {
+    margin-left: -8px;
+  }
+  li {
+    display: grid;
+    grid-template-columns: minmax(0, 1fr) auto;
+    align-items: start;
+    gap: 2px;
+  }
+  li > button {
+    display: grid;
+    justify-content: stretch;
+    padding: 7px 8px;
+    text-align: start;
+    white-space: normal;
+  }
+  b {
+    font-weight: 600;
+    overflow-wrap: anywhere;
+    unicode-bidi: plaintext;
+  }
+`;

@@ -10,7 +10,7 @@ import { icon } from "./icons";
 import "./menu";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
-import { list_head_styles } from "./panel-styles";
+import { list_head_styles, list_row_styles } from "./panel-styles";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -31,28 +31,10 @@ export class StrataTourList extends LitElement {
   static override styles = [
     shared_styles,
     list_head_styles,
+    list_row_styles,
     css`
-      ul {
-        margin-left: -8px;
-      }
-      li {
-        display: grid;
-        grid-template-columns: minmax(0, 1fr) auto;
-        align-items: start;
-        gap: 2px;
-      }
       button.open {
-        display: grid;
-        justify-content: stretch;
         gap: 1px;
-        padding: 7px 8px;
-        text-align: start;
-        white-space: normal;
-      }
-      b {
-        font-weight: 600;
-        overflow-wrap: anywhere;
-        unicode-bidi: plaintext;
       }
     `,
   ];

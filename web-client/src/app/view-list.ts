@@ -11,7 +11,7 @@ import { icon } from "./icons";
 import "./menu";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
-import { list_head_styles } from "./panel-styles";
+import { list_head_styles, list_row_styles } from "./panel-styles";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 import "./thumbnail";
@@ -38,33 +38,15 @@ export class StrataViewList extends LitElement {
   static override styles = [
     shared_styles,
     list_head_styles,
+    list_row_styles,
     css`
-      ul {
-        margin-left: -8px;
-      }
-      li {
-        display: grid;
-        grid-template-columns: minmax(0, 1fr) auto;
-        align-items: start;
-        gap: 2px;
-      }
       button.go {
-        display: grid;
         grid-template-columns: 64px minmax(0, 1fr);
-        justify-content: stretch;
         align-items: start;
         gap: 10px;
-        padding: 7px 8px;
-        text-align: start;
-        white-space: normal;
       }
       li button.go[aria-current="true"]:not(:disabled) {
         background: var(--accent-soft);
-      }
-      b {
-        font-weight: 600;
-        overflow-wrap: anywhere;
-        unicode-bidi: plaintext;
       }
       strata-thumbnail {
         border-radius: 4px;
