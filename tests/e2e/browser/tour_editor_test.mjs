@@ -42,10 +42,26 @@ const from_menu = async (who, name, item) => {
 const save = (who) => button(editor(who), "Save").click();
 const refused = (who, text) => editor(who).getByRole("alert").getByText(text).waitFor();
 const question = ({ page }) => page.locator("strata-question");
+const listed = ({ page }) => page.getByRole("link", { name: /Demo pot/ });
+const path_of = ({ page }) => new URL(page.url()).pathname;
+const home = ({ page }) => page.getByRole("link", exact("All models")).click();
+/** Until the page was told. */
+const back = ({ page }) => page.evaluate(() => new Promise((resolve) => {
+  addEventListener("popstate", resolve, { once: true });
+  history.back();
+}).then(() => {}));
+const from_account = async (who, item) => {
+  await button(who.page, "Account of ada").click();
+  await who.page.getByRole("menuitem", exact(item)).click();
+};
 
-async function open_panel(who) {
-  await who.page.goto(`${server.url}/models/${id}`);
+async function open_model(who) {
+  await listed(who).click(); // the history leads back to the list
   await who.drawn();
+}
+async function open_panel(who) {
+  await who.page.goto(server.url);
+  await open_model(who);
   if (who === phone) await who.page.getByRole("button", { name: "Show the panel" }).click();
   await who.page.locator("strata-view-panel").getByRole("button", exact("View")).click();
   await who.page.locator("strata-view-list").waitFor();
@@ -197,6 +213,31 @@ try {
   await gone(question(ada));
   assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
 
+  say("leaving the page asks as well while a stop is tried: by its links, back, signing out and loading it anew");
+  await button(fields(ada), "Try the stop").click();
+  const ways = { home, back, sign_out: (who) => from_account(who, "Sign out") };
+  for (const [name, leave] of Object.entries(ways)) {
+    await leave(ada);
+    await question(ada).getByText("What you changed in this tour is lost.").waitFor();
+    await shot(ada, `leave_by_${name}`);
+    await button(question(ada), "Cancel").click();
+    await gone(question(ada));
+    assert.equal(path_of(ada), `/models/${id}`, name);
+    await trial(ada).getByText("3. The handle").waitFor();
+  }
+  const [asked] = await Promise.all([ada.page.waitForEvent("dialog"), ada.page.evaluate(() => void setTimeout(() => location.reload()))]);
+  assert.equal(asked.type(), "beforeunload");
+  await asked.dismiss();
+  await button(trial(ada), "Back to the tour").click();
+  assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+  await back(ada); // beside the editor itself, too
+  await question(ada).getByText("What you changed in this tour is lost.").waitFor();
+  await back(ada);
+  assert.equal(await question(ada).count(), 1);
+  await button(question(ada), "Cancel").click();
+  await gone(question(ada));
+  assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
+
   say("what somebody else saved meanwhile is told, and nothing is lost");
   await server.json("PATCH", `${kBase}/tours/around-the-pot`, { name: "Twice around" });
   await save(ada);
@@ -209,6 +250,26 @@ try {
   assert.deepEqual([again.name, again.languages, again.stops.map(({ view }) => view)], ["Around the pot", ["en", "es"], ["from-above", "west-wall", "the-handle"]]);
   assert.deepEqual(again.stops[2].title, { en: "The handle", es: "El asa" });
   assert.deepEqual(again.stops[2].records[0].columns, [{ column: "state", labels: { en: "Condition", es: "Estado" } }]);
+
+  say("who says yes is where they wanted to be, and without changes nothing is asked");
+  for (const leave of [home, back]) {
+    await row(ada, "Around the pot").locator("button.open").click();
+    await editor(ada).getByLabel("Name", { exact: true }).fill("Never saved");
+    await button(fields(ada), "Try the stop").click();
+    await leave(ada);
+    await button(question(ada), "Close without saving").click();
+    await listed(ada).waitFor();
+    await gone(question(ada));
+    assert.match(path_of(ada), /^\/(projects\/[^/]+)?$/);
+    await open_model(ada);
+    await row(ada, "Around the pot").locator("button.open").click();
+    await button(fields(ada), "Try the stop").click();
+    await leave(ada);
+    await listed(ada).waitFor();
+    assert.equal(await question(ada).count(), 0);
+    await open_model(ada);
+  }
+  assert.equal((await tour("around-the-pot")).name, "Around the pot");
 
   say("what the server refuses is said at its field of the right stop");
   await row(ada, "Around the pot").locator("button.open").click();

@@ -183,7 +183,8 @@ export class StrataModelPage extends LitElement {
     this.measures_ = measures;
   }
 
-  private readonly on_hash = (): void => {
+  private readonly on_hash = (event: HashChangeEvent): void => {
+    if (event.newURL !== location.href) return; // the page was held, and its address put back
     this.read_address();
     if (this.session_) this.follow_address(this.session_);
   };

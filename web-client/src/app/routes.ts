@@ -21,6 +21,7 @@ export function route_of(path: string): Route {
 export const is_kiosk = (path: string): boolean => path.startsWith("/kiosk/");
 
 export const path_now = (): string => location.pathname;
+const address_now = (): string => location.pathname + location.search + location.hash;
 export const path_of_project = (slug: string): string => `/projects/${encodeURIComponent(slug)}`;
 export const path_of_model = (id: number | string): string => `/models/${encodeURIComponent(id)}`;
 
@@ -42,27 +43,79 @@ export function view_of(hash: string): string | null {
 }
 export const hash_of_view = (slug: string): string => `#view=${encodeURIComponent(slug)}`;
 
-/** The address tells what is looked at; nobody has to go there. */
-export function put_hash(hash: string): void {
-  if (hash !== location.hash) history.replaceState(history.state, "", `${location.pathname}${location.search}${hash}`);
-}
+type Question = () => Promise<boolean>;
 
 const listeners = new Set<() => void>();
+let shown = ""; // the address of what is on the page
+let held: Question | null = null;
+let asking = false;
+
+function arrive(): void {
+  shown = address_now();
+  listeners.forEach((each) => each());
+}
+
+/** The address tells what is looked at; nobody has to go there. */
+export function put_hash(hash: string): void {
+  if (hash === location.hash) return;
+  history.replaceState(history.state, "", `${location.pathname}${location.search}${hash}`);
+  shown = address_now();
+}
 
 export function on_navigate(listener: () => void): void {
-  if (listeners.size === 0) addEventListener("popstate", () => listeners.forEach((each) => each()));
+  if (listeners.size === 0) {
+    shown = address_now();
+    addEventListener("popstate", on_history);
+  }
   listeners.add(listener);
 }
 
+/** `may_leave`: asked before the page shows something else, by which what is written there would be lost. Returns what lets go of it. */
+export function hold_page(may_leave: Question): () => void {
+  held = may_leave;
+  return () => {
+    if (held === may_leave) held = null;
+  };
+}
+
+/** For what takes the page away without going anywhere. */
+export const may_leave_page = async (): Promise<boolean> => held === null || held();
+
+async function leave(go: () => void): Promise<void> {
+  if (asking) return;
+  asking = true;
+  try {
+    if (!(await may_leave_page())) return;
+    held = null; // it is lost already
+    go();
+  } finally {
+    asking = false;
+  }
+}
+
+const without_place = (address: string): string => address.split(/[?#]/)[0]!;
+const is_held_from = (path: string): boolean => held !== null && without_place(path) !== without_place(shown);
+
+/** Forward and back: the browser went there before it told. */
+function on_history(): void {
+  if (!is_held_from(location.pathname)) return arrive();
+  history.pushState(null, "", shown);
+  void leave(() => history.back());
+}
+
 export function navigate(path: string): void {
-  history.pushState(null, "", path);
-  listeners.forEach((listener) => listener());
+  const go = (): void => {
+    history.pushState(null, "", path);
+    arrive();
+  };
+  if (is_held_from(path)) void leave(go);
+  else go();
 }
 
 /** Goes there, and nothing leads back to the address before. */
 export function replace_address(path: string): void {
   history.replaceState(null, "", path);
-  listeners.forEach((listener) => listener());
+  arrive();
 }
 
 /** For links: goes there without loading the page anew, unless a new tab is asked for. */

@@ -23,7 +23,7 @@ import "./notices-view";
 import "./people-dialog";
 import "./preferences-fields";
 import { curates, kDefaultProject } from "./project-list";
-import { navigate, on_navigate, path_now, path_of_model, replace_address, route_of, type Route } from "./routes";
+import { may_leave_page, navigate, on_navigate, path_now, path_of_model, replace_address, route_of, type Route } from "./routes";
 import { check_connections, discard_unsaved, unsaved_changes } from "./sessions";
 import { shared_styles } from "./styles";
 import "./sign-in";
@@ -148,6 +148,7 @@ export class StrataApp extends LitElement {
   }
 
   private async sign_out(): Promise<void> {
+    if (!(await may_leave_page())) return;
     const lost = unsaved_changes();
     const words = texts.account;
     const question = { heading: words.sign_out_title, lead: words.sign_out_lead(lost), yes: words.sign_out };

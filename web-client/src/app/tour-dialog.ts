@@ -18,6 +18,7 @@ import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { number_input } from "./number-input";
+import { hold_page } from "./routes";
 import { number_field_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 import "./tour-languages";
@@ -46,6 +47,8 @@ export class StrataTourDialog extends LitElement {
   private base_: Tour | null = null; // as this person knows it; null: there is none yet
   private saved_: TourDraft = empty_tour(""); // what nothing is lost of
   private key_ = new_id();
+  private asked_: Promise<boolean> | null = null; // whether it may be lost
+  private let_go_ = (): void => {};
 
   constructor() {
     super();
@@ -146,12 +149,14 @@ export class StrataTourDialog extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     addEventListener("beforeunload", this.on_unload);
+    this.let_go_ = hold_page(this.may_close); // a stop is tried on the page, whose links lead elsewhere
     void this.read();
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     removeEventListener("beforeunload", this.on_unload);
+    this.let_go_();
   }
 
   private async read(): Promise<void> {
@@ -184,8 +189,11 @@ export class StrataTourDialog extends LitElement {
     if (this.changed) event.preventDefault();
   };
 
-  private readonly may_close = async (): Promise<boolean> =>
-    !this.changed || ask({ heading: words.leave_title, lead: words.leave_lead, yes: words.leave_yes, danger: true });
+  private readonly may_close = async (): Promise<boolean> => {
+    if (!this.changed) return true;
+    this.asked_ ??= ask({ heading: words.leave_title, lead: words.leave_lead, yes: words.leave_yes, danger: true }).finally(() => (this.asked_ = null));
+    return this.asked_; // once, whichever way somebody wants to leave by
+  };
 
   // ── what is seen ──────────────────────────────────────────────────────────────────────────────────────────────────
 
