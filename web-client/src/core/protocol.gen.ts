@@ -1274,6 +1274,13 @@ export interface ModelPatch {
   source_download?: "viewer" | "annotator" | "curator";
 }
 
+/** File that a job made. For who started it, at `/jobs/{job}/file`; only some of the newest are kept. */
+export interface JobFile {
+  name: string;
+  media_type: string;
+  bytes: number;
+}
+
 /** One layer of a transfer. */
 export interface TransferredLayer {
   /** Id of the layer it comes from. */
@@ -1319,6 +1326,7 @@ export interface Job {
   /** Id of the look that it made on the model. */
   look?: number;
   report?: TransferReport;
+  file?: JobFile;
 }
 
 /** Layers of another version of the same scan. */
@@ -2489,6 +2497,59 @@ export interface FrameRequest {
   at?: At;
   /** Default: "jpeg". */
   format?: "jpeg" | "png";
+}
+
+/** Kind of file. In SVG and PDF words, legend, scale bar and arrow can be edited. */
+export type FigureFormat = "png" | "tiff" | "svg" | "pdf";
+
+/** From where, by the model's up. From the top the front is below, and on a map of z up it is the plan: y runs up. */
+export type FigureDirection = "top" | "bottom" | "front" | "back" | "left" | "right";
+
+/** Words of records at their places. Where the layer shows a record: what it has in the column. What would lie over another is left out, the smaller area first. */
+export interface FigureLabels {
+  /** A database layer. */
+  layer: LayerRef;
+  /** Of its table: slug or id. */
+  column: string;
+}
+
+/** A measured figure. A drawing without perspective, to scale, on a sheet with scale bar, legend and caption. What is shown, and where nothing else says so the direction, come from a named view or from camera, layers, looks and light; without any it is what the model shows by default, from the top. */
+export interface FigureRequest {
+  /** A named view: slug or id. */
+  view?: string;
+  /** In place of a view: its direction and its section count, and what lies in the middle. */
+  camera?: Camera;
+  /** Layers not listed show their defaults. */
+  layers?: LayerOverride[];
+  /** Exactly these, bottom to top; absent: those visible by default. */
+  looks?: LookShown[];
+  /** Absent: museum. */
+  light?: Light;
+  at?: At;
+  /** In place of the camera's or view's. */
+  direction?: FigureDirection;
+  /** In place of a direction: surface that faces this way (world) is seen square. */
+  normal?: Point3;
+  /** In the middle of the drawing (world). Absent: of the direction of a camera or view what lies in its middle, otherwise the middle of what is seen. */
+  center?: Point3;
+  /** 50 is 1 : 50. Absent: the largest of 1, 2, 2.5, 5, 10, 20, 25, 50 … at which all of it is on the sheet. */
+  scale?: number;
+  /** Default: "a4". */
+  paper?: "a5" | "a4" | "a3";
+  /** Absent: the one with room for the larger scale. */
+  orientation?: "portrait" | "landscape";
+  /** Pixels an inch; of SVG and PDF of the drawing in them. Default: 300. */
+  dpi?: number;
+  /** Absent: pdf. */
+  format?: FigureFormat;
+  /** Absent: the model's name. */
+  title?: string;
+  caption?: string;
+  /** Absent: the model's. */
+  credit?: string;
+  /** Of the layers that are seen. Default: true. */
+  legend?: boolean;
+  labels?: FigureLabels;
 }
 
 /** Class of a column's values. Of numbers from `from` (included) to `to`, which only the last class includes; of others `value`. */

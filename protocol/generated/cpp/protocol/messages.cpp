@@ -643,6 +643,84 @@ void read(const nlohmann::json& json, FrameRequestFormat& value) {
 
 nlohmann::json to_json(const FrameRequestFormat& value) { return name(value); }
 
+std::string_view name(FigureFormat value) {
+  switch (value) {
+    case FigureFormat::png: return "png";
+    case FigureFormat::tiff: return "tiff";
+    case FigureFormat::svg: return "svg";
+    case FigureFormat::pdf: return "pdf";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, FigureFormat& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "png") value = FigureFormat::png;
+  if (text == "tiff") value = FigureFormat::tiff;
+  if (text == "svg") value = FigureFormat::svg;
+  if (text == "pdf") value = FigureFormat::pdf;
+}
+
+nlohmann::json to_json(const FigureFormat& value) { return name(value); }
+
+std::string_view name(FigureDirection value) {
+  switch (value) {
+    case FigureDirection::top: return "top";
+    case FigureDirection::bottom: return "bottom";
+    case FigureDirection::front: return "front";
+    case FigureDirection::back: return "back";
+    case FigureDirection::left: return "left";
+    case FigureDirection::right: return "right";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, FigureDirection& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "top") value = FigureDirection::top;
+  if (text == "bottom") value = FigureDirection::bottom;
+  if (text == "front") value = FigureDirection::front;
+  if (text == "back") value = FigureDirection::back;
+  if (text == "left") value = FigureDirection::left;
+  if (text == "right") value = FigureDirection::right;
+}
+
+nlohmann::json to_json(const FigureDirection& value) { return name(value); }
+
+std::string_view name(FigureRequestPaper value) {
+  switch (value) {
+    case FigureRequestPaper::a5: return "a5";
+    case FigureRequestPaper::a4: return "a4";
+    case FigureRequestPaper::a3: return "a3";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, FigureRequestPaper& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "a5") value = FigureRequestPaper::a5;
+  if (text == "a4") value = FigureRequestPaper::a4;
+  if (text == "a3") value = FigureRequestPaper::a3;
+}
+
+nlohmann::json to_json(const FigureRequestPaper& value) { return name(value); }
+
+std::string_view name(FigureRequestOrientation value) {
+  switch (value) {
+    case FigureRequestOrientation::portrait: return "portrait";
+    case FigureRequestOrientation::landscape: return "landscape";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, FigureRequestOrientation& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "portrait") value = FigureRequestOrientation::portrait;
+  if (text == "landscape") value = FigureRequestOrientation::landscape;
+}
+
+nlohmann::json to_json(const FigureRequestOrientation& value) { return name(value); }
+
 void read(const nlohmann::json& json, Background& value) {
   read_member(json, "top", value.top);
   read_member(json, "bottom", value.bottom);
@@ -1797,6 +1875,20 @@ nlohmann::json to_json(const ModelPatch& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, JobFile& value) {
+  read_member(json, "name", value.name);
+  read_member(json, "media_type", value.media_type);
+  read_member(json, "bytes", value.bytes);
+}
+
+nlohmann::json to_json(const JobFile& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_member(json, "media_type", value.media_type);
+  write_member(json, "bytes", value.bytes);
+  return json;
+}
+
 void read(const nlohmann::json& json, TransferredLayer& value) {
   read_member(json, "from", value.from);
   read_member(json, "layer", value.layer);
@@ -1847,6 +1939,7 @@ void read(const nlohmann::json& json, Job& value) {
   read_optional_member(json, "layers", value.layers);
   read_optional_member(json, "look", value.look);
   read_optional_member(json, "report", value.report);
+  read_optional_member(json, "file", value.file);
 }
 
 nlohmann::json to_json(const Job& value) {
@@ -1860,6 +1953,7 @@ nlohmann::json to_json(const Job& value) {
   write_optional_member(json, "layers", value.layers);
   write_optional_member(json, "look", value.look);
   write_optional_member(json, "report", value.report);
+  write_optional_member(json, "file", value.file);
   return json;
 }
 
@@ -3037,6 +3131,69 @@ nlohmann::json to_json(const FrameRequest& value) {
 
 Result<void> check(const FrameRequest& value, const std::string& field) {
   if (auto ok = strata::validate(value.camera, join_field(field, "camera")); !ok) return ok;
+  return {};
+}
+
+void read(const nlohmann::json& json, FigureLabels& value) {
+  read_member(json, "layer", value.layer);
+  read_member(json, "column", value.column);
+}
+
+nlohmann::json to_json(const FigureLabels& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "layer", value.layer);
+  write_member(json, "column", value.column);
+  return json;
+}
+
+void read(const nlohmann::json& json, FigureRequest& value) {
+  read_optional_member(json, "view", value.view);
+  read_optional_member(json, "camera", value.camera);
+  read_optional_member(json, "layers", value.layers);
+  read_optional_member(json, "looks", value.looks);
+  read_optional_member(json, "light", value.light);
+  read_optional_member(json, "at", value.at);
+  read_optional_member(json, "direction", value.direction);
+  read_optional_member(json, "normal", value.normal);
+  read_optional_member(json, "center", value.center);
+  read_optional_member(json, "scale", value.scale);
+  read_optional_member(json, "paper", value.paper);
+  read_optional_member(json, "orientation", value.orientation);
+  read_optional_member(json, "dpi", value.dpi);
+  read_optional_member(json, "format", value.format);
+  read_optional_member(json, "title", value.title);
+  read_optional_member(json, "caption", value.caption);
+  read_optional_member(json, "credit", value.credit);
+  read_optional_member(json, "legend", value.legend);
+  read_optional_member(json, "labels", value.labels);
+}
+
+nlohmann::json to_json(const FigureRequest& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "view", value.view);
+  write_optional_member(json, "camera", value.camera);
+  write_optional_member(json, "layers", value.layers);
+  write_optional_member(json, "looks", value.looks);
+  write_optional_member(json, "light", value.light);
+  write_optional_member(json, "at", value.at);
+  write_optional_member(json, "direction", value.direction);
+  write_optional_member(json, "normal", value.normal);
+  write_optional_member(json, "center", value.center);
+  write_optional_member(json, "scale", value.scale);
+  write_member(json, "paper", value.paper);
+  write_optional_member(json, "orientation", value.orientation);
+  write_member(json, "dpi", value.dpi);
+  write_optional_member(json, "format", value.format);
+  write_optional_member(json, "title", value.title);
+  write_optional_member(json, "caption", value.caption);
+  write_optional_member(json, "credit", value.credit);
+  write_member(json, "legend", value.legend);
+  write_optional_member(json, "labels", value.labels);
+  return json;
+}
+
+Result<void> check(const FigureRequest& value, const std::string& field) {
+  if (auto ok = value.camera ? strata::validate(*value.camera, join_field(field, "camera")) : Result<void>{}; !ok) return ok;
   return {};
 }
 

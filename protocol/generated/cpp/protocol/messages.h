@@ -278,6 +278,11 @@ enum class Schema {
   Extent,
   LayerHighlight,
   FrameRequest,
+  FigureFormat,
+  FigureDirection,
+  FigureLabels,
+  FigureRequest,
+  JobFile,
   ColumnClass,
   ColumnClasses,
   HistogramBin,
@@ -286,7 +291,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 260;
+constexpr int kSchemaCount = 265;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1355,6 +1360,18 @@ nlohmann::json to_json(const ModelPatch& value);
 template <>
 inline constexpr Schema kSchemaOf<ModelPatch> = Schema::ModelPatch;
 
+// File that a job made. For who started it, at `/jobs/{job}/file`; only some of the newest are kept.
+struct JobFile {
+  std::string name;
+  std::string media_type;
+  std::int64_t bytes = 0;
+  bool operator==(const JobFile&) const = default;
+};
+void read(const nlohmann::json& json, JobFile& value);
+nlohmann::json to_json(const JobFile& value);
+template <>
+inline constexpr Schema kSchemaOf<JobFile> = Schema::JobFile;
+
 // One layer of a transfer.
 struct TransferredLayer {
   std::int64_t from = 0;  // Id of the layer it comes from.
@@ -1401,6 +1418,7 @@ struct Job {
   std::optional<std::vector<std::int64_t>> layers;  // Ids of the layers that it made on the model.
   std::optional<std::int64_t> look;  // Id of the look that it made on the model.
   std::optional<TransferReport> report;
+  std::optional<JobFile> file;
   bool operator==(const Job&) const = default;
 };
 void read(const nlohmann::json& json, Job& value);
@@ -2340,6 +2358,68 @@ nlohmann::json to_json(const FrameRequest& value);
 Result<void> check(const FrameRequest& value, const std::string& field);
 template <>
 inline constexpr Schema kSchemaOf<FrameRequest> = Schema::FrameRequest;
+
+// Kind of file. In SVG and PDF words, legend, scale bar and arrow can be edited.
+enum class FigureFormat { png, tiff, svg, pdf };
+std::string_view name(FigureFormat value);
+void read(const nlohmann::json& json, FigureFormat& value);
+nlohmann::json to_json(const FigureFormat& value);
+
+// From where, by the model's up. From the top the front is below, and on a map of z up it is the plan: y runs up.
+enum class FigureDirection { top, bottom, front, back, left, right };
+std::string_view name(FigureDirection value);
+void read(const nlohmann::json& json, FigureDirection& value);
+nlohmann::json to_json(const FigureDirection& value);
+
+// Words of records at their places. Where the layer shows a record: what it has in the column. What would lie over another is left out, the smaller area first.
+struct FigureLabels {
+  LayerRef layer;  // A database layer.
+  std::string column;  // Of its table: slug or id.
+  bool operator==(const FigureLabels&) const = default;
+};
+void read(const nlohmann::json& json, FigureLabels& value);
+nlohmann::json to_json(const FigureLabels& value);
+template <>
+inline constexpr Schema kSchemaOf<FigureLabels> = Schema::FigureLabels;
+
+enum class FigureRequestPaper { a5, a4, a3 };
+std::string_view name(FigureRequestPaper value);
+void read(const nlohmann::json& json, FigureRequestPaper& value);
+nlohmann::json to_json(const FigureRequestPaper& value);
+
+enum class FigureRequestOrientation { portrait, landscape };
+std::string_view name(FigureRequestOrientation value);
+void read(const nlohmann::json& json, FigureRequestOrientation& value);
+nlohmann::json to_json(const FigureRequestOrientation& value);
+
+// A measured figure. A drawing without perspective, to scale, on a sheet with scale bar, legend and caption. What is shown, and where nothing else says so the direction, come from a named view or from camera, layers, looks and light; without any it is what the model shows by default, from the top.
+struct FigureRequest {
+  std::optional<std::string> view;  // A named view: slug or id.
+  std::optional<strata::Camera> camera;  // In place of a view: its direction and its section count, and what lies in the middle.
+  std::optional<std::vector<LayerOverride>> layers;  // Layers not listed show their defaults.
+  std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top; absent: those visible by default.
+  std::optional<strata::Light> light;  // Absent: museum.
+  std::optional<At> at;
+  std::optional<FigureDirection> direction;  // In place of the camera's or view's.
+  std::optional<glm::dvec3> normal;  // In place of a direction: surface that faces this way (world) is seen square.
+  std::optional<glm::dvec3> center;  // In the middle of the drawing (world). Absent: of the direction of a camera or view what lies in its middle, otherwise the middle of what is seen.
+  std::optional<double> scale;  // 50 is 1 : 50. Absent: the largest of 1, 2, 2.5, 5, 10, 20, 25, 50 … at which all of it is on the sheet.
+  FigureRequestPaper paper = FigureRequestPaper::a4;
+  std::optional<FigureRequestOrientation> orientation;  // Absent: the one with room for the larger scale.
+  int dpi = 300;  // Pixels an inch; of SVG and PDF of the drawing in them.
+  std::optional<FigureFormat> format;  // Absent: pdf.
+  std::optional<std::string> title;  // Absent: the model's name.
+  std::optional<std::string> caption;
+  std::optional<std::string> credit;  // Absent: the model's.
+  bool legend = true;  // Of the layers that are seen.
+  std::optional<FigureLabels> labels;
+  bool operator==(const FigureRequest&) const = default;
+};
+void read(const nlohmann::json& json, FigureRequest& value);
+nlohmann::json to_json(const FigureRequest& value);
+Result<void> check(const FigureRequest& value, const std::string& field);
+template <>
+inline constexpr Schema kSchemaOf<FigureRequest> = Schema::FigureRequest;
 
 // Class of a column's values. Of numbers from `from` (included) to `to`, which only the last class includes; of others `value`.
 struct ColumnClass {
