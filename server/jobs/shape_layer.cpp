@@ -5,6 +5,7 @@
 #include <limits>
 #include <mutex>
 
+#include "core/compass.h"
 #include "mesh/boundary.h"
 #include "mesh/curvature.h"
 #include "mesh/model_distance.h"
@@ -29,25 +30,13 @@ constexpr float kFlat = 0.02f;
 
 int axis_of(const Model& model) { return model.up == "x" ? 0 : model.up == "y" ? 1 : 2; }
 
-// The directions of east and north for an up of x, y or z: as on a map where z is up, and so that east × north = up.
-struct Compass {
-  explicit Compass(const Model& model) {
-    const int up = axis_of(model);
-    east = up == 0 ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
-    north = up == 2 ? glm::vec3(0, 1, 0) : up == 1 ? glm::vec3(0, 0, -1) : glm::vec3(0, 0, 1);
-    char* end = nullptr;
-    const double turned = std::strtod(model.north.c_str(), &end);
-    if (!model.north.empty() && *end == '\0' && std::isfinite(turned)) north_degrees = turned;
-  }
-  float azimuth(const glm::vec3& normal) const {
-    const float x = glm::dot(normal, east), y = glm::dot(normal, north);
-    if (x * x + y * y < kFlat * kFlat) return kNone;
-    const double degrees = glm::degrees(std::atan2(double{x}, double{y})) - north_degrees;
-    return static_cast<float>(degrees - 360 * std::floor(degrees / 360));
-  }
-  glm::vec3 east, north;
-  double north_degrees = 0;
-};
+// Clockwise from north as seen from above, 0…360 degrees.
+float azimuth(const Compass& compass, const glm::vec3& normal) {
+  const float x = glm::dot(normal, glm::vec3(compass.east)), y = glm::dot(normal, glm::vec3(compass.north));
+  if (x * x + y * y < kFlat * kFlat) return kNone;
+  const double degrees = glm::degrees(std::atan2(double{x}, double{y})) - compass.turned_degrees;
+  return static_cast<float>(degrees - 360 * std::floor(degrees / 360));
+}
 
 SurfaceValue at_vertices(GeometryPtr geometry, std::vector<double> values, ValueType type) {
   return [geometry = std::move(geometry), values = std::move(values), is_key = !is_float(type)](std::uint32_t triangle,
@@ -71,7 +60,7 @@ class Measure {
     switch (recipe_.kind) {
       case ShapeKind::height: return height();
       case ShapeKind::slope: return slope();
-      case ShapeKind::azimuth: return azimuth();
+      case ShapeKind::azimuth: return facing();
       case ShapeKind::roughness:
       case ShapeKind::mean_curvature:
       case ShapeKind::gaussian_curvature:
@@ -125,10 +114,10 @@ class Measure {
     });
   }
 
-  Result<SurfaceValue> azimuth() {
+  Result<SurfaceValue> facing() {
     auto normals = std::make_shared<const mesh::SurfaceNormals>(geometry_);
     return SurfaceValue([normals, compass = Compass(model_)](std::uint32_t t, const glm::vec3& w) {
-      return compass.azimuth(normals->at(t, w));
+      return azimuth(compass, normals->at(t, w));
     });
   }
 

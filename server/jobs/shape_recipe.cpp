@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "core/number_text.h"
 #include "mesh/surface_samples.h"
 
 namespace strata::jobs {
@@ -36,12 +36,6 @@ double rounded(double value) {
   if (!(value > 0)) return value;
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
   return std::round(value / unit) * unit;
-}
-
-std::string text(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.6g", value);
-  return buffer;
 }
 
 Result<void> refuse_foreign(bool is_set, bool takes, const char* member, ShapeKind kind) {
@@ -81,7 +75,8 @@ double least_radius_mm(const Model& model) {
 Result<void> check_length(double value, double least, double most, const char* member) {
   if (value >= least && value <= most) return {};
   return fail(422, "Out of range for this model",
-              "For this model it is from " + text(rounded(least * 1.05)) + " to " + text(rounded(most)) + " mm.",
+              "For this model it is from " + short_number(rounded(least * 1.05)) + " to " +
+                  short_number(rounded(most)) + " mm.",
               "compute." + std::string(member));
 }
 
@@ -121,7 +116,7 @@ Palette compass() {
 }
 
 std::string sentence(const ShapeRecipe& r, const Model& model, const std::string& other) {
-  const std::string within = r.radius_mm ? text(*r.radius_mm) + " mm" : "";
+  const std::string within = r.radius_mm ? short_number(*r.radius_mm) + " mm" : "";
   const std::string fit = " From the quadric that fits the surface within " + within + " best.";
   switch (r.kind) {
     case ShapeKind::height:
@@ -141,12 +136,13 @@ std::string sentence(const ShapeRecipe& r, const Model& model, const std::string
     case ShapeKind::roughness: return "Distance of the surface to the plane that fits it best within " + within + ".";
     case ShapeKind::ambient_occlusion:
       return "Share of the light from all around that reaches the surface: 1 in the open, 0 in deep cavities. " +
-             std::to_string(r.rays.value_or(kDefaultRays)) + " rays of " + text(r.distance_mm.value_or(0)) + " mm.";
+             std::to_string(r.rays.value_or(kDefaultRays)) + " rays of " + short_number(r.distance_mm.value_or(0)) +
+             " mm.";
     case ShapeKind::boundary_distance: return "Straight distance to the nearest open edge of the mesh.";
     case ShapeKind::model_distance:
       return "Distance to the surface of " + other +
              ": positive where this one lies in front of it (material was added), negative behind it. Looked for up to " +
-             text(r.distance_mm.value_or(0)) + " mm.";
+             short_number(r.distance_mm.value_or(0)) + " mm.";
     case ShapeKind::vertex_property:
       return "Property " + r.property + " of the scan's vertices, from " + r.source + ".";
   }

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
 
+#include "core/number_text.h"
 #include "mesh/index_table.h"
 #include "mesh/keep_triangles.h"
 #include "mesh/load_formats.h"
@@ -125,12 +125,6 @@ std::uint64_t count_not_finite(const TriangleMesh& mesh) {
   return count;
 }
 
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 // Moves the used vertices together, in their order.
 void drop_unused(TriangleMesh& mesh) {
   const std::vector<bool> used = used_vertices(mesh);
@@ -161,12 +155,12 @@ Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& o
     if (progress.cancelled()) return cancelled_problem();
     progress.report(0.65, "Joining equal vertices");
     merged = weld_equal(mesh, used);
-    note(loaded.repairs, std::string(kWelded) + " at equal positions", merged);
+    note(loaded.repairs, std::string(kWelded).append(" at equal positions"), merged);
     if (progress.cancelled()) return cancelled_problem();
     if (options.weld_distance > 0) {
       used = used_vertices(mesh);
       const std::uint64_t near = weld_near(mesh, used, options.weld_distance);
-      note(loaded.repairs, std::string(kWelded) + " within " + short_number(options.weld_distance), near);
+      note(loaded.repairs, std::string(kWelded).append(" within ").append(short_number(options.weld_distance)), near);
       merged += near;
     }
   }

@@ -1,4 +1,5 @@
 #include "core/mapped_file.h"
+#include "core/number_text.h"
 #include "jobs/shape_layer.h"
 #include "jobs/transfer.h"
 #include "mesh/input_files.h"
@@ -58,12 +59,6 @@ Result<jobs::TransferRequest> transfer_request(store::Store& store, const protoc
   return jobs::TransferRequest{std::move(*source), std::move(*layers), asked.tolerance_mm, asked.max_angle};
 }
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 // The layer as it is on the source, for the target.
 Layer copy_of(const Layer& from, int resolution, int order, const jobs::TransferRequest& request) {
   Layer layer = from;
@@ -73,7 +68,7 @@ Layer copy_of(const Layer& from, int resolution, int order, const jobs::Transfer
   layer.locked = false;   // work goes on here
   layer.formula.reset();  // its values are brought over, as they are
   layer.description += (layer.description.empty() ? "" : "\n\n") + std::string("Brought over from ") +
-                       request.source.name + ", within " + number_text(request.tolerance_mm) + " mm.";
+                       request.source.name + ", within " + short_number(request.tolerance_mm) + " mm.";
   return layer;
 }
 
