@@ -1,6 +1,8 @@
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <iostream>
 #include <thread>
 
@@ -119,7 +121,16 @@ void wait_for_end(const sigset_t& ending) {
   }
 }
 
+// A connection takes one, and the usual limit is half of what the server holds.
+void raise_descriptor_limit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, 65536);
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 int run(ServeOptions options) {
+  raise_descriptor_limit();
   auto address = parse_listen(options.listen);
   if (!address) return report(address.error());
   if (!options.sql_listen.empty()) {

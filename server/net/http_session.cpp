@@ -32,7 +32,9 @@ using std::chrono::seconds;
 constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 constexpr seconds kFirstHead{10};  // from connecting to the end of the first head
 constexpr seconds kIdle{60};       // between requests
-constexpr seconds kStall{60};      // a body that does not move
+constexpr seconds kEventPause{1}, kEventPing{15};
+constexpr int kMostEventStreams = 256;
+constexpr seconds kStall{60};  // a body that does not move
 constexpr std::uint32_t kMaxHead = 8192;
 constexpr std::uint64_t kMaxIgnoredBody = 64 * 1024;  // of a refused request: read to keep the connection
 constexpr std::string_view kSubprotocol = "strata.v1";
@@ -58,6 +60,34 @@ Result<Request> request_of(const http::request<http::empty_body>& head) {
   if (auto parsed = parse_target(head.target(), request); !parsed) return tl::unexpected(parsed.error());
   return request;
 }
+
+// What two readers might take for different requests is none (RFC 9112, sections 3.2 and 6.1).
+Result<void> check_framing(const Request& request, unsigned version) {
+  const auto count = [&](std::string_view name) {
+    return std::ranges::count_if(request.headers, [&](const auto& header) { return header.first == name; });
+  };
+  if (count("host") > 1 || (version >= 11 && count("host") == 0))
+    return fail(400, "Host unclear", "A request names one Host.", "Host");
+  if (count("transfer-encoding") == 0) return {};
+  if (version < 11 || count("transfer-encoding") > 1 || to_lower(request.header("transfer-encoding")) != "chunked")
+    return fail(501, "Transfer encoding unknown",
+                "Bodies come with a Content-Length or as `Transfer-Encoding: chunked`.", "Transfer-Encoding");
+  return {};
+}
+
+// How long a body may take: a minute, and a second more for each kilobyte that came.
+class BodyClock {
+ public:
+  bool is_over(std::uint64_t bytes) const {
+    return std::chrono::steady_clock::now() - begin_ > kStall + std::chrono::milliseconds(bytes);
+  }
+  static Problem problem() {
+    return {408, "Body too slow", "The body comes with less than a kilobyte a second.", "body"};
+  }
+
+ private:
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
 
 class CountAtWork {
  public:
@@ -159,6 +189,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const bool keep_alive = head.keep_alive() && !connections_->stopping;
     http_version_ = head.get().version();
     auto parsed = request_of(head.get());
+    if (parsed)
+      if (auto framed = check_framing(*parsed, http_version_); !framed) parsed = tl::unexpected(framed.error());
     if (!parsed) {
       Response malformed = problem_response(parsed.error());
       co_return co_await send(malformed, method_of(head.get().method()), false);
@@ -256,11 +288,16 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
                                        std::uint64_t max_body, Problem& problem) {
     http::request_parser<http::string_body> parser(std::move(head));
     parser.body_limit(boost::none);
+    const BodyClock clock;
     while (!parser.is_done()) {
       connection().expires_after(kStall);
       auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, kUseResult);
       if (error) {
         problem = body_problem(error);
+        co_return false;
+      }
+      if (clock.is_over(parser.get().body().size())) {
+        problem = BodyClock::problem();
         co_return false;
       }
       if (parser.get().body().size() > max_body) {
@@ -286,6 +323,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
           507, "No room for uploads", "The server cannot write its upload folder: " + file_error.message() + ".", {}};
       co_return false;
     }
+    const BodyClock clock;
     while (!parser.is_done()) {
       connection().expires_after(kStall);
       auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, kUseResult);
@@ -296,6 +334,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         co_return false;
       }
       request.body_bytes += size;
+      if (clock.is_over(request.body_bytes)) {
+        problem = BodyClock::problem();
+        co_return false;
+      }
       if (request.body_bytes > max_body) {
         problem = too_large(max_body);
         co_return false;
@@ -344,6 +386,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   asio::awaitable<bool> send(Response& response, Method method, bool keep_alive) {
     app_.metrics().count_request(response.status);
     if (response.stream) co_return co_await send_stream(response, method, keep_alive);
+    if (response.events) co_return co_await send_events(response, method, keep_alive);
     if (!response.file.empty()) {
       http::response<http::file_body> message;
       beast::error_code error;
@@ -426,15 +469,66 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return done.status == 200 && *whole&& framed&& keep_alive;
   }
 
-  // On a worker: waits until the piece is sent. As a chunk an empty one ends the body.
-  bool send_piece(std::span<const std::uint8_t> bytes, bool as_chunk) {
-    auto data = std::make_shared<std::vector<std::uint8_t>>();
-    const auto add = [&](std::string_view text) { data->insert(data->end(), text.begin(), text.end()); };
+  // Costs no thread while nothing happens. Now and then something is sent in any case, so that proxies keep the connection and one whose client is gone
+  // is found out.
+  asio::awaitable<bool> send_events(Response& response, Method method, bool keep_alive) {
+    response.with("Content-Type", "text/event-stream")
+        .with("Cache-Control", "no-store")
+        .with("X-Accel-Buffering", "no");
+    if (method == Method::head) co_return co_await send_head(response, std::nullopt, keep_alive);
+    const CountAtWork counted(connections_->event_streams);
+    if (connections_->event_streams > kMostEventStreams) {
+      Response refusal = problem_response({503, "Too many listeners", "Ask again when another listener has gone.", {}});
+      co_return co_await send(refusal, method, keep_alive);
+    }
+    const bool in_chunks = http_version_ >= 11;
+    bool head_sent = false;
+    if (in_chunks)
+      head_sent = co_await send_chunked_head(response);
+    else
+      head_sent = co_await send_head(response, std::nullopt, false);
+    if (!head_sent) co_return false;
+    const Work ask = [next = response.events->next](const Respond& respond) {
+      auto told = next();
+      respond(told ? text_response(std::move(*told), "text/event-stream") : empty_response(204));
+    };
+    asio::steady_timer pause(stream_.get_executor());
+    auto last_sent = std::chrono::steady_clock::now();
+    for (;;) {
+      const Response told = co_await on_worker(connections_, stream_.get_executor(), ask);
+      if (told.status == 204 || connections_->stopping) break;
+      std::string text = told.status == 200 ? told.body : std::string();  // too busy just now: asked again
+      if (text.empty() && std::chrono::steady_clock::now() - last_sent >= kEventPing) text = ":\n\n";
+      if (!text.empty()) {
+        if (in_chunks) text = as_chunk(text);
+        const bool sent = co_await write_text(std::move(text));
+        if (!sent) co_return false;
+        last_sent = std::chrono::steady_clock::now();
+      }
+      connection().expires_never();
+      pause.expires_after(kEventPause);
+      co_await pause.async_wait(kUseResult);
+    }
+    if (in_chunks) co_await write_text(as_chunk({}));
+    co_return false;
+  }
+
+  static std::string as_chunk(std::string_view text) {
     char size[20];
-    const auto end = std::to_chars(size, size + sizeof size, bytes.size(), 16).ptr;
-    if (as_chunk) add(std::string_view(size, static_cast<std::size_t>(end - size))), add("\r\n");
-    data->insert(data->end(), bytes.begin(), bytes.end());
-    if (as_chunk) add("\r\n");
+    const auto end = std::to_chars(size, size + sizeof size, text.size(), 16).ptr;
+    return std::string(size, end).append("\r\n").append(text).append("\r\n");
+  }
+
+  asio::awaitable<bool> write_text(std::string text) {
+    connection().expires_after(kStall);
+    auto [error, size] = co_await asio::async_write(stream_, asio::buffer(text), kUseResult);
+    co_return !error;
+  }
+
+  // On a worker: waits until the piece is sent. As a chunk an empty one ends the body.
+  bool send_piece(std::span<const std::uint8_t> bytes, bool in_chunks) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    auto data = std::make_shared<std::string>(in_chunks ? as_chunk(text) : std::string(text));
     auto result = std::make_shared<std::promise<bool>>();
     auto future = result->get_future();
     asio::post(stream_.get_executor(), [self = shared_from_this(), data, result] {

@@ -17,6 +17,7 @@ struct Connections {
   App& app;
   std::atomic<int> requests_at_work{0};
   std::atomic<int> streams_at_work{0};
+  std::atomic<int> event_streams{0};
   std::atomic<bool> stopping{false};
 };
 

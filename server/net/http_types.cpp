@@ -110,6 +110,7 @@ std::string_view reason_phrase(int status) {
     case 431: return "Request Header Fields Too Large";
     case 499: return "Cancelled";
     case 500: return "Internal Server Error";
+    case 501: return "Not Implemented";
     case 503: return "Service Unavailable";
     case 507: return "Insufficient Storage";
     default: return status < 400 ? "OK" : status < 500 ? "Refused" : "Failed";
@@ -150,6 +151,11 @@ std::optional<std::string> percent_decode(std::string_view text, bool plus_is_sp
     out += c;
   }
   return out;
+}
+
+void name_download(Response& response, const std::string& filename) {
+  std::string value = "attachment; filename*=UTF-8''";
+  response.with("Content-Disposition", value.append(percent_encode(filename)));
 }
 
 std::string percent_encode(std::string_view text) {

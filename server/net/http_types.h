@@ -83,6 +83,12 @@ struct Response {
     std::function<bool(const Sink&)> write;
   };
   std::optional<Stream> stream;
+  // Server-sent events (HTML, section 9.2), until the client goes: asked about once a second, on a worker, what there is to send; nothing: it
+  // ends. The client comes back by itself.
+  struct Events {
+    std::function<std::optional<std::string>()> next;
+  };
+  std::optional<Events> events;
 
   Response& with(std::string header_name, std::string value);
   std::string_view header(std::string_view name) const;  // as written by `with`; empty when absent
@@ -93,6 +99,8 @@ Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_typ
 Response text_response(std::string text, std::string content_type);
 Response empty_response(int status);                // 204, 304
 Response problem_response(const Problem& problem);  // RFC 9457
+// For a file that is kept and not shown; any characters will do.
+void name_download(Response& response, const std::string& filename);
 std::string_view reason_phrase(int status);
 
 // The one answer to a request; may be called from any thread. The first call counts; when the last copy goes without one, the

@@ -20,7 +20,8 @@ std::string cookie_value(std::string_view header, std::string_view name) {
   return {};
 }
 
-bool is_own_origin(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed) {
+bool is_own_origin(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed,
+                   bool by_https) {
   const std::string asked = to_lower(origin);
   for (const auto& entry : allowed) {
     std::string known = to_lower(entry);
@@ -28,9 +29,21 @@ bool is_own_origin(std::string_view origin, std::string_view host, const std::ve
     if (asked == known) return true;
   }
   for (std::string_view scheme : {"http://", "https://"})
-    if (asked.starts_with(scheme)) return !host.empty() && asked.substr(scheme.size()) == to_lower(host);
+    if (asked.starts_with(scheme)) {
+      const bool is_safe = scheme == "https://" || !by_https;
+      return is_safe && !host.empty() && asked.substr(scheme.size()) == to_lower(host);
+    }
   return false;
 }
+
+namespace {
+
+bool is_own(const Request& request, const std::vector<std::string>& allowed) {
+  const bool by_https = request.by_tls || request.header("x-forwarded-proto") == "https";
+  return is_own_origin(request.header("origin"), request.header("host"), allowed, by_https);
+}
+
+}  // namespace
 
 Result<void> check_same_origin(const Request& request, const std::vector<std::string>& allowed) {
   const auto origin = request.header("origin");
@@ -38,7 +51,7 @@ Result<void> check_same_origin(const Request& request, const std::vector<std::st
   // Signing in: a foreign page must not sign its visitor in as somebody else.
   if (!request.principal && origin.empty()) return {};
   if (!origin.empty()) {
-    if (is_own_origin(origin, request.header("host"), allowed)) return {};
+    if (is_own(request, allowed)) return {};
     return fail(
         403, "Foreign origin",
         "Changes signed by a cookie are taken from this server's own pages only. Add the origin with --origin, or use a bearer token.",
@@ -57,7 +70,7 @@ Result<void> check_upgrade_origin(const Request& request, const std::vector<std:
                 "A connection signed by a cookie needs an Origin header of this server. Scripts use a bearer token.",
                 "Origin");
   }
-  if (is_own_origin(origin, request.header("host"), allowed)) return {};
+  if (is_own(request, allowed)) return {};
   return fail(403, "Foreign origin",
               "Live connections are taken from this server's own pages only. Add the origin with --origin.", "Origin");
 }

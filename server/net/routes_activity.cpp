@@ -1,61 +1,11 @@
 // What was done in a project.
-#include <charconv>
-
-#include "core/timestamp.h"
-#include "net/routes.h"
-#include "net/wire.h"
+#include "net/activity_wire.h"
+#include "net/model_events.h"
 
 namespace strata::net {
 namespace {
 
 using store::Activity;
-using store::ActivityPlace;
-
-nlohmann::json to_json(const Activity& line) {
-  nlohmann::json json{
-      {"id", line.id}, {"time", utc_text(line.time)}, {"begun", utc_text(line.begun)}, {"kind", line.kind},
-      {"op", line.op}, {"count", line.count}};
-  const auto put_text = [&](const char* name, const std::string& text) {
-    if (!text.empty()) json[name] = text;
-  };
-  const auto put = [&](const char* name, const auto& value) {
-    if (value) json[name] = *value;
-  };
-  put_text("user", line.user);
-  put_text("name", line.name);
-  put("model", line.model);
-  put_text("model_name", line.model_name);
-  put("layer", line.layer);
-  put("table", line.table);
-  put("record", line.record);
-  put("comment", line.comment);
-  put_text("text", line.text);
-  put_text("person", line.person);
-  put_text("role", line.role);
-  put("texels", line.texels);
-  put("area_m2", line.area_m2);
-  if (!line.changed.empty()) json["changed"] = line.changed;
-  return json;
-}
-
-std::string to_text(const ActivityPlace& place) {
-  return std::to_string(place.time_us) + "-" + std::to_string(place.id);
-}
-
-// 16 and 15 digits at most, so that both are far from what their columns hold.
-std::optional<ActivityPlace> place_of(std::string_view text) {
-  const std::size_t dash = text.find('-');
-  if (dash == std::string_view::npos) return std::nullopt;
-  const auto number = [](std::string_view digits, std::size_t most, std::int64_t& into) {
-    if (digits.empty() || digits.size() > most || digits.front() == '-') return false;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), into);
-    return error == std::errc() && end == digits.data() + digits.size();
-  };
-  ActivityPlace place;
-  if (!number(text.substr(0, dash), 16, place.time_us) || !number(text.substr(dash + 1), 15, place.id))
-    return std::nullopt;
-  return place;
-}
 
 Result<Response> list_activity(const RouteContext& context, const Request& request) {
   const auto page = page_of(request);
@@ -86,6 +36,23 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
   return json_response(std::move(answer));
 }
 
+// From where a reader comes back, or from now.
+Result<Response> listen(const RouteContext& context, const Request& request) {
+  const auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  std::optional<store::ActivityPlace> after;
+  if (const auto text = request.header("last-event-id"); !text.empty()) {
+    after = place_of(text);
+    if (!after)
+      return fail(400, "No such event", "`Last-Event-ID` is the id of an event: 1777896570120000-7, for example.",
+                  "Last-Event-ID");
+  }
+  Response response;
+  const auto events = std::make_shared<ModelEvents>(context, request, *model, after);
+  response.events = Response::Events{[events] { return events->next(); }};
+  return response;
+}
+
 }  // namespace
 
 void add_activity_routes(Router& router, const RouteContext& context) {
@@ -93,6 +60,9 @@ void add_activity_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/projects/{project}/activity",
               .handler = answering([&context](const Request& request) { return list_activity(context, request); }),
               .query = {"model", "before", "limit"}});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/events",
+              .handler = answering([&context](const Request& request) { return listen(context, request); })});
 }
 
 }  // namespace strata::net

@@ -61,6 +61,12 @@ std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& c
   return box;
 }
 
+// Who repeats an edit is told what became of it; nobody else is.
+Problem taken_id() {
+  return {422, "Id used for another edit", "Another edit of this model has this id; every edit has an id of its own.",
+          "id"};
+}
+
 }  // namespace
 
 EditPipeline::EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_sequence)
@@ -82,12 +88,15 @@ auto EditPipeline::then(Handler handler) {
 
 void EditPipeline::edit(EditRequest request, Room::Applied applied, Room::Saved saved) {
   if (closed_) return saved(tl::unexpected(*closed_));
-  if (auto found = running_.find(request.id); found != running_.end()) return found->second.push_back(std::move(saved));
+  if (auto found = running_.find(request.id); found != running_.end()) {
+    if (found->second.user != request.author.user) return saved(tl::unexpected(taken_id()));
+    return found->second.followers.push_back(std::move(saved));
+  }
   if (!parts_.writer.accepting())
     return saved(
         fail(503, "Not saved", "The database does not take edits at the moment. Viewing goes on; try again shortly."));
   if (parts_.memory.exceeded()) return saved(tl::unexpected(parts_.memory.used_up(0, "what an edit may add")));
-  running_[request.id];
+  running_[request.id].user = request.author.user;
   waiting_.push_back({std::move(request), std::move(applied), std::move(saved), {}});
   step();
 }
@@ -163,6 +172,10 @@ void EditPipeline::on_known(const std::vector<store::JournalRow>& known) {
         item.lookup == Waiting::Lookup::asked
             ? std::find_if(known.begin(), known.end(), [&](const auto& r) { return r.id == item.request.id; })
             : known.end();
+    if (row != known.end() && row->user != item.request.author.user) {
+      refuse(item, taken_id());
+      continue;
+    }
     if (row != known.end()) {
       const EditAnswer first = first_answer(*row);
       if (item.applied) item.applied(first);
@@ -562,7 +575,7 @@ void EditPipeline::refuse_waiting(const Problem& why) {
 void EditPipeline::answer(const Uuid& id, const Room::Saved& saved, const Result<EditAnswer>& result) {
   std::vector<Room::Saved> followers;
   if (auto found = running_.find(id); found != running_.end()) {
-    followers = std::move(found->second);
+    followers = std::move(found->second.followers);
     running_.erase(found);
   }
   if (saved) saved(result);

@@ -167,7 +167,11 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   bool repair_waits_ = false;  // for the timer
   // By layer: revisions since the last whole tile was stored, in this room.
   std::map<std::int64_t, std::unordered_map<TileAddress, int>> since_key_tile_;
-  std::unordered_map<Uuid, std::vector<Room::Saved>> running_;  // waiting and pending edits, with who repeated them
+  struct Running {
+    std::string user;
+    std::vector<Room::Saved> followers;  // who repeated it
+  };
+  std::unordered_map<Uuid, Running> running_;  // waiting and pending edits
 };
 
 }  // namespace strata::room

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "store/activity.h"
+
+namespace strata::net {
+
+nlohmann::json to_json(const store::Activity& line);
+
+// "1777896570120000-7": the page after it, or what came since.
+std::string to_text(const store::ActivityPlace& place);
+std::optional<store::ActivityPlace> place_of(std::string_view text);
+
+}  // namespace strata::net
