@@ -11,7 +11,7 @@ function(strata_room name)
     strata_shared_headers(strata_${name} net)
   elseif(name MATCHES "^(mesh|render|query)$")
     strata_shared_headers(strata_${name} standard COMPUTES)
-  else()
+  elseif(NOT name STREQUAL "figure")  # pango's flags are not those that the shared headers are compiled with
     strata_shared_headers(strata_${name} standard)
   endif()
   target_link_libraries(strata_${name} PUBLIC ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE} strata_warnings)

@@ -72,7 +72,10 @@ struct JobQueue::Impl {
   void end(Job& job, Result<JobResult> result) {
     job.work = nullptr;
     if (result) {
-      job.status = {job.status.id, job.status.project, JobState::done, 1.0, "Done", std::nullopt, std::move(*result)};
+      job.status.state = JobState::done;
+      job.status.progress = 1;
+      job.status.message = "Done";
+      job.status.result = std::move(*result);
       return;
     }
     job.status.progress = job.progress->fraction();
@@ -84,6 +87,9 @@ struct JobQueue::Impl {
   void forget_old() {
     for (auto it = jobs.begin(); jobs.size() > kMaxRemembered + kMaxWaiting && it != jobs.end();)
       it = is_over(it->second.status.state) ? jobs.erase(it) : std::next(it);
+    int files = 0;
+    for (auto it = jobs.rbegin(); it != jobs.rend(); ++it)
+      if (auto& result = it->second.status.result; result && result->file && ++files > kFilesKept) result->file.reset();
   }
 
   void work_on_jobs() {
@@ -123,7 +129,7 @@ JobQueue::~JobQueue() {
   impl_->thread.join();
 }
 
-Result<std::int64_t> JobQueue::add(std::int64_t project, Work work) {
+Result<std::int64_t> JobQueue::add(std::int64_t project, Work work, std::string user) {
   std::lock_guard lock(impl_->mutex);
   if (impl_->stopping) return fail(503, "Server stops", "The server is stopping and takes no new work.");
   if (impl_->waiting.size() >= kMaxWaiting)
@@ -134,6 +140,7 @@ Result<std::int64_t> JobQueue::add(std::int64_t project, Work work) {
   job.work = std::move(work);
   job.status.id = id;
   job.status.project = project;
+  job.status.user = std::move(user);
   job.status.message = "Waiting";
   impl_->waiting.push_back(id);
   impl_->changed.notify_all();

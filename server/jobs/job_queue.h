@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,18 +14,33 @@ namespace strata::jobs {
 
 enum class JobState { queued, running, done, failed, cancelled };
 
+// A file that a job made, for who started it; goes with this.
+struct JobFile {
+  std::filesystem::path path;
+  std::string name, media_type;
+  std::uint64_t bytes = 0;
+  JobFile() = default;
+  JobFile(const JobFile&) = delete;
+  ~JobFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+};
+
 // What a job made.
 struct JobResult {
   JobResult(std::int64_t the_model) : model(the_model) {}  // NOLINT(google-explicit-constructor): most make only that
   std::int64_t model = 0;
   std::vector<std::int64_t> layers;  // new ones on it
   std::optional<std::int64_t> look;  // a new one on it
-  nlohmann::json report;             // what else is to be told, see the schema `JobReport`; null: nothing
+  nlohmann::json report;             // what else is to be told, see the schema `TransferReport`; null: nothing
+  std::shared_ptr<const JobFile> file;
 };
 
 struct JobStatus {
   std::int64_t id = 0;
   std::int64_t project = 0;  // whose members may know of it
+  std::string user;          // who started it; empty: the server itself
   JobState state = JobState::queued;
   double progress = 0;
   std::string message;
@@ -32,14 +48,15 @@ struct JobStatus {
   std::optional<JobResult> result;
 };
 
-// Long work, one at a time on a thread of its own, in order of asking. Finished jobs are remembered (the newest 1000) until the
-// queue goes; ids are higher than those of every queue before, so that an id of then is never another job now.
+// Long work, one at a time on a thread of its own, in order of asking. Finished jobs are remembered (the newest 1000; their files, of the newest
+// kFilesKept that made one) until the queue goes; ids are higher than those of every queue before, so that an id of then is never another job now.
 class JobQueue {
  public:
+  static constexpr int kFilesKept = 16;
   JobQueue();
   ~JobQueue();  // cancels what runs, joins
   using Work = std::function<Result<JobResult>(Progress&)>;
-  Result<std::int64_t> add(std::int64_t project, Work work);  // refused (503) when 64 wait
+  Result<std::int64_t> add(std::int64_t project, Work work, std::string user = {});  // refused (503) when 64 wait
   std::optional<JobStatus> status(std::int64_t id) const;
   std::vector<JobStatus> all() const;  // newest first
   bool cancel(std::int64_t id);

@@ -104,6 +104,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_extent_routes(router_, context_);
   add_vertex_routes(router_, context_);
   add_frame_routes(router_, context_);
+  add_figure_routes(router_, context_);
   add_texel_routes(router_, context_);
   add_shape_routes(router_, context_);
   add_map_routes(router_, context_);

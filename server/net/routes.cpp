@@ -79,6 +79,12 @@ void apply_edit(const RouteContext& context, const Request& request, const std::
       });
 }
 
+Result<Layer> stored_layer(const RouteContext& context, const Request& request) {
+  auto model = context.store.model(request.param("model"));
+  if (!model) return tl::unexpected(model.error());
+  return context.store.layer(model->id, request.param("layer"), request.role());
+}
+
 Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,
                                        const std::string& field) {
   std::vector<Layer> layers;
@@ -117,6 +123,15 @@ Response job_response(const RouteContext& context, std::int64_t job) {
                               : nlohmann::json{{"id", job}, {"state", "queued"}, {"progress", 0}, {"message", ""}},
                        202)
       .with("Location", "/api/v1/jobs/" + std::to_string(job));
+}
+
+Response file_response(std::shared_ptr<const jobs::JobFile> file) {
+  Response response;
+  response.with("Content-Type", file->media_type);
+  name_download(response, file->name);
+  response.file = file->path;
+  response.held = std::move(file);
+  return response;
 }
 
 Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& text) {

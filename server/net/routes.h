@@ -65,6 +65,7 @@ void add_quantity_routes(Router& router, const RouteContext& context);
 void add_extent_routes(Router& router, const RouteContext& context);
 void add_vertex_routes(Router& router, const RouteContext& context);
 void add_frame_routes(Router& router, const RouteContext& context);
+void add_figure_routes(Router& router, const RouteContext& context);
 void add_texel_routes(Router& router, const RouteContext& context);
 void add_shape_routes(Router& router, const RouteContext& context);
 void add_map_routes(Router& router, const RouteContext& context);
@@ -98,6 +99,8 @@ void apply_edit(
     room::EditRequest edit, const Respond& respond,
     std::function<nlohmann::json(nlohmann::json)> body_of = [](nlohmann::json of_edit) { return of_edit; });
 
+// The layer that the address names, for its role, as the store has it: reading needs no open room.
+Result<Layer> stored_layer(const RouteContext& context, const Request& request);
 // Layers by id or slug; the Problem of one that is not there names `field`.
 Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,
                                        const std::string& field);
@@ -120,6 +123,9 @@ Result<void> check_source_download(const Request& request, const Model& model);
 
 // 202 with the job and its address.
 Response job_response(const RouteContext& context, std::int64_t job);
+
+// A job's file, which is kept while it is sent.
+Response file_response(std::shared_ptr<const jobs::JobFile> file);
 
 // Slug of a wish or of the name; a wished slug of digits only is refused.
 Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& name);

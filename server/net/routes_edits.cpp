@@ -8,9 +8,7 @@ namespace {
 Result<Response> history(const RouteContext& context, const Request& request) {
   auto page = page_of(request);
   if (!page) return tl::unexpected(page.error());
-  auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  auto layer = context.store.layer(model->id, request.param("layer"), request.role());
+  auto layer = stored_layer(context, request);
   if (!layer) return tl::unexpected(layer.error());
   auto rows = context.store.history(layer->id, page->limit, page->offset);
   if (!rows) return tl::unexpected(rows.error());
@@ -19,7 +17,7 @@ Result<Response> history(const RouteContext& context, const Request& request) {
     nlohmann::json told = to_json(row);
     // An expression of then may name what fewer people see now.
     if (told.contains("expression")) {
-      const auto seen = sees_all_of(context, request.role(), model->id, told.at("expression").get<std::string>());
+      const auto seen = sees_all_of(context, request.role(), layer->model_id, told.at("expression").get<std::string>());
       if (!seen) return tl::unexpected(seen.error());
       if (!*seen) told.erase("expression");
     }
@@ -33,9 +31,7 @@ Result<Response> history(const RouteContext& context, const Request& request) {
 Result<Response> list_review(const RouteContext& context, const Request& request) {
   auto page = page_of(request);
   if (!page) return tl::unexpected(page.error());
-  auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  auto layer = context.store.layer(model->id, request.param("layer"), request.role());
+  auto layer = stored_layer(context, request);
   if (!layer) return tl::unexpected(layer.error());
   std::optional<std::string> user;
   if (const auto asked = request.query.find("user"); asked != request.query.end()) user = asked->second;

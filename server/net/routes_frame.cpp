@@ -12,7 +12,6 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   room::PictureRequest wanted;
-  wanted.camera = asked->camera;
   if (asked->layers) {
     wanted.layers.emplace();
     for (std::size_t i = 0; i < asked->layers->size(); ++i) {
@@ -54,7 +53,7 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   const auto background = background_of(asked->background);
   if (!background) return tl::unexpected(background.error());
   wanted.shown.background = *background;
-  auto picture = (*room)->picture(wanted);
+  auto picture = (*room)->picture(wanted, asked->camera);
   if (!picture) return tl::unexpected(picture.error());
   Response response = picture_response(*picture, asked->format == protocol::FrameRequestFormat::png);
   add_sequences(response, wanted.at.value_or(sequence), (*room)->durable_sequence());

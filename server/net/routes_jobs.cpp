@@ -11,9 +11,13 @@ Result<jobs::JobStatus> find_job(const RouteContext& context, const Request& req
   return *status;
 }
 
-// What a job reports, or why it failed, may name layers that only curators see, who start such jobs.
+bool is_own(const jobs::JobStatus& job, const Principal& who) { return !job.user.empty() && job.user == who.user; }
+
+// What a job reports, or why it failed, may name layers that only curators see, who start such jobs. A file is for who asked for it: it shows
+// what they see.
 nlohmann::json job_json(jobs::JobStatus job, const Principal& who) {
-  if (!sees(who.roles.in(job.project), Visibility::curators)) {
+  if (job.result && !is_own(job, who)) job.result->file.reset();
+  if (!sees(who.roles.in(job.project), Visibility::curators) && !is_own(job, who)) {
     if (job.result) job.result->report = nullptr;
     if (job.problem)
       job.problem = Problem{job.problem->status, job.problem->title, "Curators of the project read why.", {}};
@@ -57,12 +61,24 @@ void add_job_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context](const Request& request) -> Result<Response> {
                 auto job = find_job(context, request);
                 if (!job) return tl::unexpected(job.error());
+                if (request.role() < Role::curator && !is_own(*job, *request.principal))
+                  return fail(403, "Not yours", "Only who started a job and curators cancel it.", "job");
                 if (is_over(*job) || !context.jobs.cancel(job->id))
                   return fail(409, "Job is over", "The job has ended; there is nothing to cancel.", "job");
                 auto now = context.jobs.status(job->id);
                 return json_response(job_json(now.value_or(*job), *request.principal));
-              }),
-              .role = Role::curator});
+              })});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/jobs/{job}/file",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto job = find_job(context, request);
+                if (!job) return tl::unexpected(job.error());
+                if (!is_over(*job) && is_own(*job, *request.principal))
+                  return fail(409, "Not done yet", "The job is still at work: ask again when it is done.", "job");
+                if (!is_own(*job, *request.principal) || !job->result || !job->result->file)
+                  return fail(404, "No such file", "This job made no file for you, or it is kept no longer.", "job");
+                return file_response(job->result->file);
+              })});
 }
 
 }  // namespace strata::net

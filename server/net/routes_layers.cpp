@@ -13,12 +13,6 @@
 namespace strata::net {
 namespace {
 
-Result<Layer> stored_layer(const RouteContext& context, const Request& request) {
-  auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  return context.store.layer(model->id, request.param("layer"), request.role());
-}
-
 Result<Response> list_layers(const RouteContext& context, const Request& request) {
   auto page = page_of(request);
   if (!page) return tl::unexpected(page.error());

@@ -108,7 +108,7 @@ Result<Response> source(const RouteContext& context, const Request& request) {
     if (request.header("if-none-match") == etag) return empty_response(304).with("ETag", etag);
     Response response;
     response.with("Content-Type", "application/octet-stream").with("ETag", etag);
-    response.with("Content-Disposition", "attachment; filename*=UTF-8''" + percent_encode(file.name));
+    name_download(response, file.name);
     response.stream =
         Response::Stream{file.bytes, [&store = context.store, id = model->id, wanted](const Response::Sink& sink) {
                            return store.read_source(id, wanted, sink).has_value();

@@ -71,9 +71,7 @@ Result<void> check_size(const Layer& layer, std::uint64_t bytes) {
 Result<void> check_raster(const RouteContext& context, const Request& request) {
   auto format = format_of(request);
   if (!format) return tl::unexpected(format.error());
-  auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  auto layer = context.store.layer(model->id, request.param("layer"), request.role());
+  auto layer = stored_layer(context, request);
   if (!layer) return tl::unexpected(layer.error());
   const std::string_view length = request.header("content-length");
   if (length.empty()) return {};

@@ -6,10 +6,8 @@
 #include "net/answer_book.h"
 #include "net/picture_response.h"
 #include "net/routes.h"
-#include "net/wire.h"
+#include "net/view_wire.h"
 #include "protocol/json_values.h"
-#include "query/expression_parser.h"
-#include "store/named_parts.h"
 
 namespace strata::net {
 namespace {
@@ -22,7 +20,7 @@ template <class Asked>
 Result<nlohmann::json> content_of(const room::Room& room, const Asked& asked, const Camera& camera) {
   if (auto good = validate(camera); !good) return tl::unexpected(good.error());
   const auto shown = asked.layers.value_or(std::vector<protocol::LayerOverride>{});
-  const auto settings = view_settings(room, shown, asked.looks, asked.light);
+  const auto settings = shown_settings(room, asked);
   if (!settings) return tl::unexpected(settings.error());
   nlohmann::json layers = nlohmann::json::array();
   for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -39,50 +37,6 @@ Result<nlohmann::json> content_of(const room::Room& room, const Asked& asked, co
       content["looks"].push_back({{"look", look.look_id}, {"opacity", look.opacity}});
   }
   return content;
-}
-
-// Takes out what names columns that are not there for the role.
-void leave_out_columns(const RouteContext& context, Role role, std::int64_t table_id, nlohmann::json& shown) {
-  if (const auto palette = shown.find("palette"); palette != shown.end() && palette->contains("column")) {
-    const auto table = context.store.table(std::to_string(table_id), role);
-    if (!table || !find_column(table->columns, palette->at("column").get<std::string>())) shown.erase(palette);
-  }
-  if (const auto highlight = shown.find("highlight"); highlight != shown.end() && highlight->contains("filter")) {
-    store::Store::RecordQuery asked;
-    asked.limit = 1;
-    auto filter = query::parse_condition(highlight->at("filter").get<std::string>(), "filter", query::Names::columns);
-    if (filter) asked.filter = std::move(*filter);
-    if (!filter || !context.store.records(table_id, role, asked)) shown.erase(highlight);
-  }
-}
-
-// Of what the view names, what is there for who asks.
-nlohmann::json to_json(const RouteContext& context, const Request& request, const NamedPart& view,
-                       const room::Room& room) {
-  nlohmann::json json = view.content;
-  const auto leave_out = [](nlohmann::json& list, const char* member, const auto& there) {
-    list.erase(std::remove_if(list.begin(), list.end(),
-                              [&](const nlohmann::json& entry) {
-                                const auto id = entry.at(member).template get<std::int64_t>();
-                                return std::ranges::none_of(there, [&](const auto& each) { return each.id == id; });
-                              }),
-               list.end());
-  };
-  const auto layers = room.layers();
-  leave_out(json["layers"], "layer", layers);
-  for (nlohmann::json& shown : json["layers"])
-    for (const Layer& layer : layers)
-      if (layer.table && layer.id == shown.at("layer").get<std::int64_t>())
-        leave_out_columns(context, request.role(), *layer.table, shown);
-  if (json.contains("looks")) leave_out(json["looks"], "look", room.looks());
-  json.update({{"id", view.id},
-               {"slug", view.slug},
-               {"name", view.name},
-               {"text", view.text},
-               {"user", told_name(request, view.user)},
-               {"time", utc_text(view.time)},
-               {"version", view.version}});
-  return json;
 }
 
 // The model as who asks sees it, and one of its views.
@@ -150,27 +104,20 @@ Result<Response> view_picture(const RouteContext& context, const Request& reques
     return fail(422, "Unknown format", "A picture of a view is 'jpeg' or 'png'.", "format");
   const auto found = find_view(context, request);
   if (!found) return tl::unexpected(found.error());
-  const nlohmann::json seen = to_json(context, request, found->view, *found->room);
-  nlohmann::json content{{"name", found->view.name},
-                         {"camera", seen.at("camera")},
-                         {"layers", seen.at("layers")},
-                         {"light", seen.at("light")}};
-  if (seen.contains("looks")) content["looks"] = seen.at("looks");
-  const auto kept = protocol::from_json<protocol::ViewCreate>(content);
+  const auto kept = as_asked(context, request, found->view, *found->room);
   if (!kept) return tl::unexpected(kept.error());
-  auto shown = view_settings(*found->room, kept->layers.value_or(std::vector<protocol::LayerOverride>{}), kept->looks,
-                             kept->light);
+  auto shown = shown_settings(*found->room, *kept);
   if (!shown) return tl::unexpected(shown.error());
   room::PictureRequest wanted;
-  wanted.camera = kept->camera;
+  Camera camera = kept->camera;
   if (side) {
-    const double scale = std::min(1.0, double(*side) / std::max(wanted.camera.width, wanted.camera.height));
-    wanted.camera.width = std::max(1, static_cast<int>(std::lround(wanted.camera.width * scale)));
-    wanted.camera.height = std::max(1, static_cast<int>(std::lround(wanted.camera.height * scale)));
+    const double scale = std::min(1.0, double(*side) / std::max(camera.width, camera.height));
+    camera.width = std::max(1, static_cast<int>(std::lround(camera.width * scale)));
+    camera.height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));
   }
   wanted.shown = std::move(*shown);
   const auto sequence = found->room->sequence();
-  const auto picture = found->room->picture(wanted);
+  const auto picture = found->room->picture(wanted, camera);
   if (!picture) return tl::unexpected(picture.error());
   Response response = picture_response(*picture, format == "png");
   add_sequences(response, sequence, found->room->durable_sequence());

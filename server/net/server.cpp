@@ -47,7 +47,8 @@ Result<void> prepare_upload_dir(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string extension = entry.path().extension().string();
     std::error_code ignored;
-    if (extension == ".body" || extension == ".part" || extension == ".upload") fs::remove(entry.path(), ignored);
+    if (extension == ".body" || extension == ".part" || extension == ".upload" || extension == ".figure")
+      fs::remove(entry.path(), ignored);
   }
   return {};
 }

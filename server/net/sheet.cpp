@@ -64,8 +64,4 @@ Result<Response> sheet_response(const Sheet& sheet, SheetFormat format, char sep
   return book.finish(sheet.name + ".xlsx");
 }
 
-void name_download(Response& response, const std::string& filename) {
-  response.with("Content-Disposition", "attachment; filename*=UTF-8''" + percent_encode(filename));
-}
-
 }  // namespace strata::net

@@ -32,7 +32,4 @@ struct Sheet {
 Result<Response> sheet_response(const Sheet& sheet, SheetFormat format, char separator,
                                 const std::filesystem::path& folder);
 
-// For a file that is kept and not shown; any characters will do.
-void name_download(Response& response, const std::string& filename);
-
 }  // namespace strata::net

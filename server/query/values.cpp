@@ -115,4 +115,21 @@ SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const 
   return surface_point(*hit, origin, layers);
 }
 
+std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                                                    const Camera& camera, int columns, int rows,
+                                                    const LayerView& layer) {
+  std::vector<std::optional<std::uint32_t>> keys(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  const std::vector<LayerView> layers{layer};
+  mesh::parallel_for(mesh::background_threads(), rows, [&](int row) {
+    for (int column = 0; column < columns; ++column) {
+      const auto point = pick(tree, origin, camera, (column + 0.5) * camera.width / columns,
+                              (row + 0.5) * camera.height / rows, layers);
+      if (point.hit && point.values[0].valid)
+        keys[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)] =
+            static_cast<std::uint32_t>(point.values[0].value);
+    }
+  });
+  return keys;
+}
+
 }  // namespace strata::query

@@ -84,7 +84,10 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   std::shared_ptr<const mesh::Geometry> geometry() const override { return geometry_; }
   std::shared_ptr<const mesh::SearchTree> search_tree() override { return surface_->tree(); }
   Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution) override;
-  Result<render::Frame> picture(const PictureRequest& request) override;
+  Result<void> pictures(const PictureRequest& request, std::span<const PicturePart> parts,
+                        const SeePicture& see) override;
+  Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string& layer, const Camera& camera,
+                                                              int columns, int rows, At at) override;
   std::vector<Look> looks() const override { return look_shelf_->all(); }
   Result<Look> look(const std::string& ref) const override;
   Result<Look> create_look(Look look, std::span<const std::uint8_t> picture,

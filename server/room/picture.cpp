@@ -1,4 +1,6 @@
-// One rendered picture for a script: a view of its own, drawn once.
+// Rendered pictures for a script: a view of their own, drawn once each.
+#include <cmath>
+
 #include "room/await.h"
 #include "room/gpu_problem.h"
 #include "room/open_room.h"
@@ -20,7 +22,19 @@ struct Borrowed {
 
 }  // namespace
 
-Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
+Result<render::Frame> Room::picture(const PictureRequest& request, const Camera& camera) {
+  render::Frame only;
+  const PicturePart part{camera};
+  auto seen = pictures(request, {&part, 1}, [&](std::size_t, const render::Frame& picture) -> Result<void> {
+    only = picture;
+    return {};
+  });
+  if (!seen) return tl::unexpected(seen.error());
+  return only;
+}
+
+Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const PicturePart> parts,
+                                const SeePicture& see) {
   touch();
   const Visibility sight = sight_of(asked.seen_by);
   std::vector<LayerState> shown;
@@ -77,9 +91,6 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
   auto view = await<render::ViewHandle>([&](auto done) { parts_.renderer.add_view(model, std::move(done)); });
   if (!view) return tl::unexpected(gpu_problem(view.error()));
   borrowed.view = request.view = *view;
-  request.camera = asked.camera;
-  request.width = asked.camera.width;
-  request.height = asked.camera.height;
   auto looks = look_shelf_->wait(asked.shown.looks);
   if (!looks) return tl::unexpected(gpu_problem(looks.error()));
   request.looks = std::move(*looks);
@@ -87,9 +98,16 @@ Result<render::Frame> OpenRoom::picture(const PictureRequest& asked) {
   request.background = asked.shown.background;
   request.marks = show_marks(marked);
   request.unit_mm = this->model().metres() * 1000;
-  auto frame = await<render::Frame>([&](auto done) { parts_.renderer.draw(std::move(request), std::move(done)); });
-  if (!frame) return tl::unexpected(gpu_problem(frame.error()));
-  return frame;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    touch();
+    request.camera = parts[i].camera;
+    request.width = static_cast<int>(std::lround(parts[i].camera.width * parts[i].pixels));
+    request.height = static_cast<int>(std::lround(parts[i].camera.height * parts[i].pixels));
+    auto frame = await<render::Frame>([&](auto done) { parts_.renderer.draw(request, std::move(done)); });
+    if (!frame) return tl::unexpected(gpu_problem(frame.error()));
+    if (auto seen = see(i, *frame); !seen) return seen;
+  }
+  return {};
 }
 
 }  // namespace strata::room

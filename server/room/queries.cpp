@@ -87,6 +87,14 @@ Result<query::SurfacePoint> OpenRoom::pick(const Camera& camera, double x, doubl
   return query::pick(*surface_->tree(), geometry_->origin, camera, x, y, *views);
 }
 
+Result<std::vector<std::optional<std::uint32_t>>> OpenRoom::seen_keys(const std::string& layer, const Camera& camera,
+                                                                      int columns, int rows, At at) {
+  touch();
+  auto views = layer_views({layer}, at);
+  if (!views) return tl::unexpected(views.error());
+  return query::seen_keys(*surface_->tree(), geometry_->origin, camera, columns, rows, views->front());
+}
+
 // Nothing where the whole surface is meant.
 Result<std::optional<query::TexelSelection>> OpenRoom::select_texels(const Selection& selection,
                                                                      const mesh::SurfaceMap& map) {

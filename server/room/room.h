@@ -160,11 +160,16 @@ struct SeenLine {
 using ProfileLine = std::variant<PlacesInSteps, SeenLine>;
 
 struct PictureRequest {
-  Camera camera;
   std::optional<std::vector<std::string>> layers{};  // exactly these, by slug; nothing: those that are visible
   ViewSettings shown{};
   std::optional<std::int64_t> at{};  // layers as they were after that sequence
   Role seen_by = Role::owner;        // columns that it does not see neither draw nor colour
+};
+
+// A camera with a picture of its own, which has so many pixels to one of its window's.
+struct PicturePart {
+  Camera camera;
+  double pixels = 1;
 };
 
 // One open model, as somebody sees it: layers that they do not see are not there. The only place that joins store, renderer, streams and queries: keeps the order of edits, the tile mirrors,
@@ -257,8 +262,16 @@ class Room {
   virtual std::shared_ptr<const mesh::Geometry> geometry() const = 0;
   virtual std::shared_ptr<const mesh::SearchTree> search_tree() = 0;
   virtual Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution) = 0;
-  // One picture, waits for it and for the looks it shows. RGBA8, top row first.
-  virtual Result<render::Frame> picture(const PictureRequest& request) = 0;
+  // Pictures, RGBA8, top row first; waits for them and for the looks they show. `see` gets each in turn and may end it with a Problem.
+  // With `at` all show one state, also while others paint.
+  using SeePicture = std::function<Result<void>(std::size_t part, const render::Frame& picture)>;
+  virtual Result<void> pictures(const PictureRequest& request, std::span<const PicturePart> parts,
+                                const SeePicture& see) = 0;
+  Result<render::Frame> picture(const PictureRequest& request, const Camera& camera);
+  // What a layer of whole numbers has where it is seen: in the middle of each cell of a grid over the camera's window, row by row from the
+  // top left. Nothing: no surface, or nothing painted there.
+  virtual Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string& layer, const Camera& camera,
+                                                                      int columns, int rows, At at = {}) = 0;
 
   // Pictures of the surface. Changes block (database) and are announced to the listeners.
   virtual std::vector<Look> looks() const = 0;  // by order

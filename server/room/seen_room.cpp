@@ -77,7 +77,8 @@ class SeenRoom final : public Room {
     if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
     return room_->tiles(layer, at);
   }
-  Result<render::Frame> picture(const PictureRequest& asked) override {
+  Result<void> pictures(const PictureRequest& asked, std::span<const PicturePart> parts,
+                        const SeePicture& see) override {
     PictureRequest seen = asked;
     seen.seen_by = std::min(asked.seen_by, role_);
     if (asked.layers) {
@@ -87,7 +88,12 @@ class SeenRoom final : public Room {
       for (const Layer& layer : layers())
         if (asked.shown.of(layer.id).visible.value_or(layer.visible)) seen.layers->push_back(std::to_string(layer.id));
     }
-    return room_->picture(seen);
+    return room_->pictures(seen, parts, see);
+  }
+  Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string& layer, const Camera& camera,
+                                                              int columns, int rows, At at) override {
+    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    return room_->seen_keys(layer, camera, columns, rows, at);
   }
 
   // Nothing of layers is asked or told.

@@ -136,13 +136,13 @@ TEST_F(RoomTest, many_strokes_at_once_keep_their_order) {
 TEST_F(RoomTest, a_lost_context_comes_back_with_every_layer) {
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 90, {{320, 240}, {360, 260}}, 25)));
-  const auto before = room()->picture({camera({0.3, -1, 0.4})});
+  const auto before = room()->picture({}, camera({0.3, -1, 0.4}));
   ASSERT_TRUE(before);
   renderer_->lose_context_for_test();
   // The room refuses while the GPU is rebuilt; then the picture is the same.
   Result<render::Frame> after = fail(503, "", "");
   for (int i = 0; i < 3000 && !after; ++i) {
-    after = room()->picture({camera({0.3, -1, 0.4})});
+    after = room()->picture({}, camera({0.3, -1, 0.4}));
     if (!after) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   ASSERT_TRUE(after) << after.error().detail;
@@ -180,7 +180,7 @@ TEST_F(RoomTest, edits_whose_commit_fails_are_taken_back_everywhere) {
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
   const auto saved = room()->tiles("layer", {});
-  const auto picture = room()->picture({camera({0.3, -1, 0.4})});
+  const auto picture = room()->picture({}, camera({0.3, -1, 0.4}));
   UnsavedEars ears;
   auto member = room()->join({"anna", Role::owner}, "", &ears, [](stream::FrameBytes) {});
 
@@ -197,7 +197,7 @@ TEST_F(RoomTest, edits_whose_commit_fails_are_taken_back_everywhere) {
   }
   for (auto& answer : answers) EXPECT_FALSE(answer.get());
   EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles, saved->tiles));
-  EXPECT_EQ(room()->picture({camera({0.3, -1, 0.4})})->pixels, picture->pixels);
+  EXPECT_EQ(room()->picture({}, camera({0.3, -1, 0.4}))->pixels, picture->pixels);
   EXPECT_EQ(room()->sequence(), 1);
   {
     std::lock_guard lock(ears.mutex);
@@ -213,12 +213,12 @@ TEST_F(RoomTest, edits_whose_commit_fails_are_taken_back_everywhere) {
 TEST_F(RoomTest, with_the_database_gone_edits_are_refused_and_viewing_goes_on) {
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
-  const auto picture = room()->picture({camera()});
+  const auto picture = room()->picture({}, camera());
   auto& cluster = test::shared_cluster();
   test::Hang(cluster).kill();  // with its sessions, which may write for a moment after the postmaster is gone
   auto edit = stroke(layer, 6, {{340, 240}}, 20);
   EXPECT_FALSE(send(edit));
-  EXPECT_EQ(room()->picture({camera()})->pixels, picture->pixels);
+  EXPECT_EQ(room()->picture({}, camera())->pixels, picture->pixels);
   EXPECT_EQ(room()->durable_sequence(), 1);
 
   ASSERT_TRUE(cluster.ensure_running());

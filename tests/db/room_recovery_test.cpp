@@ -74,7 +74,7 @@ class RoomRecovery : public RoomTest {
     for (const Layer& layer : layers) {
       EXPECT_TRUE(send(stroke(layer, 5, {{320, 240}}, 20)));
     }
-    EXPECT_TRUE(room()->picture({camera({0.3, -1, 0.4})}));
+    EXPECT_TRUE(room()->picture({}, camera({0.3, -1, 0.4})));
     restart(renderer_->gpu_bytes_used() + (9u << 20));
   }
 
@@ -136,7 +136,7 @@ TEST_F(RoomRecovery, layers_that_do_not_fit_the_gpu_together_are_painted_in_turn
     }
   expect_room_equals_journal(a);
   expect_room_equals_journal(b);
-  const auto both = room()->picture({camera({0.3, -1, 0.4})});
+  const auto both = room()->picture({}, camera({0.3, -1, 0.4}));
   ASSERT_FALSE(both) << "two full layers in one picture";
   EXPECT_EQ(both.error().status, 503);
   restart();
@@ -295,13 +295,13 @@ TEST_F(RoomRecovery, an_edit_that_reaches_the_journal_behind_the_room_is_not_pai
 TEST_F(RoomRecovery, a_room_that_cannot_be_read_again_refuses_edits_until_it_can) {
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
-  const auto picture = room()->picture({camera()});
+  const auto picture = room()->picture({}, camera());
   const auto edit = stroke(layer, 6, {{340, 240}}, 20);
   commit_behind(edit, layer, 2, true);
   const auto refused = send(edit);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, 503);
-  EXPECT_EQ(room()->picture({camera()})->pixels, picture->pixels);  // viewing goes on
+  EXPECT_EQ(room()->picture({}, camera())->pixels, picture->pixels);  // viewing goes on
 
   execute(
       "update tile_revisions set difference = (select difference from tile_revisions where sequence = 1 limit 1) where sequence = 2");

@@ -59,7 +59,7 @@ class Reviews : public RoomTest {
     for (const auto& [tile, data] : waiting) count += static_cast<std::size_t>(data->valid.count());
     return count;
   }
-  std::vector<std::uint8_t> picture() { return room()->picture({camera({0.3, -1, 0.4})})->pixels; }
+  std::vector<std::uint8_t> picture() { return room()->picture({}, camera({0.3, -1, 0.4}))->pixels; }
 };
 
 TEST_F(Reviews, what_an_annotator_paints_is_in_force_and_marked_until_it_is_accepted) {

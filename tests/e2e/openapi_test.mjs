@@ -39,6 +39,7 @@ const secrets = () =>
     ["(the owner's link)", new URL(server.link).searchParams.get("link")],
     ["(a kiosk's link)", site.kiosk_link],
     ["(a job)", site.job],
+    ["(a figure's job)", site.figure_job],
     ["(an invitation)", site.invitations?.[0]],
     ["(an invitation to accept)", site.invitations?.[1]],
   ]);
@@ -89,11 +90,17 @@ function send({ method, target, headers, body }) {
       },
       (answer) => {
         const chunks = [];
-        answer.on("data", (chunk) => chunks.push(chunk));
+        const done = () => resolve({ status: answer.statusCode, headers: answer.headers, body: Buffer.concat(chunks) });
         answer.on("error", reject);
+        answer.on("data", (chunk) => {
+          chunks.push(chunk);
+          if (answer.headers["content-type"] !== "text/event-stream") return;
+          done(); // it has no end
+          request.destroy();
+        });
         answer.on("end", () => {
           if (!request.writableEnded) request.destroy();
-          resolve({ status: answer.statusCode, headers: answer.headers, body: Buffer.concat(chunks) });
+          done();
         });
       },
     );

@@ -154,7 +154,13 @@ class FakeRoom final : public room::Room {
   Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int) override {
     return std::shared_ptr<const mesh::SurfaceMap>();
   }
-  Result<render::Frame> picture(const room::PictureRequest&) override { return render::Frame{}; }
+  Result<void> pictures(const room::PictureRequest&, std::span<const room::PicturePart>, const SeePicture&) override {
+    return {};
+  }
+  Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string&, const Camera&, int, int,
+                                                              At) override {
+    return {};
+  }
   std::vector<Look> looks() const override { return {look_}; }
   Result<Look> look(const std::string& ref) const override {
     if (ref == "uv-light" || ref == "9") return look_;

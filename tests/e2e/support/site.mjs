@@ -173,6 +173,9 @@ export class Site {
       type: "f32",
       resolution: 2048,
     });
+    const figure = await server.request("POST", "/models/wall/figures", { dpi: 50 }, { Prefer: "respond-async" });
+    this.figure_job = String((await figure.json()).id);
+    await wait_for(async () => (await server.json("GET", `/jobs/${this.figure_job}`)).state === "done", "a figure", 100);
     for (const format of ["png", "npy"])
       this.files[`cracks.${format}`] = Buffer.from(
         await (await server.request("GET", `/models/wall/layers/cracks/texels.${format}`)).arrayBuffer(),

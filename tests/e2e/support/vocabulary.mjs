@@ -269,6 +269,15 @@ export const particulars = {
   drop_column: { path: { table: one("scratch"), ...spare("column") } },
   change_column: { path: { table: one("scratch"), ...spare("column", "note") }, ...json({ by_name: { target: one("units", "scratch") } }) },
   cancel_job: { path: spare("job", "(a job)") },
+  get_job_file: { path: { job: mostly("(a figure's job)", "(a figure's job)", "(a job)") } },
+  make_figure: {
+    path: { model: one("wall") },
+    // Small ones: larger ones are the same code and take long to draw.
+    ...json({
+      by_name: { dpi: one(50, 60, 20), view: one("west", "nothing"), scale: one(0.5, 1, 20, 0), normal: one([0, 0, 1], [0, -1, 1], [0, 0, 0]) },
+      by_schema: { FigureLabels: one({ layer: "units", column: "code" }, { layer: "cracks", column: "code" }, { layer: "units", column: "nothing" }) },
+    }),
+  },
   change_model: { path: { model: one("wall-2") } },
   change_project: { path: { project: one("site", "default") } },
   change_layer: { path: { model: one("wall"), ...spare("layer") } },
@@ -365,6 +374,7 @@ export const header_words = {
   "If-Match": one('"v1"', "*", '"v999"', "v1", '""'),
   "Idempotency-Key": fc.oneof(fc.uuid(), one("the same", "k".repeat(255))),
   "If-None-Match": one('"v1"', '"v2"', "*"),
+  Prefer: one("respond-async", "return=minimal"),
   "If-Range": one('"v1"'),
   Range: one("bytes=0-9", "bytes=5-", "bytes=-4", "bytes=999999-", "bytes=9-2", "lines=1"),
 };

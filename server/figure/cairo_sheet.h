@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cairo.h>
+
+#include "figure/sheet.h"
+
+namespace strata::figure {
+
+// Draws all but the drawing. A unit of the context is a millimetre, its origin the sheet's top left.
+void draw_groups(cairo_t* context, const Sheet& sheet);
+
+}  // namespace strata::figure

@@ -1,0 +1,123 @@
+#include "figure/drawing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+
+namespace strata::figure {
+namespace {
+
+constexpr double kInch_mm = 25.4;
+
+// The axes of the front view, as the page has them.
+Plane front_of(char up_axis) {
+  if (up_axis == 'x') return {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}};
+  if (up_axis == 'y') return {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
+  return {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}};
+}
+
+// A window in millimetres from the drawing's top left, for a camera of so many pixels.
+Camera camera_over(const Drawing& drawing, const glm::dvec2& corner_mm, const glm::dvec2& size_mm, int width,
+                   int height) {
+  const Plane& plane = drawing.plane;
+  const double unit = drawing.units_per_mm();
+  const glm::dvec2 drawing_mm = glm::dvec2(drawing.width, drawing.height) * (kInch_mm / drawing.dpi);
+  // Of the middle of the drawing.
+  const double left = (corner_mm.x - drawing_mm.x / 2) * unit, top = (drawing_mm.y / 2 - corner_mm.y) * unit;
+  const glm::dvec3 eye = plane.in_world({drawing.center, drawing.near});
+  Camera camera;
+  camera.view = glm::transpose(glm::dmat4(glm::dvec4(plane.right, -glm::dot(plane.right, eye)),
+                                          glm::dvec4(plane.up, -glm::dot(plane.up, eye)),
+                                          glm::dvec4(-plane.into, glm::dot(plane.into, eye)), glm::dvec4(0, 0, 0, 1)));
+  camera.projection =
+      glm::ortho(left, left + size_mm.x * unit, top - size_mm.y * unit, top, 0.0, drawing.far - drawing.near);
+  camera.width = width;
+  camera.height = height;
+  camera.section = drawing.section;
+  return camera;
+}
+
+}  // namespace
+
+Plane plane_from(Direction direction, char up_axis) {
+  const Plane front = front_of(up_axis);
+  switch (direction) {
+    case Direction::front: return front;
+    case Direction::back: return {-front.right, front.up, -front.into};
+    case Direction::right: return {front.into, front.up, -front.right};
+    case Direction::left: return {-front.into, front.up, front.right};
+    case Direction::top: return {front.right, front.into, -front.up};
+    case Direction::bottom: return {front.right, -front.into, front.up};
+  }
+  return front;
+}
+
+Plane plane_square_to(const glm::dvec3& normal, char up_axis) {
+  const Plane front = front_of(up_axis);
+  const glm::dvec3 into = -glm::normalize(normal);
+  const double along = glm::dot(into, front.up);
+  // Surface that lies has no up of its own.
+  constexpr double kLying = 0.999;
+  const glm::dvec3 wish = std::abs(along) < kLying ? front.up : along < 0 ? front.into : -front.into;
+  const glm::dvec3 right = glm::normalize(glm::cross(into, wish));
+  return {right, glm::cross(right, into), into};
+}
+
+Plane plane_of(const Camera& camera) {
+  const glm::dmat3 axes = glm::transpose(glm::dmat3(camera.view));
+  const glm::dvec3 into = -glm::normalize(axes[2]);
+  const glm::dvec3 right = glm::normalize(axes[0] - glm::dot(axes[0], into) * into);
+  return {right, glm::cross(right, into), into};
+}
+
+std::optional<Extent> extent_of(std::span<const glm::dvec3> world, const Plane& plane,
+                                std::span<const glm::dvec4> section) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Extent extent{glm::dvec3(kFar), glm::dvec3(-kFar)};
+  for (const glm::dvec3& point : world) {
+    if (std::ranges::any_of(section, [&](const glm::dvec4& cut) { return glm::dot(cut, glm::dvec4(point, 1)) < 0; }))
+      continue;
+    const glm::dvec3 drawn = plane.of(point);
+    extent.min = glm::min(extent.min, drawn);
+    extent.max = glm::max(extent.max, drawn);
+  }
+  if (extent.min.x > extent.max.x) return std::nullopt;
+  return extent;
+}
+
+double fitting_scale(const glm::dvec2& size, const glm::dvec2& paper_mm, double metres_per_unit) {
+  const glm::dvec2 life_mm = size * (metres_per_unit * 1000);
+  const double needed = std::max(life_mm.x / paper_mm.x, life_mm.y / paper_mm.y);
+  for (double decade = 1; decade < 1e6; decade *= 10)
+    for (const double step : {1.0, 2.0, 2.5, 5.0})
+      if (step * decade >= needed) return step * decade;
+  return 1e6;
+}
+
+glm::dvec2 Drawing::on_paper(const glm::dvec3& world) const {
+  const glm::dvec3 drawn = plane.of(world);
+  const glm::dvec2 middle_mm = glm::dvec2(width, height) * (kInch_mm / dpi / 2);
+  return middle_mm + glm::dvec2(drawn.x - center.x, center.y - drawn.y) / units_per_mm();
+}
+
+std::vector<Part> parts_of(const Drawing& drawing, int side) {
+  const int inches = std::max(1, side / drawing.dpi), step = inches * drawing.dpi;
+  std::vector<Part> parts;
+  for (int y = 0; y < drawing.height; y += step)
+    for (int x = 0; x < drawing.width; x += step)
+      parts.push_back({camera_over(drawing, glm::dvec2(x, y) * (kInch_mm / drawing.dpi), glm::dvec2(inches * kInch_mm),
+                                   inches * kCameraDpi, inches * kCameraDpi),
+                       x, y, step, step});
+  return parts;
+}
+
+Camera camera_of(const Drawing& drawing) {
+  const glm::dvec2 size_mm = glm::dvec2(drawing.width, drawing.height) * (kInch_mm / drawing.dpi);
+  const auto pixels = [](double mm) {
+    return std::clamp(static_cast<int>(mm / kInch_mm * kCameraDpi), 1, kMaxViewSize);
+  };
+  return camera_over(drawing, {0, 0}, size_mm, pixels(size_mm.x), pixels(size_mm.y));
+}
+
+}  // namespace strata::figure

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/picture.h"
+#include "core/problem.h"
+#include "core/progress.h"
+#include "figure/sheet.h"
+
+namespace strata::figure {
+
+enum class Format { png, tiff, svg, pdf };
+std::string_view media_type(Format format);
+std::string_view extension(Format format);  // ".pdf"
+
+// Writes a sheet with its drawing, whose pixels are `dpi` an inch, as a new file. In SVG and PDF the drawing is a JPEG of high quality, and all else is
+// shapes and words; in PNG and TIFF (deflate) everything is pixels, of which the file says how many an inch has. 499: cancelled; 507: it
+// cannot be written. `title` and `author` go along as the file's own.
+struct Document {
+  std::string title, author;
+};
+Result<void> write_figure(const Sheet& sheet, const Picture& drawing, int dpi, Format format, const Document& document,
+                          const std::filesystem::path& file, Progress& progress);
+
+}  // namespace strata::figure

@@ -1,0 +1,318 @@
+#include "figure/layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/number_text.h"
+#include "figure/text.h"
+
+namespace strata::figure {
+namespace {
+
+constexpr double kInch_mm = 25.4;
+constexpr double kMargin = 10, kGap = 4;
+constexpr double kTitle = 4.2, kText = 2.8, kSmall = 2.2;  // letters
+constexpr double kLine = 1.45;                             // of their size
+constexpr double kFrame = 0.2, kThin = 0.12;               // strokes
+constexpr int kMostTitleLines = 2, kMostCaptionLines = 8, kMostCreditLines = 3;
+constexpr double kScaleWidth = 80, kScaleHeight = 16;
+constexpr double kLegendColumn = 56, kSwatchWidth = 6, kSwatchHeight = 3, kEntry = 4.2, kTitleGap = 1.2;
+constexpr double kPi = 3.14159265358979323846;
+
+glm::dvec2 direction(double degrees) { return {std::cos(degrees * kPi / 180), -std::sin(degrees * kPi / 180)}; }
+
+Path rectangle(const glm::dvec2& corner, const glm::dvec2& size) {
+  return {{corner, corner + glm::dvec2(size.x, 0), corner + size, corner + glm::dvec2(0, size.y)}};
+}
+
+// The part of a line within a box; nothing where it passes by.
+std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& through, const glm::dvec2& along,
+                                                         const Box& box) {
+  double from = -1e9, to = 1e9;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double low = box.corner[axis] - through[axis], high = low + box.size[axis];
+    if (std::abs(along[axis]) < 1e-12) {
+      if (low > 0 || high < 0) return std::nullopt;
+      continue;
+    }
+    from = std::max(from, std::min(low / along[axis], high / along[axis]));
+    to = std::min(to, std::max(low / along[axis], high / along[axis]));
+  }
+  if (from >= to) return std::nullopt;
+  return std::pair(through + from * along, through + to * along);
+}
+
+// As the page's legend has them: opaque, so that the paper below does not count.
+void add_swatch(std::vector<Item>& items, const Box& box, const LegendEntry& entry) {
+  const Rgba ink{entry.color[0], entry.color[1], entry.color[2], 255};
+  Path frame = rectangle(box.corner, box.size);
+  if (entry.pattern == Pattern::solid) frame.fill = ink;
+  const glm::dvec2 middle = box.corner + box.size / 2.0;
+  const glm::dvec2 along = direction(entry.angle), across(-along.y, along.x);
+  constexpr double kSpacing = 1.2, kStroke = 0.5;
+  if (entry.pattern == Pattern::hatch)
+    for (int i = -8; i <= 8; ++i)
+      if (const auto line = clipped(middle + (i * kSpacing) * across, along, box)) {
+        const glm::dvec2 half = across * (kStroke / 2);
+        items.push_back(
+            Path{{line->first - half, line->second - half, line->second + half, line->first + half}, true, ink});
+      }
+  if (entry.pattern == Pattern::dots)
+    for (double y = box.corner.y + 0.75; y < box.corner.y + box.size.y; y += kSpacing)
+      for (double x = box.corner.x + 0.75; x < box.corner.x + box.size.x; x += kSpacing) {
+        Path dot{{}, true, ink};
+        for (int corner = 0; corner < 12; ++corner)
+          dot.points.push_back(glm::dvec2(x, y) + 0.35 * direction(30.0 * corner));
+        items.push_back(std::move(dot));
+      }
+  frame.stroke_mm = kThin;
+  if (entry.pattern == Pattern::outline) {
+    Path inner = rectangle(box.corner + 0.3, box.size - 0.6);
+    Path outer = rectangle(box.corner, box.size);
+    outer.fill = ink;
+    inner.fill = Rgba{255, 255, 255, 255};
+    items.insert(items.end(), {outer, inner});
+    return;
+  }
+  items.push_back(std::move(frame));
+}
+
+// What of a legend stands on one line.
+struct Row {
+  enum class Kind { title, entry, ramp, more } kind;
+  std::string text;
+  const LegendEntry* entry = nullptr;
+  const Legend* legend = nullptr;
+  double height() const { return kind == Kind::ramp ? 2 * kEntry : kind == Kind::title ? kEntry + kTitleGap : kEntry; }
+};
+
+std::vector<Row> rows_of(const std::vector<Legend>& legends, double width) {
+  std::vector<Row> rows;
+  for (const Legend& legend : legends) {
+    rows.push_back({Row::Kind::title, wrapped(legend.title, kText, true, width, 1).at(0)});
+    if (!legend.ramp.empty()) rows.push_back({Row::Kind::ramp, {}, nullptr, &legend});
+    for (const LegendEntry& entry : legend.entries) {
+      const auto label = wrapped(entry.label, kText, false, width - kSwatchWidth - 2, 1);
+      rows.push_back({Row::Kind::entry, label.empty() ? std::string() : label[0], &entry});
+    }
+  }
+  return rows;
+}
+
+void add_row(std::vector<Item>& items, const Row& row, const glm::dvec2& at, double width) {
+  const double base = at.y + kEntry - 1.1;
+  switch (row.kind) {
+    case Row::Kind::title: items.push_back(Words{{at.x, base + kTitleGap}, row.text, kText, true}); return;
+    case Row::Kind::more: items.push_back(Words{{at.x, base}, row.text, kText}); return;
+    case Row::Kind::entry:
+      add_swatch(items, {{at.x, at.y + 0.5}, {kSwatchWidth, kSwatchHeight}}, *row.entry);
+      items.push_back(Words{{at.x + kSwatchWidth + 2, base}, row.text, kText});
+      return;
+    case Row::Kind::ramp: {
+      const double length = std::min(width, kLegendColumn - 6),
+                   step = length / static_cast<double>(row.legend->ramp.size());
+      for (std::size_t i = 0; i < row.legend->ramp.size(); ++i) {
+        const Rgba& color = row.legend->ramp[i];
+        // Each a little wider, so that no gap shows between them.
+        const double wide = i + 1 < row.legend->ramp.size() ? step * 1.2 : step;
+        Path bar = rectangle({at.x + static_cast<double>(i) * step, at.y + 0.5}, {wide, kSwatchHeight});
+        bar.fill = Rgba{color[0], color[1], color[2], 255};
+        items.push_back(std::move(bar));
+      }
+      items.push_back(Words{{at.x, base + kEntry}, row.legend->low, kText});
+      items.push_back(Words{{at.x + length, base + kEntry}, row.legend->high, kText, false, Anchor::end});
+    }
+  }
+}
+
+// Column by column; what has no room is counted.
+std::vector<Item> legend_items(const std::vector<Row>& rows, const Box& box, int columns) {
+  std::vector<Item> items;
+  const double width = box.size.x / columns;
+  int column = 0;
+  double y = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool is_last_line = column + 1 == columns && y + rows[i].height() + kEntry > box.size.y + 1e-9;
+    if (is_last_line && i + 1 < rows.size()) {
+      add_row(items, {Row::Kind::more, "… + " + std::to_string(rows.size() - i)},
+              box.corner + glm::dvec2(column * width, y), width - 2);
+      break;
+    }
+    if (y + rows[i].height() > box.size.y + 1e-9) {
+      ++column;
+      y = 0;
+    }
+    add_row(items, rows[i], box.corner + glm::dvec2(column * width, y), width - 2);
+    y += rows[i].height();
+  }
+  return items;
+}
+
+double add_lines(std::vector<Item>& items, const std::vector<std::string>& lines, const glm::dvec2& top, double size,
+                 bool bold) {
+  double y = top.y;
+  for (const std::string& line : lines) {
+    items.push_back(Words{{top.x, y + size}, line, size, bold});
+    y += size * kLine;
+  }
+  return y;
+}
+
+double height_of(const std::vector<std::string>& lines, double size) {
+  return static_cast<double>(lines.size()) * size * kLine;
+}
+
+Group bar_group(const ScaleBar& bar, double scale, const glm::dvec2& right_bottom) {
+  Group group{"scale-bar", {}};
+  constexpr double kBar = 2;
+  const glm::dvec2 left(right_bottom.x - bar.length_mm, right_bottom.y - kBar - kSmall - 1);
+  const double step_mm = bar.length_mm / bar.steps;
+  for (int i = 0; i < bar.steps; ++i) {
+    Path step = rectangle(left + glm::dvec2(i * step_mm, 0), {step_mm, kBar});
+    step.fill = i % 2 == 0 ? Rgba{0, 0, 0, 255} : Rgba{255, 255, 255, 255};
+    step.stroke_mm = kThin;
+    group.items.push_back(std::move(step));
+  }
+  for (int i = 0; i <= bar.steps; ++i) {
+    std::string text = short_number(i * bar.step);
+    if (i == bar.steps) text += " " + bar.unit;
+    group.items.push_back(
+        Words{{left.x + i * step_mm, right_bottom.y}, std::move(text), kSmall, false, Anchor::middle});
+  }
+  group.items.push_back(
+      Words{{left.x + bar.length_mm / 2, left.y - 1.4}, scale_text(scale), kText, true, Anchor::middle});
+  return group;
+}
+
+Group arrow_group(const glm::dvec2& north, const glm::dvec2& middle) {
+  constexpr double kLength = 11, kHalfWidth = 2.2;
+  const glm::dvec2 tip = middle + north * (kLength / 2), tail = middle - north * (kLength / 2);
+  const glm::dvec2 side(-north.y * kHalfWidth, north.x * kHalfWidth), notch = tail + north * 2.2;
+  Path dark{{tip, tail + side, notch}, true, Rgba{0, 0, 0, 255}, kThin};
+  Path light{{tip, tail - side, notch}, true, Rgba{255, 255, 255, 255}, kThin};
+  const glm::dvec2 letter = tip + north * 2.2 + glm::dvec2(0, kText * 0.36);
+  return {"north", {dark, light, Words{letter, "N", kText, true, Anchor::middle}}};
+}
+
+}  // namespace
+
+glm::dvec2 paper_mm(Paper paper, bool landscape) {
+  const glm::dvec2 portrait = paper == Paper::a3   ? glm::dvec2(297, 420)
+                              : paper == Paper::a4 ? glm::dvec2(210, 297)
+                                                   : glm::dvec2(148, 210);
+  return landscape ? glm::dvec2(portrait.y, portrait.x) : portrait;
+}
+
+std::string scale_text(double scale) {
+  return scale >= 1 ? "1 : " + short_number(scale) : short_number(1 / scale) + " : 1";
+}
+
+ScaleBar scale_bar(double scale, double widest_mm) {
+  // Millimetres in the world; the longest of 1, 2 and 5 times a power of ten that has room.
+  const double most = widest_mm * scale;
+  const double decade = std::pow(10, std::floor(std::log10(most)));
+  const int digit = most >= 5 * decade ? 5 : most >= 2 * decade ? 2 : 1;
+  const double length = digit * decade;
+  ScaleBar bar;
+  bar.length_mm = length / scale;
+  bar.steps = digit == 1 ? 4 : digit == 2 ? 4 : 5;
+  const bool km = length >= 2e6, m = length >= 2e3, cm = length >= 20;
+  bar.unit = km ? "km" : m ? "m" : cm ? "cm" : "mm";
+  bar.step = length / bar.steps / (km ? 1e6 : m ? 1e3 : cm ? 10 : 1);
+  return bar;
+}
+
+SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions, const std::vector<Legend>& legends, int dpi) {
+  sheet_.size = paper;
+  const double width = paper.x - 2 * kMargin;
+  const double text_width = std::max(40.0, width - kScaleWidth - kGap);
+  const auto title = wrapped(captions.title, kTitle, true, text_width, kMostTitleLines);
+  const auto caption = wrapped(captions.caption, kText, false, text_width, kMostCaptionLines);
+  const auto credit = wrapped(captions.credit, kSmall, false, text_width, kMostCreditLines);
+  const double text_height = height_of(title, kTitle) + height_of(caption, kText) + height_of(credit, kSmall) + 2;
+  const double strip = std::max(text_height, kScaleHeight);
+  const double strip_top = paper.y - kMargin - strip;
+
+  Box area{{kMargin, kMargin}, {width, strip_top - kGap - kMargin}};
+  const bool aside = paper.x > paper.y;  // the legend's place
+  const int columns = aside ? 1 : std::max(1, static_cast<int>(width / kLegendColumn));
+  const auto rows = rows_of(legends, aside ? kLegendColumn - 2 : width / columns - 4);
+  Group legend{"legend", {}};
+  if (!rows.empty() && aside) {
+    area.size.x -= kLegendColumn + kGap;
+    legend.items =
+        legend_items(rows, {{paper.x - kMargin - kLegendColumn, kMargin}, {kLegendColumn, area.size.y}}, columns);
+  } else if (!rows.empty()) {
+    double needed = 0, highest = 0;
+    for (const Row& row : rows) {
+      needed += row.height();
+      highest = std::max(highest, row.height());
+    }
+    const double height = std::clamp(needed / columns + highest, 2 * kEntry, area.size.y / 3);
+    area.size.y -= height + kGap;
+    legend.items = legend_items(rows, {{kMargin, strip_top - kGap - height}, {width, height}}, columns);
+  }
+
+  // On whole pixels, so that a drawing has its scale in every kind of file.
+  const auto in_pixels = [&](double mm) { return mm / kInch_mm * dpi; };
+  const auto in_mm = [&](double pixels) { return pixels * kInch_mm / dpi; };
+  width_ = std::max(1, static_cast<int>(in_pixels(area.size.x)));
+  height_ = std::max(1, static_cast<int>(in_pixels(area.size.y)));
+  sheet_.drawing = {{in_mm(std::round(in_pixels(area.corner.x))), in_mm(std::round(in_pixels(area.corner.y)))},
+                    {in_mm(width_), in_mm(height_)}};
+
+  Group frame{"frame", {}};
+  Path border = rectangle(sheet_.drawing.corner, sheet_.drawing.size);
+  border.stroke_mm = kFrame;
+  frame.items.push_back(std::move(border));
+  Group words{"caption", {}};
+  double y = add_lines(words.items, title, {kMargin, strip_top}, kTitle, true);
+  y = add_lines(words.items, caption, {kMargin, y + 0.6}, kText, false);
+  add_lines(words.items, credit, {kMargin, y + 0.8}, kSmall, false);
+  sheet_.groups = {std::move(frame), std::move(legend), std::move(words)};
+  scale_box_ = {{paper.x - kMargin - kScaleWidth, strip_top}, {kScaleWidth, kScaleHeight}};
+}
+
+Sheet SheetLayout::finish(double scale, const std::optional<glm::dvec2>& north,
+                          const std::vector<Label>& labels) const {
+  Sheet sheet = sheet_;
+  Group names{"labels", {}};
+  for (const Label& label : labels)
+    names.items.push_back(Words{sheet.drawing.corner + label.at + glm::dvec2(0, kLabel_mm * 0.36), label.text,
+                                kLabel_mm, false, Anchor::middle, true});
+  sheet.groups.insert(sheet.groups.begin(), std::move(names));
+  const glm::dvec2 end = scale_box_.corner + scale_box_.size;
+  constexpr double kArrowRoom = 18, kBarOverhang = 6;  // of the last number
+  const double widest = kScaleWidth - kArrowRoom - 2 * kBarOverhang;
+  sheet.groups.push_back(bar_group(scale_bar(scale, widest), scale, {end.x - kBarOverhang, end.y - 1}));
+  if (north)
+    sheet.groups.push_back(
+        arrow_group(*north, {scale_box_.corner.x + kArrowRoom / 2, scale_box_.corner.y + kScaleHeight / 2}));
+  return sheet;
+}
+
+std::vector<Label> place_labels(const std::vector<LabelWish>& wishes, const glm::dvec2& drawing_mm) {
+  std::vector<Label> placed;
+  std::vector<Box> taken;
+  for (const LabelWish& wish : wishes) {
+    if (wish.text.empty()) continue;
+    const glm::dvec2 size(width_mm(wish.text, kLabel_mm, false) + 1, kLabel_mm * 1.4);
+    for (const glm::dvec2& place : wish.places) {
+      const Box box{place - size / 2.0, size};
+      const glm::dvec2 end = box.corner + box.size;
+      if (box.corner.x < 0 || box.corner.y < 0 || end.x > drawing_mm.x || end.y > drawing_mm.y) continue;
+      const bool is_free = std::ranges::none_of(taken, [&](const Box& other) {
+        const glm::dvec2 other_end = other.corner + other.size;
+        return box.corner.x < other_end.x && other.corner.x < end.x && box.corner.y < other_end.y &&
+               other.corner.y < end.y;
+      });
+      if (!is_free) continue;
+      placed.push_back({place, wish.text});
+      taken.push_back(box);
+      break;
+    }
+  }
+  return placed;
+}
+
+}  // namespace strata::figure

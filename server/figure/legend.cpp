@@ -1,0 +1,28 @@
+#include "figure/legend.h"
+
+#include "core/number_text.h"
+
+namespace strata::figure {
+
+Legend legend_of(const Layer& layer, const Palette& palette) {
+  Legend legend;
+  legend.title = layer.unit.empty() ? layer.name : layer.name + " [" + layer.unit + "]";
+  if (palette.mode == PaletteMode::linear) {
+    constexpr int kSteps = 64;
+    for (int i = 0; i < kSteps; ++i)
+      legend.ramp.push_back(color_of(palette, palette.min + (palette.max - palette.min) * (i + 0.5) / kSteps));
+    legend.low = short_number(palette.min);
+    legend.high = short_number(palette.max);
+    return legend;
+  }
+  for (const Palette::Point& point : palette.points) {
+    std::string label = !point.label.empty()                ? point.label
+                        : !point.value.empty()              ? point.value
+                        : palette.mode == PaletteMode::step ? "≥ " + short_number(point.at)
+                                                            : short_number(point.at);
+    legend.entries.push_back({std::move(label), point.color, point.pattern, point.angle});
+  }
+  return legend;
+}
+
+}  // namespace strata::figure

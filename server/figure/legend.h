@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/layer.h"
+#include "core/palette.h"
+
+namespace strata::figure {
+
+struct LegendEntry {
+  std::string label;
+  Rgba color{};
+  Pattern pattern = Pattern::solid;
+  double angle = 45;  // degrees, of lines
+};
+
+// A layer's: classes, or for numbers a ramp from `low` to `high`.
+struct Legend {
+  std::string title;
+  std::vector<LegendEntry> entries;
+  std::vector<Rgba> ramp;  // of equal steps
+  std::string low, high;
+};
+
+// A layer of keys whose colours are made up has none but its title.
+Legend legend_of(const Layer& layer, const Palette& palette);
+
+}  // namespace strata::figure

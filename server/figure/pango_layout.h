@@ -1,0 +1,18 @@
+#pragma once
+
+#include <pango/pangocairo.h>
+
+#include <memory>
+#include <string>
+
+namespace strata::figure {
+
+struct Unref {
+  void operator()(void* object) const { g_object_unref(object); }
+};
+using Layout = std::unique_ptr<PangoLayout, Unref>;
+
+// One text in the sheet's typeface; a unit of the context is a millimetre.
+Layout make_layout(cairo_t* context, const std::string& text, double size_mm, bool bold);
+
+}  // namespace strata::figure

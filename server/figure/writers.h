@@ -1,0 +1,21 @@
+#pragma once
+
+#include "figure/files.h"
+
+namespace strata::figure {
+
+// One for each kind of file, as write_figure.
+Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi, const Document& document,
+                       const std::filesystem::path& path, Progress& progress);
+Result<void> write_tiff(const Sheet& sheet, const Picture& drawing, int dpi, const Document& document,
+                        const std::filesystem::path& path, Progress& progress);
+Result<void> write_svg(const Sheet& sheet, const Picture& drawing, const Document& document,
+                       const std::filesystem::path& path, Progress& progress);
+Result<void> write_pdf(const Sheet& sheet, const Picture& drawing, const Document& document,
+                       const std::filesystem::path& path, Progress& progress);
+
+// The drawing within SVG and PDF.
+std::vector<std::uint8_t> drawing_jpeg(const Picture& drawing);
+tl::unexpected<Problem> unwritable();  // 507
+
+}  // namespace strata::figure

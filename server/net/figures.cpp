@@ -1,0 +1,382 @@
+#include "net/figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "core/compass.h"
+#include "core/uuid.h"
+#include "net/as_of.h"
+#include "net/view_wire.h"
+#include "store/named_parts.h"
+
+namespace strata::net {
+namespace {
+
+constexpr Rgba kPaper{255, 255, 255, 255};
+constexpr glm::dvec2 kLabelCell_mm{1.5, 1.5};
+constexpr std::size_t kMostPlaces = 64;  // that are tried for a label
+constexpr std::size_t kMostLabels = 2000;
+
+char up_of(const Model& model) { return model.up.empty() ? 'z' : model.up[0]; }
+
+// What is shown, and the camera that it comes with, if any.
+Result<std::optional<Camera>> read_shown(const RouteContext& context, const Request& request,
+                                         const protocol::FigureRequest& asked, FigureWish& wish) {
+  const room::Room& room = *wish.room;
+  if (!asked.view) {
+    if (asked.camera)
+      if (auto good = validate(*asked.camera); !good) return tl::unexpected(good.error());
+    auto shown = shown_settings(room, asked);
+    if (!shown) return tl::unexpected(shown.error());
+    wish.shown.shown = std::move(*shown);
+    return asked.camera;
+  }
+  if (asked.camera || asked.layers || asked.looks || asked.light)
+    return fail(422, "View and more",
+                "A figure of a view shows what the view does: leave out camera, layers, looks and light.", "view");
+  const auto view = context.store.views().find(room.model().id, *asked.view);
+  if (!view) {
+    Problem problem = view.error();
+    problem.status = 422;
+    problem.field = "view";
+    return tl::unexpected(std::move(problem));
+  }
+  const auto kept = as_asked(context, request, *view, room);
+  if (!kept) return tl::unexpected(kept.error());
+  auto shown = shown_settings(room, *kept);
+  if (!shown) return tl::unexpected(shown.error());
+  wish.shown.shown = std::move(*shown);
+  return std::optional<Camera>(kept->camera);
+}
+
+// What lies in the middle of the camera's window, as far as the drawing's plane is concerned.
+glm::dvec3 middle_of(const Camera& camera, const Model& model) {
+  const Ray ray = ray_through_pixel(camera, camera.width / 2.0, camera.height / 2.0);
+  const glm::dvec3 to_model = (model.bounds_min + model.bounds_max) / 2.0 - ray.origin;
+  return ray.origin + glm::dot(to_model, ray.direction) * ray.direction;
+}
+
+Result<void> read_direction(const protocol::FigureRequest& asked, const std::optional<Camera>& camera,
+                            FigureWish& wish) {
+  const Model model = wish.room->model();
+  if (asked.direction && asked.normal) return fail(422, "Two directions", "Give a direction or a normal.", "normal");
+  if (camera) wish.section = camera->section;
+  if (asked.normal) {
+    if (!(glm::length(*asked.normal) > 1e-12))
+      return fail(422, "No direction", "A normal has a length: [0, 0, 1] is surface that faces along z.", "normal");
+    wish.plane = figure::plane_square_to(*asked.normal, up_of(model));
+    wish.from = "face";
+  } else if (asked.direction || !camera) {
+    static constexpr figure::Direction kDirections[] = {figure::Direction::top,   figure::Direction::bottom,
+                                                        figure::Direction::front, figure::Direction::back,
+                                                        figure::Direction::left,  figure::Direction::right};
+    const auto direction = asked.direction.value_or(protocol::FigureDirection::top);
+    wish.plane = figure::plane_from(kDirections[static_cast<int>(direction)], up_of(model));
+    wish.from = protocol::name(direction);
+  } else {
+    wish.plane = figure::plane_of(*camera);
+    wish.from = asked.view.value_or("view");
+    wish.center = middle_of(*camera, model);
+  }
+  if (asked.center) wish.center = asked.center;
+  return {};
+}
+
+Result<void> read_labels(const RouteContext& context, const protocol::FigureLabels& asked, FigureWish& wish) {
+  const auto layer = wish.room->layer(protocol::to_ref(asked.layer));
+  if (!layer) {
+    Problem problem = layer.error();
+    problem.status = 422;
+    problem.field = "labels.layer";
+    return tl::unexpected(std::move(problem));
+  }
+  if (!layer->table)
+    return fail(422, "No records", "The layer '" + layer->slug + "' is no database layer: nothing of it has a record.",
+                "labels.layer");
+  const auto table = context.store.table(std::to_string(*layer->table), wish.role);
+  if (!table) return tl::unexpected(table.error());
+  const Column* column = find_column(table->columns, asked.column);
+  if (!column || holds_lists(column->kind))
+    return fail(422, "No such column",
+                "The table '" + table->slug + "' has no column '" + asked.column + "' that holds one text or number.",
+                "labels.column");
+  wish.labels = {*layer, *column};
+  return {};
+}
+
+// How each layer is drawn, as the picture has it.
+const Palette& palette_of(const FigureWish& wish, const Layer& layer) {
+  const auto& own = wish.shown.shown.of(layer.id).palette;
+  return own ? *own : layer.palette;
+}
+
+std::vector<figure::Legend> legends_of(const RouteContext& context, const FigureWish& wish) {
+  std::vector<figure::Legend> legends;
+  if (!wish.legend) return legends;
+  for (auto layer = wish.layers.rbegin(); layer != wish.layers.rend(); ++layer) {  // as they lie over each other
+    const Palette& palette = palette_of(wish, *layer);
+    legends.push_back(figure::legend_of(*layer, palette));
+    if (palette.column.empty() || !layer->table) continue;
+    const auto table = context.store.table(std::to_string(*layer->table), wish.role);
+    const Column* column = table ? find_column(table->columns, palette.column) : nullptr;
+    if (column)
+      legends.back().title =
+          layer->name + ": " + column->name + (column->unit.empty() ? "" : " [" + column->unit + "]");
+  }
+  return legends;
+}
+
+// The cells of a grid in which a key is seen, those farthest from what is another first.
+struct Area {
+  std::size_t cells = 0;
+  std::vector<std::pair<int, int>> places;  // cells from its border, and the cell
+};
+std::map<std::uint32_t, Area> areas_of(const std::vector<std::optional<std::uint32_t>>& keys, int columns, int rows) {
+  // Chessboard distance, in two passes over the grid; beyond the drawing is another, too.
+  std::vector<int> inside(keys.size(), 0);
+  const auto at = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x);
+  };
+  const auto pass = [&](int x, int y, int step) {
+    int least = std::max(columns, rows);
+    for (const auto& [dx, dy] : {std::pair{-step, 0}, {0, -step}, {-step, -step}, {step, -step}}) {
+      const int nx = x + dx, ny = y + dy;
+      const bool same = nx >= 0 && ny >= 0 && nx < columns && ny < rows && keys[at(nx, ny)] == keys[at(x, y)];
+      least = std::min(least, same ? inside[at(nx, ny)] + 1 : 1);
+    }
+    return least;
+  };
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) inside[at(x, y)] = pass(x, y, 1);
+  std::map<std::uint32_t, Area> areas;
+  for (int y = rows - 1; y >= 0; --y)
+    for (int x = columns - 1; x >= 0; --x) {
+      const std::size_t cell = at(x, y);
+      inside[cell] = std::min(inside[cell], pass(x, y, -1));
+      if (!keys[cell]) continue;
+      Area& area = areas[*keys[cell]];
+      ++area.cells;
+      area.places.emplace_back(inside[cell], static_cast<int>(cell));
+    }
+  return areas;
+}
+
+Result<std::map<std::uint32_t, std::string>> texts_of(const RouteContext& context, const FigureWish& wish) {
+  const Column& column = wish.labels->column;
+  const auto found = context.store.record_texts(*wish.labels->layer.table, wish.role, column.slug, "labels.column");
+  if (!found) return tl::unexpected(found.error());
+  std::map<std::uint32_t, std::string> texts;
+  std::map<std::string, std::string> terms;  // by key
+  if (column.kind == ColumnKind::term && column.target) {
+    const auto labels = context.store.record_texts(*column.target, wish.role, "label", "labels.column");
+    if (!labels) return tl::unexpected(labels.error());
+    for (const auto& [key, text] : *labels) terms[std::to_string(key)] = text;
+  }
+  for (const auto& [key, text] : *found) {
+    const auto term = terms.find(text);
+    std::string words = term == terms.end() ? text : term->second;
+    if (!column.unit.empty()) words += " " + column.unit;
+    texts[static_cast<std::uint32_t>(key)] = std::move(words);
+  }
+  return texts;
+}
+
+Result<std::vector<figure::Label>> labels_of(const RouteContext& context, const FigureWish& wish,
+                                             const figure::Drawing& drawing, const glm::dvec2& drawing_mm) {
+  if (!wish.labels) return std::vector<figure::Label>{};
+  const int columns = std::max(1, static_cast<int>(drawing_mm.x / kLabelCell_mm.x));
+  const int rows = std::max(1, static_cast<int>(drawing_mm.y / kLabelCell_mm.y));
+  const glm::dvec2 cell_mm = drawing_mm / glm::dvec2(columns, rows);
+  const auto keys =
+      wish.room->seen_keys(wish.labels->layer.slug, figure::camera_of(drawing), columns, rows, wish.shown.at);
+  if (!keys) return tl::unexpected(keys.error());
+  const auto texts = texts_of(context, wish);
+  if (!texts) return tl::unexpected(texts.error());
+  auto areas = areas_of(*keys, columns, rows);
+  std::vector<std::pair<std::size_t, std::uint32_t>> by_size;
+  for (const auto& [key, area] : areas)
+    if (texts->contains(key)) by_size.emplace_back(area.cells, key);
+  std::ranges::sort(by_size, std::greater());
+  if (by_size.size() > kMostLabels) by_size.resize(kMostLabels);
+  std::vector<figure::LabelWish> wishes;
+  for (const auto& [size, key] : by_size) {
+    auto& places = areas[key].places;
+    const std::size_t tried = std::min(places.size(), kMostPlaces);
+    std::partial_sort(
+        places.begin(), places.begin() + static_cast<std::ptrdiff_t>(tried), places.end(),
+        [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
+    figure::LabelWish label{texts->at(key), {}};
+    for (std::size_t i = 0; i < tried; ++i)
+      label.places.push_back((glm::dvec2(places[i].second % columns, places[i].second / columns) + 0.5) * cell_mm);
+    wishes.push_back(std::move(label));
+  }
+  return figure::place_labels(wishes, drawing_mm);
+}
+
+struct Composed {
+  figure::SheetLayout layout;
+  double scale;
+};
+
+// The sheet that has room for the larger scale, upright where both have, and the scale that is asked for or fits.
+Composed compose(const FigureWish& wish, const std::vector<figure::Legend>& legends, const glm::dvec2& size,
+                 double metres_per_unit) {
+  std::optional<Composed> best;
+  for (const bool landscape : {false, true}) {
+    if (wish.landscape && *wish.landscape != landscape) continue;
+    figure::SheetLayout layout(figure::paper_mm(wish.paper, landscape), wish.captions, legends, wish.dpi);
+    const glm::dvec2 room_mm = layout.drawing_mm();
+    const glm::dvec2 needed = size * (metres_per_unit * 1000) / room_mm;
+    const double tightness = std::max(needed.x, needed.y);  // the scale at which it just fits
+    constexpr double kMargin = 1.02;
+    const double scale = wish.scale.value_or(figure::fitting_scale(size * kMargin, room_mm, metres_per_unit));
+    const double other = best ? std::max(size.x * metres_per_unit * 1000 / best->layout.drawing_mm().x,
+                                         size.y * metres_per_unit * 1000 / best->layout.drawing_mm().y)
+                              : 0;
+    if (!best || tightness < other) best = Composed{std::move(layout), scale};
+  }
+  return std::move(*best);
+}
+
+// Where true north is on the paper, unless it points more out of it than along it.
+std::optional<glm::dvec2> north_on(const figure::Plane& plane, const Model& model) {
+  const Compass compass(model);
+  if (!compass.is_known) return std::nullopt;
+  const glm::dvec3 drawn = plane.of(compass.true_north());
+  const glm::dvec2 flat(drawn.x, -drawn.y);
+  constexpr double kFlattest = 0.7;
+  if (glm::length(flat) < kFlattest) return std::nullopt;
+  return glm::normalize(flat);
+}
+
+// Where pixels are larger than 1/600 inch each is the mean of four, so that outlines and thin paint are smooth.
+Result<Picture> draw(const FigureWish& wish, const figure::Drawing& drawing, Progress& progress) {
+  Picture picture{drawing.width, drawing.height, {}};
+  picture.rgba.resize(std::size_t{4} * picture.width * picture.height);
+  figure::Drawing fine = drawing;
+  const int finer = drawing.dpi <= 300 ? 2 : 1;
+  fine.dpi *= finer;
+  fine.width *= finer;
+  fine.height *= finer;
+  const auto parts = figure::parts_of(fine);
+  std::vector<room::PicturePart> wanted;
+  for (const auto& part : parts) wanted.push_back({part.camera, static_cast<double>(fine.dpi) / figure::kCameraDpi});
+  auto drawn = wish.room->pictures(wish.shown, wanted, [&](std::size_t i, const render::Frame& frame) -> Result<void> {
+    const int left = parts[i].x / finer, top = parts[i].y / finer;  // parts are of whole inches
+    const int columns = std::min(frame.width / finer, picture.width - left);
+    const int rows = std::min(frame.height / finer, picture.height - top);
+    const std::size_t stride = std::size_t{4} * frame.width;
+    for (int row = 0; row < rows; ++row) {
+      const std::uint8_t* from = frame.pixels.data() + stride * finer * row;
+      std::uint8_t* to = picture.rgba.data() + std::size_t{4} * (std::size_t(top + row) * picture.width + left);
+      if (finer == 1) {
+        std::memcpy(to, from, std::size_t{4} * columns);
+        continue;
+      }
+      for (int x = 0; x < columns; ++x, from += 8)
+        for (int channel = 0; channel < 4; ++channel)
+          *to++ = static_cast<std::uint8_t>(
+              (from[channel] + from[channel + 4] + from[stride + channel] + from[stride + channel + 4] + 2) / 4);
+    }
+    progress.report(static_cast<double>(i + 1) / parts.size(),
+                    "Drawing part " + std::to_string(i + 1) + " of " + std::to_string(parts.size()));
+    if (progress.cancelled()) return cancelled_problem();
+    return {};
+  });
+  if (!drawn) return tl::unexpected(drawn.error());
+  return picture;
+}
+
+// "pot-front-1-5.pdf"
+std::string file_name(const FigureWish& wish, double scale) {
+  std::string text = figure::scale_text(scale);
+  std::erase(text, ' ');
+  std::ranges::replace(text, ':', '-');
+  return wish.room->model().slug + "-" + wish.from + "-" + text + std::string(figure::extension(wish.format));
+}
+
+}  // namespace
+
+Result<FigureWish> figure_wish(const RouteContext& context, const Request& request) {
+  auto asked = body_of<protocol::FigureRequest>(request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return tl::unexpected(room.error());
+  FigureWish wish;
+  wish.room = std::move(*room);
+  wish.role = request.role();
+  const auto camera = read_shown(context, request, *asked, wish);
+  if (!camera) return tl::unexpected(camera.error());
+  if (auto read = read_direction(*asked, *camera, wish); !read) return tl::unexpected(read.error());
+  const auto at = find_sequence(context, *wish.room, asked->at);
+  if (!at) return tl::unexpected(at.error());
+  wish.shown.at = at->value_or(wish.room->durable_sequence());
+  wish.shown.shown.background = {kPaper, kPaper};
+  if (auto lit = validate(wish.shown.shown.light); !lit) return tl::unexpected(lit.error());
+  for (Layer& layer : wish.room->layers())
+    if (wish.shown.shown.of(layer.id).visible.value_or(layer.visible)) wish.layers.push_back(layer);
+  std::ranges::stable_sort(wish.layers, {}, &Layer::order);
+  if (asked->labels)
+    if (auto read = read_labels(context, *asked->labels, wish); !read) return tl::unexpected(read.error());
+  wish.scale = asked->scale;
+  wish.paper = static_cast<figure::Paper>(asked->paper);
+  if (asked->orientation) wish.landscape = *asked->orientation == protocol::FigureRequestOrientation::landscape;
+  wish.dpi = asked->dpi;
+  wish.format = static_cast<figure::Format>(asked->format.value_or(protocol::FigureFormat::pdf));
+  const Model model = wish.room->model();
+  wish.captions = {asked->title.value_or(model.name), asked->caption.value_or(""),
+                   asked->credit.value_or(model.credit)};
+  wish.legend = asked->legend;
+  return wish;
+}
+
+Result<std::shared_ptr<const jobs::JobFile>> make_figure(const RouteContext& context, ByteBudget& budget,
+                                                         const FigureWish& wish, Progress& progress) {
+  progress.begin_stage(0, 0.05);
+  progress.report(0, "Measuring");
+  const Model model = wish.room->model();
+  const auto geometry = wish.room->geometry();
+  const auto extent = figure::extent_of(geometry->positions, wish.plane, wish.section);
+  if (!extent) return fail(422, "Nothing to draw", "The section cuts everything away.", "camera.section");
+  const auto legends = legends_of(context, wish);
+  const glm::dvec2 size = wish.center ? 2.0 * glm::max(glm::abs(glm::dvec2(extent->max - wish.plane.of(*wish.center))),
+                                                       glm::abs(glm::dvec2(wish.plane.of(*wish.center) - extent->min)))
+                                      : glm::dvec2(extent->max - extent->min);
+  const Composed composed = compose(wish, legends, size, model.metres());
+  const figure::SheetLayout& layout = composed.layout;
+  figure::Drawing drawing;
+  drawing.plane = wish.plane;
+  drawing.center = wish.center ? glm::dvec2(wish.plane.of(*wish.center)) : glm::dvec2(extent->min + extent->max) / 2.0;
+  const double depth = std::max(extent->max.z - extent->min.z, 1e-3 * glm::length(model.bounds_max - model.bounds_min));
+  drawing.near = extent->min.z - 0.01 * depth;
+  drawing.far = extent->max.z + 0.01 * depth;
+  drawing.scale = composed.scale;
+  drawing.metres_per_unit = model.metres();
+  drawing.dpi = wish.dpi;
+  drawing.width = layout.drawing_width();
+  drawing.height = layout.drawing_height();
+  drawing.section = wish.section;
+
+  const auto held = budget.take(std::uint64_t{4} * drawing.width * drawing.height);
+  if (!held) return tl::unexpected(held.error());
+  const auto labels = labels_of(context, wish, drawing, layout.drawing_mm());
+  if (!labels) return tl::unexpected(labels.error());
+  progress.begin_stage(0.05, 0.75);
+  const auto picture = draw(wish, drawing, progress);
+  if (!picture) return tl::unexpected(picture.error());
+  progress.begin_stage(0.75, 1);
+  const auto sheet = layout.finish(drawing.scale, north_on(wish.plane, model), *labels);
+  auto file = std::make_shared<jobs::JobFile>();
+  file->path = context.options.upload_dir / (to_string(random_uuid()) + ".figure");
+  file->name = file_name(wish, drawing.scale);
+  file->media_type = figure::media_type(wish.format);
+  const figure::Document document{wish.captions.title, wish.captions.credit};
+  if (auto written = figure::write_figure(sheet, *picture, wish.dpi, wish.format, document, file->path, progress);
+      !written)
+    return tl::unexpected(written.error());
+  file->bytes = std::filesystem::file_size(file->path);
+  return file;
+}
+
+}  // namespace strata::net

@@ -1,0 +1,60 @@
+// Measured figures: drawings to scale as files.
+#include <boost/algorithm/string/predicate.hpp>
+
+#include "net/figures.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::uint64_t kFigureBytes = 320u << 20;  // of drawings that are made at one time; A3 at 600 dpi has 260 MB
+
+// RFC 7240: preferences are parted by commas.
+bool wants_job(const Request& request) {
+  for (std::string preference : split_list(std::string(request.header("prefer")))) {
+    preference.erase(0, preference.find_first_not_of(" \t"));
+    preference.erase(preference.find_last_not_of(" \t") + 1);
+    if (boost::algorithm::iequals(preference, "respond-async")) return true;
+  }
+  return false;
+}
+
+Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteBudget>& budget,
+                        const Request& request) {
+  auto wish = figure_wish(context, request);
+  if (!wish) return tl::unexpected(wish.error());
+  if (wants_job(request)) {
+    const Model model = wish->room->model();
+    auto job = context.jobs.add(
+        model.project_id,
+        [&context, budget, wish = std::move(*wish), id = model.id](Progress& progress) -> Result<jobs::JobResult> {
+          auto file = make_figure(context, *budget, wish, progress);
+          if (!file) return tl::unexpected(file.error());
+          jobs::JobResult result(id);
+          result.file = std::move(*file);
+          return result;
+        },
+        request.user());
+    if (!job) return tl::unexpected(job.error());
+    return std::move(job_response(context, *job).with("Preference-Applied", "respond-async"));
+  }
+  Progress unwatched;
+  auto file = make_figure(context, *budget, *wish, unwatched);
+  if (!file) return tl::unexpected(file.error());
+  Response response = file_response(std::move(*file));
+  add_sequences(response, *wish->shown.at, wish->room->durable_sequence());
+  return response;
+}
+
+}  // namespace
+
+void add_figure_routes(Router& router, const RouteContext& context) {
+  const auto budget = std::make_shared<ByteBudget>(kFigureBytes);
+  router.add(
+      {.method = Method::post,
+       .pattern = "/api/v1/models/{model}/figures",
+       .handler = answering([&context, budget](const Request& request) { return answer(context, budget, request); }),
+       .body = BodyKind::memory,
+       .max_body = context.options.max_json_bytes});
+}
+
+}  // namespace strata::net

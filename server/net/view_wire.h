@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+
+#include "net/routes.h"
+#include "net/wire.h"
+#include "store/named_parts.h"
+
+namespace strata::net {
+
+// A named view, for who asks: of what it names, what is there for them.
+nlohmann::json to_json(const RouteContext& context, const Request& request, const store::NamedPart& view,
+                       const room::Room& room);
+
+// The same as what one would ask to keep: where from, and what is shown how.
+Result<protocol::ViewCreate> as_asked(const RouteContext& context, const Request& request, const store::NamedPart& view,
+                                      const room::Room& room);
+
+// What the body of a request says is shown.
+template <class Asked>
+Result<room::ViewSettings> shown_settings(const room::Room& room, const Asked& asked) {
+  return view_settings(room, asked.layers.value_or(std::vector<protocol::LayerOverride>{}), asked.looks, asked.light);
+}
+
+}  // namespace strata::net

@@ -1,0 +1,280 @@
+#!/usr/bin/env python3
+"""Measured figures: what is so long in the world is so long on paper, in every direction, kind of file and resolution; parts join without seams;
+one state of the layers; jobs; who sees what; and what is refused."""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import threading
+import xml.etree.ElementTree as xml
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import numpy
+
+from support import tiff
+from support.cameras import camera_from
+from support.meshes import bumpy_ball, folded_grid
+from support.pictures import pixels
+from support.strata_server import StrataServer, wait_for
+
+M = "/models/sheet"  # x and y from 0 to 100 mm, in folds of 24 mm at most
+F = M + "/figures"
+PAPER = {"a5": (148, 210), "a4": (210, 297), "a3": (297, 420)}
+UNLIT = {"mode": "unlit"}
+RED = (255, 0, 0)
+MARKS = [{"layer": "marks", "visible": True}]
+BARE = {"legend": False, "light": UNLIT, "looks": [], "title": "", "credit": ""}
+
+
+def figure(server, expect=200, token=True, model="sheet", **wish):
+    answer = server.request("POST", f"/models/{model}/figures", wish, token=token)
+    assert answer.status == expect, (wish, answer)
+    return answer
+
+
+def drawn(server, token=True, **wish):
+    """The sheet's pixels: rows × columns × 3."""
+    rows, tags = tiff.read(figure(server, format="tiff", token=token, **wish).body)
+    assert tags[296] == (2,) and tags[282] == tags[283] == (wish.get("dpi", 300), 1), tags
+    return rows
+
+
+def spots(rows, color=RED, by=60):
+    """Where about this colour is, as x and y of the pixels' middles."""
+    y, x = numpy.nonzero((abs(rows.astype(int) - color) <= by).all(axis=2))
+    return numpy.stack([x, y], axis=1) + 0.5
+
+
+def middle(found):
+    return found.mean(axis=0)
+
+
+def fill(server, where, value=1, layer="marks", model="sheet"):
+    server.ok("POST", f"/models/{model}/layers/{layer}/edits", {"op": "fill", "mode": "where", "where": where, "value": value})
+
+
+def dab(server, x, y, value=1, layer="marks", radius=2):
+    """A disc as seen from above, whatever lies below it."""
+    fill(server, f"(x - {x}) * (x - {x}) + (y - {y}) * (y - {y}) < {radius * radius}", value, layer)
+
+
+def lengths(server):
+    """On each side of a ball a small disc 15 mm before its middle and a larger one 15 mm behind, as seen from there: how far they are from each other on paper tells the scale,
+    and which is on the right the direction."""
+    server.import_model(bumpy_ball(), "ball.ply", name="Ball", unit="mm")
+    server.ok("POST", "/models/ball/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
+    sides = {"top": ("x", "y", "z > 0", 1), "bottom": ("x", "y", "z < 0", 1), "front": ("x", "z", "y < 0", 1), "back": ("x", "z", "y > 0", -1), "right": ("y", "z", "x > 0", 1),
+             "left": ("y", "z", "x < 0", -1)}
+    for value, (direction, (along, across, side, to_right)) in enumerate(sides.items(), 1):
+        for place, radius in ((-15, 2), (15, 4)):
+            fill(server, f"{side} and ({along} - {place}) * ({along} - {place}) + {across} * {across} < {radius * radius}", value, model="ball")
+        palette = {"mode": "categorical", "points": [{"at": value, "color": "#ff0000"}]}
+        for scale, dpi, paper in ((1, 100, "a4"), (2, 200, "a5"), (0.5, 75, "a3"), (2.5, 144, "a4")):
+            rows = drawn(server, model="ball", direction=direction, scale=scale, dpi=dpi, paper=paper, layers=[{"layer": "marks", "palette": palette}], **BARE)
+            assert {*rows.shape[:2]} == {round(side / 25.4 * dpi) for side in PAPER[paper]}, (rows.shape, paper, dpi)
+            found = spots(rows)
+            left = found[:, 0] < (found[:, 0].min() + found[:, 0].max()) / 2
+            apart = (middle(found[~left]) - middle(found[left]))[0] / dpi * 25.4 * scale
+            assert abs(apart - 30) < 25.4 / dpi * scale * 0.6 + 0.1, (direction, scale, dpi, apart)
+            assert ((~left).sum() > left.sum()) == (to_right > 0), (direction, left.sum(), (~left).sum())
+    dab(server, 20, 50)
+    plan = spots(drawn(server, direction="top", scale=1, dpi=100, layers=MARKS, **BARE))
+    dab(server, 50, 90)  # y runs up the paper
+    assert middle(spots(drawn(server, direction="top", scale=1, dpi=100, layers=MARKS, **BARE)))[1] < middle(plan)[1] - 20
+
+
+def seams(server):
+    """At 600 dpi the drawing is made of parts of three inches: together they are the picture of few."""
+    asked = {"direction": "top", "scale": 0.5, "paper": "a4", "orientation": "landscape", "layers": MARKS, **BARE}
+    fine, coarse = drawn(server, dpi=600, **asked).astype(int), drawn(server, dpi=100, **asked).astype(int)
+    assert fine.shape == (4961, 7016, 3), fine.shape
+    rows, columns = coarse.shape[0] - 2, coarse.shape[1] - 2
+    means = fine[:6 * rows, :6 * columns].reshape(rows, 6, columns, 6, 3).mean(axis=(1, 3))[1:, 1:]
+    around = numpy.stack([coarse[1 + dy:rows + dy, 1 + dx:columns + dx] for dy in (-1, 0, 1) for dx in (-1, 0, 1)])
+    differs = ((means < around.min(axis=0) - 12) | (means > around.max(axis=0) + 12)).any(axis=2)
+    in_frame = differs[45:700, 45:1115]
+    assert in_frame.mean() < 0.0005, in_frame.mean()
+    # Along the borders of parts the surface goes on as smoothly as elsewhere.
+    corner, part = round(10 / 25.4 * 600), 3 * 600
+    for axis, low, high in ((0, 300, 4100), (1, 1500, 5500)):  # all of it surface
+        steps = abs(numpy.diff(fine[300:4100, 1500:5500].sum(axis=2), axis=axis)).mean(axis=1 - axis)
+        borders = [at - low - 1 for at in range(corner, high, part) if at > low]
+        assert len(borders) >= 2 and steps[borders].max() <= numpy.delete(steps, borders).max(), (axis, steps[borders], steps.max())
+
+
+def kinds(server, folder):
+    wish = {"direction": "top", "dpi": 150, "caption": "Of <2024> & later — Ψ", "credit": "Museum", "title": "Sheet 7"}
+    pdf = figure(server, format="pdf", **wish)
+    assert pdf.headers["Content-Type"] == "application/pdf" and pdf.body[:5] == b"%PDF-"
+    assert re.fullmatch(r"attachment; filename\*=UTF-8''sheet-top-1-1\.pdf", pdf.headers["Content-Disposition"]), pdf.headers
+    assert int(pdf.headers["Strata-Sequence"]) == int(pdf.headers["Strata-Durable-Sequence"])
+    path = os.path.join(folder, "sheet.pdf")
+    with open(path, "wb") as out:
+        out.write(pdf.body)
+    words = subprocess.run(["pdftotext", "-layout", path, "-"], capture_output=True, check=True, text=True).stdout
+    for expected in ("Sheet 7", "Of <2024> & later — Ψ", "Museum", "1:1", "Marks", "One mark"):
+        assert expected in words.replace(" : ", ":"), (expected, words)
+    facts = subprocess.run(["pdfinfo", path], capture_output=True, check=True, text=True).stdout
+    assert re.search(r"Page size:\s+(595\.\d+ x 841\.\d+|841\.\d+ x 595\.\d+) pts \(A4\)", facts) and re.search(r"Pages:\s+1\n", facts), facts
+    # What the PDF draws lies where the TIFF has it.
+    bare = {"direction": "top", "dpi": 72, **BARE}
+    with open(path, "wb") as out:
+        out.write(figure(server, format="pdf", **bare).body)
+    subprocess.run(["pdftoppm", "-r", "72", "-png", "-singlefile", path, path[:-4]], check=True)
+    with open(path[:-4] + ".png", "rb") as of_page:
+        of_pdf, of_tiff = numpy.array(pixels(of_page.read())), drawn(server, **bare)
+    assert abs(numpy.array(of_pdf.shape) - of_tiff.shape).max() <= 1, (of_pdf.shape, of_tiff.shape)
+    ends = [[spots(rows).min(axis=0), spots(rows).max(axis=0)] for rows in (of_pdf, of_tiff)]
+    assert len(spots(of_tiff)) > 50 and abs(numpy.subtract(*ends)).max() <= 2, ends
+    coarse = {**wish, "dpi": 50}
+    assert (numpy.array(pixels(figure(server, format="png", **coarse).body)) == drawn(server, **coarse)).all()
+
+    svg = figure(server, format="svg", **wish).body
+    root = xml.fromstring(svg)
+    name = lambda tag: "{http://www.w3.org/2000/svg}" + tag
+    groups = {each.get("id") for each in root.iter(name("g"))}
+    assert {"frame", "legend", "caption", "scale-bar"} <= groups and "north" not in groups, groups
+    texts = [each.text for each in root.iter(name("text"))]
+    assert "Of <2024> & later — Ψ" in texts and "One mark" in texts, texts
+    image = next(root.iter(name("image")))
+    assert image.get("href").startswith("data:image/jpeg;base64,") and root.get("width") in ("210mm", "297mm")
+
+    tags = tiff.read(figure(server, format="tiff", **wish).body)[1]
+    assert tags[269] == "Sheet 7" and tags[315] == "Museum", tags
+
+    # A model that says where north is gets an arrow in the plan, and none in an elevation that looks north.
+    server.ok("PATCH", M, {"north": "30"})
+    for direction, shown in (("top", True), ("front", False)):
+        groups = {each.get("id") for each in xml.fromstring(figure(server, format="svg", dpi=50, direction=direction).body).iter(name("g"))}
+        assert ("north" in groups) == shown, (direction, groups)
+
+
+def names(server):
+    """What records are called, at their places; of terms too; what is private is not there."""
+    server.ok("POST", M + "/layers", {"name": "Units", "type": "u16", "kind": "database", "resolution": 2048,
+                                      "columns": [{"name": "Label", "kind": "text"}, {"name": "Depth", "kind": "numeric", "unit": "cm"}]})
+    for key, x, y in ((1, 20, 20), (2, 80, 20), (3, 50, 80)):
+        server.ok("POST", "/tables/units/records", {"key": key, "values": {"label": f"Unit {key}", "depth": key * 1.5}})
+        dab(server, x, y, key, "units", 8)
+    server.ok("POST", "/tables/units/records", {"key": 4, "values": {"label": "nowhere"}})
+    wish = {"direction": "top", "format": "svg", "dpi": 60, "scale": 1, "labels": {"layer": "units", "column": "label"}}
+
+    def told(**more):
+        group = [each for each in xml.fromstring(figure(server, **{**wish, **more}).body).iter("{http://www.w3.org/2000/svg}g") if each.get("id") == "labels"]
+        return {each.text: (float(each.get("x")), float(each.get("y"))) for each in group[0]} if group else {}
+
+    at = told()
+    assert set(at) == {"Unit 1", "Unit 2", "Unit 3"}, at
+    assert abs(at["Unit 2"][0] - at["Unit 1"][0] - 60) < 6 and abs(at["Unit 1"][1] - at["Unit 3"][1] - 60) < 6, at
+    assert set(told(labels={"layer": "units", "column": "depth"})) == {"1.5 cm", "3 cm", "4.5 cm"}
+    assert set(told(scale=50)) < set(at), "at 2 mm there is room for one"
+    return wish
+
+
+def states_and_jobs(server, labels):
+    """A figure of then; one that others cannot change while it is drawn; jobs, their files, who gets them and who ends them."""
+    viewer, other = server.add_person("vera", "viewer"), server.add_person("ada", "annotator")
+    before = server.get(M).json()["sequence"]
+    wish = {"direction": "top", "dpi": 100, "format": "png", "layers": MARKS, **BARE}
+    then = figure(server, **wish).body
+    dab(server, 20, 80)
+    assert figure(server, at=before, **wish).body == then != figure(server, **wish).body
+    assert figure(server, token=viewer, at=before, **wish).body == then
+
+    started = server.request("POST", F, {**wish, "at": before}, headers={"Prefer": "respond-async, wait=10"}, token=viewer)
+    assert started.status == 202 and started.headers["Preference-Applied"] == "respond-async", started
+    job = f"/jobs/{started.json()['id']}"
+    assert started.headers["Location"] == "/api/v1" + job
+    wait_for(lambda: server.request("GET", job, token=viewer).json()["state"] not in ("queued", "running"), "the figure")
+    done = server.request("GET", job, token=viewer).json()
+    assert done["state"] == "done" and done["file"]["name"] == "sheet-top-1-1.png" and done["file"]["media_type"] == "image/png", done
+    file = server.request("GET", job + "/file", token=viewer)
+    assert file.status == 200 and file.body == then and len(then) == done["file"]["bytes"]
+    for who in (other, True):  # it shows what the viewer sees, and is theirs
+        assert "file" not in server.request("GET", job, token=who).json()
+        assert server.request("GET", job + "/file", token=who).status == 404
+    assert server.request("DELETE", job, token=viewer).status == 409
+
+    # A long one is ended by who started it, not by another; it leaves no file.
+    long = {**wish, "dpi": 600, "paper": "a3", "format": "tiff", "scale": 0.3}
+    for who, ends in ((viewer, viewer), (other, True)):
+        started = server.request("POST", F, long, headers={"Prefer": "respond-async"}, token=who)
+        job = f"/jobs/{started.json()['id']}"
+        assert server.request("GET", job + "/file", token=who).status == 409
+        assert server.request("DELETE", job, token=viewer if who is other else other).status == 403
+        assert server.request("DELETE", job, token=ends).status == 200
+        wait_for(lambda: server.request("GET", job, token=who).json()["state"] == "cancelled", "the end of it")
+        assert server.request("GET", job + "/file", token=who).status == 404
+    kept = os.listdir(os.path.join(server.data, "uploads"))
+    assert sum(each.endswith(".figure") for each in kept) == 1, kept
+
+    # Edits go on while a figure is drawn; it shows none of them.
+    answers = []
+    thread = threading.Thread(target=lambda: answers.append(figure(server, direction="top", dpi=600, format="png", layers=MARKS, scale=1, **BARE)))
+    thread.start()
+    for n in range(12):
+        dab(server, 10 + 6 * n, 10)
+    thread.join()
+    sequence = int(answers[0].headers["Strata-Sequence"])
+    assert figure(server, at=sequence, direction="top", dpi=600, format="png", layers=MARKS, scale=1, **BARE).body == answers[0].body
+
+    # What is private shows in no figure of who does not see it: no colour, no legend, no label.
+    server.ok("PATCH", M + "/layers/units", {"visibility": "private"})
+    svg = figure(server, token=viewer, format="svg", dpi=60).body
+    assert b">Units<" not in svg and b">Marks<" in svg
+    figure(server, expect=422, token=viewer, **labels)
+    server.ok("PATCH", M + "/layers/units", {"visibility": "public"})
+    server.ok("PATCH", "/tables/units/columns/label", {"visibility": "private"})
+    assert figure(server, expect=422, token=viewer, **labels).json()["field"] == "labels.column"
+
+
+def views(server):
+    """A figure of a named view shows what the view does, from where it looks."""
+    camera = {**camera_from(server.get(M).json(), (0, -1, 0.0)), "section": [[0, 1, 0, -50]]}
+    server.ok("POST", M + "/views", {"name": "Cut", "camera": camera, "light": UNLIT, "layers": [{"layer": "marks", "visible": False}], "looks": []})
+    cut = drawn(server, view="cut", dpi=60, legend=False)
+    assert not len(spots(cut))
+    name = figure(server, view="cut", dpi=60, format="svg").headers["Content-Disposition"]
+    assert name.startswith("attachment; filename*=UTF-8''sheet-cut-1-"), name
+    hidden = {"layers": [{"layer": "marks", "visible": False}], "dpi": 60}
+    assert (cut == drawn(server, camera=camera, light=UNLIT, looks=[], legend=False, **hidden)).all()
+    assert (drawn(server, normal=[0, -2, 0], **hidden, **BARE) == drawn(server, direction="front", **hidden, **BARE)).all()
+
+
+def refusals(server):
+    for wish, field in (({"view": "nothing"}, "view"), ({"view": "cut", "light": UNLIT}, "view"), ({"direction": "top", "normal": [0, 0, 1]}, "normal"),
+                        ({"normal": [0, 0, 0]}, "normal"), ({"scale": 0}, "scale"), ({"scale": 1e9}, "scale"), ({"dpi": 1200}, "dpi"), ({"dpi": 10}, "dpi"),
+                        ({"paper": "a0"}, "paper"), ({"direction": "north"}, "direction"), ({"format": "jpeg"}, "format"),
+                        ({"layers": [{"layer": "nothing"}]}, "layers[0].layer"), ({"looks": [{"look": "x"}]}, "looks[0].look"), ({"at": 10**9}, "at"),
+                        ({"labels": {"layer": "marks", "column": "x"}}, "labels.layer"), ({"labels": {"layer": "units", "column": "x"}}, "labels.column"),
+                        ({"title": "x" * 201}, "title"), ({"center": [1, 2]}, "center"), ({"nothing": 1}, None)):
+        answer = server.request("POST", F, wish)
+        assert answer.status in (400, 404, 422) and answer.json()["detail"], (wish, answer)
+        assert field is None or answer.json().get("field") == field, (wish, answer)
+    gone = {"view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -500, 1], "projection": [0.01, 0, 0, 0, 0, 0.01, 0, 0, 0, 0, -0.001, 0, 0, 0, -1, 1],
+            "width": 100, "height": 100, "section": [[0, 0, 1, -1000]]}
+    assert figure(server, expect=422, camera=gone).json()["field"] == "camera.section"
+    assert server.request("POST", "/models/nothing/figures", {}).status == 404
+    assert server.request("POST", F, {}, token=None).status == 401
+    assert server.get("/jobs/1/file").status == 404
+
+
+def main():
+    with StrataServer() as server, tempfile.TemporaryDirectory() as folder:
+        server.import_model(folded_grid(cells=40), "sheet.ply", name="Sheet", unit="mm")
+        server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8", "resolution": 2048,
+                                          "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000", "label": "One mark"}]}})
+        lengths(server)
+        seams(server)
+        kinds(server, folder)
+        labels = names(server)
+        views(server)
+        states_and_jobs(server, labels)
+        refusals(server)
+        server.assert_clean_log()
+    print("measured figures")
+
+
+if __name__ == "__main__":
+    main()

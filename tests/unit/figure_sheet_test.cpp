@@ -1,0 +1,255 @@
+// Sheets: what has room on them, and the files that they become.
+#include <gtest/gtest.h>
+#include <png.h>
+#include <tiffio.h>
+
+#include <fstream>
+#include <numeric>
+#include <sstream>
+
+#include "figure/files.h"
+#include "figure/layout.h"
+#include "figure/text.h"
+
+namespace strata::figure {
+namespace {
+
+namespace fs = std::filesystem;
+
+const Captions kCaptions{"Sherd 14 <rim> & handle", "Front, in raking light.", "Museum of Everything, CC BY"};
+
+std::vector<Legend> legends(int entries) {
+  Legend classes{"Damage", {}, {}, {}, {}};
+  for (int i = 0; i < entries; ++i)
+    classes.entries.push_back(
+        {"Class " + std::to_string(i), Rgba{200, std::uint8_t(i), 30, 255}, static_cast<Pattern>(i % 4), 30.0 * i});
+  Legend moisture{"Moisture [%]", {}, std::vector<Rgba>(64, Rgba{0, 0, 255, 255}), "0", "100"};
+  return {classes, moisture};
+}
+
+Picture drawing_of(const SheetLayout& layout) {
+  Picture picture{layout.drawing_width(), layout.drawing_height(), {}};
+  picture.rgba.assign(std::size_t{4} * picture.width * picture.height, 255);
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {  // red on the left, blue on the right
+    const bool left = i / 4 % picture.width < static_cast<std::size_t>(picture.width) / 2;
+    picture.rgba[i] = left ? 220 : 20;
+    picture.rgba[i + 1] = 30;
+    picture.rgba[i + 2] = left ? 20 : 220;
+  }
+  return picture;
+}
+
+template <class Kind>
+std::vector<Kind> all(const Sheet& sheet) {
+  std::vector<Kind> found;
+  for (const Group& group : sheet.groups)
+    for (const Item& item : group.items)
+      if (const auto* each = std::get_if<Kind>(&item)) found.push_back(*each);
+  return found;
+}
+
+TEST(SheetLayout, EverythingIsOnThePaperAndBesideTheDrawing) {
+  for (const Paper paper : {Paper::a5, Paper::a4, Paper::a3})
+    for (const bool landscape : {false, true})
+      for (const int entries : {0, 5, 200}) {
+        const glm::dvec2 size = paper_mm(paper, landscape);
+        const SheetLayout layout(size, kCaptions, entries == 0 ? std::vector<Legend>{} : legends(entries), 300);
+        const Sheet sheet = layout.finish(20, glm::dvec2(0, -1), {});
+        const glm::dvec2 end = sheet.drawing.corner + sheet.drawing.size;
+        EXPECT_GT(sheet.drawing.size.x, size.x / 3);
+        EXPECT_GT(sheet.drawing.size.y, size.y / 3);
+        EXPECT_NEAR(layout.drawing_width() * 25.4 / 300, sheet.drawing.size.x, 1e-9);
+        const auto inside = [&](const glm::dvec2& p) { return p.x >= 0 && p.y >= 0 && p.x <= size.x && p.y <= size.y; };
+        EXPECT_TRUE(inside(sheet.drawing.corner) && inside(end));
+        for (const Path& path : all<Path>(sheet))
+          for (const glm::dvec2& point : path.points) EXPECT_TRUE(inside(point)) << point.x << " " << point.y;
+        for (const Words& words : all<Words>(sheet)) {
+          const double width = width_mm(words.text, words.size_mm, words.bold);
+          const double left = words.at.x - (words.anchor == Anchor::start    ? 0
+                                            : words.anchor == Anchor::middle ? width / 2
+                                                                             : width);
+          EXPECT_TRUE(inside({left, words.at.y}) && inside({left + width, words.at.y})) << words.text;
+          const bool below = words.at.y - words.size_mm >= end.y, beside = left >= end.x;
+          EXPECT_TRUE(below || beside) << words.text << " lies over the drawing";
+        }
+        const bool cut =
+            std::ranges::any_of(all<Words>(sheet), [](const Words& words) { return words.text.starts_with("… + "); });
+        EXPECT_EQ(cut, entries == 200) << "what has no room is counted";
+      }
+}
+
+TEST(SheetLayout, LongWordsAreBrokenAndEnd) {
+  const std::string endless(5000, 'x');
+  const SheetLayout layout(paper_mm(Paper::a4, false), {endless, endless, endless}, {}, 150);
+  for (const Words& words : all<Words>(layout.finish(1, std::nullopt, {})))
+    EXPECT_LE(width_mm(words.text, words.size_mm, words.bold), 190);
+  EXPECT_EQ(wrapped("one two", 3, false, 1000, 1), std::vector<std::string>{"one two"});
+  EXPECT_EQ(wrapped("one\ntwo", 3, false, 1000, 5), (std::vector<std::string>{"one", "two"}));
+  EXPECT_EQ(wrapped("one\ntwo\nthree", 3, false, 1000, 2).back(), "two …");
+  EXPECT_TRUE(wrapped("", 3, false, 10, 5).empty());
+}
+
+TEST(ScaleBar, IsRoundAndHasRoom) {
+  for (const double scale : {0.1, 0.5, 1.0, 2.0, 2.5, 5.0, 20.0, 50.0, 300.0, 1e4, 1e6}) {
+    const ScaleBar bar = scale_bar(scale, 50);
+    EXPECT_LE(bar.length_mm, 50 + 1e-9) << scale;
+    EXPECT_GE(bar.length_mm, 20 - 1e-9) << scale;
+    const double metres = bar.step * bar.steps *
+                          (bar.unit == "km"   ? 1000
+                           : bar.unit == "m"  ? 1
+                           : bar.unit == "cm" ? 0.01
+                                              : 0.001);
+    EXPECT_NEAR(metres * 1000 / scale, bar.length_mm, 1e-6) << scale;
+  }
+  const ScaleBar one = scale_bar(20, 50);  // a metre on 50 mm
+  EXPECT_EQ(one.length_mm, 50);
+  EXPECT_EQ(one.unit, "cm");
+  EXPECT_EQ(one.step * one.steps, 100);
+  EXPECT_EQ(scale_text(20), "1 : 20");
+  EXPECT_EQ(scale_text(2.5), "1 : 2.5");
+  EXPECT_EQ(scale_text(0.5), "2 : 1");
+}
+
+TEST(Labels, LieOverNoOtherAndWithinTheDrawing) {
+  std::vector<LabelWish> wishes;
+  for (int i = 0; i < 300; ++i)
+    wishes.push_back({"Unit " + std::to_string(i), {{5.0 + i % 17 * 6, 3.0 + i % 23 * 4}, {60, 50}}});
+  wishes.push_back({"", {{10, 90}}});
+  wishes.push_back({"outside", {{-3, 10}, {119, 99}}});
+  const auto labels = place_labels(wishes, {120, 100});
+  EXPECT_GT(labels.size(), 20u);
+  EXPECT_LT(labels.size(), 300u);
+  EXPECT_EQ(labels[0].text, "Unit 0");
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const double half = width_mm(labels[i].text, kLabel_mm, false) / 2;
+    EXPECT_TRUE(labels[i].at.x >= half && labels[i].at.x + half <= 120);
+    EXPECT_NE(labels[i].text, "outside");
+    for (std::size_t j = 0; j < i; ++j) {
+      const double other = width_mm(labels[j].text, kLabel_mm, false) / 2;
+      EXPECT_TRUE(std::abs(labels[i].at.y - labels[j].at.y) >= kLabel_mm ||
+                  std::abs(labels[i].at.x - labels[j].at.x) >= half + other);
+    }
+  }
+}
+
+TEST(LegendOf, TellsClassesAndRamps) {
+  Layer layer;
+  layer.name = "Damage";
+  Palette classes{PaletteMode::categorical, 0, 1, {{1, {255, 0, 0, 255}, "Loss"}, {2.5, {0, 255, 0, 255}}}, "", {}};
+  const Legend legend = legend_of(layer, classes);
+  EXPECT_EQ(legend.title, "Damage");
+  ASSERT_EQ(legend.entries.size(), 2u);
+  EXPECT_EQ(legend.entries[0].label, "Loss");
+  EXPECT_EQ(legend.entries[1].label, "2.5");
+  layer.unit = "%";
+  const Legend ramp =
+      legend_of(layer, {PaletteMode::linear, 0, 40, {{0, {0, 0, 0, 255}}, {40, {255, 255, 255, 255}}}, "", {}});
+  EXPECT_EQ(ramp.title, "Damage [%]");
+  EXPECT_EQ(ramp.low + "…" + ramp.high, "0…40");
+  EXPECT_LT(ramp.ramp.front()[0], 5);
+  EXPECT_GT(ramp.ramp.back()[0], 250);
+}
+
+class Files : public ::testing::Test {
+ protected:
+  Files() { fs::create_directories(folder_); }
+  ~Files() override { fs::remove_all(folder_); }
+
+  fs::path write(Format format, int dpi) {
+    const SheetLayout layout(paper_mm(Paper::a5, true), kCaptions, legends(3), dpi);
+    const fs::path file = folder_ / ("sheet" + std::string(extension(format)));
+    const auto written =
+        write_figure(layout.finish(2, glm::dvec2(0.6, -0.8), {{{50, 40}, "Ünit 7 — Ψ"}}), drawing_of(layout), dpi,
+                     format, {kCaptions.title, kCaptions.credit}, file, progress_);
+    EXPECT_TRUE(written) << (written ? "" : written.error().detail);
+    return file;
+  }
+  static std::string text_of(const fs::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+  }
+
+  const fs::path folder_ = fs::temp_directory_path() / ("strata-figure-test-" + std::to_string(::getpid()));
+  Progress progress_;
+};
+
+TEST_F(Files, PngHasItsResolutionAndTheDrawingPixelByPixel) {
+  const std::string bytes = text_of(write(Format::png, 200));
+  const auto picture = decode_picture({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->width, 1654);  // 210 mm
+  EXPECT_EQ(picture->height, 1165);
+  EXPECT_NE(bytes.find(std::string("pHYs\0\0\x1e\xc2\0\0\x1e\xc2\x01", 13)), std::string::npos);  // 7874 a metre
+  const auto at = [&](double x_mm, double y_mm) {
+    return &picture->rgba[4 * (std::size_t(y_mm / 25.4 * 200) * picture->width + std::size_t(x_mm / 25.4 * 200))];
+  };
+  EXPECT_EQ(at(20, 60)[0], 220);
+  EXPECT_EQ(at(20, 60)[2], 20);
+  EXPECT_EQ(at(120, 60)[2], 220);
+  EXPECT_EQ(at(5, 5)[0], 255);  // the margin
+}
+
+TEST_F(Files, TiffHasItsResolutionAndTheSamePixels) {
+  const std::string png = text_of(write(Format::png, 150));
+  const auto same = decode_picture({reinterpret_cast<const std::uint8_t*>(png.data()), png.size()});
+  ASSERT_TRUE(same);
+  TIFF* tiff = TIFFOpen(write(Format::tiff, 150).c_str(), "r");
+  ASSERT_NE(tiff, nullptr);
+  std::uint32_t width = 0, height = 0;
+  float resolution = 0;
+  std::uint16_t unit = 0;
+  TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &width);
+  TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &height);
+  TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &resolution);
+  TIFFGetField(tiff, TIFFTAG_RESOLUTIONUNIT, &unit);
+  EXPECT_EQ(resolution, 150);
+  EXPECT_EQ(unit, RESUNIT_INCH);
+  ASSERT_EQ(width, static_cast<std::uint32_t>(same->width));
+  ASSERT_EQ(height, static_cast<std::uint32_t>(same->height));
+  std::vector<std::uint32_t> pixels(std::size_t{width} * height);
+  ASSERT_EQ(TIFFReadRGBAImageOriented(tiff, width, height, pixels.data(), ORIENTATION_TOPLEFT), 1);
+  TIFFClose(tiff);
+  EXPECT_EQ(std::memcmp(pixels.data(), same->rgba.data(), 4 * pixels.size()), 0);
+}
+
+TEST_F(Files, SvgHasWordsAndNamedGroups) {
+  const std::string text = text_of(write(Format::svg, 100));
+  for (const char* part :
+       {"width=\"210mm\"", "id=\"legend\"", "id=\"scale-bar\"", "id=\"north\"", "id=\"labels\"", ">Ünit 7 — Ψ</text>",
+        ">1 : 2</text>", "Sherd 14 &lt;rim&gt; &amp; handle", "data:image/jpeg;base64,/9j/"})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  EXPECT_EQ(text.find("<rim>"), std::string::npos);
+}
+
+TEST_F(Files, PdfIsOnePageOfThePapersSizeWithTheJpegInIt) {
+  const std::string text = text_of(write(Format::pdf, 100));
+  EXPECT_TRUE(text.starts_with("%PDF-"));
+  EXPECT_NE(text.find("/DCTDecode"), std::string::npos);
+  EXPECT_NE(text.find("/MediaBox [ 0 0 595.275"), std::string::npos);  // 210 mm in points
+}
+
+TEST_F(Files, CancelledWritesEnd) {
+  progress_.cancel();
+  const SheetLayout layout(paper_mm(Paper::a5, true), kCaptions, {}, 100);
+  for (const Format format : {Format::png, Format::tiff, Format::svg, Format::pdf}) {
+    const auto written =
+        write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format, {}, folder_ / "none", progress_);
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().status, 499);
+  }
+}
+
+TEST_F(Files, ADiskThatTakesNothingIsSaid) {
+  const SheetLayout layout(paper_mm(Paper::a5, true), kCaptions, {}, 100);
+  for (const Format format : {Format::png, Format::tiff, Format::svg, Format::pdf})
+    for (const fs::path& file : {fs::path("/dev/full"), folder_ / "no" / "folder"}) {
+      if (format == Format::tiff && file == "/dev/full") continue;  // libtiff wants to seek
+      const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format, {}, file, progress_);
+      ASSERT_FALSE(written) << file << " " << static_cast<int>(format);
+      EXPECT_EQ(written.error().status, 507);
+    }
+}
+
+}  // namespace
+}  // namespace strata::figure
