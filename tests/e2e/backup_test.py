@@ -174,8 +174,7 @@ def check_full_disk(server, folder):
 def check_other_database(server, whole):
     """--database: into an empty one, with a password that no list of processes shows."""
     socket_folder = os.path.join(server.data, "postgres")
-    admin = ["psql", "-X", "-h", socket_folder, "-U", "strata", "-v", "ON_ERROR_STOP=1"]
-    subprocess.run(admin + ["-d", "strata", "-c", "CREATE DATABASE copy"], check=True, capture_output=True)
+    server.sql("CREATE DATABASE copy")
     copy = f"host='{socket_folder}' user=strata dbname=copy password='it\\'s a : secret'"
     done = strata("restore", whole, "--database", copy)
     assert done.returncode == 0 and "every table is what was backed up" in done.stdout, done

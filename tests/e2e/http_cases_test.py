@@ -3,13 +3,13 @@
 import concurrent.futures
 import json
 import os
-import socket
 import sys
 import uuid
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.cameras import camera_from
 from support.meshes import bumpy_ball, folded_grid
+from support.raw_http import raw_request
 from support.strata_server import StrataServer, wait_for
 
 M, L = "/models/grid", "/models/grid/layers/marks"
@@ -187,16 +187,6 @@ def check_sign_in(server):
     assert server.post("/logout", None, token=False, headers={**cookie, "Origin": server.url}).status == 204
     assert server.get("/me", token=False, headers=cookie).status == 401
     assert server.post("/login", {"token": "wrong"}, token=False).status == 401
-
-
-def raw_request(server, text):
-    with socket.create_connection((server.host, server.port), timeout=60) as link:
-        link.sendall(text)
-        link.shutdown(socket.SHUT_WR)
-        answer = b""
-        while part := link.recv(65536):
-            answer += part
-        return answer
 
 
 def check_paths(server):

@@ -10,25 +10,13 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.certificates import make_certificate, trusting
 from support.live_client import LiveClient
 from support.meshes import folded_grid
 from support.strata_server import StrataServer, _end_with_parent, wait_for
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 PASSWORD = "a heron and six otters"
-
-
-def make_certificate(folder, name, key_type="ec"):
-    """A certificate of 127.0.0.1 that signs itself: (chain, key)."""
-    chain, key = os.path.join(folder, name + ".pem"), os.path.join(folder, name + ".key")
-    kind = ["ec", "-pkeyopt", "ec_paramgen_curve:P-256"] if key_type == "ec" else ["rsa:2048"]
-    subprocess.run(["openssl", "req", "-x509", "-newkey", *kind, "-nodes", "-days", "2", "-subj", f"/CN={name}",
-                    "-addext", "subjectAltName=IP:127.0.0.1", "-keyout", key, "-out", chain], check=True, capture_output=True)
-    return chain, key
-
-
-def trusting(chain):
-    return ssl.create_default_context(cafile=chain)
 
 
 def shown_by(server):
