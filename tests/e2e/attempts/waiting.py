@@ -1,0 +1,230 @@
+"""Who connects and then takes their time: each waits in a thread of its own while the other attempts go on."""
+import concurrent.futures
+import os
+import resource
+import socket
+import ssl
+import tempfile
+import time
+
+from support.certificates import make_certificate, trusting
+from support.live_client import Closed, LiveClient
+from support.meshes import folded_grid
+from support.process_memory import PeakGrowth
+from support.strata_server import LONG_S, StrataServer, wait_for
+
+from attempts.tools import M
+
+LATE_S = 120  # a busy machine may be late by this, and its clocks may start late
+CONNECTIONS = 2048
+
+
+def until_closed(link, every_s=None, drop=b"x", limit_s=LONG_S):
+    """Seconds until the server ends the connection, which gets a drop more every so often."""
+    start = time.monotonic()
+    link.settimeout(every_s or limit_s)
+    while time.monotonic() - start < limit_s:
+        try:
+            if not link.recv(65536):
+                break
+        except TimeoutError:
+            if every_s:
+                try:
+                    link.sendall(drop)
+                except OSError:
+                    break
+        except OSError:
+            break
+    return time.monotonic() - start
+
+
+def connected(server, first=b""):
+    link = socket.create_connection((server.host, server.port), timeout=LONG_S)
+    if first:
+        link.sendall(first)
+    return link
+
+
+def cut(section, what, took, limit_s, keeps):
+    answer = f"cut off after {limit_s} s" if limit_s / 2 <= took <= limit_s + LATE_S else f"after {took:.0f} s"
+    section.tried(what, answer, f"cut off after {limit_s} s", keeps, f"{round(took)} s (held to {limit_s + LATE_S})")
+
+
+def post(server, path, length, *more):
+    return "\r\n".join((f"POST /api/v1{path} HTTP/1.1", f"Host: {server.host}", "Content-Type: application/json", f"Content-Length: {length}") + more).encode() + b"\r\n\r\n"
+
+
+def drops_of_a_body(server):
+    """A byte each second: whether others are served meanwhile, and whether it is still listened to after 20 of them."""
+    links = [connected(server, post(server, "/login", 1000) + b"{") for _ in range(200)]
+    for _ in range(20):
+        time.sleep(1)
+        for link in links:
+            link.sendall(b" ")
+        assert server.get("//livez").status == 200 and server.get(M).status == 200
+    links[0].setblocking(False)
+    try:
+        told = "cut off" if links[0].recv(1) == b"" else "answered"
+    except BlockingIOError:
+        told = "waited for"
+    for link in links:
+        link.close()
+    return told
+
+
+def deaf(server):
+    """A live connection that answers no ping: seconds until it is ended."""
+    with LiveClient(server, "sheet") as connection:
+        connection.hello(dpr=1, accept=["jpeg"])
+        start = time.monotonic()
+        connection.socket.settimeout(LONG_S)
+        while connection.socket.recv(65536):
+            pass
+        return time.monotonic() - start
+
+
+def expired(server):
+    """A live connection whose session comes of age: its close code and the seconds until then."""
+    token = server.ok("POST", "/me/tokens", {"name": "old", "days": 1}).json()
+    with LiveClient(server, "sheet", token=token["secret"]) as connection:
+        connection.hello(dpr=1, accept=["jpeg"])
+        server.sql(f"UPDATE tokens SET expires = now() - interval '1 second' WHERE id = {token['token']['id']}")
+        start = time.monotonic()
+        try:
+            while True:
+                connection.receive()
+        except Closed as closed:
+            return closed.code, time.monotonic() - start
+
+
+def slow_readers(server):
+    """Downloads that nobody reads: the statuses of others' downloads meanwhile, and of other questions."""
+    links = []
+    for _ in range(6):
+        link = socket.socket()
+        link.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        link.settimeout(LONG_S)
+        link.connect((server.host, server.port))
+        link.sendall(f"GET /api/v1{M}/layers/marks/texels.csv HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer {server.token}\r\n\r\n".encode())
+        links.append(link)
+    wait_for(lambda: server.get(M + "/layers/marks/texels.csv?cell=20mm").status == 503, "the downloads to take their places")
+    others = {server.get(M).status, server.get(M + "/layers/marks/statistics").status}
+    for link in links:
+        link.close()
+    wait_for(lambda: server.get(M + "/layers/marks/texels.csv?cell=20mm").status == 200, "the places to be free again")
+    return others
+
+
+def crowd(server):
+    """More connections than there may be, none of which says anything: what happens to the next one, and how long until there is room again."""
+    links = []
+    with PeakGrowth(server) as growth:
+        try:
+            for _ in range(CONNECTIONS + 100):
+                links.append(connected(server))
+        except OSError:
+            pass
+        opened = len(links)
+        late = links[-1]
+        late.settimeout(LONG_S)
+        late_end = late.recv(1)
+        start = time.monotonic()
+
+        def answers():
+            try:
+                return server.get("//livez").status == 200
+            except OSError:
+                return False
+
+        wait_for(answers, "room for another connection")
+        took = time.monotonic() - start
+    for link in links:
+        link.close()
+    assert opened > CONNECTIONS and late_end == b"", (opened, late_end)
+    return took, growth.checked(128)
+
+
+def half_open_tls(server):
+    """Nothing, half a greeting, and words that are none: seconds until each is ended."""
+    greeting = ssl.MemoryBIO()
+    client = ssl.create_default_context().wrap_bio(ssl.MemoryBIO(), greeting, server_hostname="x")
+    try:
+        client.do_handshake()
+    except ssl.SSLWantReadError:
+        pass
+    hello = greeting.read()
+    with concurrent.futures.ThreadPoolExecutor(3) as hands:
+        return list(hands.map(lambda first: until_closed(connected(server, first)), (b"", hello[:20], hello)))
+
+
+def allow_descriptors(count):
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if hard != resource.RLIM_INFINITY and hard < count:
+        print(f"only {hard} descriptors may be open: too many connections are not tried", flush=True)
+        return False
+    if soft < count:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (count, hard))
+    return True
+
+
+def plain(table):
+    section = table.section("Slow and idle connections")
+    may_crowd = allow_descriptors(2 * CONNECTIONS + 1000)
+    with StrataServer() as server:
+        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048)
+        server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8"})
+        server.ok("POST", M + "/layers/marks/edits", {"op": "fill", "mode": "where", "where": "true", "value": 1})
+        crowded = crowd(server) if may_crowd else None
+        kept_alive = b"GET /livez HTTP/1.1\r\nHost: x\r\n\r\n"
+        with concurrent.futures.ThreadPoolExecutor(16) as hands:
+            silent = hands.submit(lambda: until_closed(connected(server)))
+            heads = [hands.submit(lambda: until_closed(connected(server, b"GET / HTTP/1.1\r\nHost: x\r\n"), 1, b"X: y\r\n")) for _ in range(3)]
+            second = hands.submit(lambda: until_closed(connected(server, kept_alive + b"GET / HT"), 5, b"T"))
+            body = hands.submit(lambda: until_closed(connected(server, post(server, "/login", 1000) + b"{")))
+            refused = hands.submit(lambda: until_closed(connected(server, post(server, "/users", 1000))))
+            no_pong, of_age, drops, readers = (hands.submit(each, server) for each in (deaf, expired, drops_of_a_body, slow_readers))
+            cut(section, "A connection that says nothing", silent.result(), 10, "10 s from connecting to the end of the first head")
+            cut(section, "A head of which a line comes each second (slow-loris)", max(head.result() for head in heads), 10, "10 s from connecting to the end of the first head, however it trickles")
+            cut(section, "A second head that comes letter by letter on a connection that was served", second.result(), 60, "60 s from an answer to the end of the next head")
+            cut(section, "A body that stops", body.result(), 60, "60 s without a byte")
+            cut(section, "A body that stops, of a call that was refused", refused.result(), 60, "60 s without a byte")
+            section.tried("200 bodies that come a byte a second", drops.result() + ", others are served", "waited for, others are served", "**not cut off** as long as they move: they hold a connection each, and no worker")
+            section.tried("6 downloads that nobody reads", readers.result(), 200, "4 streams at once: **further downloads get 503** until one ends, or does not move for 60 s; all else is served")
+            code, took = of_age.result()
+            assert took <= 45 + LATE_S, took
+            section.tried("A live connection whose token comes of age", code, 1008, "asked again every 30 s, and what is remembered is 10 s old at most", f"{round(took)} s (held to {45 + LATE_S})")
+            cut(section, "A live connection that answers no ping", no_pong.result(), 60, "pinged after 30 s, ended after 60")
+        if crowded:
+            took, memory = crowded
+            assert took <= 10 + LATE_S, took
+            section.tried(f"{CONNECTIONS + 100} silent connections from one address", "those above 2048 are closed, room after 10 s", "those above 2048 are closed, room after 10 s", f"{CONNECTIONS} connections in all, **none by address** (see above)", f"{round(took)} s (held to {10 + LATE_S}); {memory}")
+        assert server.get("//livez").status == 200 and server.stop() == 0
+        server.assert_clean_log()
+
+
+def tls(table):
+    section = table.section("https")
+    with tempfile.TemporaryDirectory(prefix="strata-attempts-", dir="/tmp") as folder:
+        os.chmod(folder, 0o755)
+        chain, key = make_certificate(folder, "attempts")
+        with StrataServer(options=["--tls-cert", chain, "--tls-key", key]) as server:
+            server.tls = trusting(chain)
+            took = half_open_tls(server)
+            cut(section, "A connection that says nothing, half a greeting, or a greeting and nothing more", max(took), 10, "10 s for the handshake")
+            old = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+            old.load_verify_locations(chain)
+            old.minimum_version, old.maximum_version = ssl.TLSVersion.TLSv1, ssl.TLSVersion.TLSv1_1
+            old.set_ciphers("ALL:@SECLEVEL=0")
+            try:
+                with old.wrap_socket(connected(server), server_hostname=server.host) as link:
+                    spoken = link.version()
+            except (ssl.SSLError, OSError):
+                spoken = "refused"
+            section.tried("TLS 1.0 and 1.1", spoken, "refused", "1.2 and 1.3 alone")
+            link = connected(server, f"GET /x HTTP/1.1\r\nHost: {server.host}:{server.port}\r\nCookie: strata_session=x\r\n\r\n".encode())
+            head = link.recv(65536).decode()
+            section.tried("Plain http at the same port", int(head.split()[1]), 308, "sent on to https; nothing is served openly")
+            assert f"Location: {server.url}/x\r\n" in head, head
+            whole = server.post("/login", {"token": server.token}, token=False).headers["Set-Cookie"]
+            section.tried("The cookie on its way by http", "Secure" if "; Secure" in whole else whole, "Secure", "browsers send it by https alone")
+            server.assert_clean_log()
