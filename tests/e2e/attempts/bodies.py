@@ -2,6 +2,7 @@
 import re
 import socket
 import threading
+import time
 import urllib.parse
 
 from support.process_memory import PeakGrowth
@@ -109,7 +110,7 @@ def nested_texts(server, section):
 
 def flood(server, section):
     """6000 requests on one connection, none of which waits for an answer."""
-    ask = head(server, "GET /livez", token=False)
+    ask, start = head(server, "GET /livez", token=False), time.monotonic()
     with socket.create_connection((server.host, server.port), timeout=LONG_S) as link:
         answers = []
         listener = threading.Thread(target=lambda: answers.extend(iter(lambda: link.recv(1 << 16), b"")))
@@ -119,8 +120,10 @@ def flood(server, section):
         link.shutdown(socket.SHUT_WR)
         listener.join()
     heard = [int(status) for status in re.findall(rb"HTTP/1\.1 (\d+) ", b"".join(answers))]
-    assert len(heard) == 6000, len(heard)
-    section.tried("6000 requests on one connection without waiting", set(heard), {200, 429}, "1000 a second and 2000 at once on a connection; 256 requests wait for a worker at most (503)", f"{heard.count(200) // 100 * 100} answered")
+    assert len(heard) == 6000 and set(heard) <= {200, 429}, (len(heard), set(heard))
+    most = 2000 + 1000 * (time.monotonic() - start)  # a machine that is busy does not answer faster than that anyway
+    section.tried("6000 requests on one connection without waiting", "200 as far as its rate goes, else 429" if heard.count(200) <= most else "200", "200 as far as its rate goes, else 429",
+                  "1000 a second and 2000 at once on a connection; 256 requests wait for a worker at most (503)", f"{heard.count(200) // 100 * 100} answered")
     assert server.get(M).status == 200
 
 
