@@ -12,11 +12,11 @@ is started again and cancelled when a quarter, half and most of that time has pa
 import argparse
 import json
 import os
-import subprocess
 import sys
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "e2e"))
+from support.machine import machine, processor_seconds
 from support.strata_server import StrataServer, wait_for
 
 KINDS = ["height", "slope", "azimuth", "mean_curvature", "gaussian_curvature", "roughness", "ambient_occlusion", "boundary_distance"]
@@ -27,19 +27,6 @@ LONG_S = 3600
 def read(path):
     with open(path, "rb") as file:
         return file.read()
-
-
-def machine():
-    with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
-        cpu = next((line.split(":", 1)[1].strip() for line in file if line.startswith("model name")), "unknown")
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
-    return {"cpu": cpu, "cores": os.cpu_count(), "commit": commit}
-
-
-def processor_seconds(server):
-    with open(f"/proc/{server.process.pid}/stat", encoding="ascii") as file:
-        fields = file.read().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def peak_mib(server):
@@ -72,9 +59,9 @@ def follow(server, job_id, what):
 def measure(server, what, path, body):
     """One line of the table; the figures and the job."""
     forget_peak(server)
-    start, used = time.monotonic(), processor_seconds(server)
+    start, used = time.monotonic(), processor_seconds(server.process.pid)
     job, silence = follow(server, server.ok("POST", path, body).json()["id"], what)
-    figures = {"what": what, "seconds": time.monotonic() - start, "cpu_seconds": processor_seconds(server) - used,
+    figures = {"what": what, "seconds": time.monotonic() - start, "cpu_seconds": processor_seconds(server.process.pid) - used,
                "peak_mib": peak_mib(server), "silence_s": silence}
     if job["state"] != "done":
         figures["refused"] = job["problem"]["title"]

@@ -1,5 +1,6 @@
 """A small WebSocket client (RFC 6455) that speaks strata.v1: text messages as dicts, binary ones as frame headers."""
 import base64
+import http.client
 import json
 import os
 import socket
@@ -28,6 +29,9 @@ class Closed(Exception):
         self.code = code
 
 
+AWAY = (OSError, http.client.HTTPException, Closed)  # the server or the connection is
+
+
 class LiveClient:
     def __init__(self, server, model, origin=None, token=None, cookie=None, receive_buffer=None, subprotocol="strata.v1", query=""):
         port = server.port
@@ -41,7 +45,7 @@ class LiveClient:
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         if server.tls:
             self.socket = server.tls.wrap_socket(self.socket, server_hostname=server.host)
-        self.buffer = b""
+        self.buffer, self.bytes_received = b"", 0
         lines = [f"GET /api/v1/models/{model}/live{query} HTTP/1.1", f"Host: {server.host}:{port}", "Upgrade: websocket",
                  "Connection: Upgrade", "Sec-WebSocket-Version: 13",
                  "Sec-WebSocket-Key: " + base64.b64encode(os.urandom(16)).decode(), "Sec-WebSocket-Protocol: " + subprotocol]
@@ -72,6 +76,7 @@ class LiveClient:
         if not part:
             raise Closed()
         self.buffer += part
+        self.bytes_received += len(part)
 
     def _until(self, mark):
         while mark not in self.buffer:
@@ -86,6 +91,11 @@ class LiveClient:
         return taken
 
     def send_raw(self, opcode, payload):
+        self.socket.sendall(self.framed(opcode, payload))
+
+    @staticmethod
+    def framed(opcode, payload):
+        """The bytes of a message on the wire."""
         size = len(payload)
         head = bytes([0x80 | opcode])
         if size < 126:
@@ -97,7 +107,7 @@ class LiveClient:
         mask = os.urandom(4)
         whole = (mask * (size // 4 + 1))[:size]
         masked = (int.from_bytes(payload, "big") ^ int.from_bytes(whole, "big")).to_bytes(size, "big")
-        self.socket.sendall(head + mask + masked)
+        return head + mask + masked
 
     def send(self, message):
         self.send_raw(1, (message if isinstance(message, str) else json.dumps(message)).encode())

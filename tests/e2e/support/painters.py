@@ -1,14 +1,11 @@
 """Painters that never give up: each edit is sent, under the same id, until the server says that it is durable."""
-import http.client
 import random
 import threading
 import time
 import uuid
 
-from support.live_client import Closed, LiveClient, Refused
+from support.live_client import AWAY, LiveClient, Refused
 from support.strata_server import LONG_S
-
-_AWAY = (OSError, http.client.HTTPException, Closed)
 
 
 class Book:
@@ -85,7 +82,7 @@ class HttpPainter(Painter):
                 if self.connection is None:
                     self.connection = self.server.connect()
                 answer = self.server.post(path, edit, headers={"Idempotency-Key": key}, connection=self.connection)
-            except _AWAY:
+            except AWAY:
                 self.connection = None
                 time.sleep(0.02)
                 continue
@@ -125,7 +122,7 @@ class LivePainter(Painter):
                 if refused.status != 503:
                     raise
                 time.sleep(0.02)
-            except _AWAY:
+            except AWAY:
                 time.sleep(0.02)
 
     def collect(self, live, layer, edit, stroke, batches, ids, saved):

@@ -1,0 +1,60 @@
+"""From the sending of a stroke's message to what others see: from what a `Ledger` and the connections of annotators remember."""
+import bisect
+
+
+def summary(seconds):
+    """Nearest ranks, in milliseconds."""
+    ordered = sorted(seconds)
+    if not ordered:
+        return {"count": 0}
+    rank = lambda share: round(1000 * ordered[min(len(ordered) - 1, int(share * len(ordered)))], 1)
+    return {"count": len(ordered), "ms_p50": rank(0.5), "ms_p95": rank(0.95), "ms_p99": rank(0.99), "ms_max": round(1000 * ordered[-1], 1)}
+
+
+def histogram(seconds, steps_a_doubling=4):
+    """Upper ends in milliseconds of steps that grow evenly, and how many lie in each."""
+    ends = [2 ** (step / steps_a_doubling) for step in range(15 * steps_a_doubling)]
+    counts = [0] * len(ends)
+    for each in seconds:
+        counts[min(len(ends) - 1, bisect.bisect_left(ends, 1000 * each))] += 1
+    first = next((i for i, count in enumerate(counts) if count), 0)
+    last = max((i for i, count in enumerate(counts) if count), default=0)
+    return [{"ms": round(end, 2), "count": count} for end, count in list(zip(ends, counts))[first:last + 1]]
+
+
+class Sight:
+    """The frames of one annotator, connection by connection."""
+
+    def __init__(self, annotator):
+        self.turning = annotator.turning
+        self.lines = [(line.frames[0][0], line.ended, [t for t, _ in line.frames], [s for _, s in line.frames]) for line in annotator.lines if line.frames]
+        self.starts = [line[0] for line in self.lines]
+
+    def after(self, sent, sequence):
+        """Seconds from `sent` to the first whole frame that shows the edit; None when nothing was looked at then, or the connection ended before."""
+        at = bisect.bisect_right(self.starts, sent) - 1
+        if at < 0 or (self.lines[at][1] is not None and self.lines[at][1] < sent):
+            return None
+        _, _, times, sequences = self.lines[at]
+        found = bisect.bisect_left(sequences, sequence)
+        return times[found] - sent if found < len(times) else None
+
+
+def latencies(ledger, annotators):
+    """Of batches of strokes that changed something and were sent once, on a connection that held."""
+    sights = {annotator.name: Sight(annotator) for annotator in annotators}
+    found = {"applied": [], "saved": [], "still": [], "turning": [], "own": []}
+    away = 0
+    for change in ledger.changes.values():
+        if not change.begin or not change.answer or not change.saved_at or len(change.lines) != 1 or change.answer[1] == 0:
+            continue
+        if change.applied_at:
+            found["applied"].append(change.applied_at - change.first_sent)
+        found["saved"].append(change.saved_at - change.first_sent)
+        for name, sight in sights.items():
+            seconds = sight.after(change.first_sent, change.answer[0])
+            if seconds is None:
+                away += name != change.user
+            else:
+                found["own" if name == change.user else "turning" if sight.turning else "still"].append(seconds)
+    return found, away
