@@ -31,6 +31,12 @@ def heads(server, section):
     answers = [raw_request(server, f"POST /api/v1/login HTTP/1.1\r\nHost: {server.host}\r\n".encode() + fields) for fields in doubled]
     assert all(answer.count(b"HTTP/1.1 ") == 1 for answer in answers), answers
     section.tried("A second request hidden behind lengths that contradict each other (smuggling)", {status_of(answer) for answer in answers}, 400, "such a head or chunk is refused and the connection ended", f"{len(doubled)} of them")
+    unknown = [b"Transfer-Encoding: xchunked", b"Transfer-Encoding: chunked, identity", b"Transfer-Encoding: gzip, chunked", b"Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked"]
+    answers = [raw_request(server, f"POST /api/v1/login HTTP/1.1\r\nHost: {server.host}\r\n".encode() + field + b"\r\n\r\nGET /livez HTTP/1.1\r\nHost: x\r\n\r\n") for field in unknown]
+    assert all(answer.count(b"HTTP/1.1 ") == 1 for answer in answers), answers
+    section.tried("A second request behind a transfer encoding that others may read differently (smuggling)", {status_of(answer) for answer in answers}, {400, 501}, "`chunked` alone is known; the connection is ended", f"{len(unknown)} of them")
+    hosts = [b"GET /livez HTTP/1.1\r\n\r\n", b"GET /livez HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n"]
+    section.tried("No host, and two", {status_of(raw_request(server, each)) for each in hosts}, 400, "a request names one")
     odd = [b"nonsense\r\n\r\n", b"GET\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00", head(server, "GET http://elsewhere.example/"), head(server, "CONNECT elsewhere.example:80"), head(server, "TRACE /")]
     section.tried("No HTTP, unknown methods, a request to be passed on to elsewhere", {status_of(answer) for answer in (raw_request(server, each) for each in odd) if answer}, {400, 405}, "it is no proxy, and TRACE is unknown")
 

@@ -117,6 +117,7 @@ def in_others_names(server, section):
 
         assert answer(owner, edit) == 200
         section.tried("An edit of a private layer, sent again with its id by who does not see the layer", answer(hand, edit), 404, "the layer is looked for before the id")
+        section.tried("The same id with an edit of another layer, to hear what became of the first", answer(hand, {**edit, "layer": "marks"}), 422, "a repeat is told to who made the edit")
         section.tried("An edit with somebody else's name in it", answer(hand, {**edit, "id": str(uuid.uuid4()), "layer": "marks", "user": "owner"}), 422, "unknown members are refused; the name is that of who came in")
         changes = [{**edit, "layer": "marks"}, {"op": "undo", "id": edit["id"], "layer": "marks"}, {"op": "redo", "id": edit["id"], "layer": "marks"}, {"op": "record.edit", "id": edit["id"], "table": 1, "key": 1, "editing": True},
                    {"op": "stroke.begin", "id": edit["id"], "stroke": edit["id"], "layer": "marks", "value": 1, "camera": server.get(M + "/views/front").json()["camera"], "radius_px": 8}]
