@@ -24,7 +24,7 @@ render::Frame frame(Site& site, const std::string& model, glm::dvec3 from) {
   box.origin = (info.bounds_min + info.bounds_max) * 0.5;
   box.box_min = glm::vec3(info.bounds_min - box.origin);
   box.box_max = glm::vec3(info.bounds_max - box.origin);
-  return must(room->picture({look_at(box, from, 1280, 720)}));
+  return must(room->picture({}, look_at(box, from, 1280, 720)));
 }
 render::Frame first_frame(Site& site, const std::string& model) { return frame(site, model, {0.4, -1, 0.6}); }
 

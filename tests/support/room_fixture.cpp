@@ -173,12 +173,12 @@ void RoomTest::expect_picture_of_journal() {
     room::Rooms rooms(*store_, **renderer, stream::StreamContext{renderer->get(), encoder_.get()}, {});
     auto fresh = rooms.open("pot", Role::owner);
     ASSERT_TRUE(fresh) << fresh.error().detail;
-    expected = (*fresh)->picture({camera({0.3, -1, 0.4})});
+    expected = (*fresh)->picture({}, camera({0.3, -1, 0.4}));
   }
   ASSERT_TRUE(expected) << expected.error().detail;
   Result<render::Frame> shown = fail(503, "", "");
   for (int i = 0; i < 3000 && !(shown && shown->pixels == expected->pixels); ++i) {
-    shown = room()->picture({camera({0.3, -1, 0.4})});
+    shown = room()->picture({}, camera({0.3, -1, 0.4}));
     if (!shown || shown->pixels != expected->pixels) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   ASSERT_TRUE(shown) << shown.error().detail;
