@@ -204,7 +204,15 @@ glm::dvec2 paper_mm(Paper paper, bool landscape) {
 }
 
 std::string scale_text(double scale) {
-  return scale >= 1 ? "1 : " + short_number(scale) : short_number(1 / scale) + " : 1";
+  // Whole ones in groups of three digits: short_number has six.
+  const auto number = [](double value) {
+    if (value < 10'000 || value != std::floor(value)) return short_number(value);
+    std::string digits = std::to_string(static_cast<std::int64_t>(value));
+    for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3)
+      digits.insert(static_cast<std::size_t>(at), "\u202f");
+    return digits;
+  };
+  return scale >= 1 ? "1 : " + number(scale) : number(1 / scale) + " : 1";
 }
 
 ScaleBar scale_bar(double scale, double widest_mm) {
@@ -248,7 +256,8 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions, const std::
       needed += row.height();
       highest = std::max(highest, row.height());
     }
-    const double height = std::clamp(needed / columns + highest, 2 * kEntry, area.size.y / 3);
+    // A short one is not torn into columns.
+    const double height = std::min(std::max(needed / columns + highest, std::min(needed, 6 * kEntry)), area.size.y / 3);
     area.size.y -= height + kGap;
     legend.items = legend_items(rows, {{kMargin, strip_top - kGap - height}, {width, height}}, columns);
   }

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/compass.h"
+#include "core/number_text.h"
 #include "core/uuid.h"
 #include "net/as_of.h"
 #include "net/view_wire.h"
@@ -290,9 +291,7 @@ Result<Picture> draw(const FigureWish& wish, const figure::Drawing& drawing, Pro
 
 // "pot-front-1-5.pdf"
 std::string file_name(const FigureWish& wish, double scale) {
-  std::string text = figure::scale_text(scale);
-  std::erase(text, ' ');
-  std::ranges::replace(text, ':', '-');
+  const std::string text = scale >= 1 ? "1-" + short_number(scale) : short_number(1 / scale) + "-1";
   return wish.room->model().slug + "-" + wish.from + "-" + text + std::string(figure::extension(wish.format));
 }
 

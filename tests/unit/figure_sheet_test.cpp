@@ -107,6 +107,7 @@ TEST(ScaleBar, IsRoundAndHasRoom) {
   EXPECT_EQ(one.step * one.steps, 100);
   EXPECT_EQ(scale_text(20), "1 : 20");
   EXPECT_EQ(scale_text(2.5), "1 : 2.5");
+  EXPECT_EQ(scale_text(1e6), "1 : 1\u202f000\u202f000");
   EXPECT_EQ(scale_text(0.5), "2 : 1");
 }
 
