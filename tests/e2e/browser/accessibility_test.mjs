@@ -62,6 +62,7 @@ function screens_of({ page }, w, site) {
     await people.locator(".faces").click();
     await people.getByRole("menuitem", { name }).click();
   };
+  const figure_drawn = () => page.locator('strata-figure-preview figure[data-state="drawn"]').waitFor();
   const bar = page.locator("strata-together-bar button");
   const card = page.locator("strata-comment-card section");
   const to_sign_in = async () => {
@@ -230,6 +231,28 @@ function screens_of({ page }, w, site) {
       await page.locator("strata-view-list").evaluate((list) => list.scrollIntoView());
     }, keyboard: true },
     { name: "menu of a view", start: () => button(w.layers.options("Inscription beside the handle, upper register")).click(), end: escape },
+    { name: "figure of a view", start: async () => {
+      await from_menu(w.layers.options("Inscription beside the handle, upper register"), w.figures.of_view)();
+      await figure_drawn();
+    }, end: close_dialog },
+    { name: "figure", start: async () => {
+      await open(button(w.figures.open));
+      await page.getByRole("combobox", exact(w.figures.scale)).selectOption("own");
+      await page.getByRole("textbox", exact(w.figures.own_scale_label)).fill("1 / 3");
+      await page.getByText(w.figures.wrong_scale).waitFor();
+      await page.getByRole("radio", exact(w.figures.own_dpi)).click();
+      await page.getByRole("combobox", exact(w.figures.labels)).selectOption({ label: "Finds" });
+      await figure_drawn();
+    }, keyboard: true },
+    { name: "figure: a face is picked", start: async () => {
+      await page.getByRole("textbox", exact(w.figures.own_scale_label)).fill("1 : 3");
+      await page.getByRole("combobox", exact(w.figures.from)).selectOption("face");
+      await page.locator("strata-face-hint section").waitFor();
+    }, end: async () => {
+      await escape();
+      await dialog.first().waitFor();
+      await close_dialog();
+    } },
     { name: "new tour", start: async () => {
       await open(button(w.tours.new));
       const languages = page.locator("strata-tour-languages");

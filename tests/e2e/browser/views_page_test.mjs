@@ -149,7 +149,7 @@ try {
 
   say("who did not make it is offered its link alone");
   await row(bea, "North wall").getByRole("button", { name: "Options for North wall" }).click();
-  assert.deepEqual(await row(bea, "North wall").getByRole("menuitem").allTextContents(), ["Copy the link"]);
+  assert.deepEqual(await row(bea, "North wall").getByRole("menuitem").allTextContents(), ["Copy the link", "Figure of this view…"]);
   await shot(bea, "menu");
   await bea.page.keyboard.press("Escape");
 
@@ -194,7 +194,7 @@ try {
   await go(phone, "North wall").scrollIntoViewIfNeeded();
   await shot(phone, "phone");
   await row(phone, "North wall").getByRole("button", { name: "Options for North wall" }).click();
-  assert.equal(await row(phone, "North wall").getByRole("menuitem").count(), 1);
+  assert.equal(await row(phone, "North wall").getByRole("menuitem").count(), 2);
   await phone.page.keyboard.press("Escape");
 
   say("deleted it is gone for everybody, and its link says so");

@@ -39,7 +39,7 @@ export function is_for_field(event: KeyboardEvent): boolean {
 }
 
 /** Does what the key stands for; false when it stands for nothing here. */
-export function handle_key(event: KeyboardEvent, session: ModelSession, show_help: () => void): boolean {
+export function handle_key(event: KeyboardEvent, session: ModelSession, show: (dialog: "help" | "figure") => void): boolean {
   const { key } = event;
   if (event.ctrlKey || event.metaKey) {
     if (event.altKey || key.toLowerCase() !== "z") return false;
@@ -106,8 +106,12 @@ export function handle_key(event: KeyboardEvent, session: ModelSession, show_hel
     case "T":
       session.toggle_table();
       return true;
+    case "f":
+    case "F":
+      if (session.model) show("figure");
+      return true;
     case "?":
-      show_help();
+      show("help");
       return true;
   }
   const view = /^[1-6]$/.test(key) ? kViews[Number(key) - 1] : undefined;

@@ -1,7 +1,7 @@
-// One row over the layers: work that makes some, how far it is, and what came of it.
+// One row over the layers: work that makes some or a file, how far it is, and what came of it.
 
 import { css, html, nothing, type TemplateResult } from "lit";
-import { format_area } from "../core/measure";
+import { format_area, format_bytes } from "../core/measure";
 import type { TransferReport } from "../core/types";
 import { icon } from "./icons";
 import { is_busy, type LayerJob } from "./layer-jobs";
@@ -80,7 +80,7 @@ export function layer_job_row(session: ModelSession, entry: LayerJob): TemplateR
       <b class="ellipsis" title=${entry.name}>${entry.name}</b>
       ${busy
         ? html`<button aria-label=${words.cancel(entry.name)} @click=${() => void cancel(session, entry)}>${texts.cancel}</button>`
-        : html`<button
+        : html`${job.file && !problem ? html`<button @click=${() => void session.figures.save(entry.key)}>${icon("import")}${texts.figures.save}</button>` : nothing}<button
             class="icon quiet"
             aria-label=${words.dismiss(entry.name)}
             @click=${() => session.jobs.dismiss(entry.key)}
@@ -101,6 +101,7 @@ export function layer_job_row(session: ModelSession, entry: LayerJob): TemplateR
           </div>
           <span class="said hint">${job.state === "queued" ? words.queued : job.message || words.running}</span>`
       : nothing}
+    ${job.file && !problem ? html`<span class="said hint">${job.file.name}, <span class="numeric">${format_bytes(job.file.bytes)}</span></span>` : nothing}
     ${problem ? html`<span class="said" role="alert">${[problem.title, problem.detail].filter(Boolean).join(". ")}</span>` : nothing}
     ${report ? report_table(report) : nothing}
   </div>`;

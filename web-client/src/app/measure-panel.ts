@@ -14,7 +14,7 @@ import { notices } from "./notices";
 import "./profile-plot";
 import type { StrataProfilePlot } from "./profile-plot";
 import { radio_group } from "./radio-group";
-import { save_from } from "./save-from";
+import { save_blob } from "./save-from";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -252,10 +252,4 @@ function round_like(difference: number, measured: number): number {
   if (!(measured > 0)) return difference;
   const step = 10 ** (Math.floor(Math.log10(measured)) - kMeasuredDigits + 1);
   return Math.round(difference / step) * step || 0;
-}
-
-function save_blob(blob: Blob, name: string): void {
-  const address = URL.createObjectURL(blob);
-  save_from(address, name);
-  setTimeout(() => URL.revokeObjectURL(address), 60_000); // once the browser has begun to read it
 }

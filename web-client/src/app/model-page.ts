@@ -25,6 +25,7 @@ import "./delete-record-dialog";
 import { ask, modal_is_open } from "./dialog";
 import { icon, logo } from "./icons";
 import { handle_key, is_for_field } from "./keyboard";
+import "./figure-dialog";
 import "./hover-card";
 import "./kiosks-dialog";
 import "./layer-dialog";
@@ -250,12 +251,12 @@ export class StrataModelPage extends LitElement {
       </div>
       ${this.dialog(session)}
       ${this.tour_editor_
-        ? html`<strata-tour-dialog .session=${session} .tour=${this.tour_editor_.tour} @try=${this.on_try} @closed=${() => (this.tour_editor_ = null)}></strata-tour-dialog>`
+        ? html`<strata-tour-dialog .session=${session} .tour=${this.tour_editor_.tour} @try=${this.make_room} @closed=${() => (this.tour_editor_ = null)}></strata-tour-dialog>`
         : nothing}`;
   }
 
-  /** A stop of a tour is looked at: a narrow window has no room for the panel as well. */
-  private on_try(): void {
+  /** Something on the model is looked at: a narrow window has no room for the panel as well. */
+  private make_room(): void {
     if (window.innerWidth <= kNarrow) this.panel_shown_ = false;
   }
 
@@ -467,6 +468,14 @@ export class StrataModelPage extends LitElement {
         ></strata-map-dialog>`;
       case "view":
         return html`<strata-view-dialog .session=${session} .view=${dialog.view} @closed=${closed}></strata-view-dialog>`;
+      case "figure":
+        return html`<strata-figure-dialog
+          .session=${session}
+          .view=${dialog.view}
+          @aside=${this.make_room}
+          @correct=${() => (this.dialog_ = { dialog: "scale" })}
+          @closed=${closed}
+        ></strata-figure-dialog>`;
       case "kiosks":
         return session.model
           ? html`<strata-kiosks-dialog
@@ -496,6 +505,10 @@ export class StrataModelPage extends LitElement {
     }
   }
 
+  private show(dialog: "help" | "figure"): void {
+    this.dialog_ = dialog === "figure" ? { dialog, view: null } : { dialog };
+  }
+
   private async say_who_downloads(source_download: Model["source_download"]): Promise<void> {
     try {
       await this.session_?.change_model({ source_download });
@@ -516,7 +529,7 @@ export class StrataModelPage extends LitElement {
       event.preventDefault();
       return;
     }
-    const does = handle_key(event, session, () => (this.dialog_ = { dialog: "help" })) || (event.key === "Escape" && this.tour_?.end());
+    const does = handle_key(event, session, (dialog) => this.show(dialog)) || (event.key === "Escape" && this.tour_?.end());
     if (does) event.preventDefault();
   };
 

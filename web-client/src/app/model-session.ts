@@ -2,7 +2,7 @@
 // `tables` the records that layers hold the keys of, `comments` what people wrote on the surface, `hovered` the one that the mouse rests
 // on, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits, `together` who
 // else is here and whose view this is, `cursors` where they point, `views` what was kept to come back to, `tours` what
-// curators make of views, `measuring` what is measured. Elements subscribe and draw themselves from their state; they change it
+// curators make of views, `measuring` what is measured, `figures` what is drawn to scale, `face` the one that is asked for. Elements subscribe and draw themselves from their state; they change it
 // only through their methods.
 
 import { Api, ApiError, type Versioned } from "../core/api";
@@ -15,6 +15,7 @@ import { BrushTool } from "../tools/brush";
 import { BucketTool } from "../tools/bucket";
 import { CommentTool } from "../tools/comment";
 import { Activities } from "./activity";
+import { FaceTool } from "../tools/face";
 import { LineTool } from "../tools/line";
 import { MeasureTool } from "../tools/measure";
 import { OrbitTool, PanTool } from "../tools/navigate";
@@ -25,6 +26,8 @@ import { kChangingTools, kMarkingTools, kPaintingTools, type ToolName } from "..
 import { ToolManager } from "../tools/tool-manager";
 import { Appearance } from "./appearance";
 import { Comments } from "./comments";
+import { FacePick } from "./face-pick";
+import { Figures } from "./figures";
 import { LayerJobs } from "./layer-jobs";
 import { LayerList } from "./layer-list";
 import { MarkDrawing } from "./mark-drawing";
@@ -74,6 +77,8 @@ export class ModelSession {
   readonly cursors: PeopleCursors;
   readonly views: Views;
   readonly tours: Tours;
+  readonly figures: Figures;
+  readonly face: FacePick;
   readonly tools: ToolManager;
   /** Set by the stage. */
   on_frame: (part: FrameMessage) => void = () => {};
@@ -225,6 +230,13 @@ export class ModelSession {
       changed,
     });
     this.tours = new Tours(api, model_id, changed);
+    this.figures = new Figures(api, this.jobs);
+    this.face = new FacePick(api, {
+      view: this.view,
+      model: () => this.model,
+      begin: () => this.tools.borrow("face"),
+      end: () => this.tools.give_back(),
+    });
     this.tools = this.make_tools();
   }
 
@@ -324,6 +336,12 @@ export class ModelSession {
       clear: () => measuring.clear(),
       begun: () => measuring.places.length > 0,
     };
+    const face_host = {
+      ...navigator,
+      tap: (sample: PointerSample) => void this.face.take_at(sample),
+      take_in_middle: () => this.face.take_in_middle(),
+      give_up: () => this.face.give_up(),
+    };
     const outline_host = {
       begin_outline: () => this.painting.begin_outline(),
       finish_outline: (path: Point[]) => this.painting.finish_outline(path),
@@ -353,6 +371,7 @@ export class ModelSession {
         new LineTool(line_host),
         new PointTool((sample) => this.marks.set_point(sample)),
         new MeasureTool(measure_host),
+        new FaceTool(face_host),
         new CommentTool({ ...navigator, tap: comment }, () => ({ x: this.view.camera.width / 2, y: this.view.camera.height / 2 })),
       ],
       "orbit",

@@ -5,3 +5,10 @@ export function save_from(address: string, name: string): void {
   link.download = name;
   link.click();
 }
+
+/** The same of what the page has. */
+export function save_blob(blob: Blob, name: string): void {
+  const address = URL.createObjectURL(blob);
+  save_from(address, name);
+  setTimeout(() => URL.revokeObjectURL(address), 60_000); // once the browser has begun to read it
+}

@@ -203,7 +203,7 @@ export class StrataStage extends LitElement {
     const tool = session.tools.active;
     const locked = session.locked_target !== null;
     const paints = !locked && (tool === "brush" || tool === "eraser");
-    const aims = tool === "polygon" || tool === "lasso" || tool === "bucket" || tool === "pick" || tool === "line" || tool === "point" || tool === "comment" || tool === "measure";
+    const aims = tool === "polygon" || tool === "lasso" || tool === "bucket" || tool === "pick" || tool === "line" || tool === "point" || tool === "comment" || tool === "measure" || tool === "face";
     return html`<div
         class="surface ${locked ? "locked" : paints ? "paint" : aims ? "aim" : tool}"
         tabindex="0"

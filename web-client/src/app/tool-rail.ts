@@ -12,7 +12,7 @@ import { shared_styles } from "./styles";
 import { texts } from "./texts";
 import type { StepName } from "./tour-steps";
 
-const kTools: [ToolName, string][] = [
+const kTools: [Exclude<ToolName, "face">, string][] = [
   ["orbit", "V"],
   ["pan", "H"],
   ["brush", "B"],

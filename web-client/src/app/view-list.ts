@@ -16,9 +16,9 @@ import { shared_styles } from "./styles";
 import { texts } from "./texts";
 import "./thumbnail";
 
-/** The dialog that names a view; without `view` what is seen is kept as a new one. */
+/** The dialog that names a view; without `view` what is seen is kept as a new one. Or the one that draws it to scale; without `view` what is seen. */
 export interface ViewRequest {
-  dialog: "view";
+  dialog: "view" | "figure";
   view: View | null;
 }
 
@@ -120,6 +120,7 @@ export class StrataViewList extends LitElement {
       </button>
       <strata-menu label=${texts.layers.options(view.name)}>
         <button class="quiet" role="menuitem" @click=${() => void this.copy_link(view)}>${icon("link")}${words.copy_link}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.request(view, "figure")}>${icon("measure")}${texts.figures.of_view}</button>
         ${may_change
           ? html`<button class="quiet" role="menuitem" @click=${() => this.request(view)}>${icon("edit")}${words.describe}</button>
               <button class="quiet" role="menuitem" @click=${() => this.change(views.replace(view))}>${icon("eye")}${words.replace}</button>
@@ -130,8 +131,8 @@ export class StrataViewList extends LitElement {
     </li>`;
   }
 
-  private request(view: View | null): void {
-    this.dispatchEvent(new CustomEvent<ViewRequest>("request", { detail: { dialog: "view", view } }));
+  private request(view: View | null, dialog: ViewRequest["dialog"] = "view"): void {
+    this.dispatchEvent(new CustomEvent<ViewRequest>("request", { detail: { dialog, view } }));
   }
 
   private async copy_link(view: View): Promise<void> {

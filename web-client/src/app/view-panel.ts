@@ -88,7 +88,7 @@ export class StrataViewPanel extends FoldingPanel {
   }
 
   protected content(): TemplateResult[] {
-    return [this.views(), ...(this.session.can_curate ? [this.tours()] : []), this.looks(), this.light(), this.section()];
+    return [this.views(), ...(this.session.can_curate ? [this.tours()] : []), this.looks(), this.light(), this.section(), this.figure()];
   }
 
   private views(): TemplateResult {
@@ -149,6 +149,14 @@ export class StrataViewPanel extends FoldingPanel {
         choose: (value) => appearance.set_section({ mode: value }),
       })}
       ${this.section_of(mode)}
+    </div>`;
+  }
+
+  private figure(): TemplateResult {
+    const open = (): boolean => this.dispatchEvent(new CustomEvent<ViewRequest>("request", { detail: { dialog: "figure", view: null } }));
+    return html`<div class="part">
+      <h3>${texts.figures.title}</h3>
+      <div><button title="F" @click=${open}>${icon("measure")}${texts.figures.open}</button></div>
     </div>`;
   }
 

@@ -615,6 +615,24 @@ export class Api {
     return response.blob();
   }
 
+  /** A job whose file it is. */
+  async make_figure(model: Id, figure: wire.FigureRequest): Promise<Job> {
+    return this.parsed(await this.request("POST", figures_path(model), figure, { Prefer: "respond-async" }));
+  }
+  /** The file itself, for small ones. */
+  async figure(model: Id, figure: wire.FigureRequest, signal: AbortSignal): Promise<Blob> {
+    const response = await this.request("POST", figures_path(model), figure, {}, signal);
+    try {
+      return await response.blob();
+    } catch {
+      throw signal.aborted ? cancelled() : unreachable();
+    }
+  }
+  /** What a job of this person made. */
+  async job_file(id: Id): Promise<Blob> {
+    return (await this.request("GET", `/jobs/${encodeURIComponent(id)}/file`)).blob();
+  }
+
   /** As a form, or the only file as the body; `fetch` does not tell how much is sent. */
   private upload<T>(method: string, path: string, files: readonly UploadFile[], progress: Progress, as_form = files.length > 1): Upload<T> {
     const form = new FormData();
@@ -639,7 +657,7 @@ export class Api {
         }
       };
       request.onerror = () => reject(unreachable());
-      request.onabort = () => reject(new ApiError({ status: 499, title: "Cancelled" }));
+      request.onabort = () => reject(cancelled());
       request.send(as_form ? form : files[0]!.file);
     });
     return { done, cancel: () => request.abort() };
@@ -667,9 +685,10 @@ export class Api {
     path: string,
     body?: unknown,
     headers: Record<string, string> = {},
+    signal?: AbortSignal,
   ): Promise<Response> {
-    if (body === undefined) return this.request_raw(method, path, null, headers);
-    return this.request_raw(method, path, JSON.stringify(body), { "Content-Type": "application/json", ...headers });
+    if (body === undefined) return this.request_raw(method, path, null, headers, signal);
+    return this.request_raw(method, path, JSON.stringify(body), { "Content-Type": "application/json", ...headers }, signal);
   }
 
   private async request_raw(
@@ -677,6 +696,7 @@ export class Api {
     path: string,
     body: BodyInit | null,
     headers: Record<string, string> = {},
+    signal?: AbortSignal,
   ): Promise<Response> {
     const all: Record<string, string> = { Accept: "application/json", ...headers };
     if (method === "POST" && !kWithSecrets.test(path)) all["Idempotency-Key"] ??= new_id();
@@ -687,9 +707,10 @@ export class Api {
         headers: all,
         credentials: "same-origin",
         ...(body === null ? {} : { body }),
+        ...(signal ? { signal } : {}),
       });
     } catch {
-      throw unreachable();
+      throw signal?.aborted ? cancelled() : unreachable();
     }
     if (!response.ok) throw new ApiError(problem_of_text(response.status, await response.text().catch(() => "")));
     return response;
@@ -716,6 +737,8 @@ const records_path = (place: RecordPlace): string =>
 
 const comment_path = (id: number): string => `/comments/${id}`;
 
+const figures_path = (model: Id): string => `/models/${encodeURIComponent(model)}/figures`;
+
 const views_path = (model: Id): string => `/models/${encodeURIComponent(model)}/views`;
 const view_path = (model: Id, view: Id): string => `${views_path(model)}/${encodeURIComponent(view)}`;
 
@@ -727,6 +750,8 @@ const etag_of = (version: number): string => `"v${version}"`;
 
 const look_path = (model: Id, look: Id): string =>
   `/models/${encodeURIComponent(model)}/looks/${encodeURIComponent(look)}`;
+
+const cancelled = (): ApiError => new ApiError({ status: 499, title: "Cancelled" });
 
 function unreachable(): ApiError {
   const [title, detail] = own_problems().unreachable;

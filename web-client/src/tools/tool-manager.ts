@@ -7,6 +7,7 @@ import type { Tool, ToolName } from "./tool";
 export class ToolManager {
   private readonly tools_ = new Map<ToolName, Tool>();
   private active_: Tool;
+  private before_: Tool | null = null; // that another one is borrowed in place of
   private dragging_ = false;
 
   constructor(
@@ -24,6 +25,7 @@ export class ToolManager {
   }
 
   choose(name: ToolName): void {
+    this.give_back();
     const tool = this.find(name);
     if (tool === this.active_) return;
     this.cancel();
@@ -31,6 +33,27 @@ export class ToolManager {
     this.active_ = tool;
     tool.activate();
     this.changed_(name);
+  }
+
+  /** For one thing in between: the chosen tool stays as it is meanwhile. */
+  borrow(name: ToolName): void {
+    if (this.before_) return;
+    this.cancel();
+    this.before_ = this.active_;
+    this.active_ = this.find(name);
+    this.active_.activate();
+    this.changed_(name);
+  }
+
+  /** The chosen tool is in hand again. */
+  give_back(): void {
+    const { before_: before, active_: borrowed } = this;
+    if (!before) return;
+    this.cancel();
+    this.before_ = null;
+    this.active_ = before;
+    borrowed.deactivate();
+    this.changed_(before.name);
   }
 
   get outline(): Outline | null {
@@ -48,6 +71,7 @@ export class ToolManager {
   /** Ends what is under way. */
   stop(): void {
     this.cancel();
+    this.give_back();
     this.active_.deactivate();
   }
 

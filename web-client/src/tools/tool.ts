@@ -3,7 +3,7 @@
 import type { PointerSample } from "../core/input";
 import type { Outline } from "./outline";
 
-export type ToolName = "orbit" | "pan" | "brush" | "eraser" | "polygon" | "lasso" | "bucket" | "pick" | "line" | "point" | "comment" | "measure";
+export type ToolName = "orbit" | "pan" | "brush" | "eraser" | "polygon" | "lasso" | "bucket" | "pick" | "line" | "point" | "comment" | "measure" | "face";
 
 /** Those that add to a record of the layer's table. */
 export const kMarkingTools: readonly ToolName[] = ["line", "point"];

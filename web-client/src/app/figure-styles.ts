@@ -1,0 +1,122 @@
+// How the dialog of measured figures looks: its fields beside the sheet, and on phones below it.
+
+import { css } from "lit";
+
+export const figure_styles = css`
+  .editor {
+    display: grid;
+    grid-template-columns: minmax(0, 5fr) minmax(0, 6fr);
+    gap: 16px 26px;
+    align-items: start;
+  }
+  .fields {
+    display: grid;
+    grid-template-columns: minmax(0, 1fr) minmax(0, 1fr);
+    gap: 14px 12px;
+  }
+  .fields > * {
+    min-width: 0;
+  }
+  .full {
+    grid-column: 1 / -1;
+  }
+  .group {
+    display: grid;
+    gap: 5px;
+    align-content: start;
+  }
+  .segments {
+    display: flex;
+  }
+  .segments button {
+    padding: 0 6px;
+    min-width: 0;
+  }
+  .own {
+    display: flex;
+    align-items: center;
+    gap: 8px;
+  }
+  .own input {
+    width: 110px;
+  }
+  textarea {
+    min-height: 58px;
+  }
+  .formats {
+    display: grid;
+    grid-template-columns: minmax(0, 1fr) minmax(0, 1fr);
+    gap: 8px;
+  }
+  .formats button {
+    display: grid;
+    grid-template-columns: minmax(0, 1fr);
+    justify-items: start;
+    align-content: start;
+    gap: 1px;
+    padding: 7px 11px;
+    text-align: start;
+    white-space: normal;
+  }
+  .formats button[aria-checked="true"] {
+    border-color: var(--accent);
+    box-shadow: inset 0 0 0 1px var(--accent);
+    background: var(--accent-soft);
+  }
+  .formats button[aria-checked="true"] .hint {
+    color: var(--ink);
+  }
+  .sheet {
+    position: sticky; /* beside the fields, which are longer */
+    top: 0;
+    display: grid;
+    grid-template-columns: minmax(0, 1fr);
+    gap: 10px;
+  }
+  .warning {
+    display: flex;
+    flex-wrap: wrap;
+    gap: 4px 14px;
+    padding: 10px 14px;
+    border-radius: var(--radius-small);
+    background: var(--warn-soft);
+    color: var(--ink);
+    font-size: 0.92rem;
+  }
+  .making,
+  .told {
+    flex: 1 1 240px;
+    align-self: center;
+    display: grid;
+    gap: 4px;
+    min-width: 0;
+    overflow-wrap: anywhere;
+  }
+  .told.nothing {
+    flex-basis: 0; /* the buttons stay beside each other */
+  }
+  .bar {
+    height: 6px;
+    border-radius: 3px;
+    overflow: hidden;
+    background: var(--line);
+  }
+  .bar i {
+    display: block;
+    height: 100%;
+    background: var(--accent);
+  }
+  @media (max-width: 760px) {
+    .editor {
+      grid-template-columns: minmax(0, 1fr);
+    }
+    .sheet {
+      position: static;
+      order: -1;
+    }
+    strata-figure-preview {
+      --most-sheet: 36dvh;
+      --least-sheet: 180px;
+    }
+  }
+`;
