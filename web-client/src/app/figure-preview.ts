@@ -49,7 +49,7 @@ export class StrataFigurePreview extends LitElement {
         display: block;
         max-width: 100%;
         max-height: var(--most-sheet, min(64dvh, 660px));
-        background: #fff; /* the paper's, in every theme */
+        background: var(--mark-light); /* paper is white in every theme */
         box-shadow: var(--shadow);
       }
       .waiting img {
@@ -81,7 +81,7 @@ export class StrataFigurePreview extends LitElement {
       .working i {
         width: 17px;
         height: 17px;
-        border: 3px solid var(--line);
+        border: 3px solid var(--accent-soft);
         border-top-color: var(--accent);
         border-radius: 50%;
         animation: turn 900ms linear infinite;
