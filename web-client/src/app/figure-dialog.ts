@@ -40,7 +40,6 @@ const kWords: readonly { name: keyof FigureWords; most: number }[] = [
 ];
 /** Which of the dialog's fields a part of the request is chosen in. */
 const kFieldOf: Readonly<Record<string, string>> = { direction: "from", normal: "from", center: "from", camera: "from", view: "from" };
-const kFirstOwnScale = 40;
 const kFields: readonly string[] = ["from", "scale", "paper", "orientation", "dpi", "format", "title", "caption", "credit", "labels"];
 
 @customElement("strata-figure-dialog")
@@ -183,7 +182,6 @@ export class StrataFigureDialog extends LitElement {
             aria-invalid=${this.is_wrong("scale")} aria-describedby=${this.told_at("scale")}
             @input=${(event: Event) => this.type_scale(value_of(event))}
           />`}
-      ${this.problem_of("scale")}
     </div>`;
   }
 
@@ -198,8 +196,8 @@ export class StrataFigureDialog extends LitElement {
           chosen: paper,
           choose: (value) => this.choose({ paper: value }),
         })}
-        ${this.problem_of("paper")}
       </div>
+      ${this.problem_of("scale")} ${this.problem_of("paper")}
       <div class="group full">
         <span class="caption" id="orientation">${words.orientation}</span>
         ${radio_group({
@@ -297,7 +295,7 @@ export class StrataFigureDialog extends LitElement {
               </label>
             </div>
             ${layer ? this.label_column(layer) : nothing}
-            <div class="full">${this.problem_of("labels")}</div>`}`;
+            ${this.problem_of("labels")}`}`;
   }
 
   private label_column(layer: Layer): TemplateResult {
@@ -378,14 +376,15 @@ export class StrataFigureDialog extends LitElement {
   }
 
   private choose_scale(value: string): void {
-    this.scale_typed_ = value === "own" ? scale_text(this.choices_.scale ?? kFirstOwnScale) : null;
-    this.choose({ scale: value === "own" ? (this.choices_.scale ?? kFirstOwnScale) : value === "" ? null : Number(value) });
+    const { scale } = this.choices_;
+    this.scale_typed_ = value !== "own" ? null : scale === null ? "" : scale_text(scale);
+    this.choose({ scale: value === "own" ? scale : value === "" ? null : Number(value) });
   }
 
   private type_scale(typed: string): void {
     this.scale_typed_ = typed;
     const scale = read_scale(typed);
-    if (Number.isNaN(scale)) this.problem_ = { field: "scale", text: words.wrong_scale };
+    if (Number.isNaN(scale)) this.problem_ = this.typing_problem;
     else this.choose({ scale });
   }
 
@@ -398,7 +397,7 @@ export class StrataFigureDialog extends LitElement {
     this.dpi_typed_ = typed;
     const dpi = read_number(typed);
     if (is_dpi(dpi)) this.choose({ dpi });
-    else this.problem_ = { field: "dpi", text: words.wrong_dpi(kDpiRange.least, kDpiRange.most) };
+    else this.problem_ = this.typing_problem;
   }
 
   private write(written: FigureWords, name: keyof FigureWords): void {
@@ -445,16 +444,17 @@ export class StrataFigureDialog extends LitElement {
   /** Of the preview: what is wrong stands at its field, where it has one. */
   private on_told(event: CustomEvent<ProblemBody | null>): void {
     const problem = event.detail;
-    if (this.asks_wrongly) return; // what is asked for is not what is typed
+    if (this.typing_problem) return; // what is asked for is not what is typed
     if (problem?.field === undefined) return;
     this.refuse(problem);
     if (this.problem_?.field !== "") event.preventDefault();
   }
 
   /** A field holds what is none of its choices. */
-  private get asks_wrongly(): boolean {
+  private get typing_problem(): { field: string; text: string } | null {
     const { scale_typed_: scale, dpi_typed_: dpi } = this;
-    return (scale !== null && Number.isNaN(read_scale(scale))) || (dpi !== null && !is_dpi(read_number(dpi)));
+    if (scale !== null && Number.isNaN(read_scale(scale))) return { field: "scale", text: words.wrong_scale };
+    return dpi !== null && !is_dpi(read_number(dpi)) ? { field: "dpi", text: words.wrong_dpi(kDpiRange.least, kDpiRange.most) } : null;
   }
 
   // ── what is made ──────────────────────────────────────────────────────────────────────────────────────────────────
@@ -463,9 +463,13 @@ export class StrataFigureDialog extends LitElement {
     event.preventDefault();
     const request = this.request_now;
     if (this.sending_ || (this.job && is_busy(this.job))) return;
-    if (!request) this.problem_ = { field: "from", text: words.no_face };
-    if (request && !this.asks_wrongly) void this.make(request);
-    else void this.go_to_problem();
+    const problem = request ? this.typing_problem : { field: "from", text: words.no_face };
+    if (request && !problem) {
+      void this.make(request);
+    } else {
+      this.problem_ = problem;
+      void this.go_to_problem();
+    }
   };
 
   /** The field may be out of sight. */

@@ -51,6 +51,7 @@ export class StrataFigurePreview extends LitElement {
         max-height: var(--most-sheet, min(64dvh, 660px));
         background: var(--mark-light); /* paper is white in every theme */
         box-shadow: var(--shadow);
+        outline: var(--edge) solid var(--line);
       }
       .waiting img {
         opacity: 0.5;

@@ -20,6 +20,10 @@ export const figure_styles = css`
   .full {
     grid-column: 1 / -1;
   }
+  .fields > .error {
+    grid-column: 1 / -1;
+    margin-top: -6px;
+  }
   .group {
     display: grid;
     gap: 5px;

@@ -1430,7 +1430,7 @@ export const texts = {
     fits: "Passend",
     own_scale: "Anderer …",
     own_scale_label: "Maßstab, etwa 1 : 40 oder 2 : 1",
-    wrong_scale: "Als 1 : 40 schreiben, als 2 : 1 oder die 40 allein; von 100 : 1 bis 1 : 1 000 000.",
+    wrong_scale: "Als 1 : 40 schreiben, als 2 : 1 oder die 40 allein; von 100\u00a0:\u00a01 bis 1\u00a0:\u00a01\u00a0000\u00a0000.",
     paper: "Papier",
     orientation: "Ausrichtung",
     orientations: { portrait: "Hochformat", landscape: "Querformat" },

@@ -1416,7 +1416,7 @@ export const texts = {
     fits: "As fits",
     own_scale: "Another…",
     own_scale_label: "Scale, such as 1 : 40 or 2 : 1",
-    wrong_scale: "Write it as 1 : 40, as 2 : 1, or the 40 alone; from 100 : 1 to 1 : 1 000 000.",
+    wrong_scale: "Write it as 1 : 40, as 2 : 1, or the 40 alone; from 100\u00a0:\u00a01 to 1\u00a0:\u00a01\u00a0000\u00a0000.",
     paper: "Paper",
     orientation: "Orientation",
     orientations: { portrait: "Portrait", landscape: "Landscape" },

@@ -1436,7 +1436,7 @@ export const texts = {
     fits: "La que quepa",
     own_scale: "Otra…",
     own_scale_label: "Escala, como 1 : 40 o 2 : 1",
-    wrong_scale: "Escríbala como 1 : 40, como 2 : 1 o solo el 40; de 100 : 1 a 1 : 1 000 000.",
+    wrong_scale: "Escríbala como 1 : 40, como 2 : 1 o solo el 40; de 100\u00a0:\u00a01 a 1\u00a0:\u00a01\u00a0000\u00a0000.",
     paper: "Papel",
     orientation: "Orientación",
     orientations: { portrait: "Vertical", landscape: "Horizontal" },
