@@ -45,7 +45,13 @@ void draw(cairo_t* context, const Words& words) {
   }
   set_color(context, {0, 0, 0, 255});
   cairo_move_to(context, x, y);
-  pango_cairo_show_layout(context, layout.get());
+  // Among pixels cairo puts each letter on a whole one, which shows in small words; shapes stand where they should.
+  if (cairo_surface_get_type(cairo_get_target(context)) == CAIRO_SURFACE_TYPE_IMAGE) {
+    pango_cairo_layout_path(context, layout.get());
+    cairo_fill(context);
+  } else {
+    pango_cairo_show_layout(context, layout.get());
+  }
 }
 
 }  // namespace

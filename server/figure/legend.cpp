@@ -4,7 +4,7 @@
 
 namespace strata::figure {
 
-Legend legend_of(const Layer& layer, const Palette& palette) {
+Legend legend_of(const Layer& layer, const Palette& palette, const std::set<double>* there) {
   Legend legend;
   legend.title = layer.unit.empty() ? layer.name : layer.name + " [" + layer.unit + "]";
   if (palette.mode == PaletteMode::linear) {
@@ -16,6 +16,7 @@ Legend legend_of(const Layer& layer, const Palette& palette) {
     return legend;
   }
   for (const Palette::Point& point : palette.points) {
+    if (there && lists_values(palette) && !there->contains(point.at)) continue;
     std::string label = !point.label.empty()                ? point.label
                         : !point.value.empty()              ? point.value
                         : palette.mode == PaletteMode::step ? "≥ " + short_number(point.at)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@ struct Legend {
   std::string low, high;
 };
 
-// A layer of keys whose colours are made up has none but its title.
-Legend legend_of(const Layer& layer, const Palette& palette);
+// A layer of keys whose colours are made up has none but its title. `there`: of a categorical palette of values the classes that are told;
+// null: all.
+Legend legend_of(const Layer& layer, const Palette& palette, const std::set<double>* there = nullptr);
 
 }  // namespace strata::figure

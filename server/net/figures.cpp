@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <set>
 
 #include "core/compass.h"
 #include "core/number_text.h"
@@ -117,7 +119,14 @@ std::vector<figure::Legend> legends_of(const RouteContext& context, const Figure
   if (!wish.legend) return legends;
   for (auto layer = wish.layers.rbegin(); layer != wish.layers.rend(); ++layer) {  // as they lie over each other
     const Palette& palette = palette_of(wish, *layer);
-    legends.push_back(figure::legend_of(*layer, palette));
+    room::Selection whole;
+    whole.at = wish.shown.at;
+    const auto painted = wish.room->statistics(layer->slug, whole);
+    if (painted && painted->texels == 0) continue;
+    std::set<double> there;
+    if (painted)
+      for (const auto& [value, area] : painted->keys) there.insert(value);
+    legends.push_back(figure::legend_of(*layer, palette, there.empty() ? nullptr : &there));
     if (palette.column.empty() || !layer->table) continue;
     const auto table = context.store.table(std::to_string(*layer->table), wish.role);
     const Column* column = table ? find_column(table->columns, palette.column) : nullptr;

@@ -143,6 +143,13 @@ def kinds(server, folder):
     tags = tiff.read(figure(server, format="tiff", **wish).body)[1]
     assert tags[269] == "Sheet 7" and tags[315] == "Museum", tags
 
+    # The legend tells of what is there: no class, and no layer, of which nothing is painted.
+    server.ok("POST", M + "/layers", {"name": "Bare", "type": "u8", "resolution": 2048})
+    points = [{"at": at, "color": color, "label": label} for at, color, label in ((1, "#ff0000", "One mark"), (2, "#00ff00", "Nowhere"))]
+    shown = figure(server, format="svg", dpi=50, layers=[{"layer": "marks", "palette": {"mode": "categorical", "points": points}}]).body
+    assert b">One mark<" in shown and b">Nowhere<" not in shown and b">Bare<" not in shown
+    server.ok("DELETE", M + "/layers/bare")
+
     # A model that says where north is gets an arrow in the plan, and none in an elevation that looks north.
     server.ok("PATCH", M, {"north": "30"})
     for direction, shown in (("top", True), ("front", False)):

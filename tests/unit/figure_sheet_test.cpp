@@ -142,6 +142,8 @@ TEST(LegendOf, TellsClassesAndRamps) {
   ASSERT_EQ(legend.entries.size(), 2u);
   EXPECT_EQ(legend.entries[0].label, "Loss");
   EXPECT_EQ(legend.entries[1].label, "2.5");
+  const std::set<double> there{2.5, 7};
+  ASSERT_EQ(legend_of(layer, classes, &there).entries.size(), 1u) << "of classes that are not there nothing is told";
   layer.unit = "%";
   const Legend ramp =
       legend_of(layer, {PaletteMode::linear, 0, 40, {{0, {0, 0, 0, 255}}, {40, {255, 255, 255, 255}}}, "", {}});

@@ -374,6 +374,7 @@ export const header_words = {
   "If-Match": one('"v1"', "*", '"v999"', "v1", '""'),
   "Idempotency-Key": fc.oneof(fc.uuid(), one("the same", "k".repeat(255))),
   "If-None-Match": one('"v1"', '"v2"', "*"),
+  "Last-Event-ID": one("1777896570120000-7", "yesterday"),
   Prefer: one("respond-async", "return=minimal"),
   "If-Range": one('"v1"'),
   Range: one("bytes=0-9", "bytes=5-", "bytes=-4", "bytes=999999-", "bytes=9-2", "lines=1"),
