@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Run once by PostgreSQL's image when its folder is empty: Strata's role, which is no superuser, and the database that is its own.
+set -euo pipefail
+psql --username "${POSTGRES_USER:-postgres}" --dbname postgres --no-psqlrc --quiet --set ON_ERROR_STOP=1 <<'SQL'
+\getenv password STRATA_DATABASE_PASSWORD
+CREATE ROLE strata LOGIN PASSWORD :'password';
+-- So that it can end an analyst's session that keeps a table from being changed (docs/sql.md).
+GRANT pg_signal_backend TO strata;
+CREATE DATABASE strata OWNER strata;
+SQL
