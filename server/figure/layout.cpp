@@ -86,14 +86,18 @@ struct Row {
   double height() const { return kind == Kind::ramp ? 2 * kEntry : kind == Kind::title ? kEntry + kTitleGap : kEntry; }
 };
 
+std::string first_line(const std::string& text, bool bold, double width) {
+  const auto lines = wrapped(text, kText, bold, width, 1);
+  return lines.empty() ? std::string() : lines[0];
+}
+
 std::vector<Row> rows_of(const std::vector<Legend>& legends, double width) {
   std::vector<Row> rows;
   for (const Legend& legend : legends) {
-    rows.push_back({Row::Kind::title, wrapped(legend.title, kText, true, width, 1).at(0)});
+    rows.push_back({Row::Kind::title, first_line(legend.title, true, width)});
     if (!legend.ramp.empty()) rows.push_back({Row::Kind::ramp, {}, nullptr, &legend});
     for (const LegendEntry& entry : legend.entries) {
-      const auto label = wrapped(entry.label, kText, false, width - kSwatchWidth - 2, 1);
-      rows.push_back({Row::Kind::entry, label.empty() ? std::string() : label[0], &entry});
+      rows.push_back({Row::Kind::entry, first_line(entry.label, false, width - kSwatchWidth - 2), &entry});
     }
   }
   return rows;

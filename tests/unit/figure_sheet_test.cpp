@@ -23,6 +23,7 @@ std::vector<Legend> legends(int entries) {
   for (int i = 0; i < entries; ++i)
     classes.entries.push_back(
         {"Class " + std::to_string(i), Rgba{200, std::uint8_t(i), 30, 255}, static_cast<Pattern>(i % 4), 30.0 * i});
+  classes.entries.push_back({"", Rgba{1, 2, 3, 255}});  // a class without words
   Legend moisture{"Moisture [%]", {}, std::vector<Rgba>(64, Rgba{0, 0, 255, 255}), "0", "100"};
   return {classes, moisture};
 }
