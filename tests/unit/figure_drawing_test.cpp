@@ -37,7 +37,9 @@ TEST(Plane, AxesAreAFrameThatLooksAsItsNameSays) {
       const glm::dvec3 above(up == 'x', up == 'y', up == 'z');
       const double along = glm::dot(plane.into, above);
       EXPECT_EQ(along, direction == Direction::top ? -1 : direction == Direction::bottom ? 1 : 0);
-      if (along == 0) EXPECT_EQ(plane.up, above);
+      if (along == 0) {
+        EXPECT_EQ(plane.up, above);
+      }
     }
   const Plane plan = plane_from(Direction::top, 'z');
   EXPECT_EQ(plan.right, glm::dvec3(1, 0, 0));
