@@ -5,10 +5,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
+#include "figure/paper.h"
+
 namespace strata::figure {
 namespace {
-
-constexpr double kInch_mm = 25.4;
 
 // The axes of the front view, as the page has them.
 Plane front_of(char up_axis) {
@@ -93,12 +93,6 @@ double fitting_scale(const glm::dvec2& size, const glm::dvec2& paper_mm, double 
     for (const double step : {1.0, 2.0, 2.5, 5.0})
       if (step * decade >= needed) return step * decade;
   return 1e6;
-}
-
-glm::dvec2 Drawing::on_paper(const glm::dvec3& world) const {
-  const glm::dvec3 drawn = plane.of(world);
-  const glm::dvec2 middle_mm = glm::dvec2(width, height) * (kInch_mm / dpi / 2);
-  return middle_mm + glm::dvec2(drawn.x - center.x, center.y - drawn.y) / units_per_mm();
 }
 
 std::vector<Part> parts_of(const Drawing& drawing, int side) {

@@ -51,8 +51,6 @@ struct Drawing {
   std::vector<glm::dvec4> section{};
 
   double units_per_mm() const { return scale / 1000 / metres_per_unit; }
-  // Millimetres from the drawing's top left corner, y down.
-  glm::dvec2 on_paper(const glm::dvec3& world) const;
 };
 
 // A camera counts in hundredths of an inch, so that lines and patterns have the same width at any resolution.

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "core/number_text.h"
+#include "figure/paper.h"
 #include "figure/text.h"
 
 namespace strata::figure {
 namespace {
 
-constexpr double kInch_mm = 25.4;
 constexpr double kMargin = 10, kGap = 4;
 constexpr double kTitle = 4.2, kText = 2.8, kSmall = 2.2;  // letters
 constexpr double kLine = 1.45;                             // of their size

@@ -3,24 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <memory>
 #include <stdexcept>
 #include <vector>
 
+#include "figure/cairo_owners.h"
 #include "figure/cairo_sheet.h"
+#include "figure/paper.h"
 
 namespace strata::figure {
 namespace {
 
-constexpr double kInch_mm = 25.4;
 constexpr int kBandRows = 256;
-
-struct DestroySurface {
-  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
-};
-struct DestroyContext {
-  void operator()(cairo_t* context) const { cairo_destroy(context); }
-};
 
 // cairo's pixels are 32 bits in the machine's order: 0x00rrggbb.
 void put_drawing(std::uint8_t* band, int stride, int first_row, int rows, const Picture& drawing, int left, int top,
@@ -54,9 +47,8 @@ bool sheet_rows(const Sheet& sheet, const Picture& drawing, int dpi, Progress& p
     if (progress.cancelled()) return false;
     progress.report(static_cast<double>(first) / height, "Writing the file");
     const int rows = std::min(kBandRows, height - first);
-    const std::unique_ptr<cairo_surface_t, DestroySurface> band(
-        cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, rows));
-    const std::unique_ptr<cairo_t, DestroyContext> context(cairo_create(band.get()));
+    const CairoSurface band(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, rows));
+    const CairoContext context(cairo_create(band.get()));
     cairo_set_source_rgb(context.get(), 1, 1, 1);
     cairo_paint(context.get());
     cairo_surface_flush(band.get());

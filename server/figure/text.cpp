@@ -1,5 +1,6 @@
 #include "figure/text.h"
 
+#include "figure/cairo_owners.h"
 #include "figure/pango_layout.h"
 
 namespace strata::figure {
@@ -8,16 +9,10 @@ namespace {
 // Pango rounds to its units, of which a point has 1024: it measures in large letters.
 constexpr double kMeasured = 100;
 
-struct DestroyContext {
-  void operator()(cairo_t* context) const { cairo_destroy(context); }
-};
-
 // Nothing is drawn on it.
-std::unique_ptr<cairo_t, DestroyContext> measuring_context() {
-  cairo_surface_t* surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR, nullptr);
-  std::unique_ptr<cairo_t, DestroyContext> context(cairo_create(surface));
-  cairo_surface_destroy(surface);
-  return context;
+CairoContext measuring_context() {
+  const CairoSurface surface(cairo_recording_surface_create(CAIRO_CONTENT_COLOR, nullptr));
+  return CairoContext(cairo_create(surface.get()));
 }
 
 }  // namespace

@@ -1,21 +1,15 @@
 // Sheets as PDF, by cairo: words stay words, shapes shapes, and the drawing is the JPEG as it is.
 #include <cairo-pdf.h>
 
+#include "figure/cairo_owners.h"
 #include "figure/cairo_sheet.h"
+#include "figure/paper.h"
 #include "figure/writers.h"
 
 namespace strata::figure {
 namespace {
 
-constexpr double kPoints_per_mm = 72 / 25.4;
-
-struct DestroySurface {
-  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
-};
-struct DestroyContext {
-  void operator()(cairo_t* context) const { cairo_destroy(context); }
-};
-using Surface = std::unique_ptr<cairo_surface_t, DestroySurface>;
+constexpr double kPoints_per_mm = 72 / kInch_mm;
 
 }  // namespace
 
@@ -25,18 +19,18 @@ Result<void> write_pdf(const Sheet& sheet, const Picture& drawing, const Documen
   const auto jpeg = drawing_jpeg(drawing);
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.7, "Writing the file");
-  const Surface page(
+  const CairoSurface page(
       cairo_pdf_surface_create(path.c_str(), sheet.size.x * kPoints_per_mm, sheet.size.y * kPoints_per_mm));
   cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_TITLE, document.title.c_str());
   cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_AUTHOR, document.author.c_str());
   cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_CREATOR, "Strata");
   {
-    const std::unique_ptr<cairo_t, DestroyContext> context(cairo_create(page.get()));
+    const CairoContext context(cairo_create(page.get()));
     cairo_scale(context.get(), kPoints_per_mm, kPoints_per_mm);
     // cairo takes the JPEG in place of these pixels, and needs them for their size alone. It writes to neither.
-    const Surface image(cairo_image_surface_create_for_data(const_cast<std::uint8_t*>(drawing.rgba.data()),
-                                                            CAIRO_FORMAT_RGB24, drawing.width, drawing.height,
-                                                            4 * drawing.width));
+    const CairoSurface image(cairo_image_surface_create_for_data(const_cast<std::uint8_t*>(drawing.rgba.data()),
+                                                                 CAIRO_FORMAT_RGB24, drawing.width, drawing.height,
+                                                                 4 * drawing.width));
     cairo_surface_set_mime_data(image.get(), CAIRO_MIME_TYPE_JPEG, jpeg.data(), jpeg.size(), nullptr, nullptr);
     cairo_save(context.get());
     cairo_translate(context.get(), sheet.drawing.corner.x, sheet.drawing.corner.y);

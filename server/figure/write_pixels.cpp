@@ -1,13 +1,11 @@
 // Sheets as pixels: PNG and TIFF.
-#include <png.h>
 #include <tiffio.h>
 
 #include <cmath>
-#include <csetjmp>
 #include <cstdarg>
-#include <cstring>
 #include <memory>
 
+#include "core/guarded_png.h"
 #include "figure/sheet_rows.h"
 #include "figure/writers.h"
 
@@ -19,24 +17,6 @@ struct CloseFile {
 };
 struct CloseTiff {
   void operator()(TIFF* tiff) const { TIFFClose(tiff); }
-};
-
-// libpng reports errors by longjmp. Only `guarded` catches that: what runs in it holds no object with a destructor.
-void stop(png_structp png, png_const_charp) { png_longjmp(png, 1); }
-void ignore(png_structp, png_const_charp) {}
-template <class Call>
-bool guarded(png_structp png, const Call& call) {
-  if (setjmp(png_jmpbuf(png)) != 0) return false;
-  call();
-  return true;
-}
-
-struct PngWriter {
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, stop, ignore);
-  png_infop info = png_create_info_struct(png);
-  PngWriter() = default;
-  PngWriter(const PngWriter&) = delete;
-  ~PngWriter() { png_destroy_write_struct(&png, &info); }
 };
 
 Result<void> ended(bool all, bool cancelled) {
@@ -54,6 +34,7 @@ Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi, cons
   if (!file) return unwritable();
   const auto [width, height] = pixels_of(sheet, dpi);
   PngWriter writer;
+  if (writer.info == nullptr) return unwritable();
   std::string title = document.title, author = document.author;
   char title_key[] = "Title", author_key[] = "Author";
   png_text texts[2] = {};

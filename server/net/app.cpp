@@ -6,6 +6,7 @@
 #include "net/kiosk_gate.h"
 #include "net/origin.h"
 #include "net/project_gate.h"
+#include "net/still_welcome.h"
 
 namespace strata::net {
 namespace {
@@ -244,8 +245,7 @@ Result<App::LiveEntry> App::admit_live(Request& request) {
 }
 
 bool App::is_still_welcome(const std::string& secret, std::int64_t project_id, Role role) {
-  auto principal = auth_.identify_token(secret);
-  return !principal || (*principal && (*principal)->roles.in(project_id) == role);
+  return net::is_still_welcome(auth_, secret, project_id, role);
 }
 
 std::shared_ptr<LiveSession> App::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) {

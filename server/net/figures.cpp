@@ -10,6 +10,7 @@
 #include "core/number_text.h"
 #include "core/uuid.h"
 #include "net/as_of.h"
+#include "net/at_field.h"
 #include "net/view_wire.h"
 #include "store/named_parts.h"
 
@@ -22,6 +23,11 @@ constexpr std::size_t kMostPlaces = 64;  // that are tried for a label
 constexpr std::size_t kMostLabels = 2000;
 
 char up_of(const Model& model) { return model.up.empty() ? 'z' : model.up[0]; }
+
+// Directions, papers and formats have the contract's order, so that they are cast.
+static_assert(static_cast<int>(protocol::FigureDirection::right) == static_cast<int>(figure::Direction::right) &&
+              static_cast<int>(protocol::FigureRequestPaper::a3) == static_cast<int>(figure::Paper::a3) &&
+              static_cast<int>(protocol::FigureFormat::pdf) == static_cast<int>(figure::Format::pdf));
 
 // What is shown, and the camera that it comes with, if any.
 Result<std::optional<Camera>> read_shown(const RouteContext& context, const Request& request,
@@ -40,10 +46,7 @@ Result<std::optional<Camera>> read_shown(const RouteContext& context, const Requ
                 "A figure of a view shows what the view does: leave out camera, layers, looks and light.", "view");
   const auto view = context.store.views().find(room.model().id, *asked.view);
   if (!view) {
-    Problem problem = view.error();
-    problem.status = 422;
-    problem.field = "view";
-    return tl::unexpected(std::move(problem));
+    return at_field(view.error(), "view");
   }
   const auto kept = as_asked(context, request, *view, room);
   if (!kept) return tl::unexpected(kept.error());
@@ -71,11 +74,8 @@ Result<void> read_direction(const protocol::FigureRequest& asked, const std::opt
     wish.plane = figure::plane_square_to(*asked.normal, up_of(model));
     wish.from = "face";
   } else if (asked.direction || !camera) {
-    static constexpr figure::Direction kDirections[] = {figure::Direction::top,   figure::Direction::bottom,
-                                                        figure::Direction::front, figure::Direction::back,
-                                                        figure::Direction::left,  figure::Direction::right};
     const auto direction = asked.direction.value_or(protocol::FigureDirection::top);
-    wish.plane = figure::plane_from(kDirections[static_cast<int>(direction)], up_of(model));
+    wish.plane = figure::plane_from(static_cast<figure::Direction>(direction), up_of(model));
     wish.from = protocol::name(direction);
   } else {
     wish.plane = figure::plane_of(*camera);
@@ -89,10 +89,7 @@ Result<void> read_direction(const protocol::FigureRequest& asked, const std::opt
 Result<void> read_labels(const RouteContext& context, const protocol::FigureLabels& asked, FigureWish& wish) {
   const auto layer = wish.room->layer(protocol::to_ref(asked.layer));
   if (!layer) {
-    Problem problem = layer.error();
-    problem.status = 422;
-    problem.field = "labels.layer";
-    return tl::unexpected(std::move(problem));
+    return at_field(layer.error(), "labels.layer");
   }
   if (!layer->table)
     return fail(422, "No records", "The layer '" + layer->slug + "' is no database layer: nothing of it has a record.",
@@ -227,24 +224,22 @@ Result<std::vector<figure::Label>> labels_of(const RouteContext& context, const 
 struct Composed {
   figure::SheetLayout layout;
   double scale;
+  double tightness;  // the scale at which all of it just fits
 };
 
 // The sheet that has room for the larger scale, upright where both have, and the scale that is asked for or fits.
 Composed compose(const FigureWish& wish, const std::vector<figure::Legend>& legends, const glm::dvec2& size,
                  double metres_per_unit) {
+  constexpr double kMargin = 1.02;
   std::optional<Composed> best;
   for (const bool landscape : {false, true}) {
     if (wish.landscape && *wish.landscape != landscape) continue;
     figure::SheetLayout layout(figure::paper_mm(wish.paper, landscape), wish.captions, legends, wish.dpi);
-    const glm::dvec2 room_mm = layout.drawing_mm();
-    const glm::dvec2 needed = size * (metres_per_unit * 1000) / room_mm;
-    const double tightness = std::max(needed.x, needed.y);  // the scale at which it just fits
-    constexpr double kMargin = 1.02;
+    const glm::dvec2 room_mm = layout.drawing_mm(), needed = size * (metres_per_unit * 1000) / room_mm;
+    const double tightness = std::max(needed.x, needed.y);
+    if (best && tightness >= best->tightness) continue;
     const double scale = wish.scale.value_or(figure::fitting_scale(size * kMargin, room_mm, metres_per_unit));
-    const double other = best ? std::max(size.x * metres_per_unit * 1000 / best->layout.drawing_mm().x,
-                                         size.y * metres_per_unit * 1000 / best->layout.drawing_mm().y)
-                              : 0;
-    if (!best || tightness < other) best = Composed{std::move(layout), scale};
+    best = Composed{std::move(layout), scale, tightness};
   }
   return std::move(*best);
 }
@@ -271,7 +266,7 @@ Result<Picture> draw(const FigureWish& wish, const figure::Drawing& drawing, Pro
   fine.height *= finer;
   const auto parts = figure::parts_of(fine);
   std::vector<room::PicturePart> wanted;
-  for (const auto& part : parts) wanted.push_back({part.camera, static_cast<double>(fine.dpi) / figure::kCameraDpi});
+  for (const auto& part : parts) wanted.push_back({part.camera, static_cast<double>(part.width) / part.camera.width});
   auto drawn = wish.room->pictures(wish.shown, wanted, [&](std::size_t i, const render::Frame& frame) -> Result<void> {
     const int left = parts[i].x / finer, top = parts[i].y / finer;  // parts are of whole inches
     const int columns = std::min(frame.width / finer, picture.width - left);

@@ -1,6 +1,7 @@
 #include "net/model_events.h"
 
 #include "net/activity_wire.h"
+#include "net/still_welcome.h"
 
 namespace strata::net {
 namespace {
@@ -8,8 +9,9 @@ namespace {
 // A transaction has the time at which it began, and is seen when it ends: one that took no longer than this is told.
 constexpr std::chrono::microseconds kLongest = std::chrono::seconds(30);
 constexpr std::chrono::seconds kCheckEvery{10};
+constexpr int kFirstPage = 20;  // mostly nothing is new
 constexpr int kPage = 200;
-constexpr int kMostPages = 50;  // of what a reader missed who comes back
+constexpr int kMostPages = 51;  // of what a reader missed who comes back
 
 std::int64_t microseconds(const store::Activity& line) {
   return std::chrono::duration_cast<std::chrono::microseconds>(line.time.time_since_epoch()).count();
@@ -34,17 +36,16 @@ bool ModelEvents::is_still_welcome() {
   checked_ = now;
   const auto model = context_.store.model(std::to_string(model_));
   if (!model) return model.error().status != 404;
-  const auto who = context_.auth.identify_token(secret_);
-  return model->project_id == project_ && (!who || (*who && (*who)->roles.in(project_) == role_));
+  return model->project_id == project_ && net::is_still_welcome(context_.auth, secret_, project_, role_);
 }
 
 // Newest first; nothing: the database is away.
 std::optional<ModelEvents::Lines> ModelEvents::lines_since(std::int64_t time_us) {
   store::ActivityQuery query;
   query.model = model_;
-  query.limit = kPage;
   Lines lines;
   for (int page = 0; page < kMostPages; ++page) {
+    query.limit = page == 0 ? kFirstPage : kPage;
     auto found = context_.store.activity(project_, role_, query);
     if (!found) return std::nullopt;
     for (store::Activity& line : found->lines) {

@@ -39,8 +39,7 @@ bool is_own_origin(std::string_view origin, std::string_view host, const std::ve
 namespace {
 
 bool is_own(const Request& request, const std::vector<std::string>& allowed) {
-  const bool by_https = request.by_tls || request.header("x-forwarded-proto") == "https";
-  return is_own_origin(request.header("origin"), request.header("host"), allowed, by_https);
+  return is_own_origin(request.header("origin"), request.header("host"), allowed, came_by_https(request));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "net/at_field.h"
 #include "net/table_wire.h"
 #include "net/wire.h"
 
@@ -10,13 +11,6 @@ namespace strata::net {
 namespace {
 
 std::string at(const std::string& list, std::size_t place) { return list + "[" + std::to_string(place) + "]"; }
-
-// What a body names and is not there is a fault of the body.
-tl::unexpected<Problem> at_field(Problem problem, std::string field) {
-  if (problem.status == 404) problem.status = 422;
-  problem.field = std::move(field);
-  return tl::unexpected(std::move(problem));
-}
 
 Result<void> once(std::set<std::int64_t>& known, std::int64_t id, const char* what, const std::string& field) {
   if (known.insert(id).second) return {};

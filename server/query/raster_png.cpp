@@ -1,48 +1,17 @@
-#include <png.h>
-
-#include <csetjmp>
 #include <cstring>
 #include <memory>
 #include <string>
 
+#include "core/guarded_png.h"
 #include "query/raster.h"
 #include "query/raster_rows.h"
 
 namespace strata::query {
 namespace {
 
-// libpng reports errors by longjmp. Only `guarded` catches that: what runs in it holds no object with a destructor.
-struct Message {
-  char text[200] = "damaged";
-};
-
-void keep_message(png_structp png, png_const_charp text) {
-  auto* message = static_cast<Message*>(png_get_error_ptr(png));
-  std::strncpy(message->text, text, sizeof(message->text) - 1);
-  png_longjmp(png, 1);
-}
-
-void ignore_warning(png_structp, png_const_charp) {}
-
-template <class Call>
-bool guarded(png_structp png, const Call& call) {
-  if (setjmp(png_jmpbuf(png)) != 0) return false;
-  call();
-  return true;
-}
-
-struct Writer {
-  Message message;
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, keep_message, ignore_warning);
-  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
-  Writer() = default;
-  Writer(const Writer&) = delete;
-  ~Writer() { png_destroy_write_struct(&png, &info); }
-};
-
 struct Reader {
-  Message message;
-  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message, keep_message, ignore_warning);
+  PngMessage message;
+  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message, keep_png_message, ignore_png_warning);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   std::span<const std::uint8_t> rest;
   Reader() = default;
@@ -84,7 +53,7 @@ Result<std::vector<std::uint8_t>> encode_png(const Layer& layer, const TileMap& 
   std::vector<std::uint32_t> bits(layer.resolution);
   std::vector<std::uint8_t> valid(layer.resolution), line(std::size_t(layer.resolution) * 2 * width), out;
 
-  Writer writer;
+  PngWriter writer;
   auto failed = [&] { return fail(500, "PNG not written", std::string("libpng: ") + writer.message.text); };
   if (writer.info == nullptr) return failed();
   const png_structp png = writer.png;
