@@ -44,6 +44,7 @@ Result<Picture> decode_coarse(std::span<const std::uint8_t> bytes, int side);
 struct JpegSettings {
   int quality = 80;         // 1…100
   bool full_color = false;  // 4:4:4 instead of 4:2:0
+  bool operator==(const JpegSettings&) const = default;
 };
 
 // RGBA8 rows, top first → JPEG, which leaves alpha out. Throws where `rgba` is not width × height × 4 bytes.

@@ -95,7 +95,7 @@ Step FrameJob::step(GpuScene& scene) {
     frame_.level = (*view)->key.level;
     if (progress_.cleared && !scene.info().software)
       scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
-    task_.done(std::move(frame_));
+    answer(std::make_shared<const Frame>(std::move(frame_)));
   }
   return *step;
 }
@@ -103,6 +103,8 @@ Step FrameJob::step(GpuScene& scene) {
 Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   const FrameRequest& request = task_.request;
   view.last_used = scene.next_use();
+  if (request.model != 0 && request.model != view.model)
+    return fail(422, "View of another model", "A request names its view's model, or none.", "model");
   if (auto valid = validate(request.camera); !valid) return valid;
   if (request.width < 1 || request.height < 1 || request.width > kMaxViewSize || request.height > kMaxViewSize) {
     return fail(422, "Size out of range", "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.",

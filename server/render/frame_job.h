@@ -8,17 +8,23 @@
 
 namespace strata::render {
 
-// One frame of one view: the g-buffer in slices when the camera changed, then what changed is shaded and read back in
+// One frame, drawn by one view: the g-buffer in slices when the camera changed, then what changed is shaded and read back in
 // bands.
 class FrameJob {
  public:
   explicit FrameJob(FrameTask task) : task_(std::move(task)) {}
 
-  ViewHandle view() const { return task_.request.view; }
+  const FrameTask& task() const { return task_; }
+  double busy_ms() const { return busy_ms_; }
+  // What its asker has been served by now.
+  double turn_ms() const { return task_.turn_ms + busy_ms_ / static_cast<double>(task_.askers.size()); }
   Step step(GpuScene& scene);
-  void abort(const Problem& problem) { task_.done(tl::unexpected(problem)); }
+  void abort(const Problem& problem) { answer(tl::unexpected(problem)); }
 
  private:
+  void answer(const Result<SharedFrame>& frame) {
+    for (const auto& asker : task_.askers) asker.done(frame);
+  }
   enum class Stage { prepare, layers, gbuffer, area, shade, readback };
   Result<void> prepare(GpuScene& scene, View& view);
   Result<bool> bring_layers(GpuScene& scene);  // true when all are on the GPU

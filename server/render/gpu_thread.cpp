@@ -142,8 +142,10 @@ std::optional<Step> GpuThread::step_lane(Lane lane) {
   return step;
 }
 
-// The oldest frame that can go on does; a new one starts when all others wait for the GPU.
+// The first frame that can go on does; a new one starts when all others wait for the GPU, or when it is a small one whose turn it is.
 bool GpuThread::step_frames() {
+  if (!frames_.empty() && frames_.size() < kMaxActiveFrames)
+    if (auto part = hooks_.next_part()) frames_.push_front(std::move(*part));
   for (auto frame = frames_.begin(); frame != frames_.end(); ++frame) {
     const Step step = frame->step();
     if (step == Step::waiting) continue;

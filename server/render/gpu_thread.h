@@ -44,6 +44,7 @@ class GpuThread {
     std::function<bool()> lost;                        // asked before each step
     std::function<Result<void>()> recover;             // after a loss: all jobs were aborted
     std::function<std::optional<Job>()> next_frame;    // takes a waiting frame, if any may start
+    std::function<std::optional<Job>()> next_part;     // the same, if it should go before those under way
     std::function<void(const Problem&)> abort_frames;  // answers those still waiting
   };
 

@@ -2,8 +2,10 @@
 
 #include <atomic>
 #include <future>
+#include <limits>
 #include <mutex>
 #include <unordered_map>
+#include <vector>
 
 #include "core/log.h"
 #include "render/frame_job.h"
@@ -24,8 +26,9 @@ struct Renderer::Impl {
   GpuThread thread;
   FrameQueue frames;
   GpuMemory memory;
-  std::unique_ptr<GpuScene> scene;  // GPU thread
-  std::uint64_t generation = 0;     // GPU thread
+  std::unique_ptr<GpuScene> scene;                       // GPU thread
+  std::uint64_t generation = 0;                          // GPU thread
+  std::vector<std::weak_ptr<const FrameJob>> under_way;  // GPU thread
   std::atomic<bool> lose_context{false};
 
   std::mutex lost_callback_mutex;  // held during the call, so that whoever takes the callback away waits for it
@@ -58,13 +61,22 @@ struct Renderer::Impl {
     return {};
   }
 
-  std::optional<Job> next_frame() {
-    auto task = frames.take();
+  // A rectangle whose turn is before that of every frame under way.
+  std::optional<Job> next_part() {
+    std::erase_if(under_way, [](const auto& frame) { return frame.expired(); });
+    auto turn_ms = std::numeric_limits<double>::infinity();
+    for (const auto& one : under_way)
+      if (const auto frame = one.lock()) turn_ms = std::min(turn_ms, frame->turn_ms());
+    return start(frames.take_part(turn_ms));
+  }
+
+  std::optional<Job> start(std::optional<FrameTask> task) {
     if (!task) return std::nullopt;
     auto frame = std::make_shared<FrameJob>(std::move(*task));
+    under_way.push_back(frame);
     return Job{[this, frame] {
                  const Step step = frame->step(*scene);
-                 if (step == Step::done) frames.finished(frame->view());
+                 if (step == Step::done) frames.finished(frame->task(), frame->busy_ms());
                  return step;
                },
                [frame](const Problem& problem) { frame->abort(problem); }};
@@ -135,9 +147,10 @@ Result<std::unique_ptr<Renderer>> Renderer::start(RendererOptions options) {
   hooks.stop = [impl] { impl->scene.reset(); };
   hooks.lost = [impl] { return impl->lose_context || impl->scene->lost(); };
   hooks.recover = [impl] { return impl->recover(); };
-  hooks.next_frame = [impl] { return impl->next_frame(); };
+  hooks.next_frame = [impl] { return impl->start(impl->frames.take()); };
+  hooks.next_part = [impl] { return impl->next_part(); };
   hooks.abort_frames = [impl](const Problem& problem) {
-    for (FrameTask& task : impl->frames.take_all()) task.done(tl::unexpected(problem));
+    for (FrameTask& task : impl->frames.take_all()) FrameJob(std::move(task)).abort(problem);
   };
   if (auto started = impl->thread.start(std::move(hooks)); !started) return tl::unexpected(started.error());
   return renderer;
@@ -217,18 +230,18 @@ void Renderer::add_view(ModelHandle model, Done<ViewHandle> done) {
 }
 
 void Renderer::remove_view(ViewHandle view) {
+  impl_->frames.forget(view);
   impl_->post_removal([view](GpuScene& scene) { scene.remove_view(view); });
 }
 
-void Renderer::draw(FrameRequest request, Done<Frame> done) {
-  auto pushed = impl_->frames.push({std::move(request), std::move(done)});
+void Renderer::draw(FrameRequest request, Done<SharedFrame> done) {
+  auto pushed = impl_->frames.push(std::move(request), std::move(done));
   if (pushed.displaced) {
     const Problem problem =
         pushed.accepted ? Problem{409, "Superseded", "A newer request of the same view took its place.", {}}
                         : Problem{503, "GPU queue full", "Too many views wait for a frame. Try again in a moment.", {}};
-    impl_->thread.post_reply([task = std::make_shared<FrameTask>(std::move(*pushed.displaced)), problem] {
-      task->done(tl::unexpected(problem));
-    });
+    impl_->thread.post_reply(
+        [displaced = std::move(*pushed.displaced), problem] { displaced(tl::unexpected(problem)); });
   }
   impl_->thread.wake();
 }

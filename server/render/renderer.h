@@ -102,6 +102,8 @@ struct PixelRect {
 
 struct FrameRequest {
   ViewHandle view = 0;
+  // Of the view. Given: views of this model that ask for the same picture are served with one, which any of them may draw.
+  ModelHandle model = 0;
   Camera camera;
   bool moving = false;        // a coarser copy of the model may be shown, so that the picture comes in time
   int width = 0, height = 0;  // pixels of the picture (the camera's window scaled to this size)
@@ -114,6 +116,7 @@ struct FrameRequest {
   // rectangle they cover is shaded and returned. A changed camera, size or style shades everything anyway.
   struct Box {
     glm::vec3 min, max;
+    bool operator==(const Box&) const = default;
   };
   std::optional<std::vector<Box>> changed;
   Background background;
@@ -126,6 +129,7 @@ struct Frame {
   double render_ms = 0;
   int level = 0;  // of the model that is shown: 0 is the full mesh, 1 the finest coarser copy
 };
+using SharedFrame = std::shared_ptr<const Frame>;  // one for all who asked for the same picture
 
 // A mesh and its coarser copies, finest first (mesh::make_detail_levels).
 struct ModelGeometry {
@@ -174,10 +178,11 @@ class Renderer {
   void paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done);
 
   // Views keep a g-buffer and the last picture. Requests of one view replace each other while they wait ("latest wins"):
-  // the replaced request's callback gets a Problem 409 titled "Superseded".
+  // the replaced request's callback gets a Problem 409 titled "Superseded". Views take turns by what drawing for them has taken
+  // (render/frame_queue).
   void add_view(ModelHandle model, Done<ViewHandle> done);
   void remove_view(ViewHandle view);
-  void draw(FrameRequest request, Done<Frame> done);
+  void draw(FrameRequest request, Done<SharedFrame> done);
 
   // Returns when all that was asked before, frames excepted, is answered. Blocks.
   void finish();

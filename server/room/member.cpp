@@ -56,7 +56,7 @@ render::ViewStyle RoomMember::style(std::uint32_t view_id, View& view) const {
       marked.push_back({std::move(marks), shown.palette, shown.opacity});
   }
   if (marked != view.marked) {
-    view.marks = show_marks(marked);
+    view.marks = room_->record_marks().shown(marked);
     view.marked = std::move(marked);
   }
   style.marks = view.marks;

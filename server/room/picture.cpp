@@ -103,9 +103,9 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
     request.camera = parts[i].camera;
     request.width = static_cast<int>(std::lround(parts[i].camera.width * parts[i].pixels));
     request.height = static_cast<int>(std::lround(parts[i].camera.height * parts[i].pixels));
-    auto frame = await<render::Frame>([&](auto done) { parts_.renderer.draw(request, std::move(done)); });
+    auto frame = await<render::SharedFrame>([&](auto done) { parts_.renderer.draw(request, std::move(done)); });
     if (!frame) return tl::unexpected(gpu_problem(frame.error()));
-    if (auto seen = see(i, *frame); !seen) return seen;
+    if (auto seen = see(i, **frame); !seen) return seen;
   }
   return {};
 }

@@ -8,6 +8,13 @@
 
 namespace strata::room {
 
+struct RecordMarks::Shown {
+  std::vector<LayerMarks> layers;
+  std::weak_ptr<const std::vector<render::DrawnMark>> marks;
+};
+
+RecordMarks::~RecordMarks() = default;
+
 RecordMarks::RecordMarks(store::Store& store, boost::asio::thread_pool& workers, std::int64_t model_id,
                          std::function<void()> ready)
     : store_(store), workers_(workers), model_id_(model_id), ready_(std::move(ready)) {}
@@ -94,6 +101,17 @@ void RecordMarks::records_changed(std::int64_t table_id) {
 void RecordMarks::stop() {
   std::lock_guard lock(mutex_);
   stopped_ = true;
+}
+
+render::MarksShown RecordMarks::shown(const std::vector<LayerMarks>& layers) {
+  std::lock_guard lock(mutex_);
+  std::erase_if(shown_, [](const Shown& one) { return one.marks.expired(); });
+  for (const Shown& one : shown_)
+    if (one.layers == layers)
+      if (auto marks = one.marks.lock()) return marks;
+  auto marks = show_marks(layers);
+  if (marks) shown_.push_back({layers, marks});
+  return marks;
 }
 
 render::MarksShown show_marks(const std::vector<LayerMarks>& layers) {

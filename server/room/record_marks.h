@@ -13,6 +13,8 @@
 
 namespace strata::room {
 
+struct LayerMarks;
+
 // The lines and points that records have on an open model, by table and by the least seen of the columns that are looked at (`sight`). They are read on a worker when a view first needs them, and anew
 // when records change. Thread-safe.
 class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
@@ -22,6 +24,7 @@ class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
   // `ready` is called, on any thread, whenever marks that were asked for are there and differ from before.
   RecordMarks(store::Store& store, boost::asio::thread_pool& workers, std::int64_t model_id,
               std::function<void()> ready);
+  ~RecordMarks();
 
   // The newest that are there; null: none are, as far as is known.
   Marks find(std::int64_t table_id, Visibility sight);
@@ -30,6 +33,8 @@ class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
   // Those of when an edit of the model was made. Blocks.
   Result<Marks> when(std::int64_t table_id, Visibility sight, std::int64_t sequence) const;
   void records_changed(std::int64_t table_id);
+  // `show_marks`, as one object for all who show the same now: views are told by it whether they have the same picture.
+  render::MarksShown shown(const std::vector<LayerMarks>& layers);
   void stop();  // nothing more is read, and `ready` not called
 
  private:
@@ -50,6 +55,8 @@ class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
   const std::function<void()> ready_;
   std::mutex mutex_;
   std::map<Wanted, Entry> entries_;
+  struct Shown;
+  std::vector<Shown> shown_;
   bool stopped_ = false;
 };
 

@@ -72,6 +72,8 @@ std::optional<FlowControl::Draw> FlowControl::next() {
     everything_waits_ = false;
   } else {
     draw.changed = boxes_;
+    if (refine_waits_)
+      draw.quality = Quality::moving;  // its camera moves still, and the whole is refined once it stands
   }
   boxes_.clear();
   camera_waits_ = false;

@@ -17,7 +17,7 @@ namespace strata::stream {
 // 3. Every change is drawn in the end: a draw that fails gives its changes back.
 // 4. Nothing changed → nothing is drawn. A camera equal to the one on screen only renumbers later frames.
 // 5. Frames of a moving camera are of lower quality; once the camera is still (a message says so, or `on_quiet`) the
-//    picture is drawn once more at full quality. Edits are always of full quality.
+//    picture is drawn once more at full quality. Edits are of full quality, but where they fall into a picture of a moving camera.
 // 6. What was refused is not drawn again before something changes: it would be refused again.
 //
 // Not thread-safe: the viewer calls it under its lock.
@@ -51,7 +51,8 @@ class FlowControl {
   void on_change_everywhere(std::int64_t sequence);
   void on_style();
   void on_ack(std::uint64_t frame);  // frames up to this one are on the client's screen; unknown numbers are cut
-  void on_quiet();                   // no camera came for a while: what moved stands still
+  void set_window(int window) { window_ = window < 1 ? 1 : window; }
+  void on_quiet();  // no camera came for a while: what moved stands still
 
   // The draw to start now; at most one is out until its ticket comes back.
   std::optional<Draw> next();
@@ -70,7 +71,7 @@ class FlowControl {
   void add_box(const Box& box);
   void on_news();
 
-  const int window_;
+  int window_;
   bool ready_ = false;
   std::optional<Camera> camera_;
   std::uint64_t camera_seq_ = 0;

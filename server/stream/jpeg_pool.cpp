@@ -1,9 +1,11 @@
 #include "stream/jpeg_pool.h"
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <list>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -13,31 +15,43 @@
 namespace strata::stream {
 namespace {
 
-struct Job {
-  std::vector<std::uint8_t> rgba;
-  int width = 0, height = 0;
+// One picture with one setting, and who wants it. Kept as long as somebody holds the frame, who might still ask.
+struct Work {
+  std::weak_ptr<const render::Frame> frame;
   JpegSettings settings;
-  std::function<void(std::vector<std::uint8_t>, double)> done;
+  std::vector<JpegPool::Done> wanted;
+  bool encoded = false;
+  Jpeg jpeg;
+  double took_ms = 0;
+
+  bool is_of(const render::SharedFrame& other, JpegSettings wished) const {
+    return settings == wished && !frame.owner_before(other) && !other.owner_before(frame);
+  }
 };
 
-void work_on(Job job) {
-  const auto start = std::chrono::steady_clock::now();
-  std::vector<std::uint8_t> jpeg;
+struct Job {
+  std::shared_ptr<Work> work;
+  render::SharedFrame frame;
+};
+
+Jpeg jpeg_of(const render::Frame& frame, JpegSettings settings) {
   try {
-    jpeg = encode_jpeg(job.rgba, job.width, job.height, job.settings);
+    return std::make_shared<const std::vector<std::uint8_t>>(
+        encode_jpeg(frame.pixels, frame.rect.width, frame.rect.height, settings));
   } catch (const std::exception& error) {
     log::error(error.what());
+    return nullptr;
   }
-  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-  job.done(std::move(jpeg), elapsed.count());
 }
 
 }  // namespace
 
 struct JpegPool::Impl {
-  std::mutex mutex;
+  mutable std::mutex mutex;
   std::condition_variable changed;
+  std::list<std::shared_ptr<Work>> known;
   std::deque<Job> jobs;
+  std::uint64_t encoded = 0;
   bool stopping = false;
   std::vector<std::thread> threads;
 
@@ -48,8 +62,21 @@ struct JpegPool::Impl {
       if (stopping) return;
       Job job = std::move(jobs.front());
       jobs.pop_front();
+      Work& work = *job.work;
+      if (!work.encoded) {
+        lock.unlock();
+        const auto start = std::chrono::steady_clock::now();
+        Jpeg jpeg = jpeg_of(*job.frame, work.settings);
+        const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+        lock.lock();
+        work.encoded = true;
+        work.jpeg = std::move(jpeg);
+        work.took_ms = elapsed.count();
+        ++encoded;
+      }
+      const auto wanted = std::exchange(work.wanted, {});
       lock.unlock();
-      work_on(std::move(job));
+      for (const Done& done : wanted) done(work.jpeg, work.took_ms);
     }
   }
 };
@@ -67,12 +94,25 @@ JpegPool::~JpegPool() {
   for (auto& thread : impl_->threads) thread.join();
 }
 
-void JpegPool::encode(std::vector<std::uint8_t> rgba, int width, int height, JpegSettings settings,
-                      std::function<void(std::vector<std::uint8_t>, double)> done) {
+void JpegPool::encode(render::SharedFrame frame, JpegSettings settings, Done done) {
   std::lock_guard lock(impl_->mutex);
   if (impl_->stopping) return;
-  impl_->jobs.push_back({std::move(rgba), width, height, settings, std::move(done)});
+  std::erase_if(impl_->known, [](const auto& work) { return work->frame.expired(); });
+  const auto same = std::find_if(impl_->known.begin(), impl_->known.end(),
+                                 [&](const auto& work) { return work->is_of(frame, settings); });
+  const auto work = same != impl_->known.end()
+                        ? *same
+                        : impl_->known.emplace_back(std::make_shared<Work>(Work{frame, settings, {}, false, {}, 0}));
+  work->wanted.push_back(std::move(done));
+  // Who asks while it is being encoded is served with the others.
+  if (work->wanted.size() > 1 || (same != impl_->known.end() && !work->encoded)) return;
+  impl_->jobs.push_back({work, std::move(frame)});
   impl_->changed.notify_one();
+}
+
+std::uint64_t JpegPool::encoded() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->encoded;
 }
 
 }  // namespace strata::stream

@@ -6,18 +6,23 @@
 #include <vector>
 
 #include "core/picture.h"
+#include "render/renderer.h"
 
 namespace strata::stream {
 
-// A few threads that encode pictures; the queue is bounded by the viewers' credit (one picture in work per viewer).
+using Jpeg = std::shared_ptr<const std::vector<std::uint8_t>>;
+
+// A few threads that encode pictures, each once, however many viewers it is for. The queue is bounded by the viewers' credit (one
+// picture in work per viewer).
 class JpegPool {
  public:
+  using Done = std::function<void(const Jpeg&, double)>;
   explicit JpegPool(int threads);
   ~JpegPool();
-  // `done` runs on a pool thread with the bytes and the milliseconds it took; no bytes where encoding failed (logged).
+  // `done` runs on a pool thread with the bytes and the milliseconds it took; null where encoding failed (logged).
   // Not called for pictures that still wait when the pool is destroyed.
-  void encode(std::vector<std::uint8_t> rgba, int width, int height, JpegSettings settings,
-              std::function<void(std::vector<std::uint8_t>, double)> done);
+  void encode(render::SharedFrame frame, JpegSettings settings, Done done);
+  std::uint64_t encoded() const;  // pictures so far
 
  private:
   struct Impl;

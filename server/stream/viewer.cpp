@@ -12,6 +12,7 @@
 
 #include "core/log.h"
 #include "protocol/frame_header.h"
+#include "stream/link_pace.h"
 #include "stream/timer_thread.h"
 
 namespace strata::stream {
@@ -25,7 +26,6 @@ constexpr auto kFirstRetry = 50ms;
 constexpr auto kLastRetry = 5000ms;
 
 // Full colour at full quality: thin coloured lines of a layer smear in 4:2:0, and parts drawn anew would show as patches.
-constexpr JpegSettings kMovingPicture{75, false};
 constexpr JpegSettings kStillPicture{90, true};
 
 bool is_superseded(const Problem& problem) { return problem.status == 409; }
@@ -36,13 +36,18 @@ bool is_refusal(const Problem& problem) { return problem.status == 422; }
 
 struct Viewer::Impl {
   Impl(StreamContext stream, Options o, Send s, Refused r)
-      : context(stream), options(o), send(std::move(s)), refused(std::move(r)), flow(o.window, o.sequence) {}
+      : context(stream), options(o), send(std::move(s)), refused(std::move(r)), flow(o.window, o.sequence) {
+    adapt_window();
+  }
+
+  void adapt_window() { flow.set_window(options.window > 0 ? options.window : link.window()); }
 
   // A drawn picture on its way to the encoder.
   struct Picture {
     FlowControl::Draw draw;
     FlowControl::Numbered number;
-    render::Frame frame;
+    JpegSettings jpeg;
+    render::SharedFrame frame;
   };
 
   const StreamContext context;
@@ -56,6 +61,8 @@ struct Viewer::Impl {
 
   mutable std::mutex mutex;
   FlowControl flow;
+  LinkPace link;
+  MovingPicture moving;  // how the last whole picture of a moving camera is reduced
   render::ViewStyle style;
   render::ModelHandle model = 0;
   render::ViewHandle view = 0;
@@ -71,10 +78,10 @@ struct Viewer::Impl {
 
 namespace {
 
-// The largest size of the window's shape within the limits.
-std::pair<int, int> picture_size(const Camera& camera, const Viewer::Options& options) {
+// The largest size of the window's shape within the limits, reduced.
+std::pair<int, int> picture_size(const Camera& camera, const Viewer::Options& options, double reduced) {
   const double scale =
-      std::min({1.0, double(options.max_width) / camera.width, double(options.max_height) / camera.height});
+      reduced * std::min({1.0, double(options.max_width) / camera.width, double(options.max_height) / camera.height});
   return {std::max(1, int(std::lround(camera.width * scale))), std::max(1, int(std::lround(camera.height * scale)))};
 }
 
@@ -245,6 +252,8 @@ void Viewer::ack(std::uint64_t frame) {
   {
     std::lock_guard lock(impl_->mutex);
     impl_->flow.on_ack(frame);
+    impl_->link.on_ack(frame, Clock::now());
+    impl_->adapt_window();
   }
   step();
 }
@@ -274,6 +283,7 @@ Viewer::Stats Viewer::stats() const {
 // Starts the draw that the flow asks for. The renderer may answer at once, so it is called without the lock.
 void Viewer::step() {
   FlowControl::Draw draw;
+  MovingPicture reduced{kStillPicture, 1};
   render::FrameRequest request;
   {
     std::lock_guard lock(impl_->mutex);
@@ -282,36 +292,41 @@ void Viewer::step() {
     if (!next) return;
     draw = std::move(*next);
     request.view = impl_->view;
+    request.model = impl_->model;
     request.layers = impl_->style.layers;
     request.looks = impl_->style.looks;
     request.light = impl_->style.light;
     request.background = impl_->style.background;
     request.marks = impl_->style.marks;
     request.unit_mm = impl_->style.unit_mm;
+    request.moving = draw.quality == FlowControl::Quality::moving;
+    // A rectangle is added to the picture as it is.
+    if (request.moving && !draw.changed) impl_->moving = impl_->link.moving();
+    if (request.moving) reduced = impl_->moving;
   }
   request.camera = draw.camera;
   request.changed = draw.changed;
-  request.moving = draw.quality == FlowControl::Quality::moving;
-  std::tie(request.width, request.height) = picture_size(draw.camera, impl_->options);
-  impl_->context.renderer->draw(std::move(request), [self = weak_from_this(), draw](Result<render::Frame> frame) {
+  std::tie(request.width, request.height) = picture_size(draw.camera, impl_->options, reduced.scale);
+  impl_->context.renderer->draw(std::move(request), [self = weak_from_this(), draw,
+                                                     jpeg = reduced.jpeg](const Result<render::SharedFrame>& frame) {
     auto viewer = self.lock();
     if (!viewer) return;
     if (frame)
-      viewer->on_drawn(draw, std::move(*frame));
+      viewer->on_drawn(draw, jpeg, *frame);
     else
       viewer->on_failed(draw.ticket, frame.error());
   });
 }
 
-void Viewer::on_drawn(const FlowControl::Draw& draw, render::Frame frame) {
+void Viewer::on_drawn(const FlowControl::Draw& draw, JpegSettings jpeg, render::SharedFrame frame) {
   {
     std::lock_guard lock(impl_->mutex);
     if (impl_->closed) return;
-    const bool sent = frame.rect.width > 0 && frame.rect.height > 0;
+    const bool sent = frame->rect.width > 0 && frame->rect.height > 0;
     impl_->retry_in = kFirstRetry;
-    impl_->stats.last_render_ms = frame.render_ms;
+    impl_->stats.last_render_ms = frame->render_ms;
     if (const auto number = impl_->flow.on_drawn(draw.ticket, sent))
-      impl_->drawn.push_back({draw, *number, std::move(frame)});
+      impl_->drawn.push_back({draw, *number, jpeg, std::move(frame)});
   }
   encode_next();
   step();
@@ -343,25 +358,22 @@ void Viewer::tell(const Problem& why) {
 
 // One picture of a viewer is encoded at a time: that keeps frames in order and `send` from running twice at once.
 void Viewer::encode_next() {
-  std::vector<std::uint8_t> pixels;
-  render::PixelRect rect;
+  render::SharedFrame frame;
   JpegSettings settings;
   {
     std::lock_guard lock(impl_->mutex);
     if (impl_->closed || impl_->encoding || impl_->drawn.empty()) return;
     impl_->encoding = true;
-    auto& picture = impl_->drawn.front();
-    pixels = std::move(picture.frame.pixels);
-    rect = picture.frame.rect;
-    settings = picture.draw.quality == FlowControl::Quality::moving ? kMovingPicture : kStillPicture;
+    frame = impl_->drawn.front().frame;
+    settings = impl_->drawn.front().jpeg;
   }
-  impl_->context.encoder->encode(std::move(pixels), rect.width, rect.height, settings,
-                                 [self = weak_from_this()](std::vector<std::uint8_t> jpeg, double encode_ms) {
+  impl_->context.encoder->encode(std::move(frame), settings,
+                                 [self = weak_from_this()](const Jpeg& jpeg, double encode_ms) {
                                    if (auto viewer = self.lock()) viewer->on_encoded(jpeg, encode_ms);
                                  });
 }
 
-void Viewer::on_encoded(const std::vector<std::uint8_t>& jpeg, double encode_ms) {
+void Viewer::on_encoded(const Jpeg& jpeg, double encode_ms) {
   {
     std::lock_guard sending(impl_->send_mutex);
     FrameBytes message;
@@ -371,10 +383,11 @@ void Viewer::on_encoded(const std::vector<std::uint8_t>& jpeg, double encode_ms)
       if (impl_->closed) return;
       const Impl::Picture picture = std::move(impl_->drawn.front());
       impl_->drawn.pop_front();
-      if (jpeg.empty()) {
+      if (!jpeg) {
         impl_->flow.on_ack(picture.number.frame);  // it never leaves, so no client can give its credit back
       } else {
-        message = frame_message(picture.draw, picture.number, picture.frame, impl_->options.view_id, jpeg, encode_ms);
+        message = frame_message(picture.draw, picture.number, *picture.frame, impl_->options.view_id, *jpeg, encode_ms);
+        impl_->link.on_sent(picture.number.frame, picture.draw.quality == FlowControl::Quality::moving, Clock::now());
         ++impl_->stats.frames;
         impl_->stats.bytes += message->size();
         impl_->stats.last_encode_ms = encode_ms;

@@ -25,12 +25,13 @@ using FrameBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
 // the newest camera wins; frames echo the camera's number; at most `window` frames are sent but not acknowledged; when there is
 // no credit nothing is drawn, and what changed meanwhile is drawn once credit returns; nothing changed → nothing sent;
 // a frame of a moving camera is followed by a full-quality one within 250 ms of the last input; quality never falls
-// while painting. Thread-safe; `send` is called on encoder threads, in frame order, `refused` on the GPU thread; never concurrently.
+// while painting; viewers with the same picture share its drawing and its encoding; over a slow link pictures of a moving camera are
+// reduced (stream/link_pace). Thread-safe; `send` is called on encoder threads, in frame order, `refused` on the GPU thread; never concurrently.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   struct Options {
     std::uint32_t view_id = 0;
-    int window = 2;  // frames on their way
+    int window = 0;  // frames on their way; 0: as the link needs it (stream/link_pace)
     int max_width = 3840, max_height = 2160;
     std::int64_t sequence = 0;  // of the scene at the start
   };
@@ -64,11 +65,11 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   bool on_view(std::uint64_t generation,
                const Result<render::ViewHandle>& view);  // false: the view is not wanted any more
   void step();
-  void on_drawn(const FlowControl::Draw& draw, render::Frame frame);
+  void on_drawn(const FlowControl::Draw& draw, JpegSettings jpeg, render::SharedFrame frame);
   void on_failed(std::uint64_t ticket, const Problem& problem);
   void tell(const Problem& why);
   void encode_next();
-  void on_encoded(const std::vector<std::uint8_t>& jpeg, double encode_ms);
+  void on_encoded(const Jpeg& jpeg, double encode_ms);
   void wait_for_quiet();
   void retry_later(std::function<void(Viewer&)> action);
 

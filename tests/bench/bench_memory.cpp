@@ -108,7 +108,7 @@ int run(const Options& options) {
         request.width = 320;
         request.height = 240;
         request.layers = {{layer, std::make_shared<Palette>(default_palette(type, true)), 1}};
-        await<render::Frame>([&](auto done) { renderer->draw(request, std::move(done)); });
+        await<render::SharedFrame>([&](auto done) { renderer->draw(request, std::move(done)); });
         const std::uint64_t on_gpu = renderer->layer_bytes_used(layer), in_memory = mirror->bytes();
         renderer->remove_layer(layer);
         const auto whole = std::uint64_t{static_cast<unsigned>(texture)} * static_cast<unsigned>(texture) *

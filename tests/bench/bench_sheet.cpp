@@ -138,7 +138,8 @@ std::string row(render::Renderer& renderer, const BenchMesh& mesh, int top) {
     if (lies_flat(mesh)) from.z = std::max(from.z, kAboveFlat);
     request.camera = fitted_camera(*mesh.geometry, mesh.standing, from, request.width);
     request.layers = {{layer, checker_palette(), 1}};
-    const Frame frame = await<Frame>([&](auto done) { renderer.draw(request, done); });
+    const auto drawn = await<SharedFrame>([&](auto done) { renderer.draw(request, done); });
+    const Frame& frame = *drawn;
     static_assert(kFiner == 2);
     const Picture picture = mesh::halve({frame.width, frame.height, frame.pixels});
     const auto jpeg = encode_jpeg(picture.rgba, picture.width, picture.height, {85, true});

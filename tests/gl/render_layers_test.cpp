@@ -175,18 +175,18 @@ class Leaving : public testing::Test {
         *await<render::LayerHandle>([&](auto done) { renderer_->add_layer(model_, layer.mirror, std::move(done)); });
     return layer;
   }
-  Result<render::Frame> draw(std::initializer_list<Mirrored> layers) {
+  Result<render::SharedFrame> draw(std::initializer_list<Mirrored> layers) {
     render::FrameRequest request;
     request.view = view_;
     request.camera = camera_;
     request.width = request.height = 200;
     auto palette = std::make_shared<Palette>(default_palette(ValueType::u32, true));
     for (const Mirrored& layer : layers) request.layers.push_back({layer.handle, palette, 1});
-    return await<render::Frame>([&](auto done) { renderer_->draw(request, std::move(done)); });
+    return await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
   }
-  static std::array<int, 3> middle(const Result<render::Frame>& frame) {
+  static std::array<int, 3> middle(const Result<render::SharedFrame>& frame) {
     if (!frame) return {-1, -1, -1};
-    const auto* pixel = frame->pixels.data() + 4 * (100 * 200 + 100);
+    const auto* pixel = (*frame)->pixels.data() + 4 * (100 * 200 + 100);
     return {pixel[0], pixel[1], pixel[2]};
   }
   bool is_here(const Mirrored& layer) { return renderer_->layer_bytes_used(layer.handle) > (1u << 20); }

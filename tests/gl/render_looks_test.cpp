@@ -48,7 +48,7 @@ class Looks : public testing::Test {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(got[i], wanted[i], within) << "channel " << i;
   }
   Problem refusal(const render::FrameRequest& request) {
-    auto frame = await<render::Frame>([&](auto done) { renderer_->draw(request, std::move(done)); });
+    auto frame = await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
     EXPECT_FALSE(frame);
     return frame ? Problem{} : frame.error();
   }

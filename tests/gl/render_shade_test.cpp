@@ -366,7 +366,7 @@ TEST_F(Shade, views_give_their_buffers_up_when_memory_runs_out_and_draw_again) {
 
 TEST_F(Shade, requests_that_cannot_be_drawn_are_refused_with_a_reason) {
   const auto refused = [&](const render::FrameRequest& request, int status) {
-    const auto result = await<render::Frame>([&](auto done) { renderer_->draw(request, std::move(done)); });
+    const auto result = await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
     ASSERT_FALSE(result.has_value());
     EXPECT_EQ(result.error().status, status) << result.error().detail;
   };

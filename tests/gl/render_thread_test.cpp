@@ -5,15 +5,12 @@
 #include <mutex>
 #include <thread>
 
-#include "render/frame_queue.h"
 #include "render/gpu_thread.h"
 #include "support/gl_scene.h"
 
 namespace strata::test {
 namespace {
 
-using render::FrameQueue;
-using render::FrameTask;
 using render::GpuThread;
 using render::Job;
 using render::Lane;
@@ -52,6 +49,10 @@ class Lanes : public testing::Test {
       frames_.pop_front();
       return job;
     };
+    hooks.next_part = [this]() -> std::optional<Job> {
+      std::lock_guard lock(mutex_);
+      return std::exchange(part_, std::nullopt);
+    };
     hooks.abort_frames = [](const Problem&) {};
     ASSERT_TRUE(thread_->start(std::move(hooks)));
   }
@@ -86,6 +87,7 @@ class Lanes : public testing::Test {
   std::mutex mutex_;
   std::vector<std::string> log_;
   std::deque<Job> frames_;
+  std::optional<Job> part_;
   std::atomic<bool> lost_{false}, broken_{false};
   std::optional<GpuThread> thread_;
 };
@@ -168,6 +170,27 @@ TEST_F(Lanes, an_edit_that_yields_shares_the_gpu_with_frames_and_uploads_but_not
   EXPECT_EQ(finish(), (std::vector<std::string>{"slice", "slice", "frame", "slice", "upload", "slice", "next edit"}));
 }
 
+TEST_F(Lanes, a_small_frame_whose_turn_it_is_goes_between_the_slices_of_a_long_one) {
+  start();
+  Gate gate;
+  thread_->post(Lane::ordered, gate.job());
+  {
+    std::lock_guard lock(mutex_);
+    frames_.push_back({[this, left = std::make_shared<int>(3)] {
+                         note("slice");
+                         if (*left == 3) {
+                           std::lock_guard both(mutex_);
+                           frames_.push_back(noted("next frame"));
+                           part_ = noted("part", 2);
+                         }
+                         return --*left > 0 ? Step::more : Step::done;
+                       },
+                       [](const Problem&) {}});
+  }
+  gate.open.set_value();
+  EXPECT_EQ(finish(), (std::vector<std::string>{"slice", "part", "part", "slice", "slice", "next frame"}));
+}
+
 TEST_F(Lanes, a_full_lane_refuses_but_not_what_must_not_be_lost) {
   start(2);
   Gate gate;
@@ -231,46 +254,6 @@ TEST_F(Lanes, stopping_answers_what_waits) {
   EXPECT_TRUE(log_[0] == "edit" || log_[0] == "edit 503 Renderer stopped");
 }
 
-FrameTask task(render::ViewHandle view, int width,
-               std::optional<std::vector<render::FrameRequest::Box>> changed = std::nullopt) {
-  FrameTask task;
-  task.request.view = view;
-  task.request.width = width;
-  task.request.changed = std::move(changed);
-  return task;
-}
-
-TEST(Frames, the_latest_request_of_a_view_wins_and_inherits_what_was_to_be_redrawn) {
-  FrameQueue queue(8);
-  const render::FrameRequest::Box a{{0, 0, 0}, {1, 1, 1}}, b{{2, 2, 2}, {3, 3, 3}};
-  EXPECT_FALSE(queue.push(task(1, 10, {{a}})).displaced);
-  const auto pushed = queue.push(task(1, 20, {{b}}));
-  ASSERT_TRUE(pushed.displaced);
-  EXPECT_EQ(pushed.displaced->request.width, 10);
-  auto taken = queue.take();
-  ASSERT_TRUE(taken);
-  EXPECT_EQ(taken->request.width, 20);
-  EXPECT_EQ(taken->request.changed->size(), 2u);
-  // A replaced request for everything makes its successor one for everything.
-  queue.finished(1);
-  queue.push(task(1, 10));
-  queue.push(task(1, 20, {{b}}));
-  EXPECT_FALSE(queue.take()->request.changed.has_value());
-}
-
-TEST(Frames, views_take_turns_and_have_one_frame_under_way_each) {
-  FrameQueue queue(2);
-  queue.push(task(1, 1));
-  queue.push(task(2, 1));
-  EXPECT_FALSE(queue.push(task(3, 1)).accepted);
-  EXPECT_EQ(queue.take()->request.view, 1u);
-  queue.push(task(1, 2));
-  EXPECT_EQ(queue.take()->request.view, 2u);
-  EXPECT_FALSE(queue.take()) << "view 1 has a frame under way";
-  queue.finished(1);
-  EXPECT_EQ(queue.take()->request.view, 1u);
-}
-
 TEST(Frames, many_superseded_requests_of_one_view_are_all_answered) {
   TestRenderer renderer;
   const auto view = renderer.add_view(renderer.add(make_scene(bumpy_sphere(60), 256)));
@@ -281,7 +264,7 @@ TEST(Frames, many_superseded_requests_of_one_view_are_all_answered) {
     request.view = view;
     request.camera = perspective_camera({1.2 + 0.01 * i, 1, 2.4}, {0, 0, 0}, 320, 240);
     request.width = 320, request.height = 240;
-    renderer->draw(request, [&](Result<render::Frame> frame) {
+    renderer->draw(request, [&](const Result<render::SharedFrame>& frame) {
       if (frame)
         ++drawn;
       else if (frame.error().status == 409 && frame.error().title == "Superseded")
@@ -330,7 +313,7 @@ TEST(LostContext, pending_work_is_answered_and_the_renderer_works_again_with_new
   request.view = view;
   request.camera = camera;
   request.width = request.height = 200;
-  EXPECT_FALSE(await<render::Frame>([&](auto done) { renderer->draw(request, std::move(done)); }));
+  EXPECT_FALSE(await<render::SharedFrame>([&](auto done) { renderer->draw(request, std::move(done)); }));
   EXPECT_EQ(renderer->layer_bytes_used(layer), 0u);
 
   const auto new_model = renderer.add(scene);

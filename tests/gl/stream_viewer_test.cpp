@@ -8,8 +8,10 @@
 #include <cstdlib>
 #include <list>
 #include <mutex>
+#include <thread>
 
 #include "protocol/frame_header.h"
+#include "stream/link_pace.h"
 #include "support/gl_scene.h"
 
 namespace strata::stream {
@@ -259,6 +261,58 @@ TEST_F(StreamViewer, a_client_that_does_not_acknowledge_gets_no_more_than_its_wi
   silent.attach(slow, true);
   silent.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 13 && h.scene_sequence == 12; });
   EXPECT_LT(mean_difference(silent.picture(), fresh_picture(camera(0.6))), 1.5);
+}
+
+TEST_F(StreamViewer, who_sees_the_same_is_sent_one_drawing_and_one_encoding) {
+  constexpr int kMany = 12;
+  render::ViewStyle style;
+  style.layers = styles();  // the same objects for all
+  std::vector<Client*> clients;
+  std::vector<std::shared_ptr<Viewer>> all;
+  std::vector<FrameHeader> first;
+  for (int i = 0; i < kMany; ++i) {
+    clients.push_back(&new_client());
+    all.push_back(viewer(*clients.back()));
+    all.back()->set_style(style);
+    all.back()->set_camera(100 + i, camera(0), false);
+  }
+  for (auto* client : clients) first.push_back(client->wait_for([](const FrameHeader& h) { return h.still; }));
+  const auto outcome = renderer_.paint(layer_, test::dab(camera(0), 150, 110, 12, 2));
+  const auto before = encoder_.encoded();
+  // While the GPU is busy with something else, all are told.
+  renderer_->run_on_gpu_thread_for_test([&] {
+    for (auto& one : all) one->changed({outcome.written_min, outcome.written_max}, 8);
+  });
+  for (std::size_t i = 0; i < clients.size(); ++i) {
+    const auto part = clients[i]->wait_for([](const FrameHeader& h) { return h.scene_sequence == 8; }, first[i].frame);
+    EXPECT_EQ(part.camera_seq, 100 + i) << "numbers are each one's own";
+    EXPECT_FALSE(part.keyframe);
+    EXPECT_LT(mean_difference(clients[i]->picture(), fresh_picture(camera(0))), 1.5);
+  }
+  EXPECT_EQ(encoder_.encoded(), before + 1);
+}
+
+TEST_F(StreamViewer, over_a_slow_link_a_moving_camera_has_smaller_pictures_and_a_still_one_has_not) {
+  Client& client = new_client();
+  auto view = viewer(client);
+  view->set_camera(1, camera(0), false);
+  auto last = client.wait_for([](const FrameHeader& h) { return h.still; });
+  client.attach(view, false);
+  // Each acknowledgement comes late, as from far behind a full buffer; the first came at once.
+  std::uint64_t number = 1;
+  for (int i = 0; i < 40 && last.full_width == std::uint32_t(kWidth); ++i) {
+    ++number;
+    view->set_camera(number, camera(0.02 * double(number)), true);
+    last = client.wait_for([&](const FrameHeader& h) { return h.camera_seq == number; }, last.frame);
+    std::this_thread::sleep_for(2 * LinkPace::kLongestWait);
+    view->ack(last.frame);
+  }
+  EXPECT_LT(last.full_width, std::uint32_t(kWidth));
+  EXPECT_EQ(last.full_height * kWidth, last.full_width * kHeight) << "of the same shape";
+  client.attach(view, true);
+  const auto still = client.wait_for([](const FrameHeader& h) { return h.still; }, last.frame);
+  EXPECT_EQ(still.full_width, std::uint32_t(kWidth));
+  EXPECT_LT(mean_difference(client.picture(), fresh_picture(camera(0.02 * double(number)))), 1.5);
 }
 
 TEST_F(StreamViewer, frames_are_numbered_without_gaps_in_the_order_they_are_sent) {

@@ -144,7 +144,7 @@ render::StrokeOutcome TestRenderer::paint(render::LayerHandle layer, const Strok
 }
 
 render::Frame TestRenderer::draw(const render::FrameRequest& request) {
-  return expect(await<render::Frame>([&](auto done) { renderer_->draw(request, std::move(done)); }));
+  return *expect(await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); }));
 }
 
 void TestRenderer::write(render::LayerHandle layer, std::vector<render::TileUpload> tiles) {

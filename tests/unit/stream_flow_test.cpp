@@ -112,6 +112,47 @@ TEST(StreamFlow, an_acknowledgement_of_a_frame_that_was_never_sent_gives_no_cred
   EXPECT_TRUE(flow.next());
 }
 
+TEST(StreamFlow, an_edit_while_the_camera_moves_is_added_to_the_picture_as_it_is) {
+  FlowControl flow = ready(2);
+  flow.on_camera(1, camera_at(1), true);
+  auto draw = flow.next();
+  ASSERT_TRUE(draw);
+  EXPECT_EQ(draw->quality, Quality::moving);
+  flow.on_ack(flow.on_drawn(draw->ticket, true)->frame);
+  flow.on_change(box_at(0), 5);
+  draw = flow.next();
+  ASSERT_TRUE(draw && draw->changed);
+  EXPECT_EQ(draw->quality, Quality::moving);
+  const auto number = flow.on_drawn(draw->ticket, true);
+  EXPECT_FALSE(number->still);
+  flow.on_ack(number->frame);
+  flow.on_quiet();
+  draw = flow.next();
+  ASSERT_TRUE(draw);
+  EXPECT_FALSE(draw->changed) << "all is refined";
+  EXPECT_EQ(draw->quality, Quality::still);
+  flow.on_ack(flow.on_drawn(draw->ticket, true)->frame);
+  flow.on_change(box_at(0), 6);
+  EXPECT_EQ(flow.next()->quality, Quality::still);
+}
+
+TEST(StreamFlow, the_window_may_change_at_any_time) {
+  FlowControl flow = ready(1);
+  for (int i = 1; i <= 3; ++i) {
+    flow.set_window(i);
+    flow.on_camera(i, camera_at(i), true);
+    const auto draw = flow.next();
+    ASSERT_TRUE(draw);
+    flow.on_drawn(draw->ticket, true);
+  }
+  flow.set_window(0);  // at least one
+  flow.on_camera(4, camera_at(4), true);
+  flow.on_ack(2);
+  EXPECT_FALSE(flow.next());
+  flow.on_ack(3);
+  EXPECT_TRUE(flow.next());
+}
+
 TEST(StreamFlow, nothing_changed_means_nothing_is_drawn) {
   FlowControl flow = ready(2);
   flow.on_camera(1, camera_at(1), false);
@@ -139,18 +180,6 @@ TEST(StreamFlow, an_edit_redraws_only_its_box_at_full_quality) {
   EXPECT_EQ(draw->changed->front().min, glm::vec3(3));
   EXPECT_EQ(draw->quality, Quality::still);
   EXPECT_EQ(draw->sequence, 12);
-}
-
-TEST(StreamFlow, an_edit_while_the_camera_moves_is_of_full_quality_too) {
-  FlowControl flow = ready(2);
-  flow.on_camera(1, camera_at(1), true);
-  settle(flow);
-  flow.on_change(box_at(3), 12);
-  const auto draw = flow.next();
-  ASSERT_TRUE(draw);
-  EXPECT_TRUE(draw->changed);
-  EXPECT_EQ(draw->quality, Quality::still);
-  EXPECT_FALSE(flow.on_drawn(draw->ticket, true)->still) << "the rest of the picture is still of lower quality";
 }
 
 TEST(StreamFlow, edits_that_come_while_there_is_no_credit_are_drawn_together_once_it_returns) {

@@ -33,15 +33,24 @@ Decoded decode(const std::vector<std::uint8_t>& jpeg) {
   return out;
 }
 
+render::SharedFrame frame_of(std::vector<std::uint8_t> pixels, int width, int height) {
+  render::Frame frame;
+  frame.rect = {0, 0, width, height};
+  frame.width = width;
+  frame.height = height;
+  frame.pixels = std::move(pixels);
+  return std::make_shared<const render::Frame>(std::move(frame));
+}
+
 TEST(StreamPicture, the_pool_encodes_every_picture_it_is_given) {
   std::mutex mutex;
   std::condition_variable changed;
   std::multiset<int> widths;
   JpegPool pool(3);
   for (int i = 1; i <= 40; ++i)
-    pool.encode(gradient(i * 8, 16), i * 8, 16, {}, [&](std::vector<std::uint8_t> jpeg, double elapsed_ms) {
+    pool.encode(frame_of(gradient(i * 8, 16), i * 8, 16), {}, [&](const Jpeg& jpeg, double elapsed_ms) {
       EXPECT_GE(elapsed_ms, 0);
-      const int width = decode(jpeg).width;
+      const int width = decode(*jpeg).width;
       std::lock_guard lock(mutex);
       widths.insert(width);
       changed.notify_all();
@@ -56,14 +65,47 @@ TEST(StreamPicture, a_picture_that_cannot_be_encoded_is_answered_without_bytes) 
   std::condition_variable changed;
   bool answered = false;
   JpegPool pool(1);
-  pool.encode(std::vector<std::uint8_t>(4), 100, 100, {}, [&](std::vector<std::uint8_t> jpeg, double) {
+  pool.encode(frame_of(std::vector<std::uint8_t>(4), 100, 100), {}, [&](const Jpeg& jpeg, double) {
     std::lock_guard lock(mutex);
-    EXPECT_TRUE(jpeg.empty());
+    EXPECT_FALSE(jpeg);
     answered = true;
     changed.notify_all();
   });
   std::unique_lock lock(mutex);
   EXPECT_TRUE(changed.wait_for(lock, std::chrono::seconds(60), [&] { return answered; }));
+}
+
+TEST(StreamPicture, a_picture_for_many_is_encoded_once_for_each_setting) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<Jpeg> few, more;
+  JpegPool pool(2);
+  const auto frame = frame_of(gradient(64, 64), 64, 64);
+  const auto into = [&](std::vector<Jpeg>& list) {
+    return [&](const Jpeg& jpeg, double) {
+      std::lock_guard lock(mutex);
+      list.push_back(jpeg);
+      changed.notify_all();
+    };
+  };
+  const auto wait_for = [&](std::size_t count) {
+    std::unique_lock lock(mutex);
+    ASSERT_TRUE(changed.wait_for(lock, std::chrono::seconds(60), [&] { return few.size() + more.size() == count; }));
+  };
+  for (int i = 0; i < 20; ++i) {
+    pool.encode(frame, {20, false}, into(few));
+    pool.encode(frame, {90, true}, into(more));
+  }
+  wait_for(40);
+  pool.encode(frame, {20, false}, into(few));  // long after it was encoded
+  wait_for(41);
+  EXPECT_EQ(pool.encoded(), 2u);
+  for (const Jpeg& jpeg : few) EXPECT_EQ(jpeg, few[0]) << "one object for all";
+  EXPECT_LT(few[0]->size(), more[0]->size());
+  // Another frame with the same pixels is another picture.
+  pool.encode(frame_of(gradient(64, 64), 64, 64), {20, false}, into(few));
+  wait_for(42);
+  EXPECT_EQ(pool.encoded(), 3u);
 }
 
 TEST(StreamTimer, calls_come_in_the_order_of_their_times_and_not_before_them) {

@@ -1,5 +1,6 @@
 // A kiosk in a real browser: by its link alone, with fingers, left alone and come back to, without its server and with it again, loaded anew from afar and
-// revoked. The page's clock is the test's. STRATA_KIOSK_ROUNDS: how often it is visited and left while its memory is looked at.
+// revoked. The page's clock is the test's. STRATA_KIOSK_ROUNDS: how often it is visited and left while its memory is looked at; STRATA_KIOSK_ALONE_MIN: minutes of that
+// clock for which its tour plays alone after each. 200 and 50 are a week.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -9,6 +10,7 @@ import { kModel, kTour, make_kiosk_site } from "../support/kiosk-site.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kRounds = Number(process.env.STRATA_KIOSK_ROUNDS ?? 4);
+const kAlone_min = Number(process.env.STRATA_KIOSK_ALONE_MIN ?? 1);
 const kUpright = { width: 1080, height: 1920 };
 const kTarget_px = 57; // 15 mm
 const kMostHeapGrowth = 1.5; // MB, and of the server below: what the allocators of both make of the same work, and no leak of a picture a round
@@ -282,6 +284,7 @@ try {
     const of = (name) => metrics.find((metric) => metric.name === name).value;
     return { heap_mb: of("JSHeapUsedSize") / 2 ** 20, nodes: of("Nodes"), listeners: of("JSEventListeners"), server_mb: server_mb() };
   };
+  const told = ({ heap_mb, nodes, listeners, server_mb: rss }) => `page ${heap_mb.toFixed(2)} MB, ${nodes} nodes, ${listeners} listeners; server ${rss.toFixed(0)} MB`;
   await cdp.send("Performance.enable");
   const visit = async () => {
     await begin.tap();
@@ -291,15 +294,18 @@ try {
     await card.getByRole("heading", { name: "Sherd 3" }).waitFor();
     await wait_for(async () => (await pass(15), await begin.count()), "the visitor to be gone", 20);
     for (const title of ["Fourteen sherds", "The rim"]) await wait_for(async () => (await pass(3), await heading(title).count()), title, 20);
+    await pass(kAlone_min * 60);
   };
   for (let round = 0; round < 8; ++round) await visit(); // until all is loaded and compiled
   const before = await used();
   const clock = () => page.evaluate(() => performance.now());
   const from_ms = await clock();
-  for (let round = 0; round < kRounds; ++round) await visit();
+  for (let round = 1; round <= kRounds; ++round) {
+    await visit();
+    if (round % 10 === 0) console.log(`  after ${round} visitors: ${told(await used())}`);
+  }
   const after = await used();
   const hours = ((await clock()) - from_ms) / 3600_000;
-  const told = ({ heap_mb, nodes, listeners, server_mb: rss }) => `page ${heap_mb.toFixed(2)} MB, ${nodes} nodes, ${listeners} listeners; server ${rss.toFixed(0)} MB`;
   console.log(`  before: ${told(before)}\n  after ${kRounds} visitors in ${hours.toFixed(1)} h of the page's clock: ${told(after)}`);
   assert.ok(after.heap_mb - before.heap_mb < kMostHeapGrowth, "the page's memory grows");
   assert.ok(after.nodes - before.nodes < kMostNodeGrowth && after.listeners - before.listeners < kMostNodeGrowth, "the page holds on to what is gone");

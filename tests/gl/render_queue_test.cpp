@@ -1,0 +1,216 @@
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "render/frame_queue.h"
+
+namespace strata::render {
+namespace {
+
+using Box = FrameRequest::Box;
+using Boxes = std::vector<Box>;
+
+const Box kBox{{0, 0, 0}, {1, 1, 1}}, kOther{{2, 2, 2}, {3, 3, 3}};
+
+// Requests are told apart by what they answered.
+class FrameTurns : public testing::Test {
+ protected:
+  FrameQueue::Pushed push(FrameQueue& queue, const FrameRequest& request, int number = 0) {
+    return queue.push(request, [this, number](const Result<SharedFrame>& frame) {
+      answers_[number] = frame ? 200 : frame.error().status;
+    });
+  }
+  static FrameRequest whole(ViewHandle view, int width = 1) {
+    FrameRequest request;
+    request.view = view;
+    request.width = width;
+    return request;
+  }
+  static FrameRequest part(ViewHandle view, Boxes boxes = {kBox}, int width = 1) {
+    FrameRequest request = whole(view, width);
+    request.changed = std::move(boxes);
+    return request;
+  }
+  static FrameRequest shared(FrameRequest request, ModelHandle model = 7) {
+    request.model = model;
+    return request;
+  }
+  // Takes what is next and says whose it was.
+  static ViewHandle draw(FrameQueue& queue, double took_ms = 1) {
+    const auto task = queue.take();
+    if (!task) return 0;
+    queue.finished(*task, took_ms);
+    return task->askers.front().view;
+  }
+
+  std::map<int, int> answers_;
+};
+
+TEST_F(FrameTurns, the_latest_request_of_a_view_wins_and_inherits_what_was_to_be_redrawn) {
+  FrameQueue queue(8);
+  EXPECT_FALSE(push(queue, part(1, {kBox}, 10), 1).displaced);
+  const auto pushed = push(queue, part(1, {kOther}, 20), 2);
+  ASSERT_TRUE(pushed.displaced);
+  (*pushed.displaced)(fail(409, "Superseded", ""));
+  EXPECT_EQ(answers_, (std::map<int, int>{{1, 409}}));
+  const auto taken = queue.take();
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->request.width, 20);
+  EXPECT_EQ(*taken->request.changed, (Boxes{kOther, kBox}));
+  // A replaced request for everything makes its successor one for everything.
+  queue.finished(*taken, 1);
+  push(queue, whole(1, 10));
+  push(queue, part(1, {kOther}, 20));
+  EXPECT_FALSE(queue.take()->request.changed.has_value());
+}
+
+TEST_F(FrameTurns, a_view_has_one_frame_under_way_and_one_that_waits_and_too_many_are_refused) {
+  FrameQueue queue(2);
+  push(queue, whole(1));
+  push(queue, whole(2));
+  EXPECT_FALSE(push(queue, whole(3)).accepted);
+  const auto first = queue.take();
+  EXPECT_EQ(first->request.view, 1u);
+  push(queue, whole(1));
+  EXPECT_EQ(queue.take()->request.view, 2u);
+  EXPECT_FALSE(queue.take()) << "view 1 has a frame under way";
+  queue.finished(*first, 1);
+  EXPECT_EQ(queue.take()->request.view, 1u);
+}
+
+TEST_F(FrameTurns, turns_are_fair_by_what_drawing_took) {
+  FrameQueue queue(8);
+  std::map<ViewHandle, int> turns;
+  push(queue, whole(1));
+  push(queue, whole(2));
+  for (int i = 0; i < 500; ++i) {
+    const auto task = queue.take();
+    const ViewHandle view = task->request.view;
+    ++turns[view];
+    queue.finished(*task, view == 1 ? 40 : 10);
+    push(queue, whole(view));
+  }
+  EXPECT_NEAR(turns[2], 4.0 * turns[1], 8) << "each had the same milliseconds";
+}
+
+TEST_F(FrameTurns, who_only_looks_is_served_before_the_next_picture_of_who_turns_the_model) {
+  FrameQueue queue(16);
+  for (int i = 0; i < 5; ++i) {
+    for (ViewHandle turning = 1; turning <= 4; ++turning) push(queue, whole(turning));
+    for (int n = 0; n < 4; ++n) draw(queue, 50);
+  }
+  for (ViewHandle turning = 1; turning <= 4; ++turning) push(queue, whole(turning));
+  push(queue, part(9));
+  EXPECT_EQ(draw(queue, 1), 9u);
+  // Rest is no credit for later: who asked for nothing so long takes turns from now on.
+  int looked = 0;
+  for (int i = 0; i < 20; ++i) {
+    push(queue, part(9));
+    if (draw(queue, 50) == 9)
+      ++looked;
+    else
+      for (ViewHandle turning = 1; turning <= 4; ++turning) push(queue, whole(turning));
+  }
+  EXPECT_LE(looked, 6);
+}
+
+TEST_F(FrameTurns, only_a_rectangle_whose_turn_it_is_goes_before_a_picture_that_is_half_done) {
+  FrameQueue queue(8);
+  push(queue, whole(1));
+  const auto drawn = queue.take();
+  push(queue, whole(2));
+  EXPECT_FALSE(queue.take_part(drawn->turn_ms + 100)) << "a whole picture waits";
+  push(queue, part(3));
+  EXPECT_FALSE(queue.take_part(drawn->turn_ms)) << "no one was served more";
+  const auto part = queue.take_part(drawn->turn_ms + 5);
+  ASSERT_TRUE(part);
+  EXPECT_EQ(part->request.view, 3u);
+}
+
+TEST_F(FrameTurns, the_same_picture_of_several_views_is_drawn_once_by_the_view_that_has_it) {
+  FrameQueue queue(8);
+  push(queue, shared(whole(1)), 1);
+  EXPECT_EQ(draw(queue), 1u);
+  // An edit: view 1 draws, and the others, of which none has drawn anything, wait for it.
+  push(queue, shared(part(1)), 1);
+  const auto first = queue.take();
+  push(queue, shared(part(2)), 2);
+  push(queue, shared(part(3, {kOther})), 3);
+  EXPECT_FALSE(queue.take());
+  queue.finished(*first, 1);
+  const auto second = queue.take();
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->request.view, 1u);
+  ASSERT_EQ(second->askers.size(), 2u);
+  EXPECT_EQ(*second->request.changed, (Boxes{kBox, kOther}));
+  for (const auto& asker : second->askers) asker.done(std::make_shared<const Frame>());
+  EXPECT_EQ(answers_, (std::map<int, int>{{2, 200}, {3, 200}}));
+  EXPECT_FALSE(queue.take());
+}
+
+TEST_F(FrameTurns, pictures_that_differ_in_anything_are_not_shared) {
+  FrameQueue queue(64);
+  const auto base = shared(part(1));
+  std::vector<FrameRequest> others(9, base);
+  others[0].model = 8;
+  others[1].moving = true;
+  others[2].height = 4;
+  others[3].camera.view[3][0] = 1;
+  others[4].layers = {{1, nullptr, 1}};
+  others[5].looks = {{1, 1}};
+  others[6].marks = std::make_shared<const std::vector<DrawnMark>>();
+  others[7].unit_mm = 1;
+  others[8].changed.reset();  // nobody is sent a whole picture who lacks a rectangle
+  push(queue, base);
+  ViewHandle view = 1;
+  for (auto& other : others) {
+    other.view = ++view;
+    push(queue, other);
+  }
+  auto not_told = part(++view);
+  push(queue, not_told);
+  for (ViewHandle i = 1; i <= view; ++i) EXPECT_EQ(queue.take()->askers.size(), 1u);
+  EXPECT_FALSE(queue.take());
+}
+
+TEST_F(FrameTurns, what_is_shared_costs_each_a_part) {
+  FrameQueue queue(8);
+  push(queue, shared(whole(1)));
+  push(queue, shared(whole(2)));
+  push(queue, whole(3, 5));
+  draw(queue, 30);
+  draw(queue, 20);
+  push(queue, whole(3, 5));
+  push(queue, whole(2));
+  EXPECT_EQ(draw(queue), 2u) << "15 ms against 20";
+}
+
+TEST_F(FrameTurns, a_view_that_is_removed_draws_no_more_for_others) {
+  FrameQueue queue(8);
+  push(queue, shared(whole(1)));
+  EXPECT_EQ(draw(queue), 1u);
+  queue.forget(1);
+  push(queue, shared(part(2)));
+  EXPECT_EQ(queue.take()->request.view, 2u);
+  // One that waits meanwhile is answered all the same, when its turn comes.
+  push(queue, part(3));
+  queue.forget(3);
+  EXPECT_EQ(queue.take()->request.view, 3u);
+}
+
+TEST_F(FrameTurns, a_request_that_leaves_a_shared_picture_leaves_the_others_there) {
+  FrameQueue queue(8);
+  push(queue, shared(part(1)), 1);
+  push(queue, shared(part(2)), 2);
+  EXPECT_TRUE(push(queue, shared(part(1, {kOther}, 9)), 3).displaced);
+  const auto left = queue.take();
+  ASSERT_EQ(left->askers.size(), 1u);
+  EXPECT_EQ(left->askers.front().view, 2u);
+  EXPECT_EQ(queue.take()->request.width, 9);
+  push(queue, whole(4));
+  EXPECT_EQ(queue.take_all().size(), 1u);
+  EXPECT_FALSE(queue.take());
+}
+
+}  // namespace
+}  // namespace strata::render

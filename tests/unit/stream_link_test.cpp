@@ -1,0 +1,144 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "stream/link_pace.h"
+
+namespace strata::stream {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = LinkPace::Clock;
+
+// A link with a delay and a rate, and a renderer that makes a picture whenever the pace's window has room. In time of its own.
+class Simulation {
+ public:
+  Clock::duration delay = 0ms;  // there and back
+  double bytes_per_s = 1e9;
+  Clock::duration drawing = 25ms;
+  bool moving = true;
+
+  LinkPace pace;
+
+  // Returns the moving frames shown in that time.
+  int run(Clock::duration how_long) {
+    const auto end = now_ + how_long;
+    int shown = 0;
+    while (now_ < end) {
+      const bool may_send = sent_ - acked_ < std::uint64_t(pace.window());
+      const auto next_ack = arrivals_.empty() ? Clock::time_point::max() : arrivals_.begin()->second;
+      if (may_send && now_ + drawing <= next_ack) {
+        now_ += drawing;
+        send();
+      } else if (next_ack != Clock::time_point::max()) {
+        now_ = std::max(now_, next_ack);
+        acked_ = arrivals_.begin()->first;
+        arrivals_.erase(arrivals_.begin());
+        pace.on_ack(acked_, now_);
+        ++shown;
+        if (took_longest_ < now_ - sent_at_[acked_]) took_longest_ = now_ - sent_at_[acked_];
+      }
+    }
+    return shown;
+  }
+  Clock::duration longest() { return std::exchange(took_longest_, 0ms); }
+
+ private:
+  void send() {
+    static constexpr double kBytes = 60e3;
+    const MovingPicture picture = pace.moving();
+    const double bytes =
+        moving ? kBytes * picture.scale * picture.scale * (0.3 + 0.7 * picture.jpeg.quality / 75.0) : 3 * kBytes;
+    pace.on_sent(++sent_, moving, now_);
+    sent_at_[sent_] = now_;
+    link_free_ = std::max(link_free_, now_) +
+                 std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(bytes / bytes_per_s));
+    arrivals_[sent_] = link_free_ + delay;
+  }
+
+  Clock::time_point now_{};
+  Clock::time_point link_free_{};
+  std::map<std::uint64_t, Clock::time_point> arrivals_, sent_at_;
+  std::uint64_t sent_ = 0, acked_ = 0;
+  Clock::duration took_longest_{};
+};
+
+TEST(LinkPace, a_fast_link_has_pictures_as_they_are) {
+  Simulation link;
+  link.run(60s);
+  EXPECT_EQ(link.pace.step(), 0);
+  EXPECT_EQ(link.pace.moving(), (MovingPicture{{75, false}, 1}));
+  EXPECT_EQ(link.pace.window(), 2);
+}
+
+TEST(LinkPace, a_long_delay_alone_reduces_nothing_but_lets_more_be_on_their_way) {
+  Simulation link;
+  link.delay = 200ms;
+  link.run(60s);
+  EXPECT_EQ(link.pace.step(), 0);
+  EXPECT_EQ(link.pace.window(), 3);
+}
+
+TEST(LinkPace, over_8_Mbit_and_80_ms_pictures_come_in_time) {
+  Simulation link;
+  link.delay = 80ms;
+  link.bytes_per_s = 1e6;
+  link.run(20s);
+  link.longest();
+  EXPECT_GE(link.run(10s), 120) << "12 a second";
+  EXPECT_LT(link.longest(), 80ms + 2 * 80ms + 60ms);
+}
+
+TEST(LinkPace, a_slow_link_has_small_pictures_soon) {
+  Simulation link;
+  link.delay = 80ms;
+  link.bytes_per_s = 0.25e6;  // 2 Mbit/s, where an unreduced picture takes 240 ms
+  link.run(3s);
+  EXPECT_GE(link.pace.step(), 2);
+  EXPECT_GE(link.run(10s), 100);
+}
+
+TEST(LinkPace, a_link_that_becomes_fast_again_has_whole_pictures_again) {
+  Simulation link;
+  link.bytes_per_s = 0.1e6;
+  link.run(60s);
+  EXPECT_GE(link.pace.step(), 3);
+  link.bytes_per_s = 1e8;
+  link.run(120s);
+  EXPECT_EQ(link.pace.step(), 0);
+}
+
+TEST(LinkPace, a_better_step_that_does_not_hold_is_tried_ever_more_rarely) {
+  Simulation link;
+  link.bytes_per_s = 0.5e6;
+  link.run(60s);
+  int changes = 0, last = link.pace.step();
+  for (int i = 0; i < 600; ++i) {
+    link.run(100ms);
+    changes += last != link.pace.step();
+    last = link.pace.step();
+  }
+  EXPECT_LE(changes, 20) << "in a minute";
+}
+
+TEST(LinkPace, pictures_that_stand_still_say_nothing_of_moving_ones) {
+  Simulation link;
+  link.moving = false;
+  link.bytes_per_s = 0.2e6;
+  link.run(30s);
+  EXPECT_EQ(link.pace.step(), 0);
+}
+
+TEST(LinkPace, an_acknowledgement_that_fits_nothing_is_harmless) {
+  LinkPace pace;
+  const auto now = Clock::now();
+  pace.on_ack(5, now);
+  pace.on_sent(1, true, now);
+  pace.on_ack(9, now + 1ms);
+  pace.on_ack(9, now + 10s);
+  EXPECT_EQ(pace.step(), 0);
+}
+
+}  // namespace
+}  // namespace strata::stream
