@@ -2,64 +2,110 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
+#include <utility>
 
 namespace strata::stream {
 namespace {
 
 constexpr std::array<MovingPicture, LinkPace::kSteps> kReductions{
-    {{{75, false}, 1}, {{55, false}, 1}, {{60, false}, 0.7}, {{60, false}, 0.5}, {{50, false}, 0.35}}};
-constexpr std::chrono::milliseconds kLongDelay{50};
+    {{{75, false}, 1}, {{65, false}, 0.7}, {{60, false}, 0.5}, {{50, false}, 0.35}}};  // each of about half the bytes
+constexpr double kNewPair = 0.3, kNewWait = 0.3;                                       // weights in running means
+constexpr double kDrawnApart = 1.25;
+constexpr std::chrono::milliseconds kShortestGap{5};  // acknowledgements closer than that came together
 
 }  // namespace
 
-void LinkPace::on_sent(std::uint64_t frame, bool moving, Clock::time_point at) {
-  on_the_way_.push_back({frame, moving ? step_ : -1, at});
+void LinkPace::on_sent(std::uint64_t frame, std::size_t bytes, bool moving, Clock::time_point at) {
+  const int step = moving ? step_ : -1;
+  const bool alike =
+      std::all_of(on_the_way_.begin(), on_the_way_.end(), [&](const Sent& one) { return one.step == step; });
+  on_the_way_.push_back({frame, static_cast<double>(bytes), step, wide_, alike, at});
 }
 
 void LinkPace::on_ack(std::uint64_t frame, Clock::time_point at) {
   std::optional<Sent> last;
-  while (!on_the_way_.empty() && on_the_way_.front().frame <= frame) {
+  int acked = 0;
+  for (; !on_the_way_.empty() && on_the_way_.front().frame <= frame; ++acked) {
     last = on_the_way_.front();
     on_the_way_.pop_front();
   }
   if (!last) return;
-  const auto took = at - last->at;
-  note_delay(took, at);
-  // Frames of another step say nothing about this one.
-  if (last->step == step_) judge(took - delay());
+  if (acked == 1) note_rate(*last, at);
+  last_sent_ = last->at;
+  last_ack_ = at;
+  const Passed passed{last->bytes, at - last->at};
+  note_delay(passed, at);
+  // Frames of another step or window, or behind such, say nothing about these.
+  if (last->step == step_ && last->alike && last->wide == wide_) judge(passed.took - delay(), at);
 }
 
-void LinkPace::note_delay(Clock::duration took, Clock::time_point at) {
+void LinkPace::note_rate(const Sent& sent, Clock::time_point acked) {
+  const auto gap = acked - last_ack_;
+  if (sent.at >= last_ack_ || gap < kShortestGap) return;
+  const double s_per_byte = Seconds(gap).count() / sent.bytes;
+  if (kDrawnApart * (sent.at - last_sent_) < gap)  // it was busy with the first while the second came
+    s_per_byte_ = s_per_byte_ == 0 ? s_per_byte : s_per_byte_ + kNewPair * (s_per_byte - s_per_byte_);
+  else  // the link is as fast as that, or faster
+    s_per_byte_ = std::min(s_per_byte_, s_per_byte);
+}
+
+LinkPace::Seconds LinkPace::delay_of(const Passed& frame) const {
+  return std::max(Seconds(0), frame.took - Seconds(frame.bytes * s_per_byte_));
+}
+
+LinkPace::Seconds LinkPace::delay() const {
+  if (!shortest_before_) return delay_of(*shortest_);
+  return std::min(delay_of(*shortest_), delay_of(*shortest_before_));
+}
+
+void LinkPace::note_delay(const Passed& frame, Clock::time_point at) {
   if (at >= span_ends_) {
-    delay_before_ = delay_;
-    delay_ = Clock::duration::max();
+    shortest_before_ = shortest_;
+    shortest_.reset();
     span_ends_ = at + kDelayKept;
   }
-  delay_ = std::min(delay_, took);
+  if (!shortest_ || delay_of(frame) < delay_of(*shortest_)) shortest_ = frame;
 }
 
-void LinkPace::judge(Clock::duration wait) {
-  if (wait > kLongestWait) {
-    if (trying_) trial_ = std::min(2 * trial_, kLastTrial);
-    trying_ = false;
-    short_waits_ = 0;
-    step_ = std::min(step_ + (wait > 4 * kLongestWait ? 2 : 1), kSteps - 1);
+void LinkPace::judge(Seconds wait, Clock::time_point at) {
+  if (wide_ && wait > kShortWait) {
+    wide_ = false;
     return;
   }
-  if (step_ == 0 || wait > kShortWait || ++short_waits_ < trial_) return;
+  ++judged_;
+  mean_wait_ = judged_ == 1 ? wait : mean_wait_ + kNewWait * (wait - mean_wait_);
+  if (judged_ >= kJudged && reduced_) {
+    const Reduced reduced = *std::exchange(reduced_, std::nullopt);
+    if (mean_wait_ > kWorthIt * reduced.wait) {
+      no_reduction_until_ = at + kDelayKept;
+      return change_step(reduced.from);
+    }
+  }
+  const bool is_clear = judged_ >= kJudged || wait > 4 * kLongestWait;
+  if (mean_wait_ > kLongestWait && is_clear && step_ + 1 < kSteps && at >= no_reduction_until_) return reduce(wait);
+  short_waits_ = wait > kShortWait ? 0 : short_waits_ + 1;
+  if (!wide_ && delay() > kLongDelay && short_waits_ == kFirstTrial) wide_ = true;
+  if (step_ == 0 || short_waits_ < trial_) return;
   // A step that held as long as this was no mere trial.
   if (trying_) trial_ = kFirstTrial;
   trying_ = true;
-  short_waits_ = 0;
-  --step_;
+  change_step(step_ - 1);
+}
+
+void LinkPace::reduce(Seconds wait) {
+  if (trying_) trial_ = std::min(2 * trial_, kLastTrial);
+  trying_ = false;
+  const Reduced reduced{step_, mean_wait_};
+  change_step(std::min(step_ + (wait > 4 * kLongestWait ? 2 : 1), kSteps - 1));
+  reduced_ = reduced;
+}
+
+void LinkPace::change_step(int step) {
+  step_ = step;
+  judged_ = short_waits_ = 0;
+  reduced_.reset();
 }
 
 MovingPicture LinkPace::moving() const { return kReductions[static_cast<std::size_t>(step_)]; }
-
-int LinkPace::window() const {
-  const bool known = delay() != Clock::duration::max();
-  return known && delay() > kLongDelay ? 3 : 2;
-}
 
 }  // namespace strata::stream

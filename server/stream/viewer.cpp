@@ -387,7 +387,8 @@ void Viewer::on_encoded(const Jpeg& jpeg, double encode_ms) {
         impl_->flow.on_ack(picture.number.frame);  // it never leaves, so no client can give its credit back
       } else {
         message = frame_message(picture.draw, picture.number, *picture.frame, impl_->options.view_id, *jpeg, encode_ms);
-        impl_->link.on_sent(picture.number.frame, picture.draw.quality == FlowControl::Quality::moving, Clock::now());
+        impl_->link.on_sent(picture.number.frame, message->size(), picture.draw.quality == FlowControl::Quality::moving,
+                            Clock::now());
         ++impl_->stats.frames;
         impl_->stats.bytes += message->size();
         impl_->stats.last_encode_ms = encode_ms;
