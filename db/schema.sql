@@ -31,7 +31,7 @@ CREATE TABLE public.activities (
     role text,
     changed text[],
     visibility text DEFAULT 'public'::text NOT NULL,
-    CONSTRAINT activities_kind_check CHECK ((kind = ANY (ARRAY['edit'::text, 'layer'::text, 'look'::text, 'model'::text, 'table'::text, 'columns'::text, 'records'::text, 'comment'::text, 'member'::text, 'project'::text])))
+    CONSTRAINT activities_kind_check CHECK ((kind = ANY (ARRAY['edit'::text, 'layer'::text, 'look'::text, 'view'::text, 'tour'::text, 'model'::text, 'table'::text, 'columns'::text, 'records'::text, 'comment'::text, 'member'::text, 'project'::text])))
 );
 
 CREATE FUNCTION public.activity_of(of_project bigint, of_kind text, of_op text, of_subject text) RETURNS public.activities
@@ -241,8 +241,8 @@ BEGIN
       AND l.kind = line.kind AND l.op = line.op AND l.model_id IS NOT DISTINCT FROM line.model_id
       AND l.layer_id IS NOT DISTINCT FROM line.layer_id AND l.table_id IS NOT DISTINCT FROM line.table_id
       AND l.person IS NOT DISTINCT FROM line.person
-      -- what is made or deleted, looks among them, which have no id here, is a line of its own
-      AND (line.kind NOT IN ('layer', 'look', 'model', 'table') OR (line.op = 'changed' AND l.subject = line.subject))
+      -- what is made or deleted, looks, views and tours among them, which have no id here, is a line of its own
+      AND (line.kind NOT IN ('layer', 'look', 'view', 'tour', 'model', 'table') OR (line.op = 'changed' AND l.subject = line.subject))
     ORDER BY l.time DESC, l.id DESC LIMIT 1);
   IF NOT FOUND THEN
     INSERT INTO activities (project_id, model_id, layer_id, table_id, record_key, comment_id, subject, user_name, kind, op, begun, time,
@@ -285,44 +285,45 @@ CREATE FUNCTION public.thing_is_activity() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
 DECLARE
+  of_kind text := TG_ARGV[0];
   thing jsonb := CASE WHEN TG_OP = 'DELETE' THEN to_jsonb(OLD) ELSE to_jsonb(NEW) END;
   line activities;
   of_project bigint := (thing ->> 'project_id')::bigint;
   own_id bigint := (thing ->> 'id')::bigint;
 BEGIN
-  IF TG_TABLE_NAME = 'layers' AND TG_OP = 'DELETE' THEN
+  IF of_kind = 'layer' AND TG_OP = 'DELETE' THEN
     UPDATE activities SET visibility = thing ->> 'visibility' WHERE model_id = (thing ->> 'model_id')::bigint AND layer_id = own_id;
   END IF;
-  IF TG_TABLE_NAME IN ('layers', 'looks') THEN
+  IF of_kind IN ('layer', 'look', 'view', 'tour') THEN
     SELECT m.project_id INTO of_project FROM models m WHERE m.id = (thing ->> 'model_id')::bigint;
-  ELSIF TG_TABLE_NAME = 'projects' THEN
+  ELSIF of_kind = 'project' THEN
     of_project := own_id;
   END IF;
   -- Gone with their model or project, which has a line of its own.
   IF of_project IS NULL OR NOT EXISTS (SELECT 1 FROM projects p WHERE p.id = of_project) THEN
     RETURN NULL;
   END IF;
-  line := activity_of(of_project, TG_ARGV[0], CASE TG_OP WHEN 'INSERT' THEN 'created' WHEN 'UPDATE' THEN 'changed' ELSE 'deleted' END,
+  line := activity_of(of_project, of_kind, CASE TG_OP WHEN 'INSERT' THEN 'created' WHEN 'UPDATE' THEN 'changed' ELSE 'deleted' END,
     thing ->> 'name');
-  line.model_id := CASE WHEN TG_TABLE_NAME = 'models' THEN own_id ELSE (thing ->> 'model_id')::bigint END;
-  IF TG_TABLE_NAME = 'layers' THEN
+  line.model_id := CASE WHEN of_kind = 'model' THEN own_id ELSE (thing ->> 'model_id')::bigint END;
+  IF of_kind = 'layer' THEN
     line.layer_id := own_id;
     line.visibility := thing ->> 'visibility';
-  ELSIF TG_TABLE_NAME = 'record_tables' THEN
+  ELSIF of_kind = 'table' THEN
     line.table_id := own_id;
   END IF;
-  IF TG_OP = 'DELETE' AND line.user_name = '' AND TG_TABLE_NAME IN ('layers', 'record_tables') THEN
+  IF TG_OP = 'DELETE' AND line.user_name = '' AND of_kind IN ('layer', 'table') THEN
     DELETE FROM activities WHERE layer_id = line.layer_id OR table_id = line.table_id;
     RETURN NULL;
   END IF;
   IF TG_OP = 'UPDATE' THEN
     line.changed := changed_columns(to_jsonb(OLD), thing);
     -- Its lines go where it goes, so that those who do not see it there do not see them either.
-    IF TG_TABLE_NAME = 'models' AND 'project_id' = ANY (line.changed) THEN
+    IF of_kind = 'model' AND 'project_id' = ANY (line.changed) THEN
       UPDATE activities SET project_id = of_project WHERE model_id = line.model_id;
     END IF;
     -- The formula of a new layer is set after the layer is made.
-    IF line.changed IS NULL OR line.user_name = '' OR (TG_TABLE_NAME = 'layers' AND EXISTS (
+    IF line.changed IS NULL OR line.user_name = '' OR (of_kind = 'layer' AND EXISTS (
       SELECT 1 FROM activities a WHERE a.project_id = of_project AND a.time >= transaction_timestamp()
         AND a.layer_id = line.layer_id AND a.kind = 'layer' AND a.op = 'created')) THEN
       RETURN NULL;
@@ -1256,6 +1257,10 @@ CREATE TRIGGER table_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, label
 CREATE CONSTRAINT TRIGGER table_is_renamed AFTER UPDATE ON public.record_tables DEFERRABLE INITIALLY DEFERRED FOR EACH ROW WHEN ((old.name <> new.name)) EXECUTE FUNCTION public.analysis_table_changed();
 
 CREATE CONSTRAINT TRIGGER table_is_shown AFTER INSERT ON public.record_tables DEFERRABLE INITIALLY DEFERRED FOR EACH ROW EXECUTE FUNCTION public.analysis_table_changed();
+
+CREATE TRIGGER tour_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, text, content ON public.tours FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('tour');
+
+CREATE TRIGGER view_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, text, content ON public.views FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('view');
 
 ALTER TABLE ONLY public.activities
     ADD CONSTRAINT activities_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id) ON DELETE CASCADE;

@@ -13,7 +13,8 @@ struct Activity {
   std::int64_t id = 0;
   std::chrono::system_clock::time_point time, begun;  // the last time, and the first
   std::string user;                                   // empty: the server itself, by its command line
-  std::string kind;  // "edit", "layer", "look", "model", "table", "columns", "records", "comment", "member", "project"
+  // "edit", "layer", "look", "view", "tour", "model", "table", "columns", "records", "comment", "member", "project"
+  std::string kind;
   std::string op;    // of an edit or a table's entry as its journal has it; "created", "changed", "deleted", …
   std::string name;  // of what it was done to, as it is called now, or was last; empty: a comment
   // What is still there.

@@ -159,6 +159,32 @@ TEST_F(ActivityOfAProject, things_that_people_make_change_and_delete_are_told) {
   EXPECT_FALSE(page().lines[0].model);
 }
 
+TEST_F(ActivityOfAProject, views_and_tours_that_people_make_change_and_delete_are_told) {
+  const auto tell = [&](NamedParts& parts, const std::string& name) {
+    NamedPart part;
+    part.model_id = model_.id;
+    part.name = name;
+    part.content = {{"light", "raking"}};
+    part.user = "ada";
+    part = parts.create(part, by<NamedPart>("ada")).value();
+    part.text = "From the west";
+    part.content = {{"light", "flat"}};
+    part = parts.update(part, by<NamedPart>("bob")).value();
+    part = parts.update(part, by<NamedPart>("bob")).value();  // nothing is another
+    EXPECT_THAT(page().lines[0].changed, ::testing::ElementsAre("content", "text"));
+    ASSERT_TRUE(parts.remove(part, by<>("bob")));
+  };
+  tell(store_->views(), "West wall");
+  EXPECT_THAT(told(page({.model = model_.id})),
+              ::testing::ElementsAre("bob view deleted West wall ×1", "bob view changed West wall ×1",
+                                     "ada view created West wall ×1"));
+  forget();
+  tell(store_->tours(), "The pot");
+  EXPECT_THAT(told(page()), ::testing::ElementsAre("bob tour deleted The pot ×1", "bob tour changed The pot ×1",
+                                                   "ada tour created The pot ×1"));
+  EXPECT_EQ(page().lines[0].model, model_.id);
+}
+
 TEST_F(ActivityOfAProject, a_layer_or_table_that_work_takes_back_never_was) {
   const Layer layer = new_layer(model_.id, "half");
   edit(layer, 0s, "ada", "import");

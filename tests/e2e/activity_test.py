@@ -49,7 +49,16 @@ def everything(site):
     site.ok("carl", "POST", f"/comments/{thread['id']}/replies", {"text": "Yes"})
     site.ok("carl", "PATCH", f"/comments/{thread['id']}", {"state": "resolved"}, headers={"If-Match": "*"})
     site.ok("carl", "DELETE", M + "/layers/units", headers={"If-Match": "*"})
+    camera = camera_from(site.server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
+    site.ok("ada", "POST", M + "/views", {"name": "Front", "camera": camera})
+    site.ok("ada", "PATCH", M + "/views/front", {"text": "Where it broke"}, headers={"If-Match": "*"})
+    site.ok("carl", "POST", M + "/tours", {"name": "The sheet", "languages": ["en"], "stops": [{"view": "front", "title": {"en": "Here"}}]})
+    site.ok("carl", "DELETE", M + "/tours/the-sheet", headers={"If-Match": "*"})
     assert site.lines(limit=100) == [
+        ("carl", "tour", "deleted", "The sheet", 1),
+        ("carl", "tour", "created", "The sheet", 1),
+        ("ada", "view", "changed", "Front", 1),
+        ("ada", "view", "created", "Front", 1),
         ("carl", "layer", "deleted", "Units", 1),
         ("carl", "comment", "resolved", None, 1),
         ("carl", "comment", "replied", None, 1),
@@ -65,7 +74,9 @@ def everything(site):
         ("carl", "layer", "created", "Cracks", 1),
         ("owner", "model", "created", "Sheet", 1),
     ], site.lines(limit=100)
-    feed = site.feed(limit=100)["activity"]
+    told = site.feed(limit=100)["activity"]
+    assert told[2]["changed"] == ["text"] and "Sheet" in told[2]["model_name"], told[2]
+    feed = told[4:]
     model = site.ok("vera", "GET", M).json()["id"]
     cracks = site.ok("vera", "GET", M + "/layers/cracks").json()["id"]
     strokes = feed[10]

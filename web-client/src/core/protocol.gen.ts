@@ -1177,7 +1177,7 @@ export interface ProjectPersonList {
 }
 
 /** What something was done to. */
-export type ActivityKind = "edit" | "layer" | "look" | "model" | "table" | "columns" | "records" | "comment" | "member" | "project";
+export type ActivityKind = "edit" | "layer" | "look" | "view" | "tour" | "model" | "table" | "columns" | "records" | "comment" | "member" | "project";
 
 /** What was changed of something. */
 export type ChangedProperty = string;
@@ -1192,9 +1192,9 @@ export interface Activity {
   /** Absent: the server itself, by its command line */
   user?: string;
   kind: ActivityKind;
-  /** Of an edit or of records and columns as in their history; of layers, looks, models, tables and the project created, changed, deleted; of comments written, replied, resolved, reopened; of members added, changed, removed */
+  /** Of an edit or of records and columns as in their history; of layers, looks, views, tours, models, tables and the project created, changed, deleted; of comments written, replied, resolved, reopened; of members added, changed, removed */
   op: string;
-  /** Of the layer, look, model, table or project, as it is called now or was last */
+  /** Of the layer, look, view, tour, model, table or project, as it is called now or was last */
   name?: string;
   /** This and the other ids: where it is still there */
   model?: number;

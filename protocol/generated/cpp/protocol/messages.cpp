@@ -394,6 +394,8 @@ std::string_view name(ActivityKind value) {
     case ActivityKind::edit: return "edit";
     case ActivityKind::layer: return "layer";
     case ActivityKind::look: return "look";
+    case ActivityKind::view: return "view";
+    case ActivityKind::tour: return "tour";
     case ActivityKind::model: return "model";
     case ActivityKind::table: return "table";
     case ActivityKind::columns: return "columns";
@@ -410,6 +412,8 @@ void read(const nlohmann::json& json, ActivityKind& value) {
   if (text == "edit") value = ActivityKind::edit;
   if (text == "layer") value = ActivityKind::layer;
   if (text == "look") value = ActivityKind::look;
+  if (text == "view") value = ActivityKind::view;
+  if (text == "tour") value = ActivityKind::tour;
   if (text == "model") value = ActivityKind::model;
   if (text == "table") value = ActivityKind::table;
   if (text == "columns") value = ActivityKind::columns;

@@ -1301,7 +1301,7 @@ template <>
 inline constexpr Schema kSchemaOf<MemberPut> = Schema::MemberPut;
 
 // What something was done to.
-enum class ActivityKind { edit, layer, look, model, table, columns, records, comment, member, project };
+enum class ActivityKind { edit, layer, look, view, tour, model, table, columns, records, comment, member, project };
 std::string_view name(ActivityKind value);
 void read(const nlohmann::json& json, ActivityKind& value);
 nlohmann::json to_json(const ActivityKind& value);
