@@ -21,7 +21,8 @@ namespace {
 #define STRATA_ACTIVITY_PAGE(lines)                                                                                  \
   "SELECT a.id, a.time, a.begun, a.user_name, a.kind, a.op, coalesce(l.name, t.name, CASE WHEN a.kind = 'model' "    \
   "THEN m.name END, a.subject), m.id, l.id, t.id, c.id, m.name, a.record_key, left(c.text, 200), a.person, a.role, " \
-  "a.count, a.texels, a.area_m2, to_jsonb(a.changed), (extract(epoch FROM a.time) * 1000000)::bigint FROM "          \
+  "a.count, a.texels, a.area_m2, to_jsonb(a.changed), (extract(epoch FROM a.time) * 1000000)::bigint, "              \
+  "a.group_name FROM "                                                                                               \
   "(" lines                                                                                                          \
   ") a LEFT JOIN models m ON m.id = a.model_id LEFT JOIN layers l ON l.id = a.layer_id "                             \
   "LEFT JOIN record_tables t ON t.id = a.table_id LEFT JOIN comments c ON c.id = a.comment_id "                      \
@@ -61,6 +62,7 @@ Activity read_line(const PgResult& rows, int i) {
   line.text = text_at(rows, i, 13);
   line.person = text_at(rows, i, 14);
   line.role = text_at(rows, i, 15);
+  line.group = text_at(rows, i, 21);
   line.count = rows.integer(i, 16);
   line.texels = integer_at(rows, i, 17);
   if (!rows.null(i, 18)) line.area_m2 = rows.real(i, 18);

@@ -22,8 +22,9 @@ struct Activity {
   std::string model_name;
   std::optional<std::int64_t> record;  // where all of the line is about this one, which may be deleted
   std::string text;                    // how the comment begins
-  std::string person, role;            // of a membership; no role: it ended
-  std::int64_t count = 1;              // strokes and other edits; records or columns written; changes
+  std::string person, group,
+      role;                // of a membership: in the project, or, where both are told, in the group; no role: it ended
+  std::int64_t count = 1;  // strokes and other edits; records or columns written; changes
   std::optional<std::int64_t> texels;  // of edits: changed one after the other
   std::optional<double> area_m2;
   std::vector<std::string> changed;  // columns of what was changed

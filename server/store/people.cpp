@@ -28,14 +28,17 @@ std::optional<TokenKind> parse_kind(const std::string& text) {
   return std::nullopt;
 }
 
-#define STRATA_PERSON_COLUMNS \
-  "id, name, full_name, role, password IS NOT NULL, disabled IS NOT NULL, created, last_seen"
+#define STRATA_PERSON_COLUMNS                                                                           \
+  "id, name, full_name, role, password IS NOT NULL, disabled IS NOT NULL, created, last_seen, "         \
+  "(SELECT coalesce(jsonb_agg(g.name ORDER BY lower(g.name)), '[]') FROM group_people p JOIN groups g " \
+  "ON g.id = p.group_id WHERE p.user_id = users.id)"
 #define STRATA_GOOD_TOKEN "(revoked IS NULL AND (expires IS NULL OR expires > now()))"
 
 Person read_person(const PgResult& rows, int i) {
   Person person{
       rows.integer(i, 0), rows.text(i, 1),    rows.text(i, 2), parse_role(rows.text(i, 3)).value_or(Role::viewer),
-      rows.boolean(i, 4), rows.boolean(i, 5), rows.time(i, 6), std::nullopt};
+      rows.boolean(i, 4), rows.boolean(i, 5), rows.time(i, 6), std::nullopt,
+      rows.json(i, 8)};
   if (!rows.null(i, 7)) person.last_seen = rows.time(i, 7);
   return person;
 }
@@ -55,10 +58,6 @@ Result<Person> load_person(PgConnection& connection, const std::string& name, bo
   if (rows->rows() == 0) return not_found("person", name);
   return read_person(*rows, 0);
 }
-Result<Person> lock_person(PgConnection& connection, const std::string& name) {
-  return load_person(connection, name, true);
-}
-
 Result<void> run(PgConnection& connection, const char* sql, const Params& params) {
   auto done = connection.query(sql, params);
   return done ? Result<void>() : tl::unexpected(done.error());
@@ -147,11 +146,14 @@ Result<std::optional<Found>> find(PgConnection& connection, const std::string& s
   const auto kind = parse_kind(row->text(0, 3));
   if (!persons || !own || !kind) return std::optional<Found>();  // of a later version
   Roles roles{*persons, {}};
-  auto members = connection.query("SELECT project_id, role FROM project_members WHERE user_id = $1",
-                                  Params().integer(row->integer(0, 5)));
-  if (!members) return tl::unexpected(members.error());
-  for (int i = 0; i < members->rows(); ++i)
-    if (const auto role = parse_role(members->text(i, 1))) roles.in_projects[members->integer(i, 0)] = *role;
+  auto given = connection.query("SELECT project_id, role FROM project_roles WHERE user_id = $1",
+                                Params().integer(row->integer(0, 5)));
+  if (!given) return tl::unexpected(given.error());
+  for (int i = 0; i < given->rows(); ++i)
+    if (const auto role = parse_role(given->text(i, 1))) {
+      Role& there = roles.in_projects[given->integer(i, 0)];
+      there = std::max(there, *role);
+    }
   if (*kind == TokenKind::script) roles = roles.at_most(*own);
   return std::optional<Found>({{row->text(0, 0), std::move(roles), *kind, row->integer(0, 4)}, row->boolean(0, 6)});
 }
@@ -168,6 +170,10 @@ Result<void> put_password(PgConnection& connection, const std::string& user, con
 
 }  // namespace
 
+Result<Person> lock_person(PgConnection& connection, const std::string& name) {
+  return load_person(connection, name, true);
+}
+
 Result<std::vector<Person>> Store::people() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
     auto rows =
@@ -183,7 +189,8 @@ Result<Person> Store::person(const std::string& name) {
   return impl_->pool.read([&](PgConnection& connection) { return load_person(connection, name, false); });
 }
 
-Result<Person> Store::create_person(const std::string& name, const std::string& full_name, Role role) {
+Result<Person> Store::create_person(const std::string& name, const std::string& full_name, Role role,
+                                    const std::vector<std::int64_t>& groups, const std::string& by) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
   };
@@ -210,7 +217,11 @@ Result<Person> Store::create_person(const std::string& name, const std::string& 
     if (!made) return tl::unexpected(made.error());
     if (made->rows() == 0)
       return fail(409, "Name taken", "There is somebody called `" + name + "`. Choose another name.", "user");
-    return read_person(*made, 0);
+    if (groups.empty()) return read_person(*made, 0);
+    if (auto named = act_as(connection, by); !named) return tl::unexpected(named.error());
+    if (auto joined = join_groups(connection, made->integer(0, 0), groups); !joined)
+      return tl::unexpected(joined.error());
+    return load_person(connection, name, false);
   });
 }
 
@@ -246,8 +257,9 @@ Result<void> Store::delete_person(const std::string& name) {
     if (!person) return tl::unexpected(person.error());
     auto ended = run(connection, "DELETE FROM tokens WHERE user_name = $1", Params().text(person->name));
     if (!ended) return ended;
-    auto left = run(connection, "DELETE FROM project_members WHERE user_id = $1", Params().integer(person->id));
-    if (!left) return left;
+    for (const char* sql :
+         {"DELETE FROM project_members WHERE user_id = $1", "DELETE FROM group_people WHERE user_id = $1"})
+      if (auto left = run(connection, sql, Params().integer(person->id)); !left) return left;
     const std::string former = std::string(kFormer) + std::to_string(person->id);
     for (const char* sql :
          {"UPDATE users SET name = $2, full_name = '', password = NULL, deleted = now() WHERE name = $1",
@@ -279,21 +291,31 @@ Result<std::vector<Membership>> Store::members(std::int64_t project_id) {
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Membership> members;
     for (int i = 0; i < rows->rows(); ++i)
-      members.push_back({read_person(*rows, i), parse_role(rows->text(i, 8)).value_or(Role::viewer)});
+      members.push_back({read_person(*rows, i), parse_role(rows->text(i, 9)).value_or(Role::viewer)});
     return members;
   });
 }
 
-Result<Membership> Store::put_member(std::int64_t project_id, const std::string& user, Role role,
-                                     const std::string& by) {
+Result<void> check_project_role(Role role) {
   if (role < Role::viewer || role > Role::curator)
     return fail(422, "No role in a project", "In a project people are viewer, annotator or curator.", "role");
+  return {};
+}
+
+Result<void> lock_project(PgConnection& connection, std::int64_t id) {
+  auto project = connection.query("SELECT 1 FROM projects WHERE id = $1 FOR KEY SHARE", Params().integer(id));
+  if (!project) return tl::unexpected(project.error());
+  if (project->rows() == 0) return not_found("project", std::to_string(id));
+  return {};
+}
+
+Result<Membership> Store::put_member(std::int64_t project_id, const std::string& user, Role role,
+                                     const std::string& by) {
+  if (auto good = check_project_role(role); !good) return tl::unexpected(good.error());
   return impl_->pool.write([&](PgConnection& connection) -> Result<Membership> {
     auto person = lock_person(connection, user);
     if (!person) return tl::unexpected(person.error());
-    auto project = connection.query("SELECT 1 FROM projects WHERE id = $1 FOR KEY SHARE", Params().integer(project_id));
-    if (!project) return tl::unexpected(project.error());
-    if (project->rows() == 0) return not_found("project", std::to_string(project_id));
+    if (auto there = lock_project(connection, project_id); !there) return tl::unexpected(there.error());
     if (auto named = act_as(connection, by); !named) return tl::unexpected(named.error());
     auto put = run(connection,
                    "INSERT INTO project_members (project_id, user_id, role) VALUES ($1, $2, $3) "

@@ -23,6 +23,7 @@ struct Person {
   bool disabled = false;
   std::chrono::system_clock::time_point created;
   std::optional<std::chrono::system_clock::time_point> last_seen;  // to some minutes
+  std::vector<std::string> groups;                                 // that they are in, by name
 };
 
 // What is to be changed of somebody; the rest stays as it is.

@@ -32,6 +32,7 @@ Comments& Store::comments() { return impl_->comments; }
 NamedParts& Store::views() { return impl_->views; }
 NamedParts& Store::tours() { return impl_->tours; }
 Kiosks& Store::kiosks() { return impl_->kiosks; }
+Groups& Store::groups() { return impl_->groups; }
 
 Result<StoreInfo> Store::info() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {

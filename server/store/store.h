@@ -32,6 +32,7 @@
 namespace strata::store {
 
 class Comments;
+class Groups;
 class Kiosks;
 class NamedParts;
 
@@ -117,6 +118,7 @@ class Store {
   NamedParts& views();   // of models (store/named_parts.h); the same
   NamedParts& tours();   // the same
   Kiosks& kiosks();      // screens that show tours (store/kiosks.h); the same
+  Groups& groups();      // of people (store/groups.h); the same
 
   // --- tools: shapes for the brush, of the whole site
   static constexpr int kMostTools = 200;  // that are not deleted
@@ -317,8 +319,10 @@ class Store {
   Result<std::vector<Person>> people();  // by name
   Result<Person> person(const std::string& name);
   // 422: no name for signing in: 1 to 64 of letters, digits and `._@-`, a letter or digit first. 409: it is taken, in whatever case, or
-  // of the form that is kept for who is deleted (`former-7`).
-  Result<Person> create_person(const std::string& name, const std::string& full_name, Role role);
+  // of the form that is kept for who is deleted (`former-7`). They are in these groups at once (422: there is no such group; 409: it is
+  // full), by whom the projects' activity tells; empty: it does not.
+  Result<Person> create_person(const std::string& name, const std::string& full_name, Role role,
+                               const std::vector<std::int64_t>& groups = {}, const std::string& by = {});
   // Who is disabled is signed out everywhere, and their invitations are worthless.
   Result<Person> change_person(std::int64_t id, const PersonChange& change);
   // Their account ends, and what they did stays under a name that tells nothing, here and in all journals. Disable them first.

@@ -5,6 +5,7 @@
 
 #include "core/slug.h"
 #include "store/comments.h"
+#include "store/groups.h"
 #include "store/kiosks.h"
 #include "store/named_parts.h"
 #include "store/pool.h"
@@ -18,6 +19,13 @@ Result<void> insert_answer(PgConnection& connection, const std::string& key, con
 // In the transaction at hand: what it changes is told as this person's doing (db/migrations/000018_activity.sql). Empty: as nobody's.
 Result<void> act_as(PgConnection& connection, const std::string& user);
 Result<void> rename_in_activity(PgConnection& connection, const std::string& name, const std::string& former);
+
+// In the transaction at hand: what is said of them holds until it is written.
+Result<Person> lock_person(PgConnection& connection, const std::string& name);
+Result<void> lock_project(PgConnection& connection, std::int64_t id);  // against its being deleted
+Result<void> join_groups(PgConnection& connection, std::int64_t person_id, const std::vector<std::int64_t>& groups);
+
+Result<void> check_project_role(Role role);  // 422: not one that is given in projects
 
 template <class T>
 Result<void> keep(PgConnection& connection, const FirstAnswer<T>& answer, const Result<T>& effect) {
@@ -49,6 +57,7 @@ struct Store::Impl {
   Comments comments{pool};
   NamedParts views{pool, NamedParts::kViews}, tours{pool, NamedParts::kTours};
   Kiosks kiosks{pool};
+  Groups groups{pool};
   std::int64_t schema_version = 0;
 
   template <class Answer, class Work>

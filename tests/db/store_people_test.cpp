@@ -3,6 +3,7 @@
 #include <atomic>
 #include <thread>
 
+#include "store/groups.h"
 #include "store/password.h"
 #include "store/pg.h"
 #include "support/test_cluster.h"
@@ -228,6 +229,10 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
   Project villa;
   villa.name = "Villa";
   ASSERT_TRUE(store->create_project(villa, {"her key", answer}));
+  const auto group = store->groups().create("Students", {"Ada.Lovelace"}).value().group.id;
+  ASSERT_TRUE(store->groups().put(1, group, Role::viewer, "Ada.Lovelace"));
+  ASSERT_TRUE(store->groups().change(group, {.remove = {"Ada.Lovelace"}}, "owner"));
+  ASSERT_TRUE(store->groups().change(group, {.add = {"Ada.Lovelace"}}, "owner"));
   ASSERT_TRUE(store->delete_person("ada.lovelace"));
   auto connection = PgConnection::connect(dsn);
   // Whatever tables there are, and whatever columns come to them.
