@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "cli/subcommands.h"
+#include "store/groups.h"
 #include "store/password.h"
 
 namespace strata::cli {
@@ -83,6 +84,11 @@ Result<void> list_people(store::Store& store, const PeopleOptions& options) {
     const auto members = store.members(project->id);
     if (!members) return tl::unexpected(members.error());
     for (const store::Membership& member : *members) print(member.person, member.role);
+    const auto groups = store.groups().of_project(project->id);
+    if (!groups) return tl::unexpected(groups.error());
+    for (const store::ProjectGroup& group : *groups)
+      std::cout << "group " << std::left << std::setw(18) << group.group.name << std::setw(15) << name(group.role)
+                << group.group.people << " people\n";
     return {};
   }
   const auto people = store.people();

@@ -26,6 +26,7 @@ nlohmann::json to_json(const store::Activity& line) {
   put("comment", line.comment);
   put_text("text", line.text);
   put_text("person", line.person);
+  put_text("group", line.group);
   put_text("role", line.role);
   put("texels", line.texels);
   put("area_m2", line.area_m2);

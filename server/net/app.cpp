@@ -81,6 +81,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_people_routes(router_, context_);
   add_project_routes(router_, context_);
   add_member_routes(router_, context_);
+  add_group_routes(router_, context_);
   add_activity_routes(router_, context_);
   add_model_routes(router_, context_);
   add_import_routes(router_, context_);

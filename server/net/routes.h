@@ -41,6 +41,7 @@ void add_auth_routes(Router& router, const RouteContext& context);
 void add_people_routes(Router& router, const RouteContext& context);
 void add_project_routes(Router& router, const RouteContext& context);
 void add_member_routes(Router& router, const RouteContext& context);
+void add_group_routes(Router& router, const RouteContext& context);
 void add_activity_routes(Router& router, const RouteContext& context);
 void add_model_routes(Router& router, const RouteContext& context);
 void add_import_routes(Router& router, const RouteContext& context);
@@ -111,6 +112,8 @@ Result<Response> who_is_signed_in(const RouteContext& context, const std::string
 Result<Response> signed_in(const RouteContext& context, const Request& request, const std::string& session);
 // 403: what a token does must not outlive it, so that scripts change no accounts.
 Result<void> check_no_script(const Request& request);
+// Nothing is remembered of what they might do, and their live connections end; those who may stay come back by themselves.
+void roles_changed(const RouteContext& context, const std::vector<std::string>& people);
 // Their live connections are over, and the links are looked up anew.
 void end_kiosks(const RouteContext& context, const std::vector<std::int64_t>& kiosks, const std::string& reason);
 // Who made something, as who asks is told: kiosks hear no names.

@@ -3,6 +3,7 @@
 
 #include "net/routes.h"
 #include "net/wire.h"
+#include "store/groups.h"
 
 namespace strata::net {
 namespace {
@@ -23,10 +24,13 @@ Result<Response> list_members(const RouteContext& context, const Request& reques
   if (!project) return tl::unexpected(project.error());
   const auto members = context.store.members(project->id);
   if (!members) return tl::unexpected(members.error());
-  nlohmann::json list = nlohmann::json::array();
+  const auto with_role = context.store.groups().of_project(project->id);
+  if (!with_role) return tl::unexpected(with_role.error());
+  nlohmann::json list = nlohmann::json::array(), groups = nlohmann::json::array();
+  for (const store::ProjectGroup& group : *with_role) groups.push_back(to_json(group));
   const int total = static_cast<int>(members->size());
   for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json((*members)[i]));
-  Response response = json_response({{"members", std::move(list)}, {"total", total}});
+  Response response = json_response({{"members", std::move(list)}, {"groups", std::move(groups)}, {"total", total}});
   add_page_links(response, request, *page, total);
   return response;
 }
@@ -37,12 +41,11 @@ Result<Response> list_people(const RouteContext& context, const Request& request
   if (!page) return tl::unexpected(page.error());
   const auto project = project_of(context, request);
   if (!project) return tl::unexpected(project.error());
-  const auto members = context.store.members(project->id);
-  if (!members) return tl::unexpected(members.error());
+  const auto roles = context.store.groups().people_with_role(project->id);
+  if (!roles) return tl::unexpected(roles.error());
   const auto people = context.store.people();
   if (!people) return tl::unexpected(people.error());
-  std::set<std::int64_t> with_role;
-  for (const auto& member : *members) with_role.insert(member.person.id);
+  const std::set<std::int64_t> with_role(roles->begin(), roles->end());
   nlohmann::json list = nlohmann::json::array();
   int total = 0;
   for (const store::Person& person : *people) {
@@ -56,12 +59,6 @@ Result<Response> list_people(const RouteContext& context, const Request& request
   return response;
 }
 
-// Those of theirs that are open come back by themselves, with what they may do now.
-void roles_changed(const RouteContext& context, const std::string& user) {
-  context.auth.forget();
-  context.live_sockets.close_user(user, kClosePolicy, "your role was changed");
-}
-
 Result<Response> put_member(const RouteContext& context, const Request& request) {
   const auto asked = body_of<protocol::MemberPut>(request);
   if (!asked) return tl::unexpected(asked.error());
@@ -70,7 +67,7 @@ Result<Response> put_member(const RouteContext& context, const Request& request)
   const Role role = parse_role(protocol::name(asked->role)).value_or(Role::viewer);
   const auto member = context.store.put_member(project->id, request.param("user"), role, request.user());
   if (!member) return tl::unexpected(member.error());
-  roles_changed(context, member->person.name);
+  roles_changed(context, {member->person.name});
   return json_response(to_json(*member));
 }
 
@@ -81,11 +78,16 @@ Result<Response> remove_member(const RouteContext& context, const Request& reque
   if (!person) return tl::unexpected(person.error());
   if (auto gone = context.store.remove_member(project->id, person->name, request.user()); !gone)
     return tl::unexpected(gone.error());
-  roles_changed(context, person->name);
+  roles_changed(context, {person->name});
   return empty_response(204);
 }
 
 }  // namespace
+
+void roles_changed(const RouteContext& context, const std::vector<std::string>& people) {
+  context.auth.forget();
+  for (const std::string& user : people) context.live_sockets.close_user(user, kClosePolicy, "your role was changed");
+}
 
 void add_member_routes(Router& router, const RouteContext& context) {
   const std::string members = "/api/v1/projects/{project}/members";

@@ -18,7 +18,8 @@ nlohmann::json to_json(const Person& person) {
                       {"state", person.disabled       ? "disabled"
                                 : person.has_password ? "active"
                                                       : "invited"},
-                      {"created", utc_text(person.created)}};
+                      {"created", utc_text(person.created)},
+                      {"groups", person.groups}};
   if (person.last_seen) json["last_seen"] = utc_text(*person.last_seen);
   return json;
 }
@@ -60,7 +61,8 @@ Result<Response> invite(const RouteContext& context, const Request& request) {
   if (!asked) return tl::unexpected(asked.error());
   const auto role = usable_role(request, asked->role, Role::viewer);
   if (!role) return tl::unexpected(role.error());
-  const auto person = context.store.create_person(asked->user, asked->full_name.value_or(""), *role);
+  const auto person = context.store.create_person(asked->user, asked->full_name.value_or(""), *role,
+                                                  asked->groups.value_or(std::vector<std::int64_t>()), request.user());
   if (!person) return tl::unexpected(person.error());
   auto response = with_invitation(context, *person, 201);
   if (response) response->with("Location", "/api/v1/users/" + percent_encode(person->name));

@@ -1,8 +1,21 @@
 #include "net/answer_book.h"
 #include "net/routes.h"
+#include "store/groups.h"
 
 namespace strata::net {
 namespace {
+
+// Where a role higher than the one everywhere is by groups, and not as high of the person's own, these. A token may do less than they give.
+Result<std::map<std::int64_t, nlohmann::json>> groups_that_give(const RouteContext& context, const Principal& who) {
+  std::map<std::int64_t, nlohmann::json> groups;
+  if (who.roles.in_projects.empty()) return groups;
+  const auto given = context.store.groups().roles_of(who.user);
+  if (!given) return tl::unexpected(given.error());
+  for (const store::GivenRole& role : *given)
+    if (role.role > who.roles.everywhere && role.role == who.roles.in(role.project_id))
+      groups[role.project_id].push_back(role.group);
+  return groups;
+}
 
 Result<Response> list_projects(const RouteContext& context, const Request& request) {
   auto page = page_of(request);
@@ -10,12 +23,15 @@ Result<Response> list_projects(const RouteContext& context, const Request& reque
   auto projects = context.store.projects();
   if (!projects) return tl::unexpected(projects.error());
   std::erase_if(*projects, [&](const Project& project) { return !request.principal->sees(project.id); });
+  const auto groups = groups_that_give(context, *request.principal);
+  if (!groups) return tl::unexpected(groups.error());
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(projects->size());
   for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) {
     const Project& project = (*projects)[i];
     list.push_back(to_json(project));
     list.back()["role"] = std::string(name(request.principal->roles.in(project.id)));
+    if (const auto by = groups->find(project.id); by != groups->end()) list.back()["groups"] = by->second;
   }
   Response response = json_response({{"projects", list}, {"total", total}});
   add_page_links(response, request, *page, total);

@@ -14,6 +14,7 @@
 #include "query/statistics.h"
 #include "query/values.h"
 #include "room/room.h"
+#include "store/groups.h"
 #include "store/journal.h"
 
 // Between the protocol's values and the domain's. Values outside a layer's type are refused, not clamped.
@@ -67,6 +68,7 @@ nlohmann::json to_json(const query::Profile& profile, Unit unit);
 // Areas in m²: a line a row's value, a column a column's, `-` where a layer has none; the corner names both layers.
 std::string cross_table_csv(const query::CrossTable& table, const std::string& rows, const std::string& columns);
 nlohmann::json to_json(const jobs::JobStatus& job);
+nlohmann::json to_json(const store::ProjectGroup& group);
 nlohmann::json to_json(const store::JournalRow& row);
 nlohmann::json to_json(const store::ReviewQueue& queue);
 std::string utc_text(std::chrono::system_clock::time_point time);  // RFC 3339 with milliseconds

@@ -1,68 +1,19 @@
 #!/usr/bin/env python3
 """Events of a model for scripts: what is done is told once it is durable, each reader hears what they see, and who was cut off misses nothing."""
-import http.client
 import json
 import os
-import queue
 import sys
-import threading
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.event_reader import EventReader
 from support.meshes import folded_grid
 from support.strata_server import LONG_S, StrataServer
 
 M = "/models/sheet"
 
 
-class Reader:
-    """Reads server-sent events on a thread of its own."""
-
-    def __init__(self, server, token=True, after=None, path=M + "/events"):
-        secret = server.token if token is True else token
-        self.connection = http.client.HTTPConnection(server.host, server.port, timeout=LONG_S)
-        headers = {"Authorization": f"Bearer {secret}", **({"Last-Event-ID": after} if after else {})}
-        self.connection.request("GET", "/api/v1" + path, headers=headers)
-        self.answer = self.connection.getresponse()
-        self.events, self.last, self.ended = queue.Queue(), after, threading.Event()
-        if self.answer.status == 200:
-            assert self.answer.headers["Content-Type"] == "text/event-stream", self.answer.headers
-            threading.Thread(target=self._read, daemon=True).start()
-
-    def _read(self):
-        event = {}
-        try:
-            for raw in self.answer:
-                line = raw.decode().rstrip("\n")
-                if not line:
-                    if "id" in event:
-                        self.last = event["id"]
-                        self.events.put(event if "data" in event else None)
-                    event = {}
-                elif not line.startswith(":"):
-                    name, _, value = line.partition(": ")
-                    event[name] = json.loads(value) if name == "data" else value
-        except (OSError, http.client.HTTPException, ValueError, AttributeError):
-            pass
-        self.ended.set()
-
-    def listening(self):
-        """Who listens anew is told from where on."""
-        assert self.events.get(timeout=LONG_S) is None
-        return self
-
-    def until(self, wanted):
-        """The events up to the first that is as wanted."""
-        heard = []
-        while not heard or not wanted(heard[-1]):
-            event = self.events.get(timeout=LONG_S)
-            if event:
-                assert event["event"] == event["data"]["kind"], event
-                heard.append(event)
-        return heard
-
-    def close(self):
-        self.connection.sock.close()
-        self.connection.close()
+def reader_of(server, token=True, after=None):
+    return EventReader(server, M, token, after)
 
 
 def painted(layer):
@@ -74,7 +25,7 @@ def main():
         server.import_model(folded_grid(), "sheet.ply", name="Sheet", unit="mm")
         viewer = server.add_person("vera", "viewer")
         early = server.ok("POST", M + "/layers", {"name": "Early", "type": "u8", "resolution": 2048}).json()["id"]
-        reader, of_viewer = Reader(server).listening(), Reader(server, viewer).listening()
+        reader, of_viewer = reader_of(server).listening(), reader_of(server, viewer).listening()
 
         ids, paint = {}, lambda name, where: server.ok("POST", f"{M}/layers/{name}/edits", {"op": "fill", "mode": "where", "where": where, "value": 1})
         for name, more in (("Cracks", {}), ("Secret", {"visibility": "private"}), ("Units", {"kind": "database", "columns": [{"name": "Label"}]})):
@@ -111,14 +62,14 @@ def main():
         paint("units", "y > 80")
         server.kill()
         server.start()
-        back = Reader(server, after=after)
+        back = reader_of(server, after=after)
         missed = back.until(painted(ids["Units"]))
         assert missed[-1]["data"]["count"] == 2, missed
         paint("early", "x < 20")
         assert back.until(painted(early))[-1]["data"]["count"] == 1
 
         # Who may no longer listen is sent away; so is everybody when the model goes.
-        out = Reader(server, viewer).listening()
+        out = reader_of(server, viewer).listening()
         server.ok("PATCH", "/users/vera", {"disabled": True})
         assert out.ended.wait(LONG_S)
         for path, headers, status in ((M + "/events", {"Last-Event-ID": "yesterday"}, 400), ("/models/nothing/events", {}, 404)):
@@ -130,7 +81,7 @@ def main():
 
         # A server that stops does not wait for listeners.
         server.import_model(folded_grid(), "sheet.ply", name="Sheet", unit="mm")
-        last = Reader(server).listening()
+        last = reader_of(server).listening()
         assert server.stop() == 0 and last.ended.wait(LONG_S)
         server.assert_clean_log()
     print("events")

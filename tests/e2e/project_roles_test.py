@@ -29,7 +29,7 @@ def ladder(server, guest, villa, forum):
         guest.ok("GET", path)
     assert [model["slug"] for model in guest.ok("GET", "/models").json()["models"]] == [villa["model"]["slug"]]
     assert [job["id"] for job in guest.ok("GET", "/jobs").json()["jobs"]] == [villa["job"]["id"]]
-    assert guest.ok("GET", "/projects/villa/members").json() == {"members": [{"user": guest.user, "full_name": "", "role": "curator"}], "total": 1}
+    assert guest.ok("GET", "/projects/villa/members").json() == {"members": [{"user": guest.user, "full_name": "", "role": "curator"}], "groups": [], "total": 1}
     imported = server.wait_for_job(guest.ok("POST", "/models?filename=y.ply&name=Second&unit=mm&project=villa", folded_grid(fold=0.002)).json()["id"])
     assert imported["state"] == "done", imported
     # From a model of elsewhere nothing can be brought over.

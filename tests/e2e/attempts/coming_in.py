@@ -83,7 +83,8 @@ def script_tokens(server, section):
     section.tried("A curator's token for looking, used to change", statuses(server.request(method, path, body, token=weak) for method, path, body in writes), 403, "the lower of the token's role and the person's counts")
     strong = token()["secret"]
     accounts = [("POST", "/me/password", {"current": PASSWORD, "password": "twelve otters and a heron"}), ("GET", "/me/sessions", None), ("DELETE", "/me/sessions", None), ("GET", "/me/tokens", None),
-                ("POST", "/me/tokens", {"name": "x"}), ("PATCH", "/me", {"full_name": "x"}), ("POST", "/users", {"user": "x"}), ("PATCH", "/users/by1", {"role": "viewer"}), ("PUT", "/projects/default/members/by1", {"role": "viewer"})]
+                ("POST", "/me/tokens", {"name": "x"}), ("PATCH", "/me", {"full_name": "x"}), ("POST", "/users", {"user": "x"}), ("PATCH", "/users/by1", {"role": "viewer"}), ("PUT", "/projects/default/members/by1", {"role": "viewer"}),
+                ("POST", "/groups", {"name": "x"}), ("PATCH", "/groups/1", {"add": ["by1"]}), ("DELETE", "/groups/1", None), ("PUT", "/projects/default/groups/1", {"role": "viewer"}), ("DELETE", "/projects/default/groups/1", None)]
     root = server.ok("POST", "/me/tokens", {"name": "root", "days": 1}).json()["secret"]
     section.tried("A script's token, its person's and the owner's, used on accounts, tokens, roles and passwords", statuses(server.request(method, path, body, token=secret) for secret in (strong, root) for method, path, body in accounts),
                   403, "tokens for scripts change no accounts, whatever their role")

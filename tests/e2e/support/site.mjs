@@ -119,6 +119,7 @@ export class Site {
     const { server } = this;
     await server.json("POST", "/projects", { name: "Site" });
     await server.json("POST", "/users", { user: "guest" });
+    await server.json("POST", "/groups", { name: "Students", members: ["guest"] });
     // Of people whom no call changes: who is disabled, say, has no invitation any more.
     this.invitations = [];
     for (const user of ["newcomer", "other-newcomer"]) this.invitations.push((await server.json("POST", "/users", { user })).path.split("#")[1]);
@@ -258,6 +259,11 @@ export class Site {
         return String((await server.json("POST", "/models/wall/comments", { text: name, position: [50, 50, 0] })).id);
       case "user":
         return (await server.json("POST", "/users", { user: `spare-${this.#made}` })).user.user;
+      case "group": {
+        const { id } = await server.json("POST", "/groups", { name });
+        await server.json("PUT", `/projects/site/groups/${id}`, { role: "viewer" });
+        return String(id);
+      }
       case "token":
         return String((await server.json("POST", "/me/tokens", { name })).token.id);
       case "session":

@@ -1078,6 +1078,9 @@ export interface ScriptTokenMade {
 /** Whether a person can sign in. Invited: no password was chosen yet. */
 export type PersonState = "invited" | "active" | "disabled";
 
+/** Name of a group. Unique in any case. */
+export type GroupName = string;
+
 /** A person with an account. */
 export interface Person {
   id: number;
@@ -1088,6 +1091,8 @@ export interface Person {
   created: string;
   /** To some minutes. */
   last_seen?: string;
+  /** That they are in, by name. */
+  groups: GroupName[];
 }
 
 /** People. */
@@ -1096,12 +1101,17 @@ export interface PersonList {
   total: number;
 }
 
+/** Id of a group. */
+export type GroupId = number;
+
 /** New account. */
 export interface PersonCreate {
   /** For signing in, and in the history of what was done. Unique in any case. */
   user: string;
   full_name?: string;
   role?: Role;
+  /** That they are in from the start. */
+  groups?: GroupId[];
 }
 
 /** Changes of an account. */
@@ -1141,6 +1151,8 @@ export interface Project {
   description: string;
   /** Of who asks, there; in lists. */
   role?: Role;
+  /** That give who asks this role there, in lists; absent: it is their own, or what they may do everywhere. */
+  groups?: GroupName[];
 }
 
 /** Role in one project. Beside the one that a person has everywhere; the higher one counts. */
@@ -1153,15 +1165,87 @@ export interface Member {
   role: ProjectRole;
 }
 
-/** Who has a role in the project. */
+/** A group with a role in a project. */
+export interface MemberGroup {
+  id: GroupId;
+  name: GroupName;
+  /** In it */
+  people: number;
+  role: ProjectRole;
+}
+
+/** Who has a role in the project. `total` counts the people. */
 export interface MemberList {
+  /** People with a role of their own. */
   members: Member[];
+  /** All of them, on every page. */
+  groups: MemberGroup[];
   total: number;
 }
 
 /** A role in the project. */
 export interface MemberPut {
   role: ProjectRole;
+}
+
+/** A group of people. */
+export interface Group {
+  id: GroupId;
+  name: GroupName;
+  /** In it */
+  people: number;
+  /** In which it has a role */
+  projects: number;
+}
+
+/** Groups. */
+export interface GroupList {
+  groups: Group[];
+  total: number;
+}
+
+/** Somebody in a group. */
+export interface GroupMember {
+  user: string;
+  full_name: string;
+}
+
+/** A project in which a group has a role. */
+export interface GroupProject {
+  /** Slug */
+  project: string;
+  name: string;
+  role: ProjectRole;
+}
+
+/** A group, who is in it, and what it gives them. */
+export interface GroupDetail {
+  id: GroupId;
+  name: GroupName;
+  /** By name */
+  members: GroupMember[];
+  /** By name */
+  projects: GroupProject[];
+  /** People who could do less in some project, or see it no more, if the group was deleted */
+  losing: number;
+}
+
+/** Name of a person for signing in. */
+export type GroupPerson = string;
+
+/** New group. */
+export interface GroupCreate {
+  name: GroupName;
+  members?: GroupPerson[];
+}
+
+/** Changes of a group. */
+export interface GroupPatch {
+  name?: GroupName;
+  /** Who is put into it; who is in it stays. */
+  add?: GroupPerson[];
+  /** Who is taken out of it; who is not in it stays out. */
+  remove?: GroupPerson[];
 }
 
 /** Somebody who sees the project. */
@@ -1206,8 +1290,10 @@ export interface Activity {
   comment?: number;
   /** How the comment begins */
   text?: string;
-  /** Whose role in the project it is */
+  /** Whose role in the project it is; with `group`, who was put into it or taken out of it */
   person?: string;
+  /** The group that has the role in the project, as it was called then */
+  group?: GroupName;
   role?: ProjectRole;
   /** Strokes and other edits, records or columns written, changes */
   count: number;

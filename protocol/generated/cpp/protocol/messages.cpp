@@ -1753,6 +1753,7 @@ void read(const nlohmann::json& json, PersonCreate& value) {
   read_member(json, "user", value.user);
   read_optional_member(json, "full_name", value.full_name);
   read_optional_member(json, "role", value.role);
+  read_optional_member(json, "groups", value.groups);
 }
 
 nlohmann::json to_json(const PersonCreate& value) {
@@ -1760,6 +1761,7 @@ nlohmann::json to_json(const PersonCreate& value) {
   write_member(json, "user", value.user);
   write_optional_member(json, "full_name", value.full_name);
   write_optional_member(json, "role", value.role);
+  write_optional_member(json, "groups", value.groups);
   return json;
 }
 
@@ -1808,6 +1810,32 @@ void read(const nlohmann::json& json, MemberPut& value) {
 nlohmann::json to_json(const MemberPut& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "role", value.role);
+  return json;
+}
+
+void read(const nlohmann::json& json, GroupCreate& value) {
+  read_member(json, "name", value.name);
+  read_optional_member(json, "members", value.members);
+}
+
+nlohmann::json to_json(const GroupCreate& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "name", value.name);
+  write_optional_member(json, "members", value.members);
+  return json;
+}
+
+void read(const nlohmann::json& json, GroupPatch& value) {
+  read_optional_member(json, "name", value.name);
+  read_optional_member(json, "add", value.add);
+  read_optional_member(json, "remove", value.remove);
+}
+
+nlohmann::json to_json(const GroupPatch& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_optional_member(json, "name", value.name);
+  write_optional_member(json, "add", value.add);
+  write_optional_member(json, "remove", value.remove);
   return json;
 }
 

@@ -155,6 +155,17 @@ enum class Schema {
   Member,
   MemberList,
   MemberPut,
+  GroupId,
+  GroupName,
+  MemberGroup,
+  Group,
+  GroupList,
+  GroupMember,
+  GroupProject,
+  GroupDetail,
+  GroupPerson,
+  GroupCreate,
+  GroupPatch,
   ProjectPerson,
   ProjectPersonList,
   ActivityKind,
@@ -291,7 +302,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 265;
+constexpr int kSchemaCount = 276;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1243,6 +1254,7 @@ struct PersonCreate {
   std::string user;  // For signing in, and in the history of what was done. Unique in any case.
   std::optional<std::string> full_name;
   std::optional<Role> role;
+  std::optional<std::vector<std::int64_t>> groups;  // That they are in from the start.
   bool operator==(const PersonCreate&) const = default;
 };
 void read(const nlohmann::json& json, PersonCreate& value);
@@ -1299,6 +1311,29 @@ void read(const nlohmann::json& json, MemberPut& value);
 nlohmann::json to_json(const MemberPut& value);
 template <>
 inline constexpr Schema kSchemaOf<MemberPut> = Schema::MemberPut;
+
+// New group.
+struct GroupCreate {
+  std::string name;
+  std::optional<std::vector<std::string>> members;
+  bool operator==(const GroupCreate&) const = default;
+};
+void read(const nlohmann::json& json, GroupCreate& value);
+nlohmann::json to_json(const GroupCreate& value);
+template <>
+inline constexpr Schema kSchemaOf<GroupCreate> = Schema::GroupCreate;
+
+// Changes of a group.
+struct GroupPatch {
+  std::optional<std::string> name;
+  std::optional<std::vector<std::string>> add;  // Who is put into it; who is in it stays.
+  std::optional<std::vector<std::string>> remove;  // Who is taken out of it; who is not in it stays out.
+  bool operator==(const GroupPatch&) const = default;
+};
+void read(const nlohmann::json& json, GroupPatch& value);
+nlohmann::json to_json(const GroupPatch& value);
+template <>
+inline constexpr Schema kSchemaOf<GroupPatch> = Schema::GroupPatch;
 
 // What something was done to.
 enum class ActivityKind { edit, layer, look, view, tour, model, table, columns, records, comment, member, project };
