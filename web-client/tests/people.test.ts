@@ -5,12 +5,12 @@ import { route_of } from "../src/app/routes";
 import { texts } from "../src/app/texts";
 import { told_date, told_time } from "../src/app/times";
 import { Api, ApiError } from "../src/core/api";
-import { browser_of, called, find_people, initials, is_user_name, may_change, password_mistake, roles_of_tokens, roles_to_give } from "../src/core/people";
+import { browser_of, called, find_people, initials, is_user_name, may_change, password_mistake, role_by_groups, roles_of_tokens, roles_to_give } from "../src/core/people";
 import type { Person } from "../src/core/protocol.gen";
 import { may_administer } from "../src/core/types";
 
 const person = (user: string, full_name = "", more: Partial<Person> = {}): Person => ({
-  id: 2, user, full_name, role: "annotator", state: "active", created: "2026-05-04T12:00:00.000Z", ...more,
+  id: 2, user, full_name, role: "annotator", state: "active", created: "2026-05-04T12:00:00.000Z", groups: [], ...more,
 }); // prettier-ignore
 const refusal = (status: number, more: { field?: string; detail?: string } = {}): ApiError => new ApiError({ status, title: "Refused", ...more });
 
@@ -25,6 +25,27 @@ function api_of(...answers: [status: number, body: unknown][]): { api: Api; aske
   });
   return { api, asked };
 }
+
+describe("roles by groups", () => {
+  const given = [
+    { id: 1, name: "Diggers", people: 3, role: "annotator" },
+    { id: 2, name: "Guests", people: 9, role: "viewer" },
+    { id: 3, name: "Students", people: 12, role: "annotator" },
+    { id: 4, name: "Heads", people: 1, role: "curator" },
+  ] as const;
+
+  it("the highest of those that a person is in counts, and all that give it are told", () => {
+    expect(role_by_groups(given, ["Guests", "Students", "Diggers"])).toEqual({ role: "annotator", groups: ["Diggers", "Students"] });
+    expect(role_by_groups(given, ["Guests"])).toEqual({ role: "viewer", groups: ["Guests"] });
+    expect(role_by_groups(given, ["Heads", "Guests"])).toEqual({ role: "curator", groups: ["Heads"] });
+  });
+
+  it("groups that have no role there, and none at all, give nothing", () => {
+    expect(role_by_groups(given, ["Others"])).toBeNull();
+    expect(role_by_groups(given, [])).toBeNull();
+    expect(role_by_groups([], ["Diggers"])).toBeNull();
+  });
+});
 
 describe("what people are called", () => {
   it("one or two letters stand for a person", () => {

@@ -11,6 +11,7 @@ import { texts_of } from "../support/texts.mjs";
 const kSizes = [[390, 844], [820, 1180], [1280, 800], [3840, 2160]];
 const kShownSizes = new Set([390, 1280]); // whose pictures are kept
 const kThemes = ["light", "dark", "contrast"];
+const kGroup = "Students of the summer school in Northern Archaeology 2026";
 const kOtherProject = "Excavation at the East Gate, Northern Profile";
 const output = process.env.STRATA_TEST_OUTPUT && join(process.env.STRATA_TEST_OUTPUT, "accessibility");
 if (output) mkdirSync(output, { recursive: true });
@@ -35,6 +36,11 @@ function screens_of({ page }, w, site) {
   const close_dialog = async () => {
     await page.keyboard.press("Escape");
     await wait_for(async () => (await dialog.count()) === 0, "the dialog to close");
+  };
+  const close_both = async () => {
+    await page.keyboard.press("Escape");
+    await wait_for(async () => (await dialog.count()) === 1, "the inner dialog to close");
+    await close_dialog();
   };
   const from_menu = (menu, name) => async () => {
     await button(menu).click();
@@ -146,11 +152,26 @@ function screens_of({ page }, w, site) {
       await item(w.site_people.projects).click();
       await page.getByRole("combobox", exact(w.project_roles.role_in(kOtherProject))).selectOption("curator");
       await page.locator("strata-project-roles-dialog").getByRole("status").waitFor();
-    }, end: async () => {
-      await escape();
-      await wait_for(async () => (await dialog.count()) === 1, "the inner dialog to close");
-      await close_dialog();
-    }, keyboard: true },
+    }, end: close_both, keyboard: true },
+    { name: "people: groups", start: async () => {
+      await account(w.account.people)();
+      await page.getByRole("radio", exact(w.groups.title)).click();
+      await page.getByText(kGroup).waitFor();
+    }, end: close_dialog, keyboard: true },
+    { name: "people: who is in a group", start: async () => {
+      await account(w.account.people)();
+      await page.getByRole("radio", exact(w.groups.title)).click();
+      await button(w.groups.options(kGroup)).click();
+      await item(w.groups.members).click();
+      await page.getByRole("checkbox", { name: "Ada Lovelace" }).waitFor();
+    }, end: close_both, keyboard: true },
+    { name: "people: roles of a group", start: async () => {
+      await account(w.account.people)();
+      await page.getByRole("radio", exact(w.groups.title)).click();
+      await button(w.groups.options(kGroup)).click();
+      await item(w.site_people.projects).click();
+      await page.getByRole("combobox", exact(w.project_roles.role_in(kOtherProject))).waitFor();
+    }, end: close_both },
     { name: "preferences", start: account(w.settings.open), end: close_dialog, keyboard: true },
     { name: "no such model", start: async () => {
       await page.goto(`${server.url}/models/999`);
@@ -504,7 +525,9 @@ async function make_site() {
     await server.json("POST", `/tables/${finds.id}/records`, { values: { name, depth, state } });
   await server.json("POST", `/models/${model}/layers`, { name: "Finds", kind: "database", type: "u16", resolution: 2048, table: finds.slug });
   const made = await server.json("POST", `/projects/${project}/templates/stone-condition`, { model: String(model) });
-  await server.json("POST", "/projects", { name: kOtherProject });
+  const { slug: other } = await server.json("POST", "/projects", { name: kOtherProject });
+  const { id: group } = await server.json("POST", "/groups", { name: kGroup, members: ["ada"] });
+  await server.json("PUT", `/projects/${other}/groups/${group}`, { role: "annotator" });
   const person = await server.add_person("bea", "annotator");
   await server.json("PATCH", "/users/bea", { full_name: "Bea Ost" });
   await bea.sign_in(server, person);

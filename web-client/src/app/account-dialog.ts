@@ -4,9 +4,10 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../core/api";
+import { format_list } from "../core/locale";
 import { browser_of, kLeastPasswordLength, password_mistake, roles_of_tokens } from "../core/people";
-import type { ScriptToken, ScriptTokenMade, SignInSession } from "../core/protocol.gen";
-import type { Me, Role } from "../core/types";
+import type { Project, ScriptToken, ScriptTokenMade, SignInSession } from "../core/protocol.gen";
+import { kRoles, type Me, type Role } from "../core/types";
 import "./copy-field";
 import { ask } from "./dialog";
 import { password_words } from "./entry";
@@ -26,6 +27,7 @@ type Section = "name" | "password" | "sessions" | "tokens";
 export class StrataAccountDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
+  @state() private projects_: Project[] = []; // in which they may do more than everywhere
   @state() private sessions_: SignInSession[] = [];
   @state() private tokens_: ScriptToken[] | null = null;
   @state() private made_: ScriptTokenMade | null = null;
@@ -127,9 +129,13 @@ export class StrataAccountDialog extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    void this.attempt("sessions", () => Promise.all([this.read_sessions(), this.read_tokens()]));
+    void this.attempt("sessions", () => Promise.all([this.read_projects(), this.read_sessions(), this.read_tokens()]));
   }
 
+  private async read_projects(): Promise<void> {
+    const rank = (role: Role | undefined): number => kRoles.indexOf(role ?? "guest");
+    this.projects_ = (await this.api.projects()).filter(({ role }) => rank(role) > rank(this.me.role));
+  }
   private async read_sessions(): Promise<void> {
     this.sessions_ = await this.api.sign_in_sessions();
   }
@@ -142,6 +148,11 @@ export class StrataAccountDialog extends LitElement {
     return html`<strata-dialog wide heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <section>
         <p class="hint">${words.about(me.user, texts.roles[me.role])}</p>
+        ${this.projects_.length > 0
+          ? html`<ul aria-label=${words.in_projects}>
+              ${this.projects_.map((project) => this.project_row(project))}
+            </ul>`
+          : nothing}
         ${this.name_form(me)} ${this.note("name")}
       </section>
       <section aria-labelledby="password_heading">
@@ -219,6 +230,14 @@ export class StrataAccountDialog extends LitElement {
       ${password_field({ name: "repeat", label: words.repeat, autocomplete: "new-password", problem: problems.repeat ?? "" })}
       <button ?disabled=${this.busy_}>${me.has_password ? words.password_change : words.password_choose}</button>
     </form>`;
+  }
+
+  /** Where a role comes from, too, so that they know whom to ask. */
+  private project_row({ name, role, groups }: Project): TemplateResult {
+    const told = texts.roles[role ?? "guest"];
+    return html`<li>
+      <div class="grow"><b>${name}</b> <span class="hint">${groups ? words.role_by_groups(told, format_list(groups)) : told}</span></div>
+    </li>`;
   }
 
   private session_row(session: SignInSession): TemplateResult {

@@ -117,19 +117,21 @@ export class StrataActivityPanel extends FoldingPanel {
       : html`<div class="line" data-activity=${line.id}>${content}</div>`;
   }
 
-  private done({ kind, op, name, person }: Activity): TemplateResult {
-    const what = kind === "member" ? person : name;
-    return html`${text_of(words.done, `${kind} ${op}`, kind)}${what === undefined ? nothing : html` <b>${what}</b>`}`;
+  private done({ kind, op, name, person, group }: Activity): TemplateResult {
+    const about = kind === "member" && group !== undefined ? (person === undefined ? "group" : "in_group") : kind;
+    const what = kind === "member" ? (person ?? group) : name;
+    return html`${text_of(words.done, `${about} ${op}`, kind)}${what === undefined ? nothing : html` <b>${what}</b>`}`;
   }
 
   private details(line: Activity): string {
-    const { kind, op, count, area_m2, text, record, table, role, changed, model_name, model } = line;
+    const { kind, op, count, area_m2, text, record, table, role, changed, model_name, model, person, group } = line;
     const is_elsewhere = model !== undefined && model !== this.session.model?.id;
     const parts = [
       kind === "edit" && (op === "stroke" ? words.strokes(count) : count > 1 ? words.times(count) : ""),
       kind === "edit" && area_m2 ? format_area(area_m2) : "",
       kind === "records" && (record === undefined ? texts.tables.records(count) : this.record_name(table, record)),
       kind === "columns" && words.columns(count),
+      person !== undefined && group !== undefined ? group : "",
       kind === "member" && role ? texts.roles[role] : "",
       changed ? format_list([...new Set(changed.map((each) => text_of(words.changed, each)))]) : "",
       text ?? "",

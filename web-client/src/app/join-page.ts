@@ -3,6 +3,7 @@
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError, type Api } from "../core/api";
+import { format_list } from "../core/locale";
 import { called, kLeastPasswordLength, password_mistake } from "../core/people";
 import type { Person } from "../core/protocol.gen";
 import type { Me } from "../core/types";
@@ -107,6 +108,7 @@ export class StrataJoinPage extends LitElement {
     return html`<div>
         <h1>${words.greeting(called(person))}</h1>
         <p>${person.state === "invited" ? words.lead(texts.roles[person.role]) : words.lead_again}</p>
+        ${person.groups.length > 0 ? html`<p>${words.groups(format_list(person.groups))}</p>` : nothing}
       </div>
       <form @submit=${this.on_submit} novalidate>
         <label class="field">

@@ -1,17 +1,19 @@
-// <strata-people-dialog>: who has an account, and what they may do; invites people by a link that is shown once.
+// <strata-people-dialog>: who has an account, and what they may do; invites people by a link that is shown once. Beside them the groups.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../core/api";
 import { called, find_people, is_user_name, may_change, roles_to_give } from "../core/people";
-import type { Invitation, Person, PersonPatch } from "../core/protocol.gen";
+import type { Group, Invitation, Person, PersonPatch } from "../core/protocol.gen";
 import type { Me, Role } from "../core/types";
 import "./copy-field";
 import { ask } from "./dialog";
+import "./group-list";
 import { icon } from "./icons";
 import "./menu";
 import "./project-roles-dialog";
+import { radio_group } from "./radio-group";
 import { chip_styles, link_making_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 import { told_time } from "./times";
@@ -20,12 +22,15 @@ const words = texts.site_people;
 const kUsualRole: Role = "annotator";
 
 type Field = "user" | "full_name" | "role";
+type Part = "people" | "groups";
 
 @customElement("strata-people-dialog")
 export class StrataPeopleDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
   @state() private people_: Person[] | null = null;
+  @state() private part_: Part = "people";
+  @state() private groups_: readonly Group[] = []; // that who is invited may be put into
   @state() private filter_ = "";
   @state() private inviting_ = false;
   @state() private role_: Role = kUsualRole; // of who is invited
@@ -60,6 +65,31 @@ export class StrataPeopleDialog extends LitElement {
       .fields {
         grid-template-columns: 1fr 1fr 1fr;
         align-items: start;
+      }
+      fieldset {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 6px 16px;
+        margin: 0;
+        padding: 0;
+        border: 0;
+      }
+      fieldset legend {
+        padding: 0 0 5px;
+      }
+      fieldset label {
+        display: flex;
+        align-items: center;
+        gap: 8px;
+        min-height: 28px;
+        overflow-wrap: anywhere;
+      }
+      fieldset input {
+        width: 17px;
+        height: 17px;
+        flex: none;
+        margin: 0;
+        accent-color: var(--accent);
       }
       .fields small {
         display: block;
@@ -121,6 +151,19 @@ export class StrataPeopleDialog extends LitElement {
         background: var(--accent-soft);
         color: var(--accent);
       }
+      td .groups {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 4px;
+        margin-top: 3px;
+      }
+      .chip.group {
+        white-space: normal;
+        overflow-wrap: anywhere;
+      }
+      .parts {
+        justify-self: start;
+      }
       @media (max-width: 620px) {
         .fields {
           grid-template-columns: 1fr;
@@ -174,7 +217,17 @@ export class StrataPeopleDialog extends LitElement {
 
   override render(): TemplateResult {
     return html`<strata-dialog broad heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      ${this.people_ ? this.content(this.people_) : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`}
+      ${radio_group<Part>({
+        label: words.parts,
+        class: "segments parts",
+        choices: [
+          { value: "people", content: words.people },
+          { value: "groups", content: texts.groups.title },
+        ],
+        chosen: this.part_,
+        choose: (part) => (this.part_ = part),
+      })}
+      ${this.people_ ? (this.part_ === "groups" ? this.group_list(this.people_) : this.content(this.people_)) : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`}
       ${this.problem_
         ? html`<p class="error" role="alert">${this.problem_}</p>
             <button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button>`
@@ -185,8 +238,17 @@ export class StrataPeopleDialog extends LitElement {
     </strata-dialog>`;
   }
 
+  private group_list(people: readonly Person[]): TemplateResult {
+    return html`<strata-group-list
+      .api=${this.api}
+      .people=${people}
+      @regrouped=${() => void this.attempt(() => this.read())}
+      @signed-out=${() => this.dispatchEvent(new CustomEvent("signed-out"))}
+    ></strata-group-list>`;
+  }
+
   private content(people: readonly Person[]): TemplateResult {
-    const shown = find_people(people, this.filter_, ({ role, state }) => `${texts.roles[role]} ${words.states[state]}`);
+    const shown = find_people(people, this.filter_, ({ role, state, groups }) => `${texts.roles[role]} ${words.states[state]} ${groups.join(" ")}`);
     return html`<div class="bar">
         <input
           type="text"
@@ -225,7 +287,7 @@ export class StrataPeopleDialog extends LitElement {
   }
 
   private row(person: Person): TemplateResult {
-    const { id, user, full_name, role, state } = person;
+    const { id, user, full_name, role, state, groups } = person;
     const name = called(person);
     const changeable = may_change(this.me, person);
     const note = this.row_note_?.id === id ? this.row_note_ : null;
@@ -233,6 +295,9 @@ export class StrataPeopleDialog extends LitElement {
       <td class="name">
         <b>${name}</b> ${user === this.me.user ? html`<span class="chip you">${words.you}</span>` : nothing}
         ${full_name.trim() ? html`<span class="hint">${user}</span>` : nothing}
+        ${groups.length > 0
+          ? html`<span class="groups" aria-label=${texts.groups.of(name)} role="group">${groups.map((group) => html`<span class="chip group">${group}</span>`)}</span>`
+          : nothing}
         ${note ? html`<span class=${note.kind} role=${note.kind === "error" ? "alert" : "status"}>${note.text}</span>` : nothing}
       </td>
       <td class="role">
@@ -302,6 +367,12 @@ export class StrataPeopleDialog extends LitElement {
           <small class="error" id="role_problem" role="alert" ?hidden=${!problems.role}>${problems.role ?? ""}</small>
         </div>
       </div>
+      ${this.groups_.length > 0
+        ? html`<fieldset>
+            <legend class="caption">${texts.groups.title}</legend>
+            ${this.groups_.map(({ id, name }) => html`<label><input type="checkbox" name="group" value=${id} />${name}</label>`)}
+          </fieldset>`
+        : nothing}
       <div class="row">
         <button class="primary" ?disabled=${this.busy_}>${words.invite_button}</button>
         <button type="button" class="quiet" @click=${() => (this.inviting_ = false)}>${texts.cancel}</button>
@@ -327,6 +398,9 @@ export class StrataPeopleDialog extends LitElement {
     this.invitation_ = null;
     this.field_problems_ = {};
     void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLInputElement>("input[name=user]")?.focus());
+    void this.attempt(async () => {
+      this.groups_ = await this.api.groups();
+    });
   }
 
   private refuse(field: Field, problem: string): void {
@@ -342,7 +416,9 @@ export class StrataPeopleDialog extends LitElement {
     if (text("user") === "") return this.refuse("user", words.user_missing);
     if (!is_user_name(text("user"))) return this.refuse("user", words.user_wrong);
     void this.attempt(async () => {
-      this.invitation_ = await this.api.invite({ user: text("user"), full_name: text("full_name"), role: this.role_ });
+      const groups = data.getAll("group").map(Number);
+      const asked = { user: text("user"), full_name: text("full_name"), role: this.role_ };
+      this.invitation_ = await this.api.invite(groups.length > 0 ? { ...asked, groups } : asked);
       this.inviting_ = false;
       await this.read();
     });

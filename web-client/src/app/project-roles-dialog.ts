@@ -1,12 +1,14 @@
-// <strata-project-roles-dialog>: what one person may do in each project, beside what they may do everywhere.
+// <strata-project-roles-dialog>: what one person may do in each project, beside what they may do everywhere and what their groups give them
+// there; or what a group may do.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../core/api";
-import { called } from "../core/people";
-import type { Person, Project, ProjectRole } from "../core/protocol.gen";
-import { kProjectRoles } from "../core/types";
+import { format_list } from "../core/locale";
+import { called, role_by_groups } from "../core/people";
+import type { Group, MemberList, Person, Project, ProjectRole } from "../core/protocol.gen";
+import { kProjectRoles, kRoles } from "../core/types";
 import "./dialog";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -15,14 +17,17 @@ const words = texts.project_roles;
 
 interface Row {
   project: Project;
-  role: ProjectRole | null;
+  role: ProjectRole | null; // of their own
+  by_groups: ReturnType<typeof role_by_groups>;
   note: { kind: "error" | "done"; text: string } | null;
 }
 
 @customElement("strata-project-roles-dialog")
 export class StrataProjectRolesDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
-  @property({ attribute: false }) person!: Person;
+  /** One of both. */
+  @property({ attribute: false }) person: Person | null = null;
+  @property({ attribute: false }) group: Group | null = null;
   @state() private rows_: readonly Row[] | null = null;
   @state() private problem_ = "";
 
@@ -51,7 +56,8 @@ export class StrataProjectRolesDialog extends LitElement {
         width: auto;
       }
       li .error,
-      li .done {
+      li .done,
+      li .hint {
         grid-column: 1 / 3;
         font-size: 0.86rem;
       }
@@ -71,17 +77,24 @@ export class StrataProjectRolesDialog extends LitElement {
     try {
       const projects = await this.api.projects();
       const members = await Promise.all(projects.map(({ slug }) => this.api.members(slug)));
-      this.rows_ = projects.map((project, i) => ({ project, role: members[i]!.find(({ user }) => user === this.person.user)?.role ?? null, note: null }));
+      this.rows_ = projects.map((project, i) => ({ project, ...this.roles_in(members[i]!), note: null }));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.problem_ = error.message;
     }
   }
 
+  private roles_in({ members, groups }: MemberList): Pick<Row, "role" | "by_groups"> {
+    const { person, group } = this;
+    if (group) return { role: groups.find(({ id }) => id === group.id)?.role ?? null, by_groups: null };
+    return { role: members.find(({ user }) => user === person?.user)?.role ?? null, by_groups: role_by_groups(groups, person?.groups ?? []) };
+  }
+
   override render(): TemplateResult {
-    const { role } = this.person;
-    return html`<strata-dialog heading=${words.title(called(this.person))} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      <p class="hint">${words.lead(texts.roles[role])}</p>
+    const { person, group } = this;
+    const name = person ? called(person) : (group?.name ?? "");
+    return html`<strata-dialog heading=${words.title(name)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+      <p class="hint">${person ? words.lead(texts.roles[person.role]) : words.group_lead}</p>
       ${this.problem_
         ? html`<p class="error" role="alert">${this.problem_}</p>
             <button @click=${() => void this.read()}>${texts.try_again}</button>`
@@ -102,26 +115,44 @@ export class StrataProjectRolesDialog extends LitElement {
     return html`<li>
       <b>${project.name}</b>
       <select aria-label=${words.role_in(project.name)} @change=${(event: Event) => void this.change(row, event.target as HTMLSelectElement)}>
-        <option value="" ?selected=${role === null}>${words.none}</option>
+        <option value="" ?selected=${role === null}>${this.group ? words.group_none : words.none}</option>
         ${kProjectRoles.map((each) => html`<option value=${each} ?selected=${each === role}>${texts.roles[each]}</option>`)}
       </select>
+      ${this.origin(row)}
       ${note ? html`<span class=${note.kind} role=${note.kind === "error" ? "alert" : "status"}>${note.text}</span>` : nothing}
     </li>`;
   }
 
-  private async change({ project, role: before }: Row, select: HTMLSelectElement): Promise<void> {
+  /** What counts there, where that is what a group gives. */
+  private origin({ role, by_groups }: Row): TemplateResult | typeof nothing {
+    if (!by_groups || !this.person) return nothing;
+    const rank = (each: ProjectRole | Person["role"]): number => kRoles.indexOf(each);
+    const counts = rank(by_groups.role) > Math.max(rank(this.person.role), role ? rank(role) : -1);
+    const told = counts ? words.by_groups : words.by_groups_also;
+    return html`<span class="hint">${told(texts.roles[by_groups.role], format_list(by_groups.groups))}</span>`;
+  }
+
+  private async change(row: Row, select: HTMLSelectElement): Promise<void> {
+    const { project, role: before } = row;
     const role = kProjectRoles.find((each) => each === select.value) ?? null;
     const say = (now: ProjectRole | null, kind: "error" | "done", text: string): void => {
-      this.rows_ = (this.rows_ ?? []).map((row) => (row.project.id === project.id ? { project, role: now, note: { kind, text } } : row));
+      this.rows_ = (this.rows_ ?? []).map((row) => (row.project.id === project.id ? { ...row, role: now, note: { kind, text } } : row));
     };
     try {
-      if (role) await this.api.put_member(project.slug, this.person.user, role);
-      else await this.api.remove_member(project.slug, this.person.user);
-      say(role, "done", role ? texts.site_people.role_changed(texts.roles[role]) : words.removed);
+      await this.put(project.slug, role);
+      say(role, "done", role ? texts.site_people.role_changed(texts.roles[role]) : this.group ? words.group_removed : words.removed);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       select.value = before ?? "";
       say(before, "error", error.message);
     }
+  }
+
+  private async put(project: string, role: ProjectRole | null): Promise<void> {
+    const { api, person, group } = this;
+    if (group && role) await api.put_project_group(project, group.id, role);
+    else if (group) await api.remove_project_group(project, group.id);
+    else if (person && role) await api.put_member(project, person.user, role);
+    else if (person) await api.remove_member(project, person.user);
   }
 }

@@ -179,14 +179,39 @@ export class Api {
     const { etag } = await this.project(project);
     await this.request("DELETE", project_path(project), undefined, { "If-Match": etag });
   }
-  async members(project: string): Promise<wire.Member[]> {
-    return (await this.json<wire.MemberList>("GET", `/projects/${encodeURIComponent(project)}/members?limit=1000`)).members;
+  /** People with roles of their own there, and groups. */
+  async members(project: string): Promise<wire.MemberList> {
+    return this.json("GET", `/projects/${encodeURIComponent(project)}/members?limit=1000`);
   }
   async put_member(project: string, user: string, role: wire.ProjectRole): Promise<wire.Member> {
     return this.json("PUT", member_path(project, user), { role });
   }
   async remove_member(project: string, user: string): Promise<void> {
     await this.request("DELETE", member_path(project, user));
+  }
+  async put_project_group(project: string, group: number, role: wire.ProjectRole): Promise<wire.MemberGroup> {
+    return this.json("PUT", project_group_path(project, group), { role });
+  }
+  async remove_project_group(project: string, group: number): Promise<void> {
+    await this.request("DELETE", project_group_path(project, group));
+  }
+
+  /** By name; there are 200 at most. */
+  async groups(): Promise<wire.Group[]> {
+    return (await this.json<wire.GroupList>("GET", "/groups?limit=1000")).groups;
+  }
+  async group(id: number): Promise<wire.GroupDetail> {
+    return this.json("GET", `/groups/${id}`);
+  }
+  async create_group(group: wire.GroupCreate): Promise<wire.GroupDetail> {
+    return this.json("POST", "/groups", group);
+  }
+  async change_group(id: number, change: wire.GroupPatch): Promise<wire.GroupDetail> {
+    return this.json("PATCH", `/groups/${id}`, change);
+  }
+  /** With the roles that it has. */
+  async delete_group(id: number): Promise<void> {
+    await this.request("DELETE", `/groups/${id}`);
   }
 
   async models(): Promise<Model[]> {
@@ -726,6 +751,7 @@ const layer_path = (model: Id, layer: Id): string =>
   `/models/${encodeURIComponent(model)}/layers/${encodeURIComponent(layer)}`;
 
 const person_path = (user: string): string => `/users/${encodeURIComponent(user)}`;
+const project_group_path = (project: string, group: number): string => `/projects/${encodeURIComponent(project)}/groups/${group}`;
 const member_path = (project: string, user: string): string => `/projects/${encodeURIComponent(project)}/members/${encodeURIComponent(user)}`;
 
 const project_path = (project: Id): string => `/projects/${encodeURIComponent(project)}`;

@@ -1,6 +1,6 @@
 // What can be said of accounts without asking the server.
 
-import type { Me, Person, Role } from "./protocol.gen";
+import type { Me, MemberGroup, Person, ProjectRole, Role } from "./protocol.gen";
 import { kProjectRoles, kRoles } from "./types";
 
 export const kLeastPasswordLength = 10; // characters, as the server counts them
@@ -60,6 +60,13 @@ export function browser_of(agent: string): { browser: string; system: string } {
 /** Nobody changes themselves there, nor whoever may do as much as they; the owner is changed by nobody. */
 export const may_change = (me: Pick<Me, "user" | "role">, person: Pick<Person, "user" | "role">): boolean =>
   person.user !== me.user && person.role !== "owner" && kRoles.indexOf(person.role) < kRoles.indexOf(me.role);
+
+/** The highest role that these groups give somebody in a project, and which of them do; null: none of them is theirs. */
+export function role_by_groups(given: readonly MemberGroup[], theirs: readonly string[]): { role: ProjectRole; groups: string[] } | null {
+  const own = given.filter(({ name }) => theirs.includes(name));
+  const role = [...kProjectRoles].reverse().find((each) => own.some((group) => group.role === each));
+  return role ? { role, groups: own.filter((group) => group.role === role).map(({ name }) => name) } : null;
+}
 
 /** Those in whose names, or in what `also_of` says of them, every word of the text begins one, in any case. */
 export function find_people(people: readonly Person[], text: string, also_of: (person: Person) => string): Person[] {

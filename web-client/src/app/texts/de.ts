@@ -65,6 +65,7 @@ export const texts = {
   join: {
     greeting: (name) => `Willkommen, ${name}`,
     lead: (role) => `Sie sind auf diesen Server eingeladen, mit der Rolle „${role}“. Wählen Sie ein Passwort: damit und mit Ihrem Namen melden Sie sich künftig an.`,
+    groups: (groups) => `Sie gehören zu: ${groups}.`,
     lead_again: "Wählen Sie ein neues Passwort: damit und mit Ihrem Namen melden Sie sich künftig an. Bis dahin gilt das alte.",
     user: "Name zum Anmelden",
     full_name: "Vollständiger Name",
@@ -108,6 +109,8 @@ export const texts = {
     sign_out_lead: (n) => `${changes(n)} ${plural(n, "ist", "sind")} noch nicht gespeichert und ${plural(n, "geht", "gehen")} verloren.`,
     title: "Ihr Konto",
     about: (user, role) => `Name zum Anmelden: ${user} · Rolle: ${role}`,
+    in_projects: "Ihre Rollen in Projekten",
+    role_by_groups: (role, groups) => `${role} durch Gruppe: ${groups}`,
     full_name: "Vollständiger Name",
     full_name_saved: "Ihr Name ist gespeichert.",
     password: "Passwort",
@@ -165,9 +168,11 @@ export const texts = {
   },
 
   site_people: {
+    parts: "Was gezeigt wird",
+    people: "Personen",
     title: "Personen auf diesem Server",
     filter: "Personen suchen",
-    filter_hint: "Name oder Rolle",
+    filter_hint: "Name, Rolle oder Gruppe",
     count: (n) => count(n, "Person", "Personen"),
     count_of: (n, all) => `${format_count(n)} von ${count(all, "Person", "Personen")}`,
     none_found: "So heißt niemand.",
@@ -212,12 +217,45 @@ export const texts = {
     enabled: "Kann sich wieder anmelden.",
   },
 
+  groups: {
+    title: "Gruppen",
+    lead: "Was eine Gruppe in einem Projekt darf, dürfen dort alle, die zu ihr gehören. Von mehreren Rollen zählt die höchste.",
+    new_name: "Neue Gruppe",
+    name: "Name",
+    name_hint: "Grabung 2026",
+    name_empty: "Bitte der Gruppe einen Namen geben.",
+    make: "Gruppe anlegen",
+    none: "Es gibt noch keine Gruppen.",
+    about: (people, projects) => `${count(people, "Person", "Personen")} · ${projects === 0 ? "in keinem Projekt eine Rolle" : `Rolle in ${count(projects, "Projekt", "Projekten")}`}`,
+    options: (name) => `Optionen für die Gruppe ${name}`,
+    of: (name) => `Gruppen von ${name}`,
+    members: "Wer dazugehört …",
+    members_of: (name) => `Wer zu „${name}“ gehört`,
+    inside: (n) => `${count(n, "Person gehört", "Personen gehören")} dazu. Jede Änderung gilt sofort.`,
+    find_hint: "Name",
+    put_in: "Gehört jetzt dazu.",
+    taken_out: "Gehört nicht mehr dazu.",
+    rename: "Umbenennen …",
+    rename_title: (name) => `„${name}“ umbenennen`,
+    delete_title: (name) => `Die Gruppe „${name}“ löschen?`,
+    delete_lead: (losing, people) =>
+      (losing === 0
+        ? "Niemand verliert dadurch etwas: was sie gibt, haben ihre Mitglieder auch auf andere Weise."
+        : `${count(losing, "Person", "Personen")} von ${format_count(people)} in der Gruppe ${plural(losing, "sieht", "sehen")} dann weniger Projekte oder ${plural(losing, "darf", "dürfen")} dort weniger.`) +
+      " Ihre Rollen in Projekten werden mit ihr gelöscht. Das lässt sich nicht rückgängig machen.",
+  },
+
   project_roles: {
     title: (name) => `${name} in Projekten`,
     lead: (role) => `Überall: ${role}. In einem Projekt zählt die höhere Rolle.`,
     role_in: (project) => `Rolle in ${project}`,
     none: "Keine eigene Rolle",
     removed: "Hat dort keine eigene Rolle mehr.",
+    by_groups: (role, groups) => `Hat dort durch eine Gruppe die Rolle „${role}“: ${groups}.`,
+    by_groups_also: (role, groups) => `Auch durch eine Gruppe „${role}“: ${groups}.`,
+    group_lead: "Alle in der Gruppe haben dort mindestens diese Rolle.",
+    group_none: "Keine Rolle",
+    group_removed: "Hat dort keine Rolle mehr.",
   },
 
   projects: {
@@ -1082,6 +1120,11 @@ export const texts = {
       "member added": "gab eine Rolle im Projekt an",
       "member changed": "hat die Rolle im Projekt geändert von",
       "member removed": "nahm die Rolle im Projekt von",
+      "group added": "gab eine Rolle im Projekt an die Gruppe",
+      "group changed": "hat die Rolle im Projekt geändert von der Gruppe",
+      "group removed": "nahm die Rolle im Projekt von der Gruppe",
+      "in_group added": "nahm in eine Gruppe auf:",
+      "in_group removed": "nahm aus einer Gruppe heraus:",
       records: "hat Datensätze geändert in",
       columns: "hat Spalten geändert in",
       other: "hat geändert:",

@@ -52,6 +52,7 @@ export const texts = {
   join: {
     greeting: (name: string) => `Welcome, ${name}`,
     lead: (role: string) => `You are invited to this site as ${role.toLowerCase()}. Choose a password: from then on you sign in with it and your name.`,
+    groups: (groups: string) => `You are in: ${groups}.`,
     lead_again: "Choose a new password: from then on you sign in with it and your name. The old one is good until then.",
     user: "Name for signing in",
     full_name: "Full name",
@@ -95,6 +96,8 @@ export const texts = {
     sign_out_lead: (n: number) => `${count(n, "change is", "changes are")} not saved yet and will be lost.`,
     title: "Your account",
     about: (user: string, role: string) => `Name for signing in: ${user} · Role: ${role}`,
+    in_projects: "Your roles in projects",
+    role_by_groups: (role: string, groups: string) => `${role} by group: ${groups}`,
     full_name: "Full name",
     full_name_saved: "Your name is saved.",
     password: "Password",
@@ -152,9 +155,11 @@ export const texts = {
   },
 
   site_people: {
+    parts: "What is shown",
+    people: "People",
     title: "People of this site",
     filter: "Find people",
-    filter_hint: "Name or role",
+    filter_hint: "Name, role or group",
     count: (n: number) => count(n, "person", "people"),
     count_of: (n: number, all: number) => `${format_count(n)} of ${count(all, "person", "people")}`,
     none_found: "Nobody is called that.",
@@ -199,12 +204,44 @@ export const texts = {
     enabled: "Can sign in again.",
   },
 
+  groups: {
+    title: "Groups",
+    lead: "What a group may do in a project, everybody in it may do there. The highest of somebody's roles counts.",
+    new_name: "New group",
+    name: "Name",
+    name_hint: "Excavation 2026",
+    name_empty: "Give the group a name.",
+    make: "Make group",
+    none: "There are no groups yet.",
+    about: (people: number, projects: number) => `${count(people, "person", "people")} · ${projects === 0 ? "no role in any project" : `a role in ${count(projects, "project", "projects")}`}`,
+    options: (name: string) => `Options for the group ${name}`,
+    of: (name: string) => `Groups of ${name}`,
+    members: "Who is in it…",
+    members_of: (name: string) => `Who is in “${name}”`,
+    inside: (n: number) => `${count(n, "person is", "people are")} in it. Each change counts at once.`,
+    find_hint: "Name",
+    put_in: "Is in it now.",
+    taken_out: "Is out now.",
+    rename: "Rename…",
+    rename_title: (name: string) => `Rename “${name}”`,
+    delete_title: (name: string) => `Delete the group “${name}”?`,
+    delete_lead: (losing: number, people: number) =>
+      (losing === 0
+        ? "Nobody loses anything by it: whatever it gives, its people have otherwise, too."
+        : `${count(losing, "person", "people")} of the ${format_count(people)} in it will see fewer projects, or may do less there.`) + " Its roles in projects go with it. This cannot be undone.",
+  },
+
   project_roles: {
     title: (name: string) => `${name} in projects`,
     lead: (role: string) => `Everywhere: ${role.toLowerCase()}. In a project the higher role counts.`,
     role_in: (project: string) => `Role in ${project}`,
     none: "No role of their own",
     removed: "Has no role of their own there any more.",
+    by_groups: (role: string, groups: string) => `Is ${role.toLowerCase()} there by group: ${groups}.`,
+    by_groups_also: (role: string, groups: string) => `Also ${role.toLowerCase()} by group: ${groups}.`,
+    group_lead: "Everybody in the group has at least this role there.",
+    group_none: "No role",
+    group_removed: "Has no role there any more.",
   },
 
   projects: {
@@ -1069,6 +1106,11 @@ export const texts = {
       "member added": "gave a role in the project to",
       "member changed": "changed the role in the project of",
       "member removed": "took the role in the project from",
+      "group added": "gave a role in the project to the group",
+      "group changed": "changed the role in the project of the group",
+      "group removed": "took the role in the project from the group",
+      "in_group added": "put into a group",
+      "in_group removed": "took out of a group",
       records: "changed records of",
       columns: "changed columns of",
       other: "changed",

@@ -71,6 +71,7 @@ export const texts = {
   join: {
     greeting: (name) => `Le damos la bienvenida, ${name}`,
     lead: (role) => `Tiene una invitación a este servidor con el papel «${role}». Elija una contraseña: con ella y su nombre iniciará sesión en adelante.`,
+    groups: (groups) => `Forma parte de: ${groups}.`,
     lead_again: "Elija una contraseña nueva: con ella y su nombre iniciará sesión en adelante. Hasta entonces vale la anterior.",
     user: "Nombre para iniciar sesión",
     full_name: "Nombre completo",
@@ -114,6 +115,8 @@ export const texts = {
     sign_out_lead: (n) => `${changes(n)} todavía sin guardar ${plural(n, "se perderá", "se perderán")}.`,
     title: "Su cuenta",
     about: (user, role) => `Nombre para iniciar sesión: ${user} · Papel: ${role}`,
+    in_projects: "Sus papeles en proyectos",
+    role_by_groups: (role, groups) => `${role} por grupo: ${groups}`,
     full_name: "Nombre completo",
     full_name_saved: "Su nombre está guardado.",
     password: "Contraseña",
@@ -171,9 +174,11 @@ export const texts = {
   },
 
   site_people: {
+    parts: "Qué se muestra",
+    people: "Personas",
     title: "Personas de este servidor",
     filter: "Buscar personas",
-    filter_hint: "Nombre o papel",
+    filter_hint: "Nombre, papel o grupo",
     count: (n) => count(n, "persona", "personas"),
     count_of: (n, all) => `${format_count(n)} de ${count(all, "persona", "personas")}`,
     none_found: "Nadie se llama así.",
@@ -218,12 +223,45 @@ export const texts = {
     enabled: "Puede iniciar sesión de nuevo.",
   },
 
+  groups: {
+    title: "Grupos",
+    lead: "Lo que un grupo puede hacer en un proyecto, lo puede allí cada persona del grupo. Cuenta el papel más alto de cada una.",
+    new_name: "Grupo nuevo",
+    name: "Nombre",
+    name_hint: "Excavación 2026",
+    name_empty: "Dé un nombre al grupo.",
+    make: "Crear grupo",
+    none: "Todavía no hay grupos.",
+    about: (people, projects) => `${count(people, "persona", "personas")} · ${projects === 0 ? "sin papel en ningún proyecto" : `con papel en ${count(projects, "proyecto", "proyectos")}`}`,
+    options: (name) => `Opciones para el grupo ${name}`,
+    of: (name) => `Grupos de ${name}`,
+    members: "Quién está en él…",
+    members_of: (name) => `Quién está en «${name}»`,
+    inside: (n) => `${count(n, "persona está", "personas están")} en él. Cada cambio vale enseguida.`,
+    find_hint: "Nombre",
+    put_in: "Ya está en él.",
+    taken_out: "Ya no está en él.",
+    rename: "Cambiar el nombre…",
+    rename_title: (name) => `Cambiar el nombre de «${name}»`,
+    delete_title: (name) => `¿Eliminar el grupo «${name}»?`,
+    delete_lead: (losing, people) =>
+      (losing === 0
+        ? "Nadie pierde nada con ello: lo que el grupo da, sus personas lo tienen también de otro modo."
+        : `${count(losing, "persona", "personas")} de ${format_count(people)} en el grupo ${plural(losing, "verá", "verán")} menos proyectos o ${plural(losing, "podrá", "podrán")} hacer menos en ellos.`) +
+      " Sus papeles en proyectos se eliminan con él. Esto no se puede deshacer.",
+  },
+
   project_roles: {
     title: (name) => `${name} en proyectos`,
     lead: (role) => `En todas partes: ${role}. En un proyecto cuenta el papel más alto.`,
     role_in: (project) => `Papel en ${project}`,
     none: "Sin papel propio",
     removed: "Ya no tiene allí un papel propio.",
+    by_groups: (role, groups) => `Allí tiene por grupo el papel «${role}»: ${groups}.`,
+    by_groups_also: (role, groups) => `También «${role}» por grupo: ${groups}.`,
+    group_lead: "Todas las personas del grupo tienen allí al menos este papel.",
+    group_none: "Sin papel",
+    group_removed: "Ya no tiene papel allí.",
   },
 
   projects: {
@@ -1088,6 +1126,11 @@ export const texts = {
       "member added": "dio un papel en el proyecto a",
       "member changed": "cambió el papel en el proyecto de",
       "member removed": "quitó el papel en el proyecto a",
+      "group added": "dio un papel en el proyecto al grupo",
+      "group changed": "cambió el papel en el proyecto del grupo",
+      "group removed": "quitó el papel en el proyecto al grupo",
+      "in_group added": "incluyó en un grupo a",
+      "in_group removed": "sacó de un grupo a",
       records: "cambió registros de",
       columns: "cambió columnas de",
       other: "cambió",

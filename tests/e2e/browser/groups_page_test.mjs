@@ -1,0 +1,174 @@
+// Groups on the page: an administrator makes one, puts people into it, gives it a role in a project; its people see the project and where their
+// role comes from, until it is taken away under their open pages.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser, kOfLostServer } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+// What the browser says of answers that the test wants, and of sockets that the server ends.
+const kExpected = ["status of 401", "status of 403", "status of 404", "status of 409", "status of 422", ...kOfLostServer];
+
+const [owner, gil] = [await Browser.open(), await Browser.open({ viewport: { width: 390, height: 844 } })];
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+const shot = async ({ page }, name) => {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `groups_${name}.png`) });
+};
+
+async function choose_in_menu({ page }, name) {
+  await page.getByRole("button", { name: /^Account of/ }).click();
+  await page.getByRole("menuitem", { name }).click();
+}
+const show = (part) => owner.page.getByRole("radio", { name: part, exact: true }).click();
+async function choose_for(options, command) {
+  await owner.page.getByRole("button", { name: options }).click();
+  await owner.page.getByRole("menuitem", { name: command }).click();
+}
+async function leave_inner_dialog() {
+  await owner.page.keyboard.press("Escape");
+  await wait_for(async () => (await owner.page.locator("dialog[open]").count()) === 1, "the inner dialog to close");
+}
+
+try {
+  await server.start();
+  const { models } = await server.json("GET", "/models");
+  const { slug, project } = models[0];
+  await owner.sign_in(server, await server.add_person("anna", "administrator"));
+  await gil.sign_in(server, await server.add_person("gil", "guest"));
+  await server.add_person("max", "viewer");
+  await server.json("PATCH", "/users/gil", { full_name: "Gil Guest" });
+  await gil.page.getByText("You see the models of projects that you have a role in.").waitFor();
+
+  say("a group is made with the keyboard; a name that is taken is told at its field");
+  await choose_in_menu(owner, "People…");
+  await owner.page.getByRole("row", { name: /Gil Guest/ }).waitFor();
+  await show("Groups");
+  await owner.page.getByText("There are no groups yet.").waitFor();
+  await owner.page.getByLabel("New group").press("Enter");
+  await owner.page.getByRole("alert").getByText("Give the group a name.").waitFor();
+  await owner.page.getByLabel("New group").fill("Students");
+  await owner.page.keyboard.press("Enter");
+  await owner.page.getByRole("heading", { name: "Who is in “Students”" }).waitFor();
+  await owner.page.getByText("0 people are in it.").waitFor();
+  await leave_inner_dialog();
+  await owner.page.getByLabel("New group").fill("STUDENTS");
+  await owner.page.keyboard.press("Enter");
+  await owner.page.getByRole("alert").getByText("There is a group called `Students`.").waitFor();
+  assert.equal(await owner.page.getByLabel("New group").getAttribute("aria-invalid"), "true");
+
+  say("people are put into it and taken out, found by their names");
+  await choose_for("Options for the group Students", "Who is in it…");
+  await owner.page.getByRole("checkbox", { name: "max" }).check();
+  await owner.page.getByText("1 person is in it.").waitFor();
+  await owner.page.getByRole("checkbox", { name: "max" }).uncheck();
+  await owner.page.getByText("Is out now.").waitFor();
+  await owner.page.getByLabel("Find people").last().fill("gil");
+  assert.equal(await owner.page.getByRole("checkbox").count(), 1);
+  await owner.page.getByRole("checkbox", { name: /Gil Guest/ }).focus();
+  await owner.page.keyboard.press("Space");
+  await owner.page.getByText("Is in it now.").waitFor();
+  await shot(owner, "members");
+  await leave_inner_dialog();
+  await owner.page.getByText("1 person · no role in any project").waitFor();
+
+  say("it gets a role in the project of the demo: its people see it, and where that comes from");
+  await choose_for("Options for the group Students", "Roles in projects…");
+  const in_demo = owner.page.locator("strata-project-roles-dialog").getByRole("combobox").first();
+  assert.equal(await in_demo.inputValue(), "");
+  await in_demo.selectOption("annotator");
+  await owner.page.locator("strata-project-roles-dialog").getByText("Is annotator now.").waitFor();
+  await shot(owner, "roles");
+  await leave_inner_dialog();
+  await owner.page.getByText("1 person · a role in 1 project").waitFor();
+  await shot(owner, "list");
+  await gil.page.reload();
+  await gil.page.getByRole("link", { name: /Demo pot/ }).waitFor();
+  await choose_in_menu(gil, "Account…");
+  await gil.page.getByText("Annotator by group: Students").waitFor();
+  await shot(gil, "account");
+  await gil.page.keyboard.press("Escape");
+
+  say("administrators see it of the person, too");
+  await show("People");
+  await owner.page.getByRole("row", { name: /Gil Guest/ }).getByText("Students").waitFor();
+  await owner.page.getByLabel("Find people").fill("students");
+  await owner.page.getByText(/^1 of \d people$/).waitFor();
+  await shot(owner, "people");
+  await choose_for("Options for Gil Guest", "Roles in projects…");
+  await owner.page.getByText("Is annotator there by group: Students.").waitFor();
+  const own = owner.page.locator("strata-project-roles-dialog").getByRole("combobox").first();
+  await own.selectOption("curator");
+  await owner.page.getByText("Also annotator by group: Students.").waitFor();
+  await own.selectOption("");
+  await owner.page.getByText("Is annotator there by group: Students.").waitFor();
+  await shot(owner, "of_person");
+  await leave_inner_dialog();
+  await owner.page.getByLabel("Find people").fill("");
+
+  say("somebody invited comes with the group, and is told so");
+  await owner.page.getByRole("button", { name: "Invite somebody" }).click();
+  await owner.page.getByLabel("Name for signing in").fill("ida");
+  await owner.page.getByRole("combobox", { name: "Role", exact: true }).selectOption("guest");
+  await owner.page.getByRole("checkbox", { name: "Students" }).check();
+  await shot(owner, "invite");
+  await owner.page.getByRole("button", { name: "Make link" }).click();
+  const link = await owner.page.getByRole("textbox", { name: "Link for ida", exact: true }).inputValue();
+  await owner.page.getByRole("row", { name: /ida/ }).getByText("Students").waitFor();
+  const guest = await Browser.open();
+  await guest.page.goto(link);
+  await guest.page.getByText("You are in: Students.").waitFor();
+  await shot(guest, "join");
+  await guest.close();
+
+  say("a page that is open follows the group's role, and ends with the group");
+  await gil.page.goto(`${server.url}/models/${slug}`);
+  await gil.drawn();
+  await gil.page.getByRole("button", { name: "Brush", exact: true }).waitFor();
+  await show("Groups");
+  await choose_for("Options for the group Students", "Roles in projects…");
+  await in_demo.selectOption("viewer");
+  await gil.page.getByText("Your role is viewer now.").waitFor();
+  await gil.page.getByRole("button", { name: "Brush", exact: true }).waitFor({ state: "detached" });
+  await leave_inner_dialog();
+  await choose_for("Options for the group Students", "Rename…");
+  await owner.page.getByLabel("Name", { exact: true }).fill("Pupils");
+  await owner.page.keyboard.press("Enter");
+  await owner.page.getByText("Pupils").waitFor();
+  await choose_for("Options for the group Pupils", "Delete…");
+  await owner.page.getByText("2 people of the 2 in it will see fewer projects, or may do less there.").waitFor();
+  await shot(owner, "delete");
+  await owner.page.keyboard.press("Escape");
+  await owner.page.getByText("2 people · a role in 1 project").waitFor();
+  await choose_for("Options for the group Pupils", "Delete…");
+  await owner.page.getByRole("button", { name: "Delete", exact: true }).click();
+  await owner.page.getByText("There are no groups yet.").waitFor();
+  await gil.page.goto(server.url);
+  await gil.page.getByText("You see the models of projects that you have a role in.").waitFor();
+
+  say("the project's activity tells it");
+  await owner.page.keyboard.press("Escape");
+  await owner.page.goto(`${server.url}/models/${slug}`);
+  await owner.drawn();
+  const activity = owner.page.locator("strata-activity-panel");
+  await activity.getByRole("button", { name: "Activity", expanded: false }).click();
+  await activity.getByRole("radio", { name: "Whole project" }).click();
+  await activity.getByText("took the role in the project from the group").waitFor();
+  await activity.getByText("put into a group").first().waitFor();
+  await activity.evaluate((panel) => panel.scrollIntoView());
+  await shot(owner, "activity");
+  assert.ok(project);
+
+  say("the end");
+  for (const who of [owner, gil]) who.assert_no_complaints(kExpected);
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
+  await shot(owner, "failed_owner").catch(() => {});
+  await shot(gil, "failed_gil").catch(() => {});
+  throw error;
+} finally {
+  for (const who of [owner, gil]) await who.close();
+  await server.remove();
+}
