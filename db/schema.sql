@@ -123,6 +123,30 @@ BEGIN
   RETURN NULL;
 END $$;
 
+CREATE FUNCTION public.bin_is_activity() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  thing jsonb := to_jsonb(NEW);
+  line activities;
+  of_project bigint := (thing ->> 'project_id')::bigint;
+BEGIN
+  IF TG_ARGV[0] = 'layer' THEN
+    SELECT m.project_id INTO of_project FROM all_models m WHERE m.id = NEW.model_id;
+    UPDATE activities SET visibility = NEW.visibility WHERE model_id = NEW.model_id AND layer_id = NEW.id;
+  END IF;
+  line := activity_of(of_project, TG_ARGV[0], CASE WHEN NEW.binned IS NULL THEN 'restored' ELSE 'deleted' END, NEW.name);
+  IF TG_ARGV[0] = 'layer' THEN
+    line.model_id := NEW.model_id;
+    line.layer_id := NEW.id;
+    line.visibility := NEW.visibility;
+  ELSE
+    line.model_id := NEW.id;
+  END IF;
+  PERFORM note_activity(line);
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.changed_columns(before jsonb, after jsonb) RETURNS text[]
     LANGUAGE sql IMMUTABLE
     AS $$
@@ -333,7 +357,7 @@ BEGIN
   RETURN NULL;
 END $$;
 
-CREATE TABLE public.layers (
+CREATE TABLE public.all_layers (
     id bigint NOT NULL,
     model_id bigint NOT NULL,
     name text NOT NULL,
@@ -357,6 +381,11 @@ CREATE TABLE public.layers (
     locked boolean DEFAULT false NOT NULL,
     visibility text DEFAULT 'public'::text NOT NULL,
     review boolean DEFAULT false NOT NULL,
+    binned timestamp with time zone,
+    binned_by text,
+    binned_bytes bigint,
+    erasing boolean DEFAULT false NOT NULL,
+    CONSTRAINT all_layers_check CHECK ((((binned IS NULL) = (binned_by IS NULL)) AND ((binned IS NULL) = (binned_bytes IS NULL)) AND ((binned IS NOT NULL) OR (NOT erasing)))),
     CONSTRAINT layers_check CHECK (((kind = 'database'::text) = (table_id IS NOT NULL))),
     CONSTRAINT layers_check1 CHECK (((expression IS NOT NULL) OR (NOT automatic))),
     CONSTRAINT layers_expression_check CHECK ((expression <> ''::text)),
@@ -368,7 +397,7 @@ CREATE TABLE public.layers (
     CONSTRAINT layers_visibility_check CHECK ((visibility = ANY (ARRAY['public'::text, 'team'::text, 'private'::text])))
 );
 
-CREATE TABLE public.models (
+CREATE TABLE public.all_models (
     id bigint NOT NULL,
     project_id bigint NOT NULL,
     name text NOT NULL,
@@ -401,6 +430,11 @@ CREATE TABLE public.models (
     sequence bigint DEFAULT 0 NOT NULL,
     version bigint DEFAULT 1 NOT NULL,
     source_download text DEFAULT 'annotator'::text NOT NULL,
+    binned timestamp with time zone,
+    binned_by text,
+    binned_bytes bigint,
+    erasing boolean DEFAULT false NOT NULL,
+    CONSTRAINT all_models_check CHECK ((((binned IS NULL) = (binned_by IS NULL)) AND ((binned IS NULL) = (binned_bytes IS NULL)) AND ((binned IS NOT NULL) OR (NOT erasing)))),
     CONSTRAINT models_bounds_max_check CHECK ((cardinality(bounds_max) = 3)),
     CONSTRAINT models_bounds_min_check CHECK ((cardinality(bounds_min) = 3)),
     CONSTRAINT models_name_check CHECK ((name <> ''::text)),
@@ -409,6 +443,71 @@ CREATE TABLE public.models (
     CONSTRAINT models_unit_check CHECK ((unit = ANY (ARRAY['mm'::text, 'cm'::text, 'm'::text]))),
     CONSTRAINT models_up_check CHECK ((up = ANY (ARRAY['x'::text, 'y'::text, 'z'::text])))
 );
+
+CREATE VIEW public.layers AS
+ SELECT all_layers.id,
+    all_layers.model_id,
+    all_layers.name,
+    all_layers.slug,
+    all_layers.kind,
+    all_layers.type,
+    all_layers.resolution,
+    all_layers.unit,
+    all_layers.description,
+    all_layers.palette,
+    all_layers.opacity,
+    all_layers.visible,
+    all_layers.draw_order,
+    all_layers.sequence,
+    all_layers.version,
+    all_layers.table_id,
+    all_layers.expression,
+    all_layers.automatic,
+    all_layers.computed_sequence,
+    all_layers.summed,
+    all_layers.locked,
+    all_layers.visibility,
+    all_layers.review
+   FROM public.all_layers
+  WHERE ((all_layers.binned IS NULL) AND (EXISTS ( SELECT 1
+           FROM public.all_models m
+          WHERE ((m.id = all_layers.model_id) AND (m.binned IS NULL)))));
+
+CREATE VIEW public.models AS
+ SELECT all_models.id,
+    all_models.project_id,
+    all_models.name,
+    all_models.slug,
+    all_models.unit,
+    all_models.unit_assumed,
+    all_models.scale_verified,
+    all_models.up,
+    all_models.north,
+    all_models.crs,
+    all_models.origin,
+    all_models.bounds_min,
+    all_models.bounds_max,
+    all_models.triangles,
+    all_models.vertices,
+    all_models.area,
+    all_models.atlas,
+    all_models.repairs,
+    all_models.default_resolution,
+    all_models.inventory_number,
+    all_models.owner,
+    all_models.creator,
+    all_models.captured,
+    all_models.method,
+    all_models.accuracy,
+    all_models.processing,
+    all_models.rights_uri,
+    all_models.credit,
+    all_models.geometry,
+    all_models.sequence,
+    all_models.version,
+    all_models.source_download
+   FROM public.all_models
+  WHERE (all_models.binned IS NULL);
 
 CREATE TABLE public.tile_sums (
     layer_id bigint NOT NULL,
@@ -791,7 +890,7 @@ CREATE TABLE public.layer_inputs (
     table_sequence bigint DEFAULT 0 NOT NULL
 );
 
-ALTER TABLE public.layers ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+ALTER TABLE public.all_layers ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     SEQUENCE NAME public.layers_id_seq
     START WITH 1
     INCREMENT BY 1
@@ -837,7 +936,7 @@ CREATE TABLE public.model_sources (
     sha256 bytea NOT NULL
 );
 
-ALTER TABLE public.models ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+ALTER TABLE public.all_models ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     SEQUENCE NAME public.models_id_seq
     START WITH 1
     INCREMENT BY 1
@@ -1059,10 +1158,7 @@ ALTER TABLE ONLY public.kiosks
 ALTER TABLE ONLY public.layer_inputs
     ADD CONSTRAINT layer_inputs_pkey PRIMARY KEY (layer_id, slug);
 
-ALTER TABLE ONLY public.layers
-    ADD CONSTRAINT layers_model_id_slug_key UNIQUE (model_id, slug);
-
-ALTER TABLE ONLY public.layers
+ALTER TABLE ONLY public.all_layers
     ADD CONSTRAINT layers_pkey PRIMARY KEY (id);
 
 ALTER TABLE ONLY public.looks
@@ -1074,11 +1170,8 @@ ALTER TABLE ONLY public.looks
 ALTER TABLE ONLY public.model_sources
     ADD CONSTRAINT model_sources_pkey PRIMARY KEY (model_id, name);
 
-ALTER TABLE ONLY public.models
+ALTER TABLE ONLY public.all_models
     ADD CONSTRAINT models_pkey PRIMARY KEY (id);
-
-ALTER TABLE ONLY public.models
-    ADD CONSTRAINT models_slug_key UNIQUE (slug);
 
 ALTER TABLE ONLY public.project_members
     ADD CONSTRAINT project_members_pkey PRIMARY KEY (user_id, project_id);
@@ -1192,19 +1285,29 @@ CREATE INDEX layer_inputs_input ON public.layer_inputs USING btree (input_id);
 
 CREATE INDEX layer_inputs_table ON public.layer_inputs USING btree (table_id);
 
-CREATE INDEX layers_automatic ON public.layers USING btree (id) WHERE automatic;
+CREATE INDEX layers_automatic ON public.all_layers USING btree (id) WHERE automatic;
 
-CREATE INDEX layers_table ON public.layers USING btree (table_id);
+CREATE INDEX layers_binned ON public.all_layers USING btree (binned) WHERE (binned IS NOT NULL);
 
-CREATE INDEX layers_unsummed ON public.layers USING btree (id) WHERE (NOT summed);
+CREATE INDEX layers_model ON public.all_layers USING btree (model_id);
+
+CREATE UNIQUE INDEX layers_slug ON public.all_layers USING btree (model_id, slug) WHERE (binned IS NULL);
+
+CREATE INDEX layers_table ON public.all_layers USING btree (table_id);
+
+CREATE INDEX layers_unsummed ON public.all_layers USING btree (id) WHERE (NOT summed);
 
 CREATE INDEX looks_picture ON public.looks USING btree (picture);
 
 CREATE INDEX model_sources_blob ON public.model_sources USING btree (sha256);
 
-CREATE INDEX models_geometry ON public.models USING btree (geometry);
+CREATE INDEX models_binned ON public.all_models USING btree (binned) WHERE (binned IS NOT NULL);
 
-CREATE INDEX models_project ON public.models USING btree (project_id);
+CREATE INDEX models_geometry ON public.all_models USING btree (geometry);
+
+CREATE INDEX models_project ON public.all_models USING btree (project_id);
+
+CREATE UNIQUE INDEX models_slug ON public.all_models USING btree (slug) WHERE (binned IS NULL);
 
 CREATE INDEX project_members_project ON public.project_members USING btree (project_id);
 
@@ -1240,13 +1343,21 @@ CREATE TRIGGER comment_is_activity AFTER INSERT OR DELETE OR UPDATE OF resolved,
 
 CREATE TRIGGER edits_are_activity AFTER INSERT ON public.edits REFERENCING NEW TABLE AS added FOR EACH STATEMENT EXECUTE FUNCTION public.edits_are_activity();
 
-CREATE TRIGGER layer_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, slug, type, unit, description, palette, opacity, visible, draw_order, expression, automatic, locked, review, visibility ON public.layers FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('layer');
+CREATE TRIGGER layer_gone_is_activity AFTER DELETE ON public.all_layers FOR EACH ROW WHEN ((old.binned IS NULL)) EXECUTE FUNCTION public.thing_is_activity('layer');
+
+CREATE TRIGGER layer_in_bin_is_activity AFTER UPDATE OF binned ON public.all_layers FOR EACH ROW WHEN (((old.binned IS NULL) <> (new.binned IS NULL))) EXECUTE FUNCTION public.bin_is_activity('layer');
+
+CREATE TRIGGER layer_is_activity AFTER INSERT OR UPDATE OF name, slug, type, unit, description, palette, opacity, visible, draw_order, expression, automatic, locked, review, visibility ON public.all_layers FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('layer');
 
 CREATE TRIGGER look_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, slug, description, opacity, visible, draw_order ON public.looks FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('look');
 
 CREATE TRIGGER member_is_activity AFTER INSERT OR DELETE OR UPDATE OF role ON public.project_members FOR EACH ROW EXECUTE FUNCTION public.member_is_activity();
 
-CREATE TRIGGER model_is_activity AFTER INSERT OR DELETE OR UPDATE OF name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download ON public.models FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('model');
+CREATE TRIGGER model_gone_is_activity AFTER DELETE ON public.all_models FOR EACH ROW WHEN ((old.binned IS NULL)) EXECUTE FUNCTION public.thing_is_activity('model');
+
+CREATE TRIGGER model_in_bin_is_activity AFTER UPDATE OF binned ON public.all_models FOR EACH ROW WHEN (((old.binned IS NULL) <> (new.binned IS NULL))) EXECUTE FUNCTION public.bin_is_activity('model');
+
+CREATE TRIGGER model_is_activity AFTER INSERT OR UPDATE OF name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('model');
 
 CREATE TRIGGER project_is_activity AFTER INSERT OR UPDATE OF name, slug, description ON public.projects FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('project');
 
@@ -1275,10 +1386,10 @@ ALTER TABLE ONLY public.blob_chunks
     ADD CONSTRAINT blob_chunks_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.comments
-    ADD CONSTRAINT comments_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE SET NULL;
+    ADD CONSTRAINT comments_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE SET NULL;
 
 ALTER TABLE ONLY public.comments
-    ADD CONSTRAINT comments_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+    ADD CONSTRAINT comments_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.comments
     ADD CONSTRAINT comments_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE SET NULL;
@@ -1290,48 +1401,48 @@ ALTER TABLE ONLY public.detail_levels
     ADD CONSTRAINT detail_levels_geometry_fkey FOREIGN KEY (geometry) REFERENCES public.blobs(sha256);
 
 ALTER TABLE ONLY public.detail_levels
-    ADD CONSTRAINT detail_levels_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+    ADD CONSTRAINT detail_levels_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.edits
-    ADD CONSTRAINT edits_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE CASCADE;
+    ADD CONSTRAINT edits_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.edits
-    ADD CONSTRAINT edits_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+    ADD CONSTRAINT edits_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.kiosks
     ADD CONSTRAINT kiosks_tour_id_fkey FOREIGN KEY (tour_id) REFERENCES public.tours(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.layer_inputs
-    ADD CONSTRAINT layer_inputs_input_id_fkey FOREIGN KEY (input_id) REFERENCES public.layers(id) ON DELETE SET NULL;
+    ADD CONSTRAINT layer_inputs_input_id_fkey FOREIGN KEY (input_id) REFERENCES public.all_layers(id) ON DELETE SET NULL;
 
 ALTER TABLE ONLY public.layer_inputs
-    ADD CONSTRAINT layer_inputs_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE CASCADE;
+    ADD CONSTRAINT layer_inputs_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.layer_inputs
     ADD CONSTRAINT layer_inputs_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE SET NULL;
 
-ALTER TABLE ONLY public.layers
-    ADD CONSTRAINT layers_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+ALTER TABLE ONLY public.all_layers
+    ADD CONSTRAINT layers_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
-ALTER TABLE ONLY public.layers
+ALTER TABLE ONLY public.all_layers
     ADD CONSTRAINT layers_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id);
 
 ALTER TABLE ONLY public.looks
-    ADD CONSTRAINT looks_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+    ADD CONSTRAINT looks_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.looks
     ADD CONSTRAINT looks_picture_fkey FOREIGN KEY (picture) REFERENCES public.blobs(sha256);
 
 ALTER TABLE ONLY public.model_sources
-    ADD CONSTRAINT model_sources_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+    ADD CONSTRAINT model_sources_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.model_sources
     ADD CONSTRAINT model_sources_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256);
 
-ALTER TABLE ONLY public.models
+ALTER TABLE ONLY public.all_models
     ADD CONSTRAINT models_geometry_fkey FOREIGN KEY (geometry) REFERENCES public.blobs(sha256);
 
-ALTER TABLE ONLY public.models
+ALTER TABLE ONLY public.all_models
     ADD CONSTRAINT models_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id);
 
 ALTER TABLE ONLY public.project_members
@@ -1362,17 +1473,17 @@ ALTER TABLE ONLY public.thumbnails
     ADD CONSTRAINT thumbnails_sha256_fkey FOREIGN KEY (sha256) REFERENCES public.blobs(sha256) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.tile_revisions
-    ADD CONSTRAINT tile_revisions_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE CASCADE;
+    ADD CONSTRAINT tile_revisions_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.tile_sums
-    ADD CONSTRAINT tile_sums_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.layers(id) ON DELETE CASCADE;
+    ADD CONSTRAINT tile_sums_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.tokens
     ADD CONSTRAINT tokens_user_name_fkey FOREIGN KEY (user_name) REFERENCES public.users(name) ON UPDATE CASCADE ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.tours
-    ADD CONSTRAINT tours_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+    ADD CONSTRAINT tours_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.views
-    ADD CONSTRAINT views_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.models(id) ON DELETE CASCADE;
+    ADD CONSTRAINT views_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 

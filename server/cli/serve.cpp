@@ -19,12 +19,15 @@
 namespace strata::cli {
 namespace {
 
+constexpr int kMostBinDays = 36500;
+
 struct ServeOptions {
   DataOptions data;
   std::string listen = "127.0.0.1:8080", sql_listen;
   std::vector<std::string> origins;
   std::filesystem::path tls_cert, tls_key;
   std::uint64_t gpu_memory = 0, memory = 0;
+  int bin_days = net::ServerOptions{}.bin_days;
   bool debug = false;
 };
 
@@ -179,6 +182,7 @@ int run(ServeOptions options) {
   server_options.tls_chain = options.tls_cert;
   server_options.tls_key = options.tls_key;
   server_options.owner_token = owner_token();
+  server_options.bin_days = options.bin_days;
   auto server = net::Server::start(server_options, store, rooms, jobs, **renderer);
   if (!server) return report(server.error());
 
@@ -242,6 +246,12 @@ Command add_serve(CLI::App& app) {
                    "Budget of main memory for open models, e.g. 8GiB (default: 60 % of the machine's)")
       ->envname("STRATA_MEMORY")
       ->transform(CLI::AsSizeValue(false));
+  command
+      ->add_option("--bin-days", options->bin_days,
+                   "Days for which deleted layers and models can be restored; 0: they are erased at once")
+      ->envname("STRATA_BIN_DAYS")
+      ->check(CLI::Range(0, kMostBinDays))
+      ->capture_default_str();
   command->add_flag("--gl-debug", options->debug, "Ask the driver for debug messages (slow)");
   return [options] { return run(*options); };
 }

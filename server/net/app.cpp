@@ -73,8 +73,9 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       templates_(std::move(templates)),
       shared_(make_shared_state(options_, store, tools_)),
       workers_(options_.worker_threads, options_.max_waiting_requests),
-      context_{options_,          store,    rooms,   jobs,      renderer, auth_, edit_book_, *shared_->sockets,
-               *shared_->metrics, workers_, *tools_, templates_},
+      bin_keeper_(store.bin(), std::chrono::days(options_.bin_days)),
+      context_{options_,          store,    rooms,   jobs,       renderer,   auth_, edit_book_, *shared_->sockets,
+               *shared_->metrics, workers_, *tools_, templates_, bin_keeper_},
       recomputer_(context_) {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
@@ -83,6 +84,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_member_routes(router_, context_);
   add_group_routes(router_, context_);
   add_activity_routes(router_, context_);
+  add_bin_routes(router_, context_);
   add_model_routes(router_, context_);
   add_import_routes(router_, context_);
   add_job_routes(router_, context_);
@@ -122,6 +124,7 @@ App::~App() { stop_workers(); }
 
 void App::stop_workers() {
   recomputer_.stop();
+  bin_keeper_.stop();
   workers_.stop();
   shared_->queries->stop();
 }

@@ -76,6 +76,7 @@ class App {
   Router router_;
   Route page_;  // everything that is no API address
   Route live_;  // the live connections, which no handler answers
+  BinKeeper bin_keeper_;
   const RouteContext context_;
   Recomputer recomputer_;
 };

@@ -6,6 +6,7 @@
 
 #include "jobs/job_queue.h"
 #include "net/auth.h"
+#include "net/bin_keeper.h"
 #include "net/edit_book.h"
 #include "net/live_sockets.h"
 #include "net/metrics.h"
@@ -34,6 +35,7 @@ struct RouteContext {
   WorkerPool& workers;
   ToolShelf& tools;
   const TemplateShelf& templates;
+  BinKeeper& bin_keeper;
 };
 
 void add_system_routes(Router& router, const RouteContext& context);
@@ -43,6 +45,7 @@ void add_project_routes(Router& router, const RouteContext& context);
 void add_member_routes(Router& router, const RouteContext& context);
 void add_group_routes(Router& router, const RouteContext& context);
 void add_activity_routes(Router& router, const RouteContext& context);
+void add_bin_routes(Router& router, const RouteContext& context);
 void add_model_routes(Router& router, const RouteContext& context);
 void add_import_routes(Router& router, const RouteContext& context);
 void add_job_routes(Router& router, const RouteContext& context);

@@ -204,8 +204,9 @@ Result<Response> delete_layer(const RouteContext& context, const Request& reques
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
   if (auto fresh = check_if_match(request, layer->version); !fresh) return tl::unexpected(fresh.error());
-  auto gone = (*room)->delete_layer(layer->id, first_answer<>(request, [] { return empty_response(204); }));
+  auto gone = (*room)->bin_layer(layer->id, first_answer<>(request, [] { return empty_response(204); }));
   if (!gone) return tl::unexpected(gone.error());
+  if (context.options.bin_days == 0) context.bin_keeper.look();
   return empty_response(204);
 }
 

@@ -146,10 +146,11 @@ void add_model_routes(Router& router, const RouteContext& context) {
                 auto model = context.store.model(request.param("model"));
                 if (!model) return tl::unexpected(model.error());
                 if (auto fresh = check_if_match(request, model->version); !fresh) return tl::unexpected(fresh.error());
-                auto gone =
-                    context.store.delete_model(model->id, first_answer<>(request, [] { return empty_response(204); }));
+                auto gone = context.store.bin().put_model(model->id,
+                                                          first_answer<>(request, [] { return empty_response(204); }));
                 if (!gone) return tl::unexpected(gone.error());
                 context.rooms.forget(model->id);
+                if (context.options.bin_days == 0) context.bin_keeper.look();
                 return empty_response(204);
               }),
               .role = Role::curator,

@@ -19,6 +19,17 @@ LayerState new_state(Layer layer) {
   return state;
 }
 
+Result<LayerState> read_layer_state(store::Store& store, Layer layer) {
+  auto tiles = store.load_tiles(layer);
+  if (!tiles) return tl::unexpected(tiles.error());
+  auto provisional = read_provisional(store, layer);
+  if (!provisional) return tl::unexpected(provisional.error());
+  LayerState state = new_state(std::move(layer));
+  state.mirror->put(tiles->tiles, tiles->sequence);
+  state.provisional->put(*provisional, tiles->sequence);
+  return state;
+}
+
 Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id, const std::vector<LayerState>& held) {
   JournalContents contents;
   // Before the tiles: were they to hold more, the next commit would find out and have everything read again.
@@ -28,20 +39,16 @@ Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id,
   auto layers = store.layers(model_id, Role::owner);
   if (!layers) return tl::unexpected(layers.error());
   for (Layer& layer : *layers) {
-    auto tiles = store.load_tiles(layer);
-    if (!tiles) return tl::unexpected(tiles.error());
-    auto provisional = read_provisional(store, layer);
-    if (!provisional) return tl::unexpected(provisional.error());
+    auto state = read_layer_state(store, std::move(layer));
+    if (!state) return tl::unexpected(state.error());
     for (const LayerState& old : held) {
-      if (old.layer.id != layer.id) continue;
-      auto differing = differing_tiles(old.mirror->snapshot().tiles, tiles->tiles);
-      std::ranges::move(differing_tiles(old.provisional->snapshot().tiles, *provisional),
+      if (old.layer.id != state->layer.id) continue;
+      auto differing = differing_tiles(old.mirror->snapshot().tiles, state->mirror->snapshot().tiles);
+      std::ranges::move(differing_tiles(old.provisional->snapshot().tiles, state->provisional->snapshot().tiles),
                         std::back_inserter(differing));
-      if (!differing.empty()) contents.differing[layer.id] = std::move(differing);
+      if (!differing.empty()) contents.differing[old.layer.id] = std::move(differing);
     }
-    LayerState& state = contents.layers.emplace_back(new_state(std::move(layer)));
-    state.mirror->put(tiles->tiles, tiles->sequence);
-    state.provisional->put(*provisional, tiles->sequence);
+    contents.layers.push_back(std::move(*state));
   }
   return contents;
 }

@@ -21,6 +21,8 @@ struct JournalContents {
 };
 Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id, const std::vector<LayerState>& held);
 
+Result<LayerState> read_layer_state(store::Store& store, Layer layer);  // with mirrors, without handles
+
 // The model's mesh and its coarser copies.
 Result<render::ModelGeometry> read_geometry(store::Store& store, std::int64_t model_id);
 

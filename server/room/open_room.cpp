@@ -337,9 +337,16 @@ Result<Layer> OpenRoom::widen_layer(const Layer& layer, ValueType type, const st
 }
 
 Result<void> OpenRoom::delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) {
+  return let_go_of_layer(id, [this, id, answer] { return parts_.store.delete_layer(id, answer); });
+}
+Result<void> OpenRoom::bin_layer(std::int64_t id, const store::FirstAnswer<>& answer) {
+  return let_go_of_layer(id, [this, id, answer] { return parts_.store.bin().put_layer(id, answer); });
+}
+
+Result<void> OpenRoom::let_go_of_layer(std::int64_t id, const std::function<Result<void>()>& in_store) {
   // In the order of edits: none of the layer's may be on its way to a journal that no longer knows it.
-  return exclusively<void>([this, id, answer]() -> Result<void> {
-    if (auto deleted = parts_.store.delete_layer(id, answer); !deleted) return deleted;
+  return exclusively<void>([this, id, in_store]() -> Result<void> {
+    if (auto gone = in_store(); !gone) return gone;
     on_strand([&] {
       LayerState gone;
       {
@@ -359,6 +366,52 @@ Result<void> OpenRoom::delete_layer(std::int64_t id, const store::FirstAnswer<>&
     });
     return {};
   });
+}
+
+Result<store::BinRestored> OpenRoom::restore_layer(const store::BinEntry& entry,
+                                                   const store::FirstAnswer<store::BinRestored>& answer) {
+  // In the order of edits: the journal's numbers stay as they are.
+  auto restored = exclusively<store::BinRestored>([this, entry, answer]() -> Result<store::BinRestored> {
+    auto back = parts_.store.bin().restore(entry, answer);
+    if (!back) return back;
+    if (auto known = take_up_layer(entry.id); !known) {
+      // It is there, as the database says: the room reads everything again until it has it.
+      log::warning("layer " + std::to_string(entry.id) +
+                   " was restored and could not be loaded: " + known.error().detail);
+      on_strand([&] { journal_differs(); });
+    }
+    return back;
+  });
+  return restored;
+}
+
+Result<void> OpenRoom::take_up_layer(std::int64_t id) {
+  auto layer = parts_.store.layer(model_id_, std::to_string(id), Role::owner);
+  if (!layer) return tl::unexpected(layer.error());
+  auto state = read_layer_state(parts_.store, std::move(*layer));
+  if (!state) return tl::unexpected(state.error());
+  auto handles = add_layer(parts_.renderer, model_handle(), *state);
+  if (!handles) return tl::unexpected(gpu_problem(handles.error()));
+  state->handles = *handles;
+  maps_->request(state->layer.resolution, [](auto) {});
+  on_strand([&] {
+    {
+      std::lock_guard lock(mutex_);
+      layers_.emplace(id, *state);
+      mirrors_share_.recount(mirror_bytes());
+    }
+    tell_layer(std::nullopt, state->layer);
+    sort_layers_changed();
+  });
+  // Layers that are computed from it may be up to date again.
+  for (const Layer& other : layers()) {
+    if (!other.formula ||
+        std::ranges::none_of(other.formula->inputs, [&](const auto& input) { return input.layer == id; }))
+      continue;
+    if (auto stored = parts_.store.layer(model_id_, std::to_string(other.id), Role::owner))
+      on_strand([&] { replace_layer(*stored); });
+  }
+  return {};
 }
 
 Result<Model> OpenRoom::update_model(Model model, const store::FirstAnswer<Model>& answer) {

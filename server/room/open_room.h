@@ -54,6 +54,9 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer) override;
   Result<Layer> widen_layer(const Layer& layer, ValueType type, const store::FirstAnswer<Layer>& answer) override;
   Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) override;
+  Result<void> bin_layer(std::int64_t id, const store::FirstAnswer<>& answer) override;
+  Result<store::BinRestored> restore_layer(const store::BinEntry& entry,
+                                           const store::FirstAnswer<store::BinRestored>& answer) override;
   Result<Layer> layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
                                const std::map<std::int64_t, std::int64_t>& tables) override;
   void records_changed(std::int64_t table_id) override;
@@ -152,6 +155,8 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void on_gpu_filled(int losses_before, const Result<GpuContents>& contents);
   void on_journal_read(Result<JournalContents> contents);
   void retry_recovery(const Problem& why);
+  Result<void> let_go_of_layer(std::int64_t id, const std::function<Result<void>()>& in_store);
+  Result<void> take_up_layer(std::int64_t id);  // that the store has again; alone, as `exclusively` runs it
   Result<void> check_not_retired(const EditRequest& request);
   void sort_layers_changed();
   // On the strand: computed layers that `reads` tells become stale, and people are told.

@@ -18,6 +18,7 @@
 #include "query/texel_samples.h"
 #include "query/values.h"
 #include "room/edit.h"
+#include "store/bin.h"
 #include "store/store.h"
 #include "stream/viewer.h"
 
@@ -206,7 +207,11 @@ class Room {
   // it does not widen to, and a computed layer.
   virtual Result<Layer> widen_layer(const Layer& layer, ValueType type,
                                     const store::FirstAnswer<Layer>& answer = {}) = 0;
-  virtual Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer = {}) = 0;
+  virtual Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer = {}) = 0;  // for ever
+  // Into the Bin, and out of it: who restored layers hear of is one that is made.
+  virtual Result<void> bin_layer(std::int64_t id, const store::FirstAnswer<>& answer) = 0;
+  virtual Result<store::BinRestored> restore_layer(const store::BinEntry& entry,
+                                                   const store::FirstAnswer<store::BinRestored>& answer) = 0;
   // A ComputeEdit of the layer was durable with this sequence, and the tables that its expression reads stood there before it.
   virtual Result<Layer> layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
                                        const std::map<std::int64_t, std::int64_t>& tables) = 0;

@@ -146,6 +146,13 @@ class SeenRoom final : public Room {
   Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) override {
     return room_->delete_layer(id, answer);
   }
+  Result<void> bin_layer(std::int64_t id, const store::FirstAnswer<>& answer) override {
+    return room_->bin_layer(id, answer);
+  }
+  Result<store::BinRestored> restore_layer(const store::BinEntry& entry,
+                                           const store::FirstAnswer<store::BinRestored>& answer) override {
+    return room_->restore_layer(entry, answer);
+  }
   Result<Layer> layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
                                const std::map<std::int64_t, std::int64_t>& tables) override {
     return room_->layer_computed(id, expression, sequence, tables);

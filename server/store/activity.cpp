@@ -7,11 +7,11 @@
 namespace strata::store {
 namespace {
 
-// Of what is about a layer, or in a thread about one: to whoever sees that layer, or saw it when it was deleted.
-#define STRATA_ACTIVITY_IS_SEEN                                                                                       \
-  "coalesce((SELECT l.visibility FROM layers l WHERE l.id = activities.layer_id), activities.visibility) = any($6) "  \
-  "AND (activities.comment_id IS NULL OR (SELECT coalesce(l.visibility, f.visibility) FROM comments c JOIN comments " \
-  "f ON f.id = coalesce(c.thread_id, c.id) LEFT JOIN layers l ON l.id = f.layer_id "                                  \
+// Of what is about a layer, or in a thread about one: to whoever sees that layer, in the Bin or not, or saw it when it was erased.
+#define STRATA_ACTIVITY_IS_SEEN                                                                                          \
+  "coalesce((SELECT l.visibility FROM all_layers l WHERE l.id = activities.layer_id), activities.visibility) = any($6) " \
+  "AND (activities.comment_id IS NULL OR (SELECT coalesce(l.visibility, f.visibility) FROM comments c JOIN comments "    \
+  "f ON f.id = coalesce(c.thread_id, c.id) LEFT JOIN all_layers l ON l.id = f.layer_id "                                 \
   "WHERE c.id = activities.comment_id) = any($6))"
 // The page is found first, by indexes alone; what its lines are about is looked up for those.
 #define STRATA_ACTIVITY_LINES(asked)                                                     \

@@ -142,7 +142,7 @@ Result<void> stream_blob(Pool& pool, const std::vector<std::uint8_t>& sha256, st
 }
 
 #define STRATA_IS_UNUSED                                                        \
-  "NOT EXISTS (SELECT 1 FROM models WHERE geometry = b.sha256) "                \
+  "NOT EXISTS (SELECT 1 FROM all_models WHERE geometry = b.sha256) "            \
   "AND NOT EXISTS (SELECT 1 FROM detail_levels d WHERE d.geometry = b.sha256) " \
   "AND NOT EXISTS (SELECT 1 FROM model_sources s WHERE s.sha256 = b.sha256) "   \
   "AND NOT EXISTS (SELECT 1 FROM looks WHERE picture = b.sha256) "              \

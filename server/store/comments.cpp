@@ -11,13 +11,16 @@ namespace {
 
 constexpr std::size_t kLongestText = 10'000;  // characters
 
-// Who sees the layer that the thread is about sees the thread. Also of a comment that a statement has just made.
-#define STRATA_COMMENT_VISIBILITY                                                                                     \
-  "CASE WHEN c.thread_id IS NULL THEN coalesce((SELECT visibility FROM layers WHERE id = c.layer_id), c.visibility) " \
-  "ELSE (SELECT coalesce(l.visibility, f.visibility) FROM comments f LEFT JOIN layers l ON l.id = f.layer_id "        \
+// Who sees the layer that the thread is about, in the Bin or not, sees the thread. Also of a comment that a statement has just made.
+#define STRATA_COMMENT_VISIBILITY                                                                                         \
+  "CASE WHEN c.thread_id IS NULL THEN coalesce((SELECT visibility FROM all_layers WHERE id = c.layer_id), c.visibility) " \
+  "ELSE (SELECT coalesce(l.visibility, f.visibility) FROM comments f LEFT JOIN all_layers l ON l.id = f.layer_id "        \
   "WHERE f.id = c.thread_id) END"
-#define STRATA_COMMENT_COLUMNS                                                                          \
-  "c.id, c.model_id, c.thread_id, c.position, c.normal, c.layer_id, c.table_id, c.record_key, c.text, " \
+// One in the Bin is not told, and is there again when it comes back.
+#define STRATA_COMMENT_LAYER "(SELECT id FROM layers WHERE id = c.layer_id)"
+#define STRATA_COMMENT_COLUMNS                                                 \
+  "c.id, c.model_id, c.thread_id, c.position, c.normal, " STRATA_COMMENT_LAYER \
+  ", c.table_id, c.record_key, c.text, "                                       \
   "c.user_name, c.time, c.edited, c.deleted IS NOT NULL, c.resolved, c.resolved_by, c.version, " STRATA_COMMENT_VISIBILITY
 
 std::optional<std::int64_t> id_at(const PgResult& rows, int row, int column) {
@@ -67,12 +70,15 @@ Result<void> check_words(const std::string& text) {
   return {};
 }
 
+// One of a model that is there.
+#define STRATA_COMMENT "FROM comments c WHERE id = $1 AND EXISTS (SELECT 1 FROM models WHERE id = c.model_id)"
+
 enum class Lock { none, keep, change };  // `keep`: it stays while this transaction lasts
 
 Result<Comment> load(PgConnection& connection, std::int64_t id, Lock lock) {
-  const char* sql = lock == Lock::none   ? "SELECT " STRATA_COMMENT_COLUMNS " FROM comments c WHERE id = $1"
-                    : lock == Lock::keep ? "SELECT " STRATA_COMMENT_COLUMNS " FROM comments c WHERE id = $1 FOR SHARE"
-                                         : "SELECT " STRATA_COMMENT_COLUMNS " FROM comments c WHERE id = $1 FOR UPDATE";
+  const char* sql = lock == Lock::none   ? "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT
+                    : lock == Lock::keep ? "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT " FOR SHARE"
+                                         : "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT " FOR UPDATE";
   auto rows = connection.query(sql, Params().integer(id));
   if (!rows) return tl::unexpected(rows.error());
   if (rows->rows() == 0) return not_found("comment", std::to_string(id));

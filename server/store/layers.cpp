@@ -10,12 +10,12 @@ namespace {
   "(expression IS NOT NULL AND (computed_sequence = 0 OR EXISTS (SELECT 1 FROM layer_inputs i LEFT JOIN layers l ON "   \
   "l.id = i.input_id LEFT JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND (l.id IS NULL OR " \
   "l.sequence > layers.computed_sequence OR t.sequence > i.table_sequence))))"
-#define STRATA_LAYER_COLUMNS                                                                                           \
-  "id, model_id, name, slug::text, kind, type, resolution, unit, description, palette, opacity, visible, draw_order, " \
-  "table_id, sequence, version, expression, automatic, computed_sequence, "                                            \
-  "(SELECT coalesce(jsonb_agg(jsonb_build_object('slug', i.slug, 'layer', i.input_id, 'table', i.table_id) "           \
-  "ORDER BY i.slug), '[]') FROM layer_inputs i WHERE i.layer_id = layers.id), "                                        \
-  "EXISTS (SELECT 1 FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND "   \
+#define STRATA_LAYER_COLUMNS                                                                                                                              \
+  "id, model_id, name, slug::text, kind, type, resolution, unit, description, palette, opacity, visible, draw_order, "                                    \
+  "table_id, sequence, version, expression, automatic, computed_sequence, "                                                                               \
+  "(SELECT coalesce(jsonb_agg(jsonb_build_object('slug', i.slug, 'layer', "                                                                               \
+  "(SELECT l.id FROM layers l WHERE l.id = i.input_id), 'table', i.table_id) ORDER BY i.slug), '[]') FROM layer_inputs i WHERE i.layer_id = layers.id), " \
+  "EXISTS (SELECT 1 FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND "                                      \
   "t.sequence > i.table_sequence), " STRATA_LAYER_STALE ", locked, visibility, review"
 
 // A palette without points is that of the terms, where the layer's table is a list of such.
@@ -206,7 +206,7 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
               "INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
               "draw_order, table_id, locked, visibility, review) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, "
               "$15, $16) "
-              "ON CONFLICT (model_id, slug) DO NOTHING RETURNING " STRATA_LAYER_COLUMNS,
+              "ON CONFLICT DO NOTHING RETURNING " STRATA_LAYER_COLUMNS,
               Params()
                   .integer(layer.model_id)
                   .text(layer.name)
@@ -301,10 +301,11 @@ Result<Layer> Store::layer_computed(std::int64_t layer_id, const std::string& ex
 
 Result<std::vector<Layer>> Store::layers_to_recompute() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
-    auto rows = connection.query(
-        "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE automatic AND " STRATA_LAYER_STALE
-        " AND NOT EXISTS (SELECT 1 FROM layer_inputs i WHERE i.layer_id = layers.id AND i.input_id IS NULL) "
-        "ORDER BY computed_sequence, id LIMIT 100");
+    auto rows =
+        connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE automatic AND " STRATA_LAYER_STALE
+                         " AND NOT EXISTS (SELECT 1 FROM layer_inputs i WHERE i.layer_id = layers.id AND NOT EXISTS "
+                         "(SELECT 1 FROM layers l WHERE l.id = i.input_id)) "
+                         "ORDER BY computed_sequence, id LIMIT 100");
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Layer> layers;
     for (int i = 0; i < rows->rows(); ++i) {
@@ -374,14 +375,9 @@ Result<Layer> Store::widen_layer(const Layer& layer, ValueType type, const First
 
 Result<void> Store::delete_layer(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
-    // What was written about it is seen by no more people than before.
-    auto kept = connection.query(
-        "UPDATE comments c SET visibility = l.visibility FROM layers l WHERE l.id = $1 AND c.layer_id = l.id",
-        Params().integer(id));
-    if (!kept) return tl::unexpected(kept.error());
-    auto done = connection.query("DELETE FROM layers WHERE id = $1", Params().integer(id));
-    if (!done) return tl::unexpected(done.error());
-    return done->affected() > 0 ? Result<void>{} : not_found("layer", std::to_string(id));
+    auto known = connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(id));
+    if (!known) return tl::unexpected(known.error());
+    return known->rows() > 0 ? erase_layer(connection, id) : not_found("layer", std::to_string(id));
   };
   return impl_->change(answer, work, kBulkLimits);
 }

@@ -131,7 +131,7 @@ Result<PgResult> insert_model(PgConnection& connection, const Model& m, const st
       "inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download, "
       "origin, bounds_min, bounds_max, triangles, vertices, area, atlas, repairs, geometry) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20, $21, $22, $23, $24, "
-      "$25, $26, $27, $28, $29) ON CONFLICT (slug) DO NOTHING RETURNING id",
+      "$25, $26, $27, $28, $29) ON CONFLICT DO NOTHING RETURNING id",
       params);
 }
 
@@ -256,7 +256,7 @@ Result<Model> Store::update_model(Model m, const FirstAnswer<Model>& answer) {
     if (!now) return now;
     if (row->rows() == 0) return stale("model");
     auto layer = connection.query(
-        "SELECT l.name FROM layers l JOIN record_tables t ON t.id = l.table_id WHERE l.model_id = $1 AND t.project_id <> $2 "
+        "SELECT l.name FROM all_layers l JOIN record_tables t ON t.id = l.table_id WHERE l.model_id = $1 AND t.project_id <> $2 "
         "LIMIT 1",
         Params().integer(m.id).integer(m.project_id));
     if (!layer) return tl::unexpected(layer.error());
@@ -270,21 +270,9 @@ Result<Model> Store::update_model(Model m, const FirstAnswer<Model>& answer) {
 
 Result<void> Store::delete_model(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
-    auto used = connection.query(
-        "SELECT geometry FROM models WHERE id = $1 UNION "
-        "SELECT sha256 FROM model_sources WHERE model_id = $1 UNION SELECT picture FROM looks WHERE model_id = $1 UNION "
-        "SELECT geometry FROM detail_levels WHERE model_id = $1",
-        Params().integer(id));
-    if (!used) return tl::unexpected(used.error());
-    std::vector<std::vector<std::uint8_t>> hashes;
-    for (int i = 0; i < used->rows(); ++i) {
-      const Bytes hash = used->bytes(i, 0);
-      hashes.emplace_back(hash.begin(), hash.end());
-    }
-    auto done = connection.query("DELETE FROM models WHERE id = $1", Params().integer(id));
-    if (!done) return tl::unexpected(done.error());
-    if (done->affected() == 0) return not_found("model", std::to_string(id));
-    return drop_unused(connection, hashes);
+    auto known = connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(id));
+    if (!known) return tl::unexpected(known.error());
+    return known->rows() > 0 ? erase_model(connection, id) : not_found("model", std::to_string(id));
   };
   return impl_->change(answer, work, kBulkLimits);
 }

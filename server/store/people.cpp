@@ -267,6 +267,8 @@ Result<void> Store::delete_person(const std::string& name) {
           "UPDATE table_edits SET user_name = $2 WHERE user_name = $1",
           "UPDATE attachments SET user_name = $2 WHERE user_name = $1",
           "UPDATE views SET user_name = $2 WHERE user_name = $1",
+          "UPDATE all_models SET binned_by = $2 WHERE binned_by = $1",
+          "UPDATE all_layers SET binned_by = $2 WHERE binned_by = $1",
           "UPDATE tours SET user_name = $2 WHERE user_name = $1",
           "UPDATE kiosks SET user_name = $2 WHERE user_name = $1"})
       if (auto done = run(connection, sql, Params().text(person->name).text(former)); !done) return done;

@@ -12,6 +12,16 @@ Result<void> check(const Project& project) {
   return check_texts({{&project.slug, "slug"}, {&project.description, "description"}});
 }
 
+// What is gone for ever keeps no project, though its content is not erased yet.
+Result<void> erase_models_of(PgConnection& connection, std::int64_t project_id) {
+  auto models =
+      connection.query("SELECT id FROM all_models WHERE project_id = $1 AND erasing", Params().integer(project_id));
+  if (!models) return tl::unexpected(models.error());
+  for (int i = 0; i < models->rows(); ++i)
+    if (auto gone = erase_model(connection, models->integer(i, 0)); !gone) return gone;
+  return {};
+}
+
 }  // namespace
 
 Result<std::vector<Project>> Store::projects() {
@@ -79,7 +89,8 @@ Result<void> Store::delete_project(std::int64_t id, const FirstAnswer<>& answer)
   return impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
     auto row = connection.query(
         "SELECT slug::text, (SELECT count(*) FROM models WHERE project_id = p.id), "
-        "(SELECT count(*) FROM record_tables WHERE project_id = p.id) "
+        "(SELECT count(*) FROM record_tables WHERE project_id = p.id), "
+        "(SELECT count(*) FROM all_models WHERE project_id = p.id AND NOT erasing) "
         "FROM projects p WHERE id = $1 FOR UPDATE",
         Params().integer(id));
     if (!row) return tl::unexpected(row.error());
@@ -90,9 +101,14 @@ Result<void> Store::delete_project(std::int64_t id, const FirstAnswer<>& answer)
       return fail(409, "Conflict",
                   "The project still has " + std::to_string(row->integer(0, 1)) +
                       " models. Delete them or move them to another project first.");
+    if (row->integer(0, 3) > 0)
+      return fail(409, "Conflict",
+                  "The project's Bin still holds " + std::to_string(row->integer(0, 3)) +
+                      " models. Restore them, or erase them there first.");
     if (row->integer(0, 2) > 0)
       return fail(409, "Conflict",
                   "The project still has " + std::to_string(row->integer(0, 2)) + " tables. Delete them first.");
+    if (auto rest = erase_models_of(connection, id); !rest) return rest;
     auto done = connection.query("DELETE FROM projects WHERE id = $1", Params().integer(id));
     return done ? Result<void>{} : tl::unexpected(done.error());
   });

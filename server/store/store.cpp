@@ -33,6 +33,7 @@ NamedParts& Store::views() { return impl_->views; }
 NamedParts& Store::tours() { return impl_->tours; }
 Kiosks& Store::kiosks() { return impl_->kiosks; }
 Groups& Store::groups() { return impl_->groups; }
+Bin& Store::bin() { return impl_->bin; }
 
 Result<StoreInfo> Store::info() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {

@@ -31,6 +31,7 @@
 
 namespace strata::store {
 
+class Bin;
 class Comments;
 class Groups;
 class Kiosks;
@@ -97,7 +98,7 @@ class Store {
   Result<std::vector<Model>> models(std::optional<std::int64_t> project_id = {});
   Result<Model> model(const std::string& ref);
   Result<Model> update_model(Model model, const FirstAnswer<Model>& answer = {});
-  Result<void> delete_model(std::int64_t id, const FirstAnswer<>& answer = {});
+  Result<void> delete_model(std::int64_t id, const FirstAnswer<>& answer = {});  // for ever; people's go by the Bin
   Result<std::vector<std::uint8_t>> geometry(std::int64_t model_id);
   Result<std::vector<std::vector<std::uint8_t>>> detail_levels(std::int64_t model_id);  // finest first
   // Streams a source file in chunks ≤ 1 MiB; `sink` returns false to stop.
@@ -119,6 +120,7 @@ class Store {
   NamedParts& tours();   // the same
   Kiosks& kiosks();      // screens that show tours (store/kiosks.h); the same
   Groups& groups();      // of people (store/groups.h); the same
+  Bin& bin();            // what was deleted and can be restored (store/bin.h); the same
 
   // --- tools: shapes for the brush, of the whole site
   static constexpr int kMostTools = 200;  // that are not deleted
@@ -137,7 +139,7 @@ class Store {
   // A database layer that names no table gets one of its own name with `columns`.
   Result<Layer> create_layer(Layer layer, const FirstAnswer<Layer>& answer = {}, std::vector<Column> columns = {});
   Result<Layer> update_layer(Layer layer, const FirstAnswer<Layer>& answer = {});
-  Result<void> delete_layer(std::int64_t id, const FirstAnswer<>& answer = {});
+  Result<void> delete_layer(std::int64_t id, const FirstAnswer<>& answer = {});  // for ever; people's go by the Bin
   // Room for larger keys or values: its content, with all of its history, in a type that it widens_to. Where version equals.
   Result<Layer> widen_layer(const Layer& layer, ValueType type, const FirstAnswer<Layer>& answer = {});
   // --- computed layers: their formula is created and changed with them

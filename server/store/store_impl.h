@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "core/slug.h"
+#include "store/bin.h"
 #include "store/comments.h"
 #include "store/groups.h"
 #include "store/kiosks.h"
@@ -58,6 +59,7 @@ struct Store::Impl {
   NamedParts views{pool, NamedParts::kViews}, tours{pool, NamedParts::kTours};
   Kiosks kiosks{pool};
   Groups groups{pool};
+  Bin bin{pool};
   std::int64_t schema_version = 0;
 
   template <class Answer, class Work>
@@ -71,6 +73,10 @@ struct Store::Impl {
   std::optional<PgConnection> probe;
   std::atomic<bool> was_ready = true;
 };
+
+// With all that hangs on it, in the transaction at hand, in the Bin or not (store/bin.cpp).
+Result<void> erase_layer(PgConnection& connection, std::int64_t id);
+Result<void> erase_model(PgConnection& connection, std::int64_t id);
 
 // Of what the role sees, for `= any($n)`.
 PgArray visibilities_seen_by(Role role);

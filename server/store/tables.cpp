@@ -116,13 +116,26 @@ Result<void> Store::delete_table(std::int64_t id, const FirstAnswer<>& answer) {
   auto gone = impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
     auto open = lock_table(connection, id);
     if (!open) return tl::unexpected(open.error());
+    // What is gone for ever keeps no table, though its content is not erased yet.
+    auto layers = connection.query(
+        "SELECT l.id FROM all_layers l JOIN all_models m ON m.id = l.model_id WHERE l.table_id = $1 AND (l.erasing OR m.erasing)",
+        Params().integer(id));
+    if (!layers) return tl::unexpected(layers.error());
+    for (int i = 0; i < layers->rows(); ++i)
+      if (auto erased = erase_layer(connection, layers->integer(i, 0)); !erased) return erased;
     auto users = connection.query(
-        "SELECT 'the layer ' || l.name || ' of ' || m.name FROM layers l JOIN models m ON m.id = l.model_id "
+        "SELECT 'the layer ' || l.name || ' of ' || m.name, coalesce(l.binned, m.binned) IS NOT NULL "
+        "FROM all_layers l JOIN all_models m ON m.id = l.model_id "
         "WHERE l.table_id = $1 UNION ALL "
-        "SELECT 'the column ' || (c.properties ->> 'name') || ' of ' || t.name FROM record_columns c "
-        "JOIN record_tables t ON t.id = c.table_id WHERE c.target = $1 AND c.table_id <> $1 LIMIT 1",
+        "SELECT 'the column ' || (c.properties ->> 'name') || ' of ' || t.name, false FROM record_columns c "
+        "JOIN record_tables t ON t.id = c.table_id WHERE c.target = $1 AND c.table_id <> $1 "
+        "ORDER BY 2 LIMIT 1",
         Params().integer(id));
     if (!users) return tl::unexpected(users.error());
+    if (users->rows() > 0 && users->boolean(0, 1))
+      return fail(
+          409, "Table in use",
+          "The table is named by " + users->text(0, 0) + ", which lies in the Bin. Erase that one there first.");
     if (users->rows() > 0)
       return fail(409, "Table in use", "The table is named by " + users->text(0, 0) + ". Delete that one first.");
     if (auto dropped = drop_rows_table(connection, id); !dropped) return dropped;

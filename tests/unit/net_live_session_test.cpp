@@ -106,6 +106,11 @@ class FakeRoom final : public room::Room {
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
   Result<Layer> widen_layer(const Layer& layer, ValueType, const store::FirstAnswer<Layer>&) override { return layer; }
   Result<void> delete_layer(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
+  Result<void> bin_layer(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
+  Result<store::BinRestored> restore_layer(const store::BinEntry& entry,
+                                           const store::FirstAnswer<store::BinRestored>&) override {
+    return store::BinRestored{entry, {}, {}};
+  }
   Result<Layer> layer_computed(std::int64_t, const std::string&, std::int64_t,
                                const std::map<std::int64_t, std::int64_t>&) override {
     return fail(500, "Not here", "");

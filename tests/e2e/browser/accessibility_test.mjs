@@ -106,6 +106,10 @@ function screens_of({ page }, w, site) {
       await button(w.home.options(kOtherProject)).click();
     }, end: escape },
     { name: "project", start: from_menu(w.home.options(kOtherProject), w.projects.describe), end: close_dialog },
+    { name: "Bin, empty", start: async () => {
+      await from_menu(w.home.options(kOtherProject), w.bin.open)();
+      await page.getByText(w.bin.none).waitFor();
+    }, end: close_dialog },
     { name: "delete a project", start: async () => {
       await from_menu(w.home.options(kOtherProject), w.layers.delete)();
       await page.getByText(w.projects.delete_lead).waitFor();

@@ -146,6 +146,13 @@ try {
   await pia.page.reload();
   await heading(pia, "No models yet");
   await from_menu(pia, "Villa Giulia, Rome", "Delete…");
+  await heading(pia, "Models of “Villa Giulia, Rome” lie in the Bin");
+  await inside(pia).locator('button[slot="actions"]').tap();
+  await is_closed(pia);
+  await server.request("DELETE", `/projects/villa-giulia/bin/model-${model}`);
+  await pia.page.reload();
+  await heading(pia, "No models yet");
+  await from_menu(pia, "Villa Giulia, Rome", "Delete…");
   await pia.page.getByText("Its 2 tables go with it").waitFor();
   await inside(pia).getByText("1 record").waitFor();
   const remove = inside(pia).getByRole("button", { name: "Delete", exact: true });
@@ -189,10 +196,11 @@ try {
     await heading(nora, "Projects");
     await wait_for(async () => (await cards(nora)).length === 2, "both projects");
     assert.equal(await button(nora, "New project").count(), 0);
-    assert.equal(await nora.page.getByRole("button", { name: /^Options for/ }).count(), 0);
+    assert.equal(await nora.page.getByRole("button", { name: /^Options for/ }).count(), person === curator ? 2 : 0, "curators look into the Bin");
     await nora.page.goto(`${server.url}/projects/archive`);
     await heading(nora, "Archive");
-    assert.equal(await nora.page.getByRole("button", { name: /^Options for/ }).count(), 0);
+    assert.equal(await nora.page.getByRole("button", { name: /^Options for/ }).count(), person === curator ? 1 : 0);
+    assert.equal(await nora.page.getByRole("menuitem", { name: /Delete|Rename/ }).count(), 0);
     assert.equal(await status(person, "POST", "/projects", { name: "Mine" }), 403);
     assert.equal(await status(person, "PATCH", "/projects/archive", { name: "Mine" }), 403);
     assert.equal(await status(person, "DELETE", "/projects/archive"), 403);

@@ -234,6 +234,11 @@ export class Site {
         return String(await this.#import(name, "default"));
       case "layer":
         return (await server.json("POST", "/models/wall/layers", { name, type: "u8", resolution: 2048, visible: false })).slug;
+      case "entry": {
+        const { id } = await server.json("POST", "/models/wall/layers", { name, type: "u8", resolution: 2048, visible: false });
+        await server.json("DELETE", `/models/wall/layers/${id}`);
+        return `layer-${id}`;
+      }
       case "look":
         return (await this.#post(`/models/wall-2/looks?name=${encodeURIComponent(name)}`, "picture.png", "image/png")).slug;
       case "tool":

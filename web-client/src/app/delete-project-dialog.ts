@@ -5,8 +5,10 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError, type Api } from "../core/api";
 import { label_of } from "../core/cells";
 import type { Table } from "../core/protocol.gen";
+import { open_bin } from "./bin-dialog";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
+import { icon } from "./icons";
 import type { ListedProject } from "./project-list";
 import { is_name_of, remove_project } from "./project-removal";
 import { shared_styles } from "./styles";
@@ -21,6 +23,7 @@ class StrataDeleteProjectDialog extends LitElement {
   answer: (is_deleted: boolean) => void = () => {};
 
   @state() private tables_: readonly Table[] | null = null;
+  @state() private has_binned_ = false; // models that lie in its Bin
   @state() private typed_ = "";
   @state() private problem_ = "";
   @state() private busy_ = false;
@@ -50,7 +53,10 @@ class StrataDeleteProjectDialog extends LitElement {
   private async read(): Promise<void> {
     this.problem_ = "";
     try {
-      this.tables_ = await this.api.tables(this.listed.project.slug);
+      const { slug } = this.listed.project;
+      const bin = await this.api.bin(slug, { limit: 1000, offset: 0 });
+      this.has_binned_ = bin.entries.some(({ kind }) => kind === "model");
+      this.tables_ = await this.api.tables(slug);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.problem_ = error.message;
@@ -59,13 +65,20 @@ class StrataDeleteProjectDialog extends LitElement {
 
   override render(): TemplateResult {
     const { project, models } = this.listed;
-    const has_models = models.length > 0;
-    return html`<strata-dialog heading=${has_models ? words.kept_title(project.name) : words.delete_title(project.name)} @closed=${() => this.finish()}>
-      ${has_models ? html`<p>${words.kept_lead(models.length)}</p>` : this.consequences()}
+    const { has_binned_: has_binned } = this;
+    const is_kept = models.length > 0 || has_binned;
+    const heading = has_binned ? words.kept_by_bin_title : is_kept ? words.kept_title : words.delete_title;
+    return html`<strata-dialog heading=${heading(project.name)} @closed=${() => this.finish()}>
+      ${has_binned
+        ? html`<p>${words.kept_by_bin_lead}</p>
+            <div><button @click=${() => void this.look_into_bin()}>${icon("trash")}${texts.bin.open}</button></div>`
+        : is_kept
+          ? html`<p>${words.kept_lead(models.length)}</p>`
+          : this.consequences()}
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
       ${this.problem_ && !this.tables_ ? html`<div><button @click=${() => void this.read()}>${texts.try_again}</button></div>` : nothing}
-      <button slot="actions" @click=${() => this.dialog_.close()}>${has_models ? texts.close : texts.cancel}</button>
-      ${has_models
+      <button slot="actions" @click=${() => this.dialog_.close()}>${is_kept ? texts.close : texts.cancel}</button>
+      ${is_kept
         ? nothing
         : html`<button slot="actions" class="danger" ?disabled=${this.busy_ || !this.is_confirmed} @click=${() => void this.delete_project()}>${texts.delete}</button>`}
     </strata-dialog>`;
@@ -91,6 +104,11 @@ class StrataDeleteProjectDialog extends LitElement {
           @keydown=${(event: KeyboardEvent) => event.key === "Enter" && void this.delete_project()}
         />
       </label>`;
+  }
+
+  private async look_into_bin(): Promise<void> {
+    if (!(await open_bin(this.api, this.listed.project))) return;
+    await this.read();
   }
 
   private get is_confirmed(): boolean {

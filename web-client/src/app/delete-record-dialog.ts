@@ -3,6 +3,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError, type TexelsOfDeleted } from "../core/api";
+import { tell_binned } from "./bin";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
 import type { ModelSession } from "./model-session";
@@ -82,11 +83,15 @@ export class StrataDeleteRecordDialog extends LitElement {
   }
 
   private async delete_record(): Promise<void> {
+    const { api, model, tables } = this.session;
+    const name = tables.label(this.table, this.key) ?? words.record(this.key);
+    const gone = { kind: "record", entry: `record-${this.table}-${this.key}`, name, project: model?.project ?? "" } as const;
     this.busy_ = true;
     this.problem_ = "";
     try {
-      await this.session.api.delete_record(this.table, this.key, this.texels);
+      await api.delete_record(this.table, this.key, this.texels);
       this.session.tables.view?.forget(this.key);
+      tell_binned(api, gone);
       this.dispatchEvent(new CustomEvent("closed"));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

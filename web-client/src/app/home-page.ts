@@ -8,9 +8,10 @@ import { format_area, format_size, metres_per } from "../core/measure";
 import type { Project } from "../core/protocol.gen";
 import { may_administer, type Me, type Model } from "../core/types";
 import { ask_account } from "./account-menu";
+import { ask_to_bin, tell_binned } from "./bin";
+import { open_bin } from "./bin-dialog";
 import "./blank";
 import { ask_to_delete_project } from "./delete-project-dialog";
-import { ask } from "./dialog";
 import { icon, logo } from "./icons";
 import type { ImportEntry, Imports } from "./imports";
 import { has_keyboard } from "./keyboard";
@@ -18,7 +19,7 @@ import "./menu";
 import { notices } from "./notices";
 import "./project-card";
 import { ask_project } from "./project-dialog";
-import { kDefaultProject, list_projects, sees_to_kiosks, type ListedProject } from "./project-list";
+import { curates, kDefaultProject, list_projects, sees_to_kiosks, type ListedProject } from "./project-list";
 import { follow, path_of_model, path_of_project } from "./routes";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
@@ -240,11 +241,14 @@ export class StrataHomePage extends LitElement {
   }
 
   private project_menu(listed: ListedProject, place = ""): TemplateResult | typeof nothing {
-    if (!this.can_administer) return nothing;
     const { project } = listed;
+    if (!curates(project)) return nothing; // who administers curates everywhere
     return html`<strata-menu class=${place} label=${texts.home.options(project.name)} .quiet=${place === ""}>
-      <button class="quiet" role="menuitem" @click=${() => void this.describe_project(project)}>${icon("edit")}${texts.projects.describe}</button>
-      ${project.slug === kDefaultProject
+      ${this.can_administer
+        ? html`<button class="quiet" role="menuitem" @click=${() => void this.describe_project(project)}>${icon("edit")}${texts.projects.describe}</button>`
+        : nothing}
+      <button class="quiet" role="menuitem" @click=${() => void this.look_into_bin(project)}>${icon("trash")}${texts.bin.open}</button>
+      ${project.slug === kDefaultProject || !this.can_administer
         ? nothing
         : html`<hr />
             <button class="quiet" role="menuitem" @click=${() => void this.delete_project(listed)}>${icon("trash")}${texts.layers.delete}</button>`}
@@ -339,17 +343,22 @@ export class StrataHomePage extends LitElement {
   }
 
   private async delete_project(listed: ListedProject): Promise<void> {
-    if (!(await ask_to_delete_project(this.api, listed))) return;
+    if (!(await ask_to_delete_project(this.api, listed))) return this.load(); // something may have been restored
     notices.show("success", texts.home.deleted(listed.project.name));
     this.projects_changed("/");
   }
 
+  private async look_into_bin(project: Project): Promise<void> {
+    if (await open_bin(this.api, project)) await this.load();
+  }
+
   private async delete_model(model: Model): Promise<void> {
     const words = texts.home;
-    if (!(await ask({ heading: words.delete_title(model.name), lead: words.delete_lead, yes: texts.delete, danger: true }))) return;
+    const gone = { kind: "model", entry: `model-${model.id}`, name: model.name, project: model.project } as const;
+    if (!(await ask_to_bin(this.api, gone, { title: words.delete_title, lead: words.delete_lead }))) return;
     try {
       await this.api.delete_model(model.id);
-      notices.show("success", words.deleted(model.name));
+      tell_binned(this.api, gone, () => void this.load());
     } catch (error) {
       notices.error(error);
     }

@@ -4,6 +4,8 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { value_range, type Layer, type LayerPatch } from "../core/types";
+import { ask_to_bin, tell_binned } from "./bin";
+import { open_bin_of } from "./bin-dialog";
 import { ask } from "./dialog";
 import { DragOrder } from "./drag-order";
 import { follow_session } from "./follow-session";
@@ -205,6 +207,8 @@ export class StrataLayerPanel extends LitElement {
                 <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "transfer" })}>
                   ${icon("import")}${texts.transfer.open}
                 </button>
+                <hr />
+                <button class="quiet" role="menuitem" @click=${() => void open_bin_of(session)}>${icon("trash")}${texts.bin.open}</button>
               </strata-menu>`
           : nothing}
       </div>
@@ -454,7 +458,13 @@ export class StrataLayerPanel extends LitElement {
 
   private async delete_layer(layer: Layer): Promise<void> {
     const words = texts.layers;
-    if (!(await ask({ heading: words.delete_title(layer.name), lead: words.delete_lead, yes: texts.delete, danger: true }))) return;
-    await this.session.layers.remove(layer).catch((error: unknown) => notices.error(error));
+    const { api, layers, model } = this.session;
+    if (!model) return;
+    const gone = { kind: "layer", entry: `layer-${layer.id}`, name: layer.name, project: model.project } as const;
+    if (!(await ask_to_bin(api, gone, { title: words.delete_title, lead: words.delete_lead }))) return;
+    await layers.remove(layer).then(
+      () => tell_binned(api, gone),
+      (error: unknown) => notices.error(error),
+    );
   }
 }

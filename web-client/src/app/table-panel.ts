@@ -9,6 +9,7 @@ import { format_area } from "../core/measure";
 import { css_color, record_color } from "../core/palette";
 import type { CellValue, Column, Table, TableRecord } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
+import { open_bin_of } from "./bin-dialog";
 import type { CellEdit } from "./cell-edits";
 import "./cell-input";
 import { takes_typing, type StrataCellInput } from "./cell-input";
@@ -206,7 +207,9 @@ export class StrataTablePanel extends LitElement {
           ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_csv(table)}>${icon("upload")}${words.import_csv}</button>
               ${table.columns.some(holds_files)
                 ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_photos(table)}>${icon("picture")}${texts.files.add_menu}</button>`
-                : nothing}`
+                : nothing}
+              <hr />
+              <button class="quiet" role="menuitem" @click=${() => void open_bin_of(session)}>${icon("trash")}${texts.bin.open}</button>`
           : nothing}
       </strata-menu>
       <button class="icon quiet" aria-label=${words.close} title="${words.close} (T)" @click=${() => session.tables.close()}>${icon("close")}</button>

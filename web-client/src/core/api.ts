@@ -318,6 +318,16 @@ export class Api {
     if (before !== undefined) query.set("before", before);
     return this.json("GET", `${project_path(project)}/activity?${query}`);
   }
+  /** What was deleted in a project and can be restored, newest first. */
+  async bin(project: Id, { limit, offset }: { limit: number; offset: number }): Promise<wire.BinList> {
+    return this.json("GET", `${project_path(project)}/bin?limit=${limit}&offset=${offset}`);
+  }
+  async restore_from_bin(project: Id, entry: string): Promise<wire.BinRestored> {
+    return this.json("POST", `${project_path(project)}/bin/${encodeURIComponent(entry)}/restore`);
+  }
+  async erase_from_bin(project: Id, entry: string): Promise<void> {
+    await this.request("DELETE", `${project_path(project)}/bin/${encodeURIComponent(entry)}`);
+  }
   /** Who sees the project, by name. */
   async project_people(project: Id): Promise<wire.ProjectPerson[]> {
     const people: wire.ProjectPerson[] = [];

@@ -1276,7 +1276,7 @@ export interface Activity {
   /** Absent: the server itself, by its command line */
   user?: string;
   kind: ActivityKind;
-  /** Of an edit or of records and columns as in their history; of layers, looks, views, tours, models, tables and the project created, changed, deleted; of comments written, replied, resolved, reopened; of members added, changed, removed */
+  /** Of an edit or of records and columns as in their history; of layers, looks, views, tours, models, tables and the project created, changed, deleted, of layers and models restored; of comments written, replied, resolved, reopened; of members added, changed, removed */
   op: string;
   /** Of the layer, look, view, tour, model, table or project, as it is called now or was last */
   name?: string;
@@ -1308,6 +1308,58 @@ export interface ActivityList {
   activity: Activity[];
   /** `before` of the page that follows; absent: there is none */
   next?: string;
+}
+
+/** What lies in the Bin. */
+export type BinKind = "layer" | "model" | "record";
+
+/** What was deleted, by kind and id; a record by its table's id and its key. */
+export type BinEntryId = string;
+
+/** Something that was deleted and can be restored. */
+export interface BinEntry {
+  id: BinEntryId;
+  kind: BinKind;
+  /** Of the layer or model; what a record's first text says, or its key */
+  name: string;
+  /** Of a layer: where it lay */
+  model?: number;
+  model_name?: string;
+  /** Of a record: where it stood */
+  table?: number;
+  table_name?: string;
+  /** Who deleted it; absent: the server itself */
+  user?: string;
+  /** When */
+  deleted: string;
+  /** When it leaves the Bin: a layer or model is erased, what a record said stays in the history of its table */
+  erased: string;
+  /** Of its files and history, about; absent: little */
+  bytes?: number;
+}
+
+/** What was deleted in a project and can be restored, newest first. */
+export interface BinList {
+  entries: BinEntry[];
+  total: number;
+  /** For how long things stay; 0: they are erased at once */
+  days: number;
+}
+
+/** What was restored. */
+export interface BinRestored {
+  kind: BinKind;
+  /** Id of the layer or model, or key of the record, as before */
+  restored: number;
+  name: string;
+  /** Of a layer or model */
+  slug?: string;
+  /** What it was, where something else has it meanwhile */
+  former_slug?: string;
+  /** Of a layer: where it lies */
+  model?: number;
+  /** Of a record: where it stands */
+  table?: number;
 }
 
 /** Projects. */
@@ -1796,7 +1848,7 @@ export interface TableEdit {
   user: string;
   /** UTC, RFC 3339. */
   time: string;
-  op: "records" | "delete" | "import" | "create-column" | "change-column" | "retype-column" | "drop-column" | "attach" | "detach" | "undo" | "redo";
+  op: "records" | "delete" | "import" | "create-column" | "change-column" | "retype-column" | "drop-column" | "attach" | "detach" | "restore" | "undo" | "redo";
   /** False while it is taken back. */
   in_force: boolean;
   changes: TableCellChange[];

@@ -425,6 +425,24 @@ void read(const nlohmann::json& json, ActivityKind& value) {
 
 nlohmann::json to_json(const ActivityKind& value) { return name(value); }
 
+std::string_view name(BinKind value) {
+  switch (value) {
+    case BinKind::layer: return "layer";
+    case BinKind::model: return "model";
+    case BinKind::record: return "record";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, BinKind& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "layer") value = BinKind::layer;
+  if (text == "model") value = BinKind::model;
+  if (text == "record") value = BinKind::record;
+}
+
+nlohmann::json to_json(const BinKind& value) { return name(value); }
+
 std::string_view name(ModelPatchSourceDownload value) {
   switch (value) {
     case ModelPatchSourceDownload::viewer: return "viewer";

@@ -172,6 +172,11 @@ enum class Schema {
   Activity,
   ChangedProperty,
   ActivityList,
+  BinKind,
+  BinEntry,
+  BinEntryId,
+  BinList,
+  BinRestored,
   ProjectList,
   ProjectCreate,
   ProjectPatch,
@@ -302,7 +307,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 276;
+constexpr int kSchemaCount = 281;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -1340,6 +1345,12 @@ enum class ActivityKind { edit, layer, look, view, tour, model, table, columns, 
 std::string_view name(ActivityKind value);
 void read(const nlohmann::json& json, ActivityKind& value);
 nlohmann::json to_json(const ActivityKind& value);
+
+// What lies in the Bin.
+enum class BinKind { layer, model, record };
+std::string_view name(BinKind value);
+void read(const nlohmann::json& json, BinKind& value);
+nlohmann::json to_json(const BinKind& value);
 
 // New project.
 struct ProjectCreate {

@@ -1,0 +1,150 @@
+// The Bin on the page: Undo right after a deletion, the list of what was deleted in a project, with keys, a mouse and a finger; what others may of it.
+import assert from "node:assert/strict";
+import { mkdirSync } from "node:fs";
+import { join } from "node:path";
+import { Browser } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const kBase = "/models/demo-pot";
+const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+const output = process.env.STRATA_TEST_OUTPUT;
+if (output) mkdirSync(output, { recursive: true });
+
+const carl = await Browser.open(); // a curator at a desk
+const phone = await Browser.open({ ...kPhone, colorScheme: "dark" }); // an administrator
+const bea = await Browser.open({ viewport: { width: 820, height: 1180 } }); // an annotator
+const everybody = { carl, phone, bea };
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+const shoot = async ({ page }, name) => {
+  if (output) await page.screenshot({ path: join(output, `bin_${name}.png`) });
+};
+const button = ({ page }, name) => page.getByRole("button", { name, exact: true });
+const menu = async (who, label, command) => {
+  await button(who, label).click();
+  await who.page.getByRole("menuitem", { name: command, exact: true }).click();
+};
+const bin = ({ page }) => page.locator("strata-bin-dialog");
+const entry = (who, name) => bin(who).locator("li", { hasText: name });
+const notice = ({ page }, text) => page.locator("strata-notices").getByText(text);
+const undo = (who) => who.page.locator("strata-notices").getByRole("button", { name: "Undo", exact: true });
+const layers_of = async () => (await server.json("GET", `${kBase}/layers`)).layers.map(({ name }) => name);
+const confirm = async ({ page }, name) => {
+  const question = page.locator("strata-dialog").last();
+  await question.getByRole("button", { name, exact: true }).click();
+};
+
+try {
+  await server.start();
+  const [pot] = (await server.json("GET", "/models")).models;
+  await server.json("POST", `${kBase}/layers`, { name: "Finds", kind: "database", type: "u16", resolution: 2048, columns: [{ name: "Name" }], palette: { mode: "categorical", points: [{ at: 1, color: "#2c6a63" }] } });
+  await server.json("POST", "/tables/finds/records", { values: { name: "Handle" } });
+  await carl.sign_in(server, await server.add_person("carl", "curator"));
+  await phone.sign_in(server, await server.add_person("pia", "administrator"));
+  await bea.sign_in(server, await server.add_person("bea", "annotator"));
+
+  say("a layer that was deleted comes back by Undo");
+  const before = await layers_of();
+  const [layer] = (await server.json("GET", `${kBase}/layers`)).layers;
+  const { name } = layer;
+  await carl.page.goto(`${server.url}/models/${pot.id}`);
+  await carl.drawn();
+  await menu(carl, `Options for ${name}`, "Delete…");
+  await carl.page.getByText("For 30 days it can be restored from the Bin of the project.").waitFor();
+  await shoot(carl, "question");
+  await confirm(carl, "Delete");
+  await notice(carl, `The layer “${name}” was deleted.`).waitFor();
+  await shoot(carl, "undo");
+  assert.deepEqual((await layers_of()).includes(name), false);
+  await undo(carl).click();
+  await notice(carl, `“${name}” is back.`).waitFor();
+  await button(carl, `Options for ${name}`).waitFor();
+  assert.deepEqual(await layers_of(), before);
+
+  say("the Bin lists it, and gives it back by keys");
+  await menu(carl, `Options for ${name}`, "Delete…");
+  await confirm(carl, "Delete");
+  await notice(carl, `The layer “${name}” was deleted.`).waitFor();
+  await menu(carl, "More about layers", "Bin…");
+  await entry(carl, name).waitFor();
+  await shoot(carl, "list");
+  assert.match(await entry(carl, name).textContent(), /Layer of Demo pot[\s\S]*deleted by carl/);
+  await entry(carl, name).getByRole("button", { name: `Restore ${name}` }).focus();
+  await carl.page.keyboard.press("Enter");
+  await bin(carl).getByText(`“${name}” is back.`).waitFor();
+  await bin(carl).getByText("Nothing lies in the Bin.").waitFor();
+  assert.deepEqual(await layers_of(), before);
+  await carl.page.keyboard.press("Escape");
+  await wait_for(async () => (await bin(carl).count()) === 0, "the Bin to close");
+
+  say("annotators find records in it, and nothing else");
+  await server.json("DELETE", `${kBase}/layers/${layer.id}`);
+  await bea.page.goto(`${server.url}/models/${pot.id}`);
+  await bea.drawn();
+  await menu(bea, "Options for Finds", "Table of records");
+  await bea.page.getByRole("rowheader", { name: /^1\b/ }).click();
+  await button(bea, "Delete the record").click();
+  await confirm(bea, "Delete");
+  await notice(bea, "The record “Handle” was deleted.").waitFor();
+  await undo(bea).click();
+  await notice(bea, "“Handle” is back.").waitFor();
+  await bea.page.getByRole("rowheader", { name: /^1\b/ }).click();
+  await button(bea, "Delete the record").click();
+  await confirm(bea, "Delete");
+  await notice(bea, "The record “Handle” was deleted.").waitFor();
+  await menu(bea, "More about the table", "Bin…");
+  await entry(bea, "Handle").waitFor();
+  assert.equal(await bin(bea).locator("li").count(), 1, "layers are for curators");
+  assert.equal(await bin(bea).getByRole("button", { name: /for ever/ }).count(), 0);
+  await shoot(bea, "records");
+  await button(bea, "Restore Handle").click();
+  await bin(bea).getByText("“Handle” is back.").waitFor();
+
+  say("a model comes back, too, and its project waits for it");
+  await phone.page.goto(`${server.url}/projects/${pot.project}`);
+  await phone.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
+  await menu(phone, "Options for Demo pot", "Delete…");
+  await confirm(phone, "Delete");
+  await notice(phone, "“Demo pot” was deleted.").waitFor();
+  await phone.page.getByText("No models yet").waitFor();
+  await undo(phone).tap();
+  await phone.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
+  await menu(phone, "Options for Demo pot", "Delete…");
+  await confirm(phone, "Delete");
+  await phone.page.getByText("No models yet").waitFor();
+  await menu(phone, "Options for Demo", "Delete…");
+  await phone.page.getByRole("heading", { name: "Models of “Demo” lie in the Bin" }).waitFor();
+  await shoot(phone, "project_kept");
+  await phone.page.locator("strata-delete-project-dialog").getByRole("button", { name: "Bin…" }).tap();
+  await entry(phone, "Demo pot").waitFor();
+  await shoot(phone, "phone");
+  await button(phone, "Restore Demo pot").tap();
+  await bin(phone).getByText("“Demo pot” is back.").waitFor();
+  await bin(phone).getByRole("button", { name: "Close" }).last().tap();
+
+  say("for ever is asked before, and is for ever");
+  await phone.page.goto(`${server.url}/projects/${pot.project}`);
+  await menu(phone, "Options for Demo", "Bin…");
+  await entry(phone, name).waitFor();
+  await button(phone, `Delete ${name} for ever`).tap();
+  await phone.page.getByRole("heading", { name: `Delete “${name}” for ever?` }).waitFor();
+  await shoot(phone, "for_ever");
+  await confirm(phone, "Delete for ever");
+  await bin(phone).getByText(`“${name}” was deleted for ever.`).waitFor();
+  assert.deepEqual((await server.json("GET", `/projects/${pot.project}/bin`)).entries, []);
+  assert.equal((await layers_of()).includes(name), false);
+
+  say("the end");
+  for (const who of Object.values(everybody)) who.assert_no_complaints();
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
+  for (const [who, browser] of Object.entries(everybody)) await shoot(browser, `failed_${who}`).catch(() => {});
+  throw error;
+} finally {
+  for (const browser of Object.values(everybody)) await browser.close();
+  await server.remove();
+}
