@@ -1,4 +1,4 @@
-// One client at 720p, up to the socket: from a stroke to its pixels, frames of a moving camera, bytes kept of steady painting.
+// One client at 720p, in this process and up to the socket: from a stroke to its pixels, frames of a moving camera, bytes kept of steady painting.
 #include <cmath>
 #include <future>
 #include <iostream>
@@ -22,9 +22,9 @@ struct Options {
   double radius = 40;
 };
 
-class Stream {
+class OneViewer {
  public:
-  explicit Stream(const Options& options) : options_(options) {
+  explicit OneViewer(const Options& options) : options_(options) {
     // Imported through the store like any model, from a PLY the bench writes when it is the generated pot.
     store::Store::NewModel made;
     made.model.name = made.model.slug = "bench";
@@ -206,24 +206,24 @@ class Stream {
 };
 
 int run(const Options& options) {
-  Stream stream(options);
-  const auto gpu = stream.gpu();
+  OneViewer viewer(options);
+  const auto gpu = viewer.gpu();
   std::printf("%s, %zu triangles, %d layers of 4096², 1280 × 720, r = %.0f px\n", options.model.c_str(),
-              stream.triangles(), options.layers, options.radius);
+              viewer.triangles(), options.layers, options.radius);
   nlohmann::json result{
-      {"method", "stream"}, {"model", options.model}, {"triangles", stream.triangles()}, {"layers", options.layers}};
-  if (options.layers > 0) result.update(stream.strokes());
-  result.update(stream.moving_camera());
-  result.update(stream.cameras_in_turn());
-  if (options.layers > 0) result.update(stream.steady_painting());
+      {"method", "viewer"}, {"model", options.model}, {"triangles", viewer.triangles()}, {"layers", options.layers}};
+  if (options.layers > 0) result.update(viewer.strokes());
+  result.update(viewer.moving_camera());
+  result.update(viewer.cameras_in_turn());
+  if (options.layers > 0) result.update(viewer.steady_painting());
   write_result(options.json, machine(&gpu), nlohmann::json::array({result}));
   return 0;
 }
 
 }  // namespace
 
-Command add_stream(CLI::App& app) {
-  auto* command = app.add_subcommand("stream", "One client: stroke to pixels, moving camera, bytes kept per hour");
+Command add_viewer(CLI::App& app) {
+  auto* command = app.add_subcommand("viewer", "One client in this process: stroke to pixels, moving camera, bytes kept per hour");
   auto options = std::make_shared<Options>();
   command->add_option("--model", options->model, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or a file")
       ->capture_default_str();
