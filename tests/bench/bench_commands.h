@@ -12,6 +12,7 @@ Command add_import(CLI::App& app);
 Command add_memory(CLI::App& app);
 Command add_query(CLI::App& app);
 Command add_sheet(CLI::App& app);
+Command add_stream(CLI::App& app);
 Command add_viewer(CLI::App& app);
 
 }  // namespace strata::bench

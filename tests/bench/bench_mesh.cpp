@@ -17,7 +17,6 @@ constexpr std::array kPresets{"vessel", "excavation", "amazon", "thai", "texture
 constexpr int kLowestResolution = 2048;
 
 bool is_preset(const std::string& name) { return std::find(kPresets.begin(), kPresets.end(), name) != kPresets.end(); }
-bool is_pot(const std::string& name) { return name == "pot" || name.starts_with("pot:"); }
 
 mesh::TriangleMesh pot_of(const std::string& name) {
   const auto colon = name.find(':');
@@ -69,6 +68,8 @@ Result<fs::path> mesh_file(const std::string& name, const fs::path& cache) {
 
 }  // namespace
 
+bool is_generated(const std::string& name) { return name == "pot" || name.starts_with("pot:"); }
+
 std::string mesh_title(const std::string& name) {
   const fs::path file(name);
   std::error_code error;
@@ -99,7 +100,7 @@ Result<std::vector<std::string>> all_meshes() {
 }
 
 Result<mesh::LoadedMesh> load_named_mesh(const std::string& name, const fs::path& cache, Progress& progress) {
-  if (is_pot(name)) return mesh::LoadedMesh{pot_of(name), {}, Unit::mm, "z"};
+  if (is_generated(name)) return mesh::LoadedMesh{pot_of(name), {}, Unit::mm, "z"};
   const auto files = mesh_files(name, cache);
   if (!files) return tl::unexpected(files.error());
   return mesh::load_mesh(*files, progress);

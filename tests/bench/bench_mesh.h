@@ -29,6 +29,9 @@ struct BenchMeshOptions {
   std::string up = {};       // where neither the file nor the list of known scans says it; empty: z
 };
 
+// Whether it is made in this process, and no file.
+bool is_generated(const std::string& name);
+
 // As tables and captions call it: the path within the data folder, or the file's name.
 std::string mesh_title(const std::string& name);
 

@@ -1,10 +1,5 @@
 // Questions to a painted model over HTTP, from this process to itself: idle, while somebody paints, many points, statistics.
 #include <atomic>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/http.hpp>
 #include <iostream>
 #include <random>
 #include <thread>
@@ -13,6 +8,7 @@
 #include "bench/bench_mesh.h"
 #include "bench/frame_client.h"
 #include "bench/harness.h"
+#include "bench/http_client.h"
 #include "jobs/import_job.h"
 #include "jobs/job_queue.h"
 #include "net/server.h"
@@ -27,49 +23,6 @@ constexpr int kResolution = 4096;
 struct Options {
   std::string model = "excavation", cache = "build/bench", json;
   int points = 100'000, requests = 2000;
-};
-
-namespace http = boost::beast::http;
-
-// One connection that is kept, as scripts have it.
-class Client {
- public:
-  Client(std::uint16_t port, std::string token) : token_(std::move(token)), stream_(context_) {
-    stream_.connect({boost::asio::ip::make_address("127.0.0.1"), port});
-    stream_.socket().set_option(boost::asio::ip::tcp::no_delay(true));
-  }
-
-  // Milliseconds until the whole answer is there; ends the program on any but 200.
-  double get(const std::string& path) { return send(http::verb::get, path, {}, "application/json"); }
-  double post(const std::string& path, const std::string& body, const char* accept = "application/json") {
-    return send(http::verb::post, path, body, accept);
-  }
-
- private:
-  double send(http::verb verb, const std::string& path, const std::string& body, const char* accept) {
-    http::request<http::string_body> request(verb, "/api/v1" + path, 11, body);
-    request.set(http::field::host, "127.0.0.1");
-    request.set(http::field::authorization, "Bearer " + token_);
-    request.set(http::field::accept, accept);
-    if (!body.empty()) request.set(http::field::content_type, "application/json");
-    request.prepare_payload();
-    http::response_parser<http::string_body> answer;
-    answer.body_limit(std::uint64_t{1} << 30);
-    const double start = now_ms();
-    http::write(stream_, request);
-    http::read(stream_, buffer_, answer);
-    const double elapsed = now_ms() - start;
-    if (answer.get().result() != http::status::ok) {
-      std::fprintf(stderr, "strata-bench: %s: %s\n", path.c_str(), answer.get().body().substr(0, 400).c_str());
-      std::exit(1);
-    }
-    return elapsed;
-  }
-
-  const std::string token_;
-  boost::asio::io_context context_;
-  boost::beast::tcp_stream stream_;
-  boost::beast::flat_buffer buffer_;
 };
 
 class Queries {
@@ -92,13 +45,13 @@ class Queries {
     server.protocol_dir = std::filesystem::path(STRATA_SOURCE_DIR) / "protocol/generated";
     server.upload_dir = site_.folder / "uploads";
     server_ = must(net::Server::start(server, *site_.store, *site_.rooms, jobs_, *site_.renderer));
-    client_ = std::make_unique<Client>(server_->port(), server.owner_token);
+    client_ = std::make_unique<HttpClient>(server_->port(), server.owner_token);
   }
   ~Queries() { server_->stop(); }
 
   void run() {
     const std::string model = "/models/" + model_.slug;
-    add("first point, with the search tree", 0, {client_->get(point_query())});
+    add("first point, with the search tree", 0, {get_ms(point_query())});
     add("a point, idle (p99)", 2, points(), 0.99);
     {
       std::atomic<bool> stop{false};
@@ -108,37 +61,40 @@ class Queries {
       painter.join();
     }
     const std::string many = many_points();
-    add("points in one POST, CSV", 300,
-        repeated(3, [&] { return client_->post(model + "/positions", many, "text/csv"); }));
-    add("points in one POST, JSON", 1000, repeated(3, [&] { return client_->post(model + "/positions", many); }));
+    add("points in one POST, CSV", 300, repeated(3, [&] { return post_ms(model + "/positions", many, "text/csv"); }));
+    add("points in one POST, JSON", 1000, repeated(3, [&] { return post_ms(model + "/positions", many); }));
 
     for (const std::string layer : {"units", "moisture"}) {
       const std::string path = model + "/layers/" + layer + "/statistics";
-      client_->get(path + "?where=valid(" + layer + ")");  // the surface map is there
+      get_ms(path + "?where=valid(" + layer + ")");  // the surface map is there
       add("statistics of " + layer + ", counted anew", 50, repeated(3, [&] {
             refill(layer);
-            return client_->get(path);
+            return get_ms(path);
           }));
       add("statistics of " + layer + " after a stroke", 5, repeated(15, [&] {
             stroke(layer);
-            return client_->get(path);
+            return get_ms(path);
           }));
-      add("the same with quantiles", 2000, repeated(3, [&] { return client_->get(path + "?include=quantiles"); }));
-      add("first with pieces, with the texels' graph", 0, {client_->get(path + "?include=pieces")});
-      add("with pieces", 2000, repeated(3, [&] { return client_->get(path + "?include=pieces"); }));
-      add("with perimeter", 2000, repeated(3, [&] { return client_->get(path + "?include=perimeter"); }));
+      add("the same with quantiles", 2000, repeated(3, [&] { return get_ms(path + "?include=quantiles"); }));
+      add("first with pieces, with the texels' graph", 0, {get_ms(path + "?include=pieces")});
+      add("with pieces", 2000, repeated(3, [&] { return get_ms(path + "?include=pieces"); }));
+      add("with perimeter", 2000, repeated(3, [&] { return get_ms(path + "?include=perimeter"); }));
     }
     add("an expression over three layers", 100, repeated(5, [&] {
-          return client_->post(model + "/select", R"({"where": "moisture * 2 + salt > 0.5 and units <> 3"})");
+          return post_ms(model + "/select", R"({"where": "moisture * 2 + salt > 0.5 and units <> 3"})");
         }));
     light_up();
     add("a cross-table", 0,
-        repeated(3, [&] { return client_->post(model + "/cross-table", R"({"rows": "units", "columns": "units"})"); }));
+        repeated(3, [&] { return post_ms(model + "/cross-table", R"({"rows": "units", "columns": "units"})"); }));
     const auto gpu = site_.renderer->info();
     write_result(options_.json, machine(&gpu), results_);
   }
 
  private:
+  double get_ms(const std::string& path) { return client_->get(path).elapsed_ms; }
+  double post_ms(const std::string& path, const std::string& body, const char* accept = "application/json") {
+    return client_->post(path, body, accept).elapsed_ms;
+  }
   // From the filter of a person's view to the picture in which the records that it finds stand out: at the socket, 720p.
   void light_up() {
     make_parts();
@@ -256,7 +212,7 @@ class Queries {
   }
   Samples points() {
     Samples samples;
-    for (int i = 0; i < options_.requests; ++i) samples.add(client_->get(point_query()));
+    for (int i = 0; i < options_.requests; ++i) samples.add(get_ms(point_query()));
     return samples;
   }
   std::string many_points() {
@@ -302,7 +258,7 @@ class Queries {
   std::shared_ptr<room::Room> room_;
   std::map<std::string, Layer> layers_;
   std::unique_ptr<net::Server> server_;
-  std::unique_ptr<Client> client_;
+  std::unique_ptr<HttpClient> client_;
   std::mt19937 random_;
   int fills_ = 0;
   nlohmann::json results_ = nlohmann::json::array();

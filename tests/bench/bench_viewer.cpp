@@ -11,6 +11,7 @@
 #include "bench/bench_mesh.h"
 #include "bench/frame_client.h"
 #include "bench/harness.h"
+#include "bench/wander.h"
 #include "jobs/import_job.h"
 
 namespace strata::bench {
@@ -144,17 +145,11 @@ class OneViewer {
   nlohmann::json steady_painting() {
     const auto bytes_before = must(site_.store->revision_bytes(model_.id));
     constexpr int kBatches = 400;
-    glm::dvec2 at{640, 360};
-    double heading = 0;
+    Wander hand(1280, 720, 7);
     for (int i = 0; i < kBatches; ++i) {
-      heading += std::uniform_real_distribution<double>(-0.6, 0.6)(random_);
-      glm::dvec2 next = at + 12.0 * glm::dvec2(std::cos(heading), std::sin(heading));  // 400 px/s
-      if (next.x < 440 || next.x > 840 || next.y < 200 || next.y > 520) {
-        heading += 2.5;
-        next = glm::clamp(next, glm::dvec2(440, 200), glm::dvec2(840, 520));
-      }
-      edit_and_wait(*room_, stroke_request(layers_[0], still_, {at, next}, options_.radius, 1 + (i / 50) % 100));
-      at = next;
+      const glm::dvec2 from = hand.at();
+      edit_and_wait(*room_,
+                    stroke_request(layers_[0], still_, {from, hand.step()}, options_.radius, 1 + (i / 50) % 100));
     }
     const double mb_per_hour =
         double(must(site_.store->revision_bytes(model_.id)) - bytes_before) / kBatches * (3600 / 0.03) / 1e6;
@@ -223,7 +218,8 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_viewer(CLI::App& app) {
-  auto* command = app.add_subcommand("viewer", "One client in this process: stroke to pixels, moving camera, bytes kept per hour");
+  auto* command =
+      app.add_subcommand("viewer", "One client in this process: stroke to pixels, moving camera, bytes kept per hour");
   auto options = std::make_shared<Options>();
   command->add_option("--model", options->model, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or a file")
       ->capture_default_str();

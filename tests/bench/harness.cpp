@@ -87,8 +87,13 @@ std::unique_ptr<render::Renderer> start_renderer() {
 }
 
 Camera look_at(const mesh::Geometry& geometry, glm::dvec3 from, int width, int height) {
-  const glm::dvec3 center = geometry.origin + glm::dvec3(geometry.box_min + geometry.box_max) * 0.5;
-  const double radius = glm::length(glm::dvec3(geometry.box_max - geometry.box_min)) * 0.5;
+  return look_at(geometry.origin + glm::dvec3(geometry.box_min), geometry.origin + glm::dvec3(geometry.box_max), from,
+                 width, height);
+}
+
+Camera look_at(glm::dvec3 low, glm::dvec3 high, glm::dvec3 from, int width, int height) {
+  const glm::dvec3 center = (low + high) * 0.5;
+  const double radius = glm::length(high - low) * 0.5;
   const glm::dvec3 direction = glm::normalize(from);
   const glm::dvec3 up = std::abs(direction.z) > 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
   const double distance = radius * 2.4;
@@ -98,12 +103,19 @@ Camera look_at(const mesh::Geometry& geometry, glm::dvec3 from, int width, int h
       width, height};
 }
 
-Site::Site() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "strata-bench-XXXXXX").string();
-  if (!mkdtemp(pattern.data())) stop("cannot make a temporary folder");
-  folder = pattern;
-  std::filesystem::permissions(folder, std::filesystem::perms::owner_all | std::filesystem::perms::others_exec |
-                                           std::filesystem::perms::group_exec);
+void let_others_through(const std::filesystem::path& folder) {
+  using std::filesystem::perms;
+  std::filesystem::permissions(folder, perms::owner_all | perms::others_exec | perms::group_exec);
+}
+
+std::filesystem::path make_temporary_folder() {
+  std::string folder = (std::filesystem::temp_directory_path() / "strata-bench-XXXXXX").string();
+  if (!mkdtemp(folder.data())) stop("cannot make a temporary folder");
+  let_others_through(folder);
+  return folder;
+}
+
+Site::Site() : folder(make_temporary_folder()) {
   cluster = must(store::Cluster::start(folder / "data"));
   restart();
 }

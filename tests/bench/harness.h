@@ -62,6 +62,13 @@ T await(Start start) {
 
 // Looks at a model from a direction, so that it fills the window.
 Camera look_at(const mesh::Geometry& geometry, glm::dvec3 from, int width, int height);
+// The same of a box in world coordinates.
+Camera look_at(glm::dvec3 low, glm::dvec3 high, glm::dvec3 from, int width, int height);
+
+// PostgreSQL does not run as root: others may pass through what becomes a data folder.
+void let_others_through(const std::filesystem::path& folder);
+// Under the system's folder for such; others may pass through.
+std::filesystem::path make_temporary_folder();
 
 // A whole server without sockets, on a database of its own in a temporary folder.
 class Site {

@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
       {"atlas", strata::bench::add_atlas(app)},   {"edit", strata::bench::add_edit(app)},
       {"import", strata::bench::add_import(app)}, {"memory", strata::bench::add_memory(app)},
       {"query", strata::bench::add_query(app)},   {"sheet", strata::bench::add_sheet(app)},
-      {"viewer", strata::bench::add_viewer(app)}};
+      {"stream", strata::bench::add_stream(app)}, {"viewer", strata::bench::add_viewer(app)}};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

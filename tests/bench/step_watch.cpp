@@ -1,20 +1,16 @@
 #include "bench/step_watch.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
-#include <fstream>
+
+#include "bench/processes.h"
 
 namespace strata::bench {
 namespace {
-
-double status_mib(const std::string& key) {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with(key + ":")) return std::stod(line.substr(key.size() + 1)) / 1024;
-  return 0;
-}
 
 double process_cpu_seconds() {
   timespec now{};
@@ -24,9 +20,9 @@ double process_cpu_seconds() {
 
 }  // namespace
 
-double memory_mib() { return status_mib("VmRSS"); }
-double peak_memory_mib() { return status_mib("VmHWM"); }
-void forget_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+double memory_mib() { return resident_mib(getpid()); }
+double peak_memory_mib() { return peak_resident_mib(getpid()); }
+void forget_peak_memory() { forget_peak(getpid()); }
 
 StepWatch::Sampling::Sampling(StepWatch& watch, std::string name, Progress& progress) {
   const std::string before = progress.message();

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "bench/crowd_figures.h"
+#include "bench/hands.h"
+#include "bench/link.h"
+
+namespace strata::bench {
+
+// The viewers of one case, on this thread, which also carries their links. Active ones look from directions of their own, near
+// enough to each other that all see what one paints.
+class Crowd {
+ public:
+  // Returns once everybody has a picture and nothing more comes. Ends the bench where somebody is turned away.
+  Crowd(const CrowdCase& asked, const Stage& stage, const ServerProcess& server);
+  ~Crowd();
+
+  // Lets the hands work for a second, then for so long; the figures of the latter (README.md says what they mean).
+  nlohmann::json measure(double seconds);
+
+ private:
+  LiveClient& add(Viewers& to);
+  void open(std::vector<std::pair<LiveClient*, Camera>> clients);
+  void settle();
+  void run_for(double seconds);
+  void run_until(const std::function<bool()>& condition, double limit_s);
+  void start_hands();
+  void finish_strokes();
+  void check_nobody_is_lost() const;
+  CrowdMoment now() const;
+
+  const CrowdCase case_;
+  const Stage stage_;
+  const ServerProcess& server_;
+  boost::asio::io_context context_{1};
+  std::optional<Link> link_;
+  Viewers active_, idle_, stalled_;
+  bool stop_ = false;
+};
+
+}  // namespace strata::bench

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "bench/link.h"
+
+namespace strata::bench {
+
+// What the active viewers of a case do; `turn_and_paint`: every other one paints.
+enum class Hands { rest, turn, turn_step_by_step, paint, turn_and_paint };
+const char* name(Hands hands);
+
+struct CrowdCase {
+  LinkQuality link;  // of each viewer
+  int active = 1, idle = 0;
+  Hands hands = Hands::turn;
+  bool is_same_view = false;  // the idle ones' camera; otherwise each has its own
+  bool has_stalled = false;   // one more, who turns the camera and reads nothing after its first picture
+
+  nlohmann::json json() const;
+  bool paints(int number) const;  // of the active ones
+};
+
+}  // namespace strata::bench

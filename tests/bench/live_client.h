@@ -1,0 +1,116 @@
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/basic_stream.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/uuid.h"
+#include "protocol/messages.h"
+
+namespace strata::bench {
+
+// Counts what is read from a socket, WebSocket's own bytes with it.
+class WireCounter {
+ public:
+  std::uint64_t bytes_read() const { return bytes_read_; }
+
+ private:
+  friend class boost::beast::rate_policy_access;
+  static constexpr std::size_t kNoLimit = std::size_t(-1);
+  std::size_t available_read_bytes() const { return kNoLimit; }
+  std::size_t available_write_bytes() const { return kNoLimit; }
+  void transfer_read_bytes(std::size_t size) { bytes_read_ += size; }
+  void transfer_write_bytes(std::size_t) {}
+  void on_timer() {}
+  std::uint64_t bytes_read_ = 0;
+};
+
+// A viewer as the page is one, over a real WebSocket: the newest camera wins while one is being sent, a frame is acknowledged when
+// its last rectangle is there. Pictures are not decoded, so a decoder takes neither time nor this machine's processors. Notes
+// when what came; draws no conclusions. Everything runs on the context's thread.
+class LiveClient {
+ public:
+  struct Frame {  // whole
+    double at_ms;
+    std::uint64_t camera_seq, scene_sequence;
+  };
+  struct Batch {  // of a stroke
+    Uuid id, stroke;
+    int number;
+    double sent_ms;
+    std::optional<std::uint64_t> sequence = {};  // once it is applied
+    bool has_changed = false;                    // any texel
+  };
+  struct Counts {
+    std::uint64_t frames = 0, bytes = 0, wire_bytes = 0;  // bytes: of messages
+  };
+
+  // `at`: the server, or a link to it.
+  LiveClient(boost::asio::io_context& context, boost::asio::ip::tcp::endpoint at, std::uint16_t server_port);
+
+  // Connects, says hello and looks; returns once the first picture of full quality is there, or the connection is lost.
+  boost::asio::awaitable<void> open(const std::string& model, const std::string& token, const Camera& camera);
+  void look(const Camera& camera, bool moving);
+  // Returns when a frame with the newest camera is there, or the connection is lost.
+  boost::asio::awaitable<void> newest_camera_shown();
+  void begin_stroke(const std::string& layer, const Camera& camera, double value, double radius_px);
+  void extend_stroke(const std::vector<glm::dvec2>& path);
+  void end_stroke();
+  void stop_reading() { is_reading_ = false; }  // what comes stays in the kernel
+
+  void leave();  // as a page that is closed
+
+  bool has_picture() const { return has_picture_; }
+  bool is_lost() const { return is_lost_; }
+  const std::string& why_lost() const { return why_lost_; }
+  int unanswered() const { return int(unanswered_.size()); }  // batches that are neither applied nor refused
+  int refused() const { return refused_; }
+  Counts counts() const { return {frames_.size(), bytes_, stream().rate_policy().bytes_read()}; }
+  const std::vector<Frame>& frames() const { return frames_; }
+  const std::vector<Batch>& batches() const { return batches_; }
+  // When the camera of this number was given to `look`.
+  double camera_sent_ms(std::uint64_t camera_seq) const { return camera_sent_ms_.at(camera_seq - 1); }
+
+ private:
+  using Stream = boost::beast::basic_stream<boost::asio::ip::tcp, boost::asio::any_io_executor, WireCounter>;
+
+  boost::asio::awaitable<void> read();
+  boost::asio::awaitable<void> write();
+  void on_text(const std::string& text);
+  void on_frame(boost::asio::const_buffer message);
+  template <class Matches>
+  std::optional<std::size_t> answered(Matches matches);
+  void send(const protocol::ClientMessage& message);
+  void lose(const std::string& why);
+  const Stream& stream() const { return socket_.next_layer(); }
+
+  boost::beast::websocket::stream<Stream> socket_;
+  const boost::asio::ip::tcp::endpoint at_;
+  const std::uint16_t server_port_;
+  boost::beast::flat_buffer buffer_;
+  boost::asio::steady_timer has_news_;  // rings at every frame and at the end
+  std::deque<std::string> texts_;       // to send, in order
+  std::optional<std::string> camera_;   // to send before them: the newest
+  bool is_writing_ = false, is_reading_ = true, is_lost_ = false, has_picture_ = false;
+  std::string why_lost_;
+
+  std::vector<Frame> frames_;
+  std::vector<double> camera_sent_ms_;
+  std::vector<Batch> batches_;
+  std::vector<std::size_t> unanswered_;  // of `batches_`; a few
+  Uuid stroke_{};                        // that is being drawn
+  int next_number_ = 0, refused_ = 0;
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace strata::bench

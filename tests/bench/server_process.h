@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "bench/processes.h"
+
+namespace strata::bench {
+
+// `strata serve` as a site runs it: a process of its own with a private PostgreSQL, a new data folder and a free port of this machine.
+class ServerProcess {
+ public:
+  // `binary`: of the server. Ends the bench, with the server's last words, where it does not come up.
+  explicit ServerProcess(const std::filesystem::path& binary);
+  ~ServerProcess();
+
+  std::uint16_t port() const { return port_; }
+  const std::string& token() const { return token_; }  // of the owner
+  std::string renderer() const { return renderer_; }   // as the server's log names it
+  const std::filesystem::path& folder() const { return folder_; }
+  pid_t pid() const { return process_->pid(); }
+
+  // Seconds of processors so far.
+  struct Used {
+    double server = 0, postgresql = 0;
+  };
+  Used used() const;
+
+ private:
+  const std::filesystem::path folder_;
+  const std::string token_;
+  std::unique_ptr<ChildProcess> process_;
+  std::uint16_t port_ = 0;
+  pid_t postmaster_ = 0;
+  std::string renderer_;
+};
+
+}  // namespace strata::bench
