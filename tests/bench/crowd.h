@@ -26,10 +26,11 @@ class Crowd {
  private:
   LiveClient& add(Viewers& to);
   void open(std::vector<std::pair<LiveClient*, Camera>> clients);
-  void settle();
+  void settle(double quiet_s);
   void run_for(double seconds);
   void run_until(const std::function<bool()>& condition, double limit_s);
   void start_hands();
+  bool has_painted_since(double begin_ms) const;
   void finish_strokes();
   void check_nobody_is_lost() const;
   CrowdMoment now() const;

@@ -23,7 +23,6 @@ def check_run(row, run):
     assert bool(rates["turning"]) == turns and bool(rates["painting"]) == paints, rates
     assert not row["idle"] or rates["idle"]["viewers"] == row["idle"], rates
     if turns:
-        assert rates["turning"]["max"] > 0 and run["frames_per_cpu_s"] > 0, run
         check_times(run["camera_to_last_byte"], "camera_to_last_byte")
         # A camera goes there and its picture comes back.
         assert run["camera_to_last_byte"]["ms_min"] >= 20, run["camera_to_last_byte"]
