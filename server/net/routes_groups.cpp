@@ -93,7 +93,7 @@ Result<Response> put_role(const RouteContext& context, const Request& request) {
   const auto put = context.store.groups().put(project->id, *id, role, request.user());
   if (!put) return tl::unexpected(put.error());
   roles_changed(context, put->people);
-  return json_response(to_json(put->now));
+  return json_response(net::to_json(put->now));
 }
 
 Result<Response> take_role(const RouteContext& context, const Request& request) {

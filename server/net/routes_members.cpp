@@ -27,7 +27,7 @@ Result<Response> list_members(const RouteContext& context, const Request& reques
   const auto with_role = context.store.groups().of_project(project->id);
   if (!with_role) return tl::unexpected(with_role.error());
   nlohmann::json list = nlohmann::json::array(), groups = nlohmann::json::array();
-  for (const store::ProjectGroup& group : *with_role) groups.push_back(to_json(group));
+  for (const store::ProjectGroup& group : *with_role) groups.push_back(net::to_json(group));
   const int total = static_cast<int>(members->size());
   for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json((*members)[i]));
   Response response = json_response({{"members", std::move(list)}, {"groups", std::move(groups)}, {"total", total}});

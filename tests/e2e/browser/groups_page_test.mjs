@@ -74,7 +74,7 @@ try {
 
   say("it gets a role in the project of the demo: its people see it, and where that comes from");
   await choose_for("Options for the group Students", "Roles in projects…");
-  const in_demo = owner.page.locator("strata-project-roles-dialog").getByRole("combobox").first();
+  const in_demo = owner.page.locator("strata-project-roles-dialog").getByRole("combobox", { name: "Role in Demo" });
   assert.equal(await in_demo.inputValue(), "");
   await in_demo.selectOption("annotator");
   await owner.page.locator("strata-project-roles-dialog").getByText("Is annotator now.").waitFor();
@@ -97,10 +97,9 @@ try {
   await shot(owner, "people");
   await choose_for("Options for Gil Guest", "Roles in projects…");
   await owner.page.getByText("Is annotator there by group: Students.").waitFor();
-  const own = owner.page.locator("strata-project-roles-dialog").getByRole("combobox").first();
-  await own.selectOption("curator");
+  await in_demo.selectOption("curator");
   await owner.page.getByText("Also annotator by group: Students.").waitFor();
-  await own.selectOption("");
+  await in_demo.selectOption("");
   await owner.page.getByText("Is annotator there by group: Students.").waitFor();
   await shot(owner, "of_person");
   await leave_inner_dialog();
