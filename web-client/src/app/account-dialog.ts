@@ -149,7 +149,8 @@ export class StrataAccountDialog extends LitElement {
       <section>
         <p class="hint">${words.about(me.user, texts.roles[me.role])}</p>
         ${this.projects_.length > 0
-          ? html`<ul aria-label=${words.in_projects}>
+          ? html`<p class="caption" id="in_projects">${words.in_projects}</p>
+              <ul aria-labelledby="in_projects">
               ${this.projects_.map((project) => this.project_row(project))}
             </ul>`
           : nothing}

@@ -99,6 +99,7 @@ export class StrataGroupList extends LitElement {
             placeholder=${words.name_hint}
             aria-invalid=${this.name_problem_ ? "true" : "false"}
             aria-describedby="name_problem"
+            @input=${() => (this.name_problem_ = "")}
           />
         </label>
         <button>${icon("plus")}${words.make}</button>
