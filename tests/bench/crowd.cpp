@@ -121,6 +121,7 @@ void Crowd::start_hands() {
 
 nlohmann::json Crowd::measure(double seconds) {
   start_hands();
+  run_until([&] { return all_see_what_they_do(); }, kMostFinishing_s);
   run_for(case_.hands == Hands::rest ? 0 : kWarming_s);
   forget_peak(server_.pid());
   const CrowdMoment begin = now();
@@ -134,6 +135,19 @@ nlohmann::json Crowd::measure(double seconds) {
   nlohmann::json json = crowd_figures(case_, active_, idle_, begin, end);
   json["server_mib"] = {{"resident", resident_mib(server_.pid())}, {"peak", peak_mib}};
   return json;
+}
+
+// The first stroke of a model that was just opened waits for what later ones find made.
+bool Crowd::all_see_what_they_do() const {
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    const LiveClient& client = *active_[i];
+    const auto& newest = client.frames().back();
+    const auto is_seen = [&](const auto& batch) {
+      return batch.has_changed && newest.scene_sequence >= *batch.sequence;
+    };
+    if (case_.paints(int(i)) ? std::ranges::none_of(client.batches(), is_seen) : newest.camera_seq < 2) return false;
+  }
+  return true;
 }
 
 // Whoever paints. On a very busy machine the first batches may wait for longer than a short stretch lasts.

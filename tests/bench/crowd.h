@@ -20,7 +20,7 @@ class Crowd {
   Crowd(const CrowdCase& asked, const Stage& stage, const ServerProcess& server);
   ~Crowd();
 
-  // Lets the hands work for a second, then for so long; the figures of the latter (README.md says what they mean).
+  // Lets the hands work until each sees what it does and for a second more, then for so long; the figures of the latter (README.md says what they mean).
   nlohmann::json measure(double seconds);
 
  private:
@@ -30,6 +30,7 @@ class Crowd {
   void run_for(double seconds);
   void run_until(const std::function<bool()>& condition, double limit_s);
   void start_hands();
+  bool all_see_what_they_do() const;
   bool has_painted_since(double begin_ms) const;
   void finish_strokes();
   void check_nobody_is_lost() const;

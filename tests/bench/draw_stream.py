@@ -23,9 +23,9 @@ TIMES = (
 )
 RATES = (
     ("turning: pictures a second of a viewer", "#0072b2", "", ("frames_per_s", "turning", "median"), "turn"),
-    ("painting: the same", "#d55e00", "", ("frames_per_s", "painting", "median"), "paint"),
+    ("painting: the same of a viewer", "#d55e00", "", ("frames_per_s", "painting", "median"), "paint"),
     ("turning: pictures of a second of the server's processors", "#56b4e9", "8 4", ("frames_per_cpu_s",), "turn"),
-    ("painting: the same", "#e69f00", "2 3", ("frames_per_cpu_s",), "paint"),
+    ("painting: the same of a second of processors", "#e69f00", "2 3", ("frames_per_cpu_s",), "paint"),
 )
 PANEL, LEFT, TOP, BOTTOM, LEGEND = 300, 62, 44, 290, 20
 
@@ -130,8 +130,10 @@ def time_point(row, kind):
 
 
 def rate_point(row, kind):
-    found = [value for value in values(row, *kind[3]) if value > 0]
-    return (statistics.median(found), min(found), max(found)) if found else None
+    found = values(row, *kind[3])
+    if not found or statistics.median(found) <= 0:
+        return None  # has no place on a logarithmic axis; the table has it
+    return statistics.median(found), min(value for value in found if value > 0), max(found)
 
 
 def peer_title(row):
