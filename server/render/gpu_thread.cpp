@@ -15,6 +15,8 @@ constexpr auto kPollPause = std::chrono::microseconds(100);
 constexpr auto kRecoveryPause = std::chrono::seconds(1);
 // Frames that were drawn and wait for their read-back; more would only hold memory.
 constexpr std::size_t kMaxActiveFrames = 4;
+// Of edits before frames: a stroke is some milliseconds, so that only a flood of them takes as long.
+constexpr std::chrono::milliseconds kMostAhead{30};
 
 Problem lost_problem() {
   return {503, "GPU lost", "The GPU context was lost and is being rebuilt. The work was not done; send it again.", {}};
@@ -118,8 +120,19 @@ void GpuThread::run() {
 }
 
 bool GpuThread::run_some() {
+  if (ahead_ > kMostAhead) {
+    const auto begin = Clock::now();
+    const bool is_drawn = step_frames();
+    ahead_ = is_drawn ? ahead_ - (Clock::now() - begin) : Clock::duration{};
+    if (is_drawn) return true;
+  }
+  const auto begin = Clock::now();
   const auto step = step_lane(Lane::ordered);
-  if (step && *step != Step::waiting && *step != Step::yield) return true;
+  if (step && *step != Step::waiting && *step != Step::yield) {
+    ahead_ += Clock::now() - begin;
+    return true;
+  }
+  ahead_ = {};
   return step_behind_edits() || step == Step::yield;
 }
 

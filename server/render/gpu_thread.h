@@ -35,7 +35,7 @@ enum class Lane {
 
 // The thread that owns the GPU. Ordered jobs go before frames, frames before background; a waiting job lets the next
 // kind run meanwhile, but nothing overtakes it in its own lane. Frames wait while an ordered job can go on, unless it
-// yields.
+// yields, or ordered jobs have been at it for a while: then both have the same time, so that a flood of edits is seen while it lasts.
 class GpuThread {
  public:
   struct Hooks {
@@ -94,6 +94,7 @@ class GpuThread {
   // Of the GPU thread alone.
   std::optional<Job> current_[2];
   std::list<Job> frames_;
+  Clock::duration ahead_{};  // ordered jobs ran for so much longer than frames since frames last had nothing to do
   std::atomic<bool> broken_ = false;  // a lost context that could not be replaced yet; others may read
   Clock::time_point next_recovery_{};
 };

@@ -191,6 +191,22 @@ TEST_F(Lanes, a_small_frame_whose_turn_it_is_goes_between_the_slices_of_a_long_o
   EXPECT_EQ(finish(), (std::vector<std::string>{"slice", "part", "part", "slice", "slice", "next frame"}));
 }
 
+TEST_F(Lanes, a_flood_of_edits_lets_frames_through) {
+  start();
+  auto frame_ran = std::make_shared<bool>(false);
+  thread_->post(Lane::ordered, {[frame_ran] { return *frame_ran ? Step::done : Step::more; }, [](const Problem&) {}});
+  {
+    std::lock_guard lock(mutex_);
+    frames_.push_back({[frame_ran] {
+                         *frame_ran = true;
+                         return Step::done;
+                       },
+                       [](const Problem&) {}});
+  }
+  finish();  // never, were the frame to wait for the edit
+  EXPECT_TRUE(*frame_ran);
+}
+
 TEST_F(Lanes, a_full_lane_refuses_but_not_what_must_not_be_lost) {
   start(2);
   Gate gate;
