@@ -20,14 +20,15 @@ struct BackupOptions {
 };
 
 std::string summary(const store::BackupFacts& facts) {
-  const auto count = [&](const char* table, const char* what) {
-    const auto rows = facts.rows_of(table);
+  // `before`: what the table was called in older backups.
+  const auto count = [&](const char* table, const char* what, const char* before = "") {
+    const auto rows = facts.rows_of(table) + facts.rows_of(before);
     return std::to_string(rows) + " " + what + (rows == 1 ? "" : "s");
   };
-  return count("public.models", "model") + ", " + count("public.layers", "layer") + ", " +
-         count("public.edits", "edit") + ", " + count("public.attachments", "file") + "; " +
-         std::to_string((facts.bytes + (1u << 20) - 1) >> 20) + " MB, schema " + std::to_string(facts.schema_version) +
-         ", of " + facts.made;
+  return count("public.all_models", "model", "public.models") + ", " +
+         count("public.all_layers", "layer", "public.layers") + ", " + count("public.edits", "edit") + ", " +
+         count("public.attachments", "file") + "; " + std::to_string((facts.bytes + (1u << 20) - 1) >> 20) +
+         " MB, schema " + std::to_string(facts.schema_version) + ", of " + facts.made;
 }
 
 // Where the data are, without changing them: a server may be using them, of this version or another.

@@ -210,10 +210,7 @@ Result<TableChange> Bin::restore_record(const BinEntry& entry, const std::string
     for (const Column& column : open->all)
       if (const auto cell = before.find(std::to_string(column.id)); cell != before.end()) cells[cell.key()] = *cell;
     auto done = apply_edit(connection, *open, std::move(edit));
-    if (done && !done->problems.empty()) {
-      const Problem problem = done->problems.front().problem;
-      return fail(409, "Cannot be restored", problem.detail, problem.field);
-    }
+    if (done && !done->problems.empty()) return fail(409, "Cannot be restored", done->problems.front().problem.detail);
     return done;
   });
 }

@@ -4,6 +4,7 @@
 namespace strata {
 namespace {
 
+using test::equal;
 using test::RoomTest;
 
 class LayersInTheBin : public RoomTest {

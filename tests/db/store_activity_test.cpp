@@ -8,6 +8,7 @@
 
 #include "db/journal_painter.h"
 #include "store/comments.h"
+#include "store/named_parts.h"
 #include "store/pg.h"
 
 namespace strata::store {

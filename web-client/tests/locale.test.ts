@@ -81,7 +81,7 @@ function leaves(from: unknown, path = ""): [string, string][] {
   if (typeof from !== "object" || from === null) return [];
   return Object.entries(from).flatMap(([key, value]) => leaves(value, path ? `${path}.${key}` : key));
 }
-const takes_words = new Set(["account.token_line", "join.lead", "people.role_now", "project_roles.lead", "site_people.role_changed"]);
+const takes_words = new Set(["account.token_line", "join.lead", "people.role_now", "project_roles.by_groups", "project_roles.by_groups_also", "project_roles.lead", "site_people.role_changed"]);
 
 async function in_language(language: (typeof kPageLanguages)[number]): Promise<Map<string, string>> {
   await load_texts(language, true, []);

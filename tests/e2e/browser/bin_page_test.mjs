@@ -12,7 +12,7 @@ if (output) mkdirSync(output, { recursive: true });
 
 const carl = await Browser.open(); // a curator at a desk
 const phone = await Browser.open({ ...kPhone, colorScheme: "dark" }); // an administrator
-const bea = await Browser.open({ viewport: { width: 820, height: 1180 } }); // an annotator
+const bea = await Browser.open({ viewport: { width: 1180, height: 820 } }); // an annotator
 const everybody = { carl, phone, bea };
 const server = new StrataServer({ demo: true });
 let step = "start";
@@ -80,7 +80,7 @@ try {
   await wait_for(async () => (await bin(carl).count()) === 0, "the Bin to close");
 
   say("annotators find records in it, and nothing else");
-  await server.json("DELETE", `${kBase}/layers/${layer.id}`);
+  await server.request("DELETE", `${kBase}/layers/${layer.id}`);
   await bea.page.goto(`${server.url}/models/${pot.id}`);
   await bea.drawn();
   await menu(bea, "Options for Finds", "Table of records");

@@ -236,7 +236,7 @@ export class Site {
         return (await server.json("POST", "/models/wall/layers", { name, type: "u8", resolution: 2048, visible: false })).slug;
       case "entry": {
         const { id } = await server.json("POST", "/models/wall/layers", { name, type: "u8", resolution: 2048, visible: false });
-        await server.json("DELETE", `/models/wall/layers/${id}`);
+        await server.request("DELETE", `/models/wall/layers/${id}`);
         return `layer-${id}`;
       }
       case "look":

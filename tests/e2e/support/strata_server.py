@@ -156,7 +156,9 @@ class StrataServer:
 
     def sql(self, statement):
         """By the private database's own door, for what no other door does. What it answers, without names of columns."""
-        psql = ["psql", "-X", "-At", "-h", os.path.join(self.data, "postgres"), "-U", "strata", "-d", "strata", "-v", "ON_ERROR_STOP=1", "-c", statement]
+        with open(os.path.join(self.data, "postgres", "pgdata", "postmaster.pid"), encoding="ascii") as file:
+            port = file.read().splitlines()[3]
+        psql = ["psql", "-X", "-At", "-h", os.path.join(self.data, "postgres"), "-p", port, "-U", "strata", "-d", "strata", "-v", "ON_ERROR_STOP=1", "-c", statement]
         return subprocess.run(psql, check=True, capture_output=True, text=True).stdout.strip()
 
     # --- HTTP
