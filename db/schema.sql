@@ -31,6 +31,7 @@ CREATE TABLE public.activities (
     role text,
     changed text[],
     visibility text DEFAULT 'public'::text NOT NULL,
+    group_name text,
     CONSTRAINT activities_kind_check CHECK ((kind = ANY (ARRAY['edit'::text, 'layer'::text, 'look'::text, 'view'::text, 'tour'::text, 'model'::text, 'table'::text, 'columns'::text, 'records'::text, 'comment'::text, 'member'::text, 'project'::text])))
 );
 
@@ -217,6 +218,33 @@ BEGIN
   RETURN NULL;
 END $$;
 
+CREATE FUNCTION public.group_person_is_activity() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  line activities;
+  given record;
+BEGIN
+  IF activity_author() = '' THEN
+    RETURN NULL;
+  END IF;
+  FOR given IN
+    SELECT p.id, p.name, g.name AS group_name, u.name AS person, r.role
+    FROM project_groups r JOIN projects p ON p.id = r.project_id JOIN groups g ON g.id = r.group_id, users u
+    WHERE r.group_id = CASE WHEN TG_OP = 'DELETE' THEN OLD.group_id ELSE NEW.group_id END
+      AND u.id = CASE WHEN TG_OP = 'DELETE' THEN OLD.user_id ELSE NEW.user_id END
+  LOOP
+    line := activity_of(given.id, 'member', CASE TG_OP WHEN 'INSERT' THEN 'added' ELSE 'removed' END, given.name);
+    line.person := given.person;
+    line.group_name := given.group_name;
+    IF TG_OP = 'INSERT' THEN
+      line.role := given.role;
+    END IF;
+    PERFORM note_activity(line);
+  END LOOP;
+  RETURN NULL;
+END $$;
+
 CREATE FUNCTION public.member_is_activity() RETURNS trigger
     LANGUAGE plpgsql
     AS $$
@@ -264,18 +292,47 @@ BEGIN
     WHERE l.project_id = line.project_id AND l.user_name = line.user_name AND l.time >= line.begun - interval '10 minutes'
       AND l.kind = line.kind AND l.op = line.op AND l.model_id IS NOT DISTINCT FROM line.model_id
       AND l.layer_id IS NOT DISTINCT FROM line.layer_id AND l.table_id IS NOT DISTINCT FROM line.table_id
-      AND l.person IS NOT DISTINCT FROM line.person
-      -- what is made or deleted, looks, views and tours among them, which have no id here, is a line of its own
+      AND l.person IS NOT DISTINCT FROM line.person AND l.group_name IS NOT DISTINCT FROM line.group_name
+      -- what is made or deleted, looks among them, which have no id here, is a line of its own
       AND (line.kind NOT IN ('layer', 'look', 'view', 'tour', 'model', 'table') OR (line.op = 'changed' AND l.subject = line.subject))
     ORDER BY l.time DESC, l.id DESC LIMIT 1);
   IF NOT FOUND THEN
     INSERT INTO activities (project_id, model_id, layer_id, table_id, record_key, comment_id, subject, user_name, kind, op, begun, time,
-      count, texels, area_m2, last_stroke, person, role, changed, visibility)
+      count, texels, area_m2, last_stroke, person, group_name, role, changed, visibility)
     VALUES (line.project_id, line.model_id, line.layer_id, line.table_id, line.record_key, line.comment_id, line.subject, line.user_name,
-      line.kind, line.op, line.begun, line.time, line.count, line.texels, line.area_m2, line.last_stroke, line.person, line.role,
-      line.changed, coalesce(line.visibility, 'public'));
+      line.kind, line.op, line.begun, line.time, line.count, line.texels, line.area_m2, line.last_stroke, line.person, line.group_name,
+      line.role, line.changed, coalesce(line.visibility, 'public'));
   END IF;
 END $$;
+
+CREATE FUNCTION public.project_group_is_activity() RETURNS trigger
+    LANGUAGE plpgsql
+    AS $$
+DECLARE
+  line activities;
+  given record;
+BEGIN
+  IF activity_author() = '' OR (TG_OP = 'UPDATE' AND NEW.role = OLD.role) THEN
+    RETURN NULL;
+  END IF;
+  SELECT p.id, p.name, g.name AS group_name INTO given FROM projects p, groups g
+    WHERE p.id = CASE WHEN TG_OP = 'DELETE' THEN OLD.project_id ELSE NEW.project_id END
+      AND g.id = CASE WHEN TG_OP = 'DELETE' THEN OLD.group_id ELSE NEW.group_id END;
+  IF NOT FOUND THEN
+    RETURN NULL;
+  END IF;
+  line := activity_of(given.id, 'member', CASE TG_OP WHEN 'INSERT' THEN 'added' WHEN 'UPDATE' THEN 'changed' ELSE 'removed' END, given.name);
+  line.group_name := given.group_name;
+  IF TG_OP <> 'DELETE' THEN
+    line.role := NEW.role;
+  END IF;
+  PERFORM note_activity(line);
+  RETURN NULL;
+END $$;
+
+CREATE FUNCTION public.role_rank(role text) RETURNS integer
+    LANGUAGE sql IMMUTABLE
+    AS $$ SELECT array_position(ARRAY['guest', 'viewer', 'annotator', 'curator', 'administrator', 'owner'], role) $$;
 
 CREATE FUNCTION public.table_edit_is_activity() RETURNS trigger
     LANGUAGE plpgsql
@@ -858,6 +915,27 @@ CREATE TABLE public.detail_levels (
     CONSTRAINT detail_levels_level_check CHECK ((level > 0))
 );
 
+CREATE TABLE public.group_people (
+    group_id bigint NOT NULL,
+    user_id bigint NOT NULL
+);
+
+CREATE TABLE public.groups (
+    id bigint NOT NULL,
+    name text NOT NULL,
+    created timestamp with time zone DEFAULT now() NOT NULL,
+    CONSTRAINT groups_name_check CHECK (((name = btrim(name)) AND ((char_length(name) >= 1) AND (char_length(name) <= 100))))
+);
+
+ALTER TABLE public.groups ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
+    SEQUENCE NAME public.groups_id_seq
+    START WITH 1
+    INCREMENT BY 1
+    NO MINVALUE
+    NO MAXVALUE
+    CACHE 1
+);
+
 CREATE TABLE public.kiosks (
     id bigint NOT NULL,
     tour_id bigint NOT NULL,
@@ -945,12 +1023,33 @@ ALTER TABLE public.all_models ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     CACHE 1
 );
 
+CREATE TABLE public.project_groups (
+    project_id bigint NOT NULL,
+    group_id bigint NOT NULL,
+    role text NOT NULL,
+    CONSTRAINT project_groups_role_check CHECK ((role = ANY (ARRAY['viewer'::text, 'annotator'::text, 'curator'::text])))
+);
+
 CREATE TABLE public.project_members (
     project_id bigint NOT NULL,
     user_id bigint NOT NULL,
     role text NOT NULL,
     CONSTRAINT project_members_role_check CHECK ((role = ANY (ARRAY['viewer'::text, 'annotator'::text, 'curator'::text])))
 );
+
+CREATE VIEW public.project_roles AS
+ SELECT project_members.project_id,
+    project_members.user_id,
+    project_members.role,
+    NULL::bigint AS group_id
+   FROM public.project_members
+UNION ALL
+ SELECT g.project_id,
+    p.user_id,
+    g.role,
+    g.group_id
+   FROM (public.project_groups g
+     JOIN public.group_people p ON ((p.group_id = g.group_id)));
 
 ALTER TABLE public.projects ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     SEQUENCE NAME public.projects_id_seq
@@ -1149,6 +1248,12 @@ ALTER TABLE ONLY public.edits
 ALTER TABLE ONLY public.edits
     ADD CONSTRAINT edits_pkey PRIMARY KEY (model_id, sequence);
 
+ALTER TABLE ONLY public.group_people
+    ADD CONSTRAINT group_people_pkey PRIMARY KEY (group_id, user_id);
+
+ALTER TABLE ONLY public.groups
+    ADD CONSTRAINT groups_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.kiosks
     ADD CONSTRAINT kiosks_hash_key UNIQUE (hash);
 
@@ -1172,6 +1277,9 @@ ALTER TABLE ONLY public.model_sources
 
 ALTER TABLE ONLY public.all_models
     ADD CONSTRAINT models_pkey PRIMARY KEY (id);
+
+ALTER TABLE ONLY public.project_groups
+    ADD CONSTRAINT project_groups_pkey PRIMARY KEY (group_id, project_id);
 
 ALTER TABLE ONLY public.project_members
     ADD CONSTRAINT project_members_pkey PRIMARY KEY (user_id, project_id);
@@ -1279,6 +1387,10 @@ CREATE INDEX edits_pending ON public.edits USING btree (layer_id, sequence) WHER
 
 CREATE INDEX edits_undone ON public.edits USING btree (layer_id, user_name, undone_by) WHERE (NOT in_force);
 
+CREATE INDEX group_people_user ON public.group_people USING btree (user_id);
+
+CREATE UNIQUE INDEX groups_name_in_any_case ON public.groups USING btree (lower(name));
+
 CREATE INDEX kiosks_by_tour ON public.kiosks USING btree (tour_id);
 
 CREATE INDEX layer_inputs_input ON public.layer_inputs USING btree (input_id);
@@ -1308,6 +1420,8 @@ CREATE INDEX models_geometry ON public.all_models USING btree (geometry);
 CREATE INDEX models_project ON public.all_models USING btree (project_id);
 
 CREATE UNIQUE INDEX models_slug ON public.all_models USING btree (slug) WHERE (binned IS NULL);
+
+CREATE INDEX project_groups_project ON public.project_groups USING btree (project_id);
 
 CREATE INDEX project_members_project ON public.project_members USING btree (project_id);
 
@@ -1343,6 +1457,8 @@ CREATE TRIGGER comment_is_activity AFTER INSERT OR DELETE OR UPDATE OF resolved,
 
 CREATE TRIGGER edits_are_activity AFTER INSERT ON public.edits REFERENCING NEW TABLE AS added FOR EACH STATEMENT EXECUTE FUNCTION public.edits_are_activity();
 
+CREATE TRIGGER group_person_is_activity AFTER INSERT OR DELETE ON public.group_people FOR EACH ROW EXECUTE FUNCTION public.group_person_is_activity();
+
 CREATE TRIGGER layer_gone_is_activity AFTER DELETE ON public.all_layers FOR EACH ROW WHEN ((old.binned IS NULL)) EXECUTE FUNCTION public.thing_is_activity('layer');
 
 CREATE TRIGGER layer_in_bin_is_activity AFTER UPDATE OF binned ON public.all_layers FOR EACH ROW WHEN (((old.binned IS NULL) <> (new.binned IS NULL))) EXECUTE FUNCTION public.bin_is_activity('layer');
@@ -1358,6 +1474,8 @@ CREATE TRIGGER model_gone_is_activity AFTER DELETE ON public.all_models FOR EACH
 CREATE TRIGGER model_in_bin_is_activity AFTER UPDATE OF binned ON public.all_models FOR EACH ROW WHEN (((old.binned IS NULL) <> (new.binned IS NULL))) EXECUTE FUNCTION public.bin_is_activity('model');
 
 CREATE TRIGGER model_is_activity AFTER INSERT OR UPDATE OF name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download ON public.all_models FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('model');
+
+CREATE TRIGGER project_group_is_activity AFTER INSERT OR DELETE OR UPDATE OF role ON public.project_groups FOR EACH ROW EXECUTE FUNCTION public.project_group_is_activity();
 
 CREATE TRIGGER project_is_activity AFTER INSERT OR UPDATE OF name, slug, description ON public.projects FOR EACH ROW EXECUTE FUNCTION public.thing_is_activity('project');
 
@@ -1409,6 +1527,12 @@ ALTER TABLE ONLY public.edits
 ALTER TABLE ONLY public.edits
     ADD CONSTRAINT edits_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
+ALTER TABLE ONLY public.group_people
+    ADD CONSTRAINT group_people_group_id_fkey FOREIGN KEY (group_id) REFERENCES public.groups(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.group_people
+    ADD CONSTRAINT group_people_user_id_fkey FOREIGN KEY (user_id) REFERENCES public.users(id);
+
 ALTER TABLE ONLY public.kiosks
     ADD CONSTRAINT kiosks_tour_id_fkey FOREIGN KEY (tour_id) REFERENCES public.tours(id) ON DELETE CASCADE;
 
@@ -1444,6 +1568,12 @@ ALTER TABLE ONLY public.all_models
 
 ALTER TABLE ONLY public.all_models
     ADD CONSTRAINT models_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id);
+
+ALTER TABLE ONLY public.project_groups
+    ADD CONSTRAINT project_groups_group_id_fkey FOREIGN KEY (group_id) REFERENCES public.groups(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.project_groups
+    ADD CONSTRAINT project_groups_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.project_members
     ADD CONSTRAINT project_members_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id) ON DELETE CASCADE;
