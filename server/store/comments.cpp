@@ -17,7 +17,7 @@ constexpr std::size_t kLongestText = 10'000;  // characters
   "ELSE (SELECT coalesce(l.visibility, f.visibility) FROM comments f LEFT JOIN all_layers l ON l.id = f.layer_id "        \
   "WHERE f.id = c.thread_id) END"
 // One in the Bin is not told, and is there again when it comes back.
-#define STRATA_COMMENT_LAYER "(SELECT id FROM layers WHERE id = c.layer_id)"
+#define STRATA_COMMENT_LAYER "(SELECT id FROM layers WHERE id = c.layer_id) AS layer_id"
 #define STRATA_COMMENT_COLUMNS                                                 \
   "c.id, c.model_id, c.thread_id, c.position, c.normal, " STRATA_COMMENT_LAYER \
   ", c.table_id, c.record_key, c.text, "                                       \
@@ -139,7 +139,7 @@ Result<Comments::Page> Comments::replies(std::int64_t thread, Role seen_by, int 
     if (!first) return tl::unexpected(first.error());
     auto total = connection.query("SELECT count(*) FROM comments WHERE thread_id = $1", Params().integer(thread));
     auto rows = connection.query("SELECT " STRATA_COMMENT_COLUMNS
-                                 " FROM comments c WHERE thread_id = $1 ORDER BY id LIMIT $2 OFFSET $3",
+                                 " FROM comments c WHERE thread_id = $1 ORDER BY c.id LIMIT $2 OFFSET $3",
                                  Params().integer(thread).integer(limit).integer(offset));
     return page_of(std::move(total), std::move(rows));
   });

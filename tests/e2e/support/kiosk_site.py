@@ -71,7 +71,7 @@ def is_open(path):
 def sweep(server, secret, tour, files, thread):
     """Every call of the contract: what changes anything is refused, and what is read is of the one model. How many doors were open, and how many closed."""
     words = {"model": "sheet", "layer": "finds", "look": "1", "view": "west", "tour": tour.rsplit("/", 1)[1], "table": "finds", "key": "1", "attachment": str(files["public"]), "column": "name", "project": "default",
-             "comment": str(thread), "job": "1", "user": "owner", "session": "1", "token": "1", "tool": "1", "template": "1", "name": "sheet.ply", "format": "npy", "kiosk": "1"}
+             "comment": str(thread), "job": "1", "user": "owner", "session": "1", "token": "1", "tool": "1", "template": "1", "name": "sheet.ply", "format": "npy", "kiosk": "1", "group": "1", "entry": "layer-1"}
     refused = answered = 0
     for path, operations in server.contract.document["paths"].items():
         address = re.sub(r"\{(\w+)\}", lambda match: words[match[1]], path)

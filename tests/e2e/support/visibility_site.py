@@ -67,7 +67,7 @@ def words(server, public):
     look = server.get(M + "/looks").json()["looks"]
     return {"project": ["default"], "model": ["sheet"], "layer": ["cracks", "finds"], "table": ["finds"], "key": ["1"], "column": ["name", "depth", "photo"], "attachment": [str(public["id"])],
             "job": [str(job)], "look": [each["slug"] for each in look] or ["1"], "comment": ["1"], "view": ["plan"], "tour": ["round"], "kiosk": ["1"], "name": ["sheet.ply"], "format": ["npy", "png", "tif"], "tool": ["1"], "template": ["1"],
-            "user": ["owner"], "group": ["1"], "session": ["1"], "token": ["1"]}
+            "user": ["owner"], "group": ["1"], "entry": ["layer-1"], "session": ["1"], "token": ["1"]}
 
 
 def fillings(path, words_of):
