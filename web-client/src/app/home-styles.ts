@@ -250,5 +250,15 @@ export const home_styles = css`
     .title .hint {
       flex-basis: auto;
     }
+    .title h1 {
+      max-width: calc(100% - 42px); /* its menu stands beside it */
+    }
+    .into {
+      flex: 1 1 100%;
+    }
+    .into select {
+      flex: 1;
+      max-width: none;
+    }
   }
 `;

@@ -303,6 +303,9 @@ export const table_styles = css`
     .bar > .grow {
       display: none;
     }
+    .bar > .icon:last-of-type {
+      margin-left: auto;
+    }
     .filter {
       order: 9;
       flex-basis: 100%;

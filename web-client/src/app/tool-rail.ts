@@ -63,7 +63,7 @@ export class StrataToolRail extends LitElement {
       button[aria-pressed="true"]:hover:not(:disabled) {
         background: var(--accent);
       }
-      hr {
+      hr:not(strata-menu > hr) {
         width: 28px;
         margin: 5px 0;
         border: 0;
@@ -85,7 +85,7 @@ export class StrataToolRail extends LitElement {
           border-right: 0;
           border-top: var(--edge) solid var(--line);
         }
-        hr {
+        hr:not(strata-menu > hr) {
           width: 0;
           height: 26px;
           margin: 0 3px;
