@@ -1,0 +1,111 @@
+// Pictures of every screen and dialog of the page in the windows of a phone, a tablet and a desk, on one sheet that a person can judge. No test: it
+// finds nothing wrong by itself. `scripts/contact_sheet` runs it; the first argument is the folder that it writes, `--language` and `--theme`
+// say how the page is shown.
+import { mkdirSync, statSync, writeFileSync } from "node:fs";
+import { join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+import { parseArgs } from "node:util";
+import { Browser } from "../support/browser.mjs";
+import { make_site, screens_of } from "../support/screens.mjs";
+import { StrataServer } from "../support/strata-server.mjs";
+import { texts_of } from "../support/texts.mjs";
+
+const kWindows = { phone: [390, 844], tablet: [820, 1180], desk: [1440, 900] };
+const kDesk = { width: 1280, height: 800 }; // from which screens are reached
+const kScale = 0.3; // of the shots on the sheet
+const kMostBytes = 2_000_000; // of the sheet as one picture
+const kQualities = [70, 60, 50, 40, 30, 20];
+const kLocales = { en: "en-GB", de: "de-DE", es: "es-ES" };
+const kFrame_ms = 20_000; // a picture that has not come by then is shown as it is
+
+const { values, positionals } = parseArgs({
+  allowPositionals: true,
+  options: { language: { type: "string", default: "en" }, theme: { type: "string", default: "light" } },
+});
+const { language, theme } = values;
+if (positionals.length !== 1 || !(language in kLocales) || !["light", "dark", "contrast"].includes(theme)) {
+  console.error("contact_sheet FOLDER [--language en|de|es] [--theme light|dark|contrast]");
+  process.exit(2);
+}
+const folder = resolve(positionals[0]);
+mkdirSync(join(folder, "shots"), { recursive: true });
+
+const server = new StrataServer({ demo: true });
+const viewer = await Browser.open({ locale: kLocales[language], viewport: kDesk });
+const bea = await Browser.open();
+const { page } = viewer;
+
+const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+const file_of = (screen, window) => `shots/${screen.name.replaceAll(/\W+/g, "_")}_${window}.jpg`;
+
+/** In a window of another size the server draws the model anew. */
+async function settled() {
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  if ((await page.locator("strata-stage canvas").count()) === 0) return;
+  const fits = () =>
+    page.locator("strata-stage canvas").first().evaluate((canvas) => {
+      const { width, height } = canvas.getBoundingClientRect();
+      return Math.abs(canvas.width / canvas.height - width / height) < 0.02;
+    });
+  for (const end = Date.now() + kFrame_ms; Date.now() < end && !(await fits()); ) await page.waitForTimeout(100);
+}
+
+async function take(screen) {
+  for (const [window, [width, height]] of Object.entries(kWindows)) {
+    await page.setViewportSize({ width, height });
+    await settled();
+    await page.screenshot({ path: join(folder, file_of(screen, window)), type: "jpeg", quality: 80 });
+  }
+  await page.setViewportSize(kDesk);
+}
+
+function sheet_of(screens) {
+  const shot = (screen) => ([window, [width, height]]) =>
+    `<a href="${file_of(screen, window)}"><img src="${file_of(screen, window)}" alt="${window}" width="${Math.round(width * kScale)}" height="${Math.round(height * kScale)}"></a>`;
+  const figure = (screen, n) =>
+    `<figure><figcaption><b>${n + 1}</b> ${escaped(screen.name)}</figcaption><div>${Object.entries(kWindows).map(shot(screen)).join("")}</div></figure>`;
+  const sizes = Object.entries(kWindows).map(([window, size]) => `${window} ${size.join(" × ")}`).join(", ");
+  return `<!doctype html><meta charset="utf-8"><title>Screens</title><style>
+    body { margin: 24px; font: 14px system-ui, sans-serif; background: #ddd; color: #111; }
+    main { display: flex; flex-wrap: wrap; gap: 22px 26px; }
+    figure { margin: 0; } figcaption { margin: 0 0 5px; } figure div { display: flex; gap: 6px; align-items: flex-start; }
+    img { display: block; background: #fff; outline: 1px solid #999; }
+  </style><h1>${screens.length} screens</h1><p>${sizes}; ${language}, ${theme}.</p><main>${screens.map(figure).join("\n")}</main>`;
+}
+
+/** The whole sheet as one picture, in the best quality that is small enough. */
+async function picture_of(sheet) {
+  await page.setViewportSize({ width: 2530, height: 1000 });
+  await page.goto(pathToFileURL(sheet).href);
+  await page.evaluate(() => Promise.all([...document.images].map((image) => image.decode())));
+  const path = join(folder, "sheet.jpg");
+  for (const quality of kQualities) {
+    await page.screenshot({ path, type: "jpeg", quality, fullPage: true });
+    if (statSync(path).size <= kMostBytes) break;
+  }
+  return path;
+}
+
+let step = "start";
+try {
+  await server.start();
+  await page.addInitScript((name) => document.addEventListener("DOMContentLoaded", () => (document.documentElement.dataset.theme = name)), theme);
+  const site = await make_site(server, bea);
+  const screens = screens_of(viewer, texts_of(language), site);
+  for (const screen of screens) {
+    console.log((step = screen.name));
+    await screen.start();
+    await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
+    await take(screen);
+    await screen.end?.();
+  }
+  const sheet = join(folder, "index.html");
+  writeFileSync(sheet, sheet_of(screens));
+  console.log(`${sheet}\n${await picture_of(sheet)}`);
+} catch (error) {
+  console.error(`failed at: ${step}`);
+  throw error;
+} finally {
+  for (const each of [viewer, bea]) await each.close();
+  await server.remove();
+}
