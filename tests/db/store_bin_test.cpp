@@ -184,7 +184,8 @@ TEST_F(BinOfAProject, who_does_not_see_a_layer_sees_it_in_neither_bin_nor_activi
 TEST_F(BinOfAProject, activity_tells_who_deleted_and_restored_and_no_more_when_it_is_erased) {
   const auto told = [&] {
     std::vector<std::string> lines;
-    for (const Activity& line : store_->activity(1, Role::curator, {})->lines)
+    const auto page = store_->activity(1, Role::curator, {});
+    for (const Activity& line : page->lines)
       lines.push_back(line.user + " " + line.kind + " " + line.op + " " + line.name);
     return lines;
   };
