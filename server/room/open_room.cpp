@@ -696,6 +696,10 @@ bool OpenRoom::deserted(std::chrono::steady_clock::time_point now) const {
 }
 
 void OpenRoom::shut(const Problem& why) {
+  {
+    std::lock_guard lock(mutex_);
+    shut_ = why;
+  }
   maps_->stop();
   look_shelf_->stop();
   record_colors_->stop();
@@ -707,6 +711,11 @@ void OpenRoom::shut(const Problem& why) {
     pipeline_->close(why);
   });
   parts_.renderer.remove_model(model_handle());
+}
+
+Problem OpenRoom::gpu_problem(const Problem& why) const {
+  std::lock_guard lock(mutex_);
+  return why.status == 404 && shut_ ? *shut_ : room::gpu_problem(why);
 }
 
 void OpenRoom::shut_deleted() {

@@ -158,6 +158,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   Result<void> let_go_of_layer(std::int64_t id, const std::function<Result<void>()>& in_store);
   Result<void> take_up_layer(std::int64_t id);  // that the store has again; alone, as `exclusively` runs it
   Result<void> check_not_retired(const EditRequest& request);
+  Problem gpu_problem(const Problem& why) const;  // as gpu_problem.h has it, unless the room is shut
   void sort_layers_changed();
   // On the strand: computed layers that `reads` tells become stale, and people are told.
   void outdate(const std::function<bool(const LayerFormula&)>& reads);
@@ -192,6 +193,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   MemoryLedger::Share geometry_share_, mirrors_share_;
   render::ModelHandle model_handle_ = 0;
   std::chrono::steady_clock::time_point last_used_;  // under `mutex_` everywhere
+  std::optional<Problem> shut_;                      // why, once it is; under `mutex_` everywhere
 
   std::atomic<std::int64_t> sequence_{0}, durable_{0};
   std::atomic<std::size_t> unanswered_{0};  // edits, and changes of layers that wait for them

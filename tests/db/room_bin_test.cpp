@@ -72,6 +72,7 @@ TEST_F(LayersInTheBin, are_not_deleted_with_a_room_that_takes_them_back) {
   put(layer);
   ASSERT_TRUE(store_->bin().put_model(model_.id, {.key = {}, .make = {}, .user = "carl"}));
   rooms_->forget(model_.id);
+  EXPECT_EQ(held->picture({}, camera()).error().status, 410) << "who holds the room is told why";
   EXPECT_EQ(rooms_->open(std::to_string(model_.id), Role::owner).error().status, 404);
   EXPECT_EQ(store_->bin()
                 .entry(model_.project_id, store::BinEntry::Kind::layer, layer.id, 0, {Role::owner, {}})

@@ -31,6 +31,7 @@ const entry = (who, name) => bin(who).locator("li", { hasText: name });
 const notice = ({ page }, text) => page.locator("strata-notices").getByText(text);
 const undo = (who) => who.page.locator("strata-notices").getByRole("button", { name: "Undo", exact: true });
 const layers_of = async () => (await server.json("GET", `${kBase}/layers`)).layers.map(({ name }) => name);
+const pictured = ({ page }) => page.locator("strata-thumbnail canvas.drawn").waitFor(); // what is deleted while it is drawn is a refused request
 const confirm = async ({ page }, name) => {
   const question = page.locator("strata-dialog").last();
   await question.getByRole("button", { name, exact: true }).click();
@@ -105,12 +106,14 @@ try {
   say("a model comes back, too, and its project waits for it");
   await phone.page.goto(`${server.url}/projects/${pot.project}`);
   await phone.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
+  await pictured(phone);
   await menu(phone, "Options for Demo pot", "Delete…");
   await confirm(phone, "Delete");
   await notice(phone, "“Demo pot” was deleted.").waitFor();
   await phone.page.getByText("No models yet").waitFor();
   await undo(phone).tap();
   await phone.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
+  await pictured(phone);
   await menu(phone, "Options for Demo pot", "Delete…");
   await confirm(phone, "Delete");
   await phone.page.getByText("No models yet").waitFor();

@@ -199,6 +199,7 @@ try {
     assert.equal(await nora.page.getByRole("button", { name: /^Options for/ }).count(), person === curator ? 2 : 0, "curators look into the Bin");
     await nora.page.goto(`${server.url}/projects/archive`);
     await heading(nora, "Archive");
+    await heading(nora, "No models yet");
     assert.equal(await nora.page.getByRole("button", { name: /^Options for/ }).count(), person === curator ? 1 : 0);
     assert.equal(await nora.page.getByRole("menuitem", { name: /Delete|Rename/ }).count(), 0);
     assert.equal(await status(person, "POST", "/projects", { name: "Mine" }), 403);
