@@ -87,6 +87,11 @@ bool depends_on_project(const Roles& roles) {
 
 }  // namespace
 
+Result<std::int64_t> id_of(const Request& request, const std::string& param) {
+  const auto id = parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), {});
+  return id ? id : not_there(param, request.param(param));
+}
+
 tl::unexpected<Problem> not_there(const std::string& kind, const std::string& ref, const std::string& field) {
   return fail(404, "Not found", "There is no " + kind + " `" + ref.substr(0, 100) + "`.", field);
 }

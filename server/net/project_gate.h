@@ -12,6 +12,9 @@ Result<void> enter_project(const RouteContext& context, Request& request, bool i
 // The answer for what is not there, or not for who asks.
 tl::unexpected<Problem> not_there(const std::string& kind, const std::string& ref, const std::string& field = {});
 
+// The number in the path's `param`; 404 where it can be nobody's.
+Result<std::int64_t> id_of(const Request& request, const std::string& param);
+
 // That who asks may see the project; otherwise 404 at `field`.
 Result<void> check_seen(const RouteContext& context, const Request& request, const std::string& project,
                         const std::string& field);

@@ -1,6 +1,4 @@
 // Groups of people, and the roles that projects give them.
-#include <limits>
-
 #include "net/project_gate.h"
 #include "net/routes.h"
 #include "net/wire.h"
@@ -21,11 +19,6 @@ nlohmann::json to_json(const GroupDetail& group) {
           {"members", std::move(members)},
           {"projects", std::move(projects)},
           {"losing", group.losing}};
-}
-
-Result<std::int64_t> id_of(const Request& request) {
-  const auto id = parse_integer(request.param("group"), 1, std::numeric_limits<std::int64_t>::max(), {});
-  return id ? id : not_there("group", request.param("group"));
 }
 
 Result<Response> list_groups(const RouteContext& context, const Request& request) {
@@ -53,7 +46,7 @@ Result<Response> create_group(const RouteContext& context, const Request& reques
 }
 
 Result<Response> show_group(const RouteContext& context, const Request& request) {
-  const auto id = id_of(request);
+  const auto id = id_of(request, "group");
   if (!id) return tl::unexpected(id.error());
   const auto group = context.store.groups().group(*id);
   if (!group) return tl::unexpected(group.error());
@@ -63,7 +56,7 @@ Result<Response> show_group(const RouteContext& context, const Request& request)
 Result<Response> change_group(const RouteContext& context, const Request& request) {
   auto asked = body_of<protocol::GroupPatch>(request);
   if (!asked) return tl::unexpected(asked.error());
-  const auto id = id_of(request);
+  const auto id = id_of(request, "group");
   if (!id) return tl::unexpected(id.error());
   const store::GroupChange change{asked->name, asked->add.value_or(std::vector<std::string>()),
                                   asked->remove.value_or(std::vector<std::string>())};
@@ -74,7 +67,7 @@ Result<Response> change_group(const RouteContext& context, const Request& reques
 }
 
 Result<Response> delete_group(const RouteContext& context, const Request& request) {
-  const auto id = id_of(request);
+  const auto id = id_of(request, "group");
   if (!id) return tl::unexpected(id.error());
   const auto people = context.store.groups().remove(*id, request.user());
   if (!people) return tl::unexpected(people.error());
@@ -87,7 +80,7 @@ Result<Response> put_role(const RouteContext& context, const Request& request) {
   if (!asked) return tl::unexpected(asked.error());
   const auto project = context.store.project(request.param("project"));
   if (!project) return tl::unexpected(project.error());
-  const auto id = id_of(request);
+  const auto id = id_of(request, "group");
   if (!id) return tl::unexpected(id.error());
   const Role role = parse_role(protocol::name(asked->role)).value_or(Role::viewer);
   const auto put = context.store.groups().put(project->id, *id, role, request.user());
@@ -99,7 +92,7 @@ Result<Response> put_role(const RouteContext& context, const Request& request) {
 Result<Response> take_role(const RouteContext& context, const Request& request) {
   const auto project = context.store.project(request.param("project"));
   if (!project) return tl::unexpected(project.error());
-  const auto id = id_of(request);
+  const auto id = id_of(request, "group");
   if (!id) return tl::unexpected(id.error());
   const auto people = context.store.groups().take(project->id, *id, request.user());
   if (!people) return tl::unexpected(people.error());

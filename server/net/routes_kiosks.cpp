@@ -1,5 +1,4 @@
 // Links for kiosks: what curators do with them, and what a kiosk asks.
-#include <limits>
 #include <memory>
 
 #include "net/origin.h"
@@ -73,13 +72,8 @@ Result<Response> create_kiosk(const RouteContext& context, const Request& reques
       .with("Cache-Control", "no-store");
 }
 
-Result<std::int64_t> id_of(const Request& request) {
-  const auto id = parse_integer(request.param("kiosk"), 1, std::numeric_limits<std::int64_t>::max(), {});
-  return id ? id : not_there("kiosk", request.param("kiosk"));
-}
-
 Result<Response> revoke_kiosk(const RouteContext& context, const Request& request) {
-  const auto id = id_of(request);
+  const auto id = id_of(request, "kiosk");
   if (!id) return tl::unexpected(id.error());
   if (auto done = context.store.kiosks().revoke(*id); !done) return tl::unexpected(done.error());
   end_kiosks(context, {*id}, "the link was revoked");
@@ -87,7 +81,7 @@ Result<Response> revoke_kiosk(const RouteContext& context, const Request& reques
 }
 
 Result<Response> reload_kiosk(const RouteContext& context, const Request& request) {
-  const auto id = id_of(request);
+  const auto id = id_of(request, "kiosk");
   if (!id) return tl::unexpected(id.error());
   const auto kiosk = context.store.kiosks().ask_reload(*id);
   if (!kiosk) return tl::unexpected(kiosk.error());

@@ -52,6 +52,15 @@ PixelRect screen_rect(std::span<const FrameRequest::Box> boxes, const glm::dmat4
   return {left, top, right - left, bottom - top};
 }
 
+void add_box(std::vector<FrameRequest::Box>& boxes, const FrameRequest::Box& box, std::size_t most) {
+  if (std::find(boxes.begin(), boxes.end(), box) != boxes.end()) return;
+  boxes.push_back(box);
+  if (boxes.size() <= most) return;
+  FrameRequest::Box all = boxes.front();
+  for (const auto& one : boxes) all = {glm::min(all.min, one.min), glm::max(all.max, one.max)};
+  boxes.assign(1, all);
+}
+
 PixelRect intersection(const PixelRect& a, const PixelRect& b) {
   const int x0 = std::max(a.x, b.x), x1 = std::min(a.x + a.width, b.x + b.width);
   const int y0 = std::max(a.y, b.y), y1 = std::min(a.y + a.height, b.y + b.height);

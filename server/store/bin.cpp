@@ -79,12 +79,14 @@ Result<void> erase_layer(PgConnection& connection, std::int64_t id) {
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
+// The blobs of model $1.
+#define STRATA_BLOBS_OF_MODEL                                                                                       \
+  "SELECT geometry FROM all_models WHERE id = $1 UNION "                                                            \
+  "SELECT sha256 FROM model_sources WHERE model_id = $1 UNION SELECT picture FROM looks WHERE model_id = $1 UNION " \
+  "SELECT geometry FROM detail_levels WHERE model_id = $1"
+
 Result<void> erase_model(PgConnection& connection, std::int64_t id) {
-  auto used = connection.query(
-      "SELECT geometry FROM all_models WHERE id = $1 UNION "
-      "SELECT sha256 FROM model_sources WHERE model_id = $1 UNION SELECT picture FROM looks WHERE model_id = $1 UNION "
-      "SELECT geometry FROM detail_levels WHERE model_id = $1",
-      Params().integer(id));
+  auto used = connection.query(STRATA_BLOBS_OF_MODEL, Params().integer(id));
   if (!used) return tl::unexpected(used.error());
   std::vector<std::vector<std::uint8_t>> hashes;
   for (int i = 0; i < used->rows(); ++i) {
@@ -144,9 +146,8 @@ Result<void> Bin::put_model(std::int64_t id, const FirstAnswer<>& answer) {
             "UPDATE all_models SET binned = clock_timestamp(), binned_by = activity_author(), binned_bytes = "
             "(SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0) "
             "FROM tile_revisions r JOIN all_layers l ON l.id = r.layer_id WHERE l.model_id = $1) + "
-            "(SELECT coalesce(sum(b.bytes), 0) FROM blobs b WHERE b.sha256 = all_models.geometry OR b.sha256 IN "
-            "(SELECT sha256 FROM model_sources WHERE model_id = $1 UNION SELECT picture FROM looks WHERE model_id = $1 UNION "
-            "SELECT geometry FROM detail_levels WHERE model_id = $1)) WHERE id = $1 AND binned IS NULL",
+            "(SELECT coalesce(sum(b.bytes), 0) FROM blobs b WHERE b.sha256 IN "
+            "(" STRATA_BLOBS_OF_MODEL ")) WHERE id = $1 AND binned IS NULL",
             Params().integer(id)),
         Kind::model, id);
   };

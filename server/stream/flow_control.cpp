@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "render/screen_rect.h"
+
 namespace strata::stream {
 
 void FlowControl::on_ready() { ready_ = true; }
@@ -31,13 +33,7 @@ void FlowControl::on_camera(std::uint64_t camera_seq, const Camera& camera, bool
   everything_waits_ = true;
 }
 
-void FlowControl::add_box(const Box& box) {
-  boxes_.push_back(box);
-  if (boxes_.size() <= kMaxBoxes) return;
-  Box all = boxes_.front();
-  for (const Box& one : boxes_) all = {glm::min(all.min, one.min), glm::max(all.max, one.max)};
-  boxes_.assign(1, all);
-}
+void FlowControl::add_box(const Box& box) { render::add_box(boxes_, box, kMaxBoxes); }
 
 void FlowControl::on_change(const Box& box, std::int64_t sequence) {
   on_news();
