@@ -80,14 +80,14 @@ void Crowd::open(std::vector<std::pair<LiveClient*, Camera>> clients) {
   std::exit(1);
 }
 
-// Until nothing has come for so long.
+// Until no message has come for so long; among hundreds of connections somebody is always asked whether they are still there.
 void Crowd::settle(double quiet_s) {
   const double limit_ms = now_ms() + 1e3 * kMostSettling_s;
   std::uint64_t before;
   do {
-    before = now().wire_bytes();
+    before = now().bytes();
     run_for(quiet_s);
-  } while (now().wire_bytes() != before && now_ms() < limit_ms);
+  } while (now().bytes() != before && now_ms() < limit_ms);
 }
 
 void Crowd::run_for(double seconds) {

@@ -47,8 +47,8 @@ nlohmann::json of_rates(std::vector<double> rates) {
 
 }  // namespace
 
-std::uint64_t CrowdMoment::wire_bytes() const {
-  return sum_of(active, &LiveClient::Counts::wire_bytes) + sum_of(idle, &LiveClient::Counts::wire_bytes);
+std::uint64_t CrowdMoment::bytes() const {
+  return sum_of(active, &LiveClient::Counts::bytes) + sum_of(idle, &LiveClient::Counts::bytes);
 }
 
 nlohmann::json crowd_figures(const CrowdCase& asked, const Viewers& active, const Viewers& idle,

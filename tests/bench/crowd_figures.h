@@ -18,7 +18,7 @@ struct CrowdMoment {
   ServerProcess::Used server;
   double bench_s = 0;  // of processors, for viewers and links
   std::vector<LiveClient::Counts> active, idle;
-  std::uint64_t wire_bytes() const;  // of all
+  std::uint64_t bytes() const;  // of all messages
 };
 
 // The figures of a stretch of time, as README.md describes them: rates of what came within, times of what was sent within,
