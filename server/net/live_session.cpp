@@ -331,6 +331,7 @@ void LiveSession::submit(room::EditRequest request, std::optional<BatchName> bat
     std::lock_guard lock(mutex_);
     own_edits_.emplace(id, false);
   }
+  if (const auto here = member()) here->edits();
   // The answer counts even when this connection is gone by then: the stroke book outlives it.
   room_->edit(
       std::move(request),

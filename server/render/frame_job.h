@@ -16,8 +16,10 @@ class FrameJob {
 
   const FrameTask& task() const { return task_; }
   double busy_ms() const { return busy_ms_; }
-  // What its asker has been served by now.
-  double turn_ms() const { return task_.turn_ms + busy_ms_ / static_cast<double>(task_.askers.size()); }
+  // With what its asker has been served by now.
+  FrameTask::Turn turn() const {
+    return {task_.turn.acting, task_.turn.ms + busy_ms_ / static_cast<double>(task_.askers.size())};
+  }
   Step step(GpuScene& scene);
   void abort(const Problem& problem) { answer(tl::unexpected(problem)); }
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <utility>
+
+#include "render/screen_rect.h"
 
 namespace strata::render {
 namespace {
@@ -16,13 +19,7 @@ void inherit(FrameRequest& request, const FrameRequest& other) {
     request.changed.reset();
     return;
   }
-  auto& boxes = *request.changed;
-  for (const auto& box : *other.changed)
-    if (std::find(boxes.begin(), boxes.end(), box) == boxes.end()) boxes.push_back(box);
-  if (boxes.size() <= kMaxBoxes) return;
-  FrameRequest::Box all = boxes.front();
-  for (const auto& box : boxes) all = {glm::min(all.min, box.min), glm::max(all.max, box.max)};
-  boxes.assign(1, all);
+  for (const auto& box : *other.changed) add_box(*request.changed, box, kMaxBoxes);
 }
 
 // Whether a view that drew one of them has the other's picture, but for what changed on the surface.
@@ -48,7 +45,7 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
   } else if (askers_ >= max_askers_) {
     return {false, std::move(done)};
   }
-  if (!state.under_way) state.served_ms = std::max(state.served_ms, now_ms_);
+  enter_half(state, request.acting);
   // A whole picture is not forced on those who want a part of it.
   auto same = std::find_if(waiting_.begin(), waiting_.end(), [&](const FrameTask& other) {
     return other.request.changed.has_value() == request.changed.has_value() && same_picture(other.request, request);
@@ -60,23 +57,51 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
     inherit(same->request, request);
   }
   same->askers.push_back({view, std::move(done)});
+  same->turn.acting = is_acting(*same);
   state.waits = same;
   ++askers_;
   return pushed;
 }
 
+// Who comes to it has no credit and no debt there.
+void FrameQueue::enter_half(View& state, bool acting) {
+  Half& to = half(acting);
+  const bool is_empty = to.under_way == 0 && std::ranges::none_of(waiting_, [&](const FrameTask& task) {
+                          return task.turn.acting == acting;
+                        });
+  if (is_empty) to.served_ms = std::max(to.served_ms, now_ms_);
+  if (std::exchange(state.acting, acting) != acting)
+    state.served_ms = to.now_ms;
+  else if (!state.under_way)
+    state.served_ms = std::max(state.served_ms, to.now_ms);
+}
+
+bool FrameQueue::is_acting(const FrameTask& task) const {
+  return std::ranges::any_of(task.askers, [&](const auto& asker) { return views_.at(asker.view).acting; });
+}
+
 void FrameQueue::leave(ViewHandle view, View& state) {
   const Place place = *state.waits;
   std::erase_if(place->askers, [&](const auto& one) { return one.view == view; });
-  if (place->askers.empty()) waiting_.erase(place);
+  if (place->askers.empty())
+    waiting_.erase(place);
+  else
+    place->turn.acting = is_acting(*place);
   state.waits.reset();
   --askers_;
 }
 
-double FrameQueue::turn_of(const FrameTask& task) const {
-  double turn = std::numeric_limits<double>::infinity();
-  for (const auto& asker : task.askers) turn = std::min(turn, views_.at(asker.view).served_ms);
-  return turn;
+FrameTask::Turn FrameQueue::turn_of(const FrameTask& task) const {
+  double ms = std::numeric_limits<double>::infinity();
+  for (const auto& asker : task.askers)
+    if (const View& state = views_.at(asker.view); state.acting == task.turn.acting) ms = std::min(ms, state.served_ms);
+  return {task.turn.acting, ms};
+}
+
+bool FrameQueue::is_before(const FrameTask::Turn& a, const FrameTask::Turn& b) const {
+  if (a.acting == b.acting) return a.ms < b.ms;
+  const double of_a = half(a.acting).served_ms, of_b = half(b.acting).served_ms;
+  return of_a < of_b || (of_a == of_b && a.acting);
 }
 
 std::optional<ViewHandle> FrameQueue::drawer_of(const FrameTask& task) const {
@@ -98,12 +123,13 @@ std::optional<FrameTask> FrameQueue::take_if(const Wanted& wanted) {
   std::set<const FrameTask*> cannot;
   for (;;) {
     Place next = waiting_.end();
-    double turn = std::numeric_limits<double>::infinity();
+    FrameTask::Turn turn;
     for (auto place = waiting_.begin(); place != waiting_.end(); ++place) {
-      if (const double its = turn_of(*place); its < turn && !cannot.contains(&*place) && wanted(*place, its)) {
-        turn = its;
-        next = place;
-      }
+      const auto its = turn_of(*place);
+      if (cannot.contains(&*place) || !wanted(*place, its)) continue;
+      if (next != waiting_.end() && !is_before(its, turn)) continue;
+      turn = its;
+      next = place;
     }
     if (next == waiting_.end()) return std::nullopt;
     const auto drawer = drawer_of(*next);
@@ -111,9 +137,12 @@ std::optional<FrameTask> FrameQueue::take_if(const Wanted& wanted) {
       cannot.insert(&*next);
       continue;
     }
-    now_ms_ = std::max(now_ms_, turn);
+    Half& from = half(turn.acting);
+    from.now_ms = std::max(from.now_ms, turn.ms);
+    now_ms_ = std::max(now_ms_, from.served_ms);
+    ++from.under_way;
     next->request.view = *drawer;
-    next->turn_ms = turn;
+    next->turn = turn;
     for (const auto& asker : next->askers) {
       View& state = views_.at(asker.view);
       state.waits.reset();
@@ -131,12 +160,15 @@ std::optional<FrameTask> FrameQueue::take_if(const Wanted& wanted) {
 
 std::optional<FrameTask> FrameQueue::take() {
   std::lock_guard lock(mutex_);
-  return take_if([](const FrameTask&, double) { return true; });
+  return take_if([](const FrameTask&, const FrameTask::Turn&) { return true; });
 }
 
-std::optional<FrameTask> FrameQueue::take_part(double turn_ms) {
+std::optional<FrameTask> FrameQueue::take_part(std::span<const FrameTask::Turn> under_way) {
   std::lock_guard lock(mutex_);
-  return take_if([&](const FrameTask& task, double its) { return task.request.changed && its < turn_ms; });
+  return take_if([&](const FrameTask& task, const FrameTask::Turn& its) {
+    return task.request.changed &&
+           std::ranges::all_of(under_way, [&](const FrameTask::Turn& one) { return is_before(its, one); });
+  });
 }
 
 void FrameQueue::finished(const FrameTask& task, double took_ms) {
@@ -150,6 +182,10 @@ void FrameQueue::finished(const FrameTask& task, double took_ms) {
   };
   for (const auto& asker : task.askers) rests(asker.view, took_ms / static_cast<double>(task.askers.size()));
   rests(task.request.view, 0);
+  Half& its = half(task.turn.acting);
+  if (its.under_way == 0) return;  // `take_all` came between
+  its.served_ms += took_ms;
+  --its.under_way;
 }
 
 void FrameQueue::forget(ViewHandle view) {
@@ -167,6 +203,8 @@ std::vector<FrameTask> FrameQueue::take_all() {
   std::vector<FrameTask> tasks(std::make_move_iterator(waiting_.begin()), std::make_move_iterator(waiting_.end()));
   waiting_.clear();
   views_.clear();
+  halves_ = {};
+  now_ms_ = 0;
   askers_ = 0;
   return tasks;
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <list>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -18,7 +20,10 @@ struct FrameTask {
   };
   FrameRequest request;  // its view is the one that draws, and need not be an asker's
   std::vector<Asker> askers;
-  double turn_ms = 0;  // what its asker had been served when its turn came
+  struct Turn {
+    bool acting = false;
+    double ms = 0;  // what its asker had been served when its turn came
+  } turn;
 };
 
 // Frames that wait, and whose turn it is. Thread-safe.
@@ -28,6 +33,8 @@ struct FrameTask {
 // 3. Turns are fair by what drawing has taken (start-time fair queueing): next is who was served the fewest milliseconds, and who did
 //    not ask for a while has no more credit than who waits. So the rectangle of an edit, for someone who only looks, goes before
 //    the next whole picture of someone who turns the model, and nobody waits for ever.
+// 4. Those who act and those who look on (`FrameRequest::acting`) have half of the time each, where both wait, by the same rule: a
+//    hundred onlookers do not hold up one who paints, and see what is painted nevertheless.
 class FrameQueue {
  public:
   explicit FrameQueue(std::size_t max_askers) : max_askers_(max_askers) {}
@@ -39,8 +46,8 @@ class FrameQueue {
   Pushed push(FrameRequest request, Renderer::Done<SharedFrame> done);
   // What is next, except for views with a frame under way; its views are then under way until `finished`.
   std::optional<FrameTask> take();
-  // The same, of rectangles only, whose asker was served less than `turn_ms`: they may go before a whole picture that is half done.
-  std::optional<FrameTask> take_part(double turn_ms);
+  // The same, of rectangles only, whose turn is before all of these: they may go before whole pictures that are half done.
+  std::optional<FrameTask> take_part(std::span<const FrameTask::Turn> under_way);
   void finished(const FrameTask& task, double took_ms);
   void forget(ViewHandle view);       // it is removed
   std::vector<FrameTask> take_all();  // and nothing is under way or known any more
@@ -48,14 +55,25 @@ class FrameQueue {
  private:
   using Place = std::list<FrameTask>::iterator;
   struct View {
-    double served_ms = 0;
+    bool acting = false;
+    double served_ms = 0;  // among those of its half
     std::optional<Place> waits;
     bool under_way = false;
     bool gone = false;                 // removed, but still waited for or under way
     std::optional<FrameRequest> drew;  // the last picture it drew
   };
+  struct Half {  // those who act, or those who look on
+    double served_ms = 0;
+    double now_ms = 0;  // what the one whose turn was last had been served
+    std::size_t under_way = 0;
+  };
   void leave(ViewHandle view, View& state);
-  double turn_of(const FrameTask& task) const;
+  Half& half(bool acting) { return halves_[acting ? 0 : 1]; }
+  const Half& half(bool acting) const { return halves_[acting ? 0 : 1]; }
+  void enter_half(View& state, bool acting);
+  bool is_acting(const FrameTask& task) const;  // any of its askers
+  bool is_before(const FrameTask::Turn& a, const FrameTask::Turn& b) const;
+  FrameTask::Turn turn_of(const FrameTask& task) const;
   // The view to draw it; none while that one has another frame under way.
   std::optional<ViewHandle> drawer_of(const FrameTask& task) const;
   template <class Wanted>
@@ -66,7 +84,8 @@ class FrameQueue {
   std::list<FrameTask> waiting_;  // oldest first
   std::unordered_map<ViewHandle, View> views_;
   std::size_t askers_ = 0;  // of `waiting_`
-  double now_ms_ = 0;       // what the one whose turn was last had been served
+  std::array<Half, 2> halves_;
+  double now_ms_ = 0;  // what the half whose turn was last had been served
 };
 
 }  // namespace strata::render

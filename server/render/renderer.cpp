@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <future>
-#include <limits>
 #include <mutex>
 #include <unordered_map>
 #include <vector>
@@ -64,10 +63,10 @@ struct Renderer::Impl {
   // A rectangle whose turn is before that of every frame under way.
   std::optional<Job> next_part() {
     std::erase_if(under_way, [](const auto& frame) { return frame.expired(); });
-    auto turn_ms = std::numeric_limits<double>::infinity();
+    std::vector<FrameTask::Turn> turns;
     for (const auto& one : under_way)
-      if (const auto frame = one.lock()) turn_ms = std::min(turn_ms, frame->turn_ms());
-    return start(frames.take_part(turn_ms));
+      if (const auto frame = one.lock()) turns.push_back(frame->turn());
+    return start(frames.take_part(turns));
   }
 
   std::optional<Job> start(std::optional<FrameTask> task) {

@@ -106,6 +106,7 @@ struct FrameRequest {
   ModelHandle model = 0;
   Camera camera;
   bool moving = false;        // a coarser copy of the model may be shown, so that the picture comes in time
+  bool acting = false;        // for someone who is doing something, so that onlookers do not hold it up
   int width = 0, height = 0;  // pixels of the picture (the camera's window scaled to this size)
   std::vector<LayerStyle> layers;
   std::vector<LookStyle> looks;  // kMaxLooksShown at most

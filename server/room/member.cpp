@@ -127,6 +127,11 @@ void RoomMember::ack(std::uint32_t view_id, std::uint64_t frame) {
   if (View* v = view(view_id, false)) v->viewer->ack(frame);
 }
 
+void RoomMember::edits() {
+  std::lock_guard lock(mutex_);
+  for (auto& [id, view] : views_) view.viewer->acts();
+}
+
 void RoomMember::pointer(std::optional<Pointing> at) {
   {
     std::lock_guard lock(mutex_);

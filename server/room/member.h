@@ -25,6 +25,7 @@ class RoomMember final : public Member {
   void camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) override;
   Result<void> show(std::uint32_t view_id, ViewSettings settings) override;
   void ack(std::uint32_t view_id, std::uint64_t frame) override;
+  void edits() override;
   void pointer(std::optional<Pointing> at) override;
   Result<void> look_together(bool leading, const std::optional<Uuid>& follow) override;
 

@@ -123,6 +123,7 @@ class Member {
   // Replaces everything that was set before for this view.
   virtual Result<void> show(std::uint32_t view_id, ViewSettings settings) = 0;
   virtual void ack(std::uint32_t view_id, std::uint64_t frame) = 0;
+  virtual void edits() = 0;  // its person does: onlookers do not hold up what they see of it
   virtual void pointer(std::optional<Pointing> at) = 0;
   // Replaces what was said before. Refused as a whole, in `follow`: a session that is not here (404), one that follows this one (409).
   virtual Result<void> look_together(bool leading, const std::optional<Uuid>& follow) = 0;

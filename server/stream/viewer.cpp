@@ -22,6 +22,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kQuietAfter = 200ms;  // the full-quality picture follows within 250 ms of the last input
+constexpr auto kActsFor = 2s;
 constexpr auto kFirstRetry = 50ms;
 constexpr auto kLastRetry = 5000ms;
 
@@ -70,7 +71,8 @@ struct Viewer::Impl {
   std::deque<Picture> drawn;     // in frame order, at most `window`; the first is being encoded when `encoding`
   bool encoding = false;
   bool closed = false;
-  Clock::time_point last_camera{};  // when the newest moving camera came
+  Clock::time_point last_camera{};  // when the newest camera came
+  Clock::time_point last_act{};     // and the newest camera or edit
   bool quiet_timer_runs = false;
   std::chrono::milliseconds retry_in = kFirstRetry;
   Stats stats;
@@ -194,7 +196,7 @@ void Viewer::set_camera(std::uint64_t camera_seq, const Camera& camera, bool mov
     std::lock_guard lock(impl_->mutex);
     if (impl_->closed) return;
     impl_->flow.on_camera(camera_seq, camera, moving);
-    impl_->last_camera = Clock::now();
+    impl_->last_camera = impl_->last_act = Clock::now();
   }
   if (moving) wait_for_quiet();
   step();
@@ -220,6 +222,11 @@ void Viewer::wait_for_quiet() {
     }
     viewer->wait_for_quiet();
   });
+}
+
+void Viewer::acts() {
+  std::lock_guard lock(impl_->mutex);
+  impl_->last_act = Clock::now();
 }
 
 void Viewer::set_style(render::ViewStyle style) {
@@ -299,6 +306,7 @@ void Viewer::step() {
     request.background = impl_->style.background;
     request.marks = impl_->style.marks;
     request.unit_mm = impl_->style.unit_mm;
+    request.acting = Clock::now() - impl_->last_act < kActsFor;
     request.moving = draw.quality == FlowControl::Quality::moving;
     // A rectangle is added to the picture as it is.
     if (request.moving && !draw.changed) impl_->moving = impl_->link.moving();

@@ -26,7 +26,7 @@ using FrameBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
 // no credit nothing is drawn, and what changed meanwhile is drawn once credit returns; nothing changed → nothing sent;
 // a frame of a moving camera is followed by a full-quality one within 250 ms of the last input; quality never falls
 // while painting; viewers with the same picture share its drawing and its encoding; over a slow link pictures of a moving camera are
-// reduced (stream/link_pace). Thread-safe; `send` is called on encoder threads, in frame order, `refused` on the GPU thread; never concurrently.
+// reduced (stream/link_pace); who just moved the camera or edited is not held up by onlookers (render/frame_queue). Thread-safe; `send` is called on encoder threads, in frame order, `refused` on the GPU thread; never concurrently.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   struct Options {
@@ -44,6 +44,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   ~Viewer();
 
   void set_camera(std::uint64_t camera_seq, const Camera& camera, bool moving);
+  void acts();  // who looks edits: for a while they are served before onlookers, as after a camera
   void set_style(render::ViewStyle style);
   // Model-space box that an edit changed; `sequence` is what frames drawn after this will show.
   void changed(const render::FrameRequest::Box& box, std::int64_t sequence);

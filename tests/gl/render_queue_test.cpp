@@ -31,6 +31,10 @@ class FrameTurns : public testing::Test {
     request.changed = std::move(boxes);
     return request;
   }
+  static FrameRequest acting(FrameRequest request) {
+    request.acting = true;
+    return request;
+  }
   static FrameRequest shared(FrameRequest request, ModelHandle model = 7) {
     request.model = model;
     return request;
@@ -119,12 +123,88 @@ TEST_F(FrameTurns, only_a_rectangle_whose_turn_it_is_goes_before_a_picture_that_
   push(queue, whole(1));
   const auto drawn = queue.take();
   push(queue, whole(2));
-  EXPECT_FALSE(queue.take_part(drawn->turn_ms + 100)) << "a whole picture waits";
+  const auto half_done = [&](double ms) { return std::vector{FrameTask::Turn{false, drawn->turn.ms + ms}}; };
+  EXPECT_FALSE(queue.take_part(half_done(100))) << "a whole picture waits";
   push(queue, part(3));
-  EXPECT_FALSE(queue.take_part(drawn->turn_ms)) << "no one was served more";
-  const auto part = queue.take_part(drawn->turn_ms + 5);
+  EXPECT_FALSE(queue.take_part(half_done(0))) << "no one was served more";
+  const auto part = queue.take_part(half_done(5));
   ASSERT_TRUE(part);
   EXPECT_EQ(part->request.view, 3u);
+}
+
+TEST_F(FrameTurns, a_hundred_onlookers_and_one_who_acts_have_half_of_the_time_each) {
+  FrameQueue queue(256);
+  constexpr ViewHandle kActor = 500;
+  const auto look_on = [&](ViewHandle view) { push(queue, part(view)); };
+  const auto act = [&] { push(queue, acting(part(kActor))); };
+  for (ViewHandle view = 1; view <= 100; ++view) look_on(view);
+  for (int i = 0; i < 50; ++i) look_on(draw(queue, 20));
+  act();
+  EXPECT_EQ(draw(queue, 20), kActor) << "who comes waits for one picture at most";
+  std::map<ViewHandle, int> turns;
+  for (int i = 0; i < 400; ++i) {
+    act();
+    const ViewHandle view = draw(queue, 20);
+    ++turns[view];
+    if (view != kActor) look_on(view);
+  }
+  EXPECT_NEAR(turns[kActor], 200, 2);
+  EXPECT_EQ(turns.size(), 101u) << "everybody sees something";
+  for (const auto& [view, count] : turns) EXPECT_LE(count, view == kActor ? 202 : 3) << view;
+  // Alone, onlookers have all of it, which is no credit for who acts later.
+  for (int i = 0; i < 400; ++i) look_on(draw(queue, 20));
+  int acted = 0;
+  for (int i = 0; i < 20; ++i) {
+    act();
+    const ViewHandle view = draw(queue, 20);
+    view == kActor ? ++acted : (look_on(view), 0);
+  }
+  EXPECT_NEAR(acted, 10, 1);
+}
+
+TEST_F(FrameTurns, a_rectangle_of_who_acts_goes_before_the_half_done_picture_of_an_onlooker) {
+  FrameQueue queue(8);
+  push(queue, whole(1));
+  const auto drawn = queue.take();
+  const std::vector half_done{FrameTask::Turn{false, drawn->turn.ms}};
+  push(queue, part(2));
+  EXPECT_FALSE(queue.take_part(half_done)) << "an onlooker as well";
+  push(queue, acting(part(3)));
+  const auto part_of_3 = queue.take_part(half_done);
+  ASSERT_TRUE(part_of_3);
+  EXPECT_EQ(part_of_3->request.view, 3u);
+  queue.finished(*part_of_3, 10);
+  push(queue, acting(part(3)));
+  EXPECT_FALSE(queue.take_part(half_done)) << "that half has had its share";
+}
+
+TEST_F(FrameTurns, who_ends_to_act_is_an_onlooker_like_others) {
+  FrameQueue queue(8);
+  for (int i = 0; i < 20; ++i) {
+    push(queue, acting(whole(1)));
+    draw(queue, 100);
+  }
+  push(queue, part(1));
+  push(queue, part(2));
+  EXPECT_EQ(draw(queue, 1), 1u) << "what it was served while it acted counts no more";
+  EXPECT_EQ(draw(queue, 1), 2u);
+}
+
+TEST_F(FrameTurns, a_picture_that_one_of_its_askers_acts_in_is_theirs) {
+  FrameQueue queue(8);
+  push(queue, shared(part(1)));
+  push(queue, part(2));
+  push(queue, acting(shared(part(3))));
+  auto task = queue.take();
+  EXPECT_TRUE(task->turn.acting);
+  EXPECT_EQ(task->askers.size(), 2u);
+  queue.finished(*task, 0);
+  // Who acted asks for something else meanwhile: what is left is an onlooker's.
+  push(queue, shared(part(1)));
+  push(queue, acting(shared(part(3))));
+  push(queue, acting(whole(3, 5)));
+  EXPECT_EQ(queue.take()->request.width, 5);
+  EXPECT_FALSE(queue.take()->turn.acting);
 }
 
 TEST_F(FrameTurns, the_same_picture_of_several_views_is_drawn_once_by_the_view_that_has_it) {

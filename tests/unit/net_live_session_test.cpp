@@ -46,6 +46,7 @@ class FakeMember final : public room::Member {
   }
   Result<void> show(std::uint32_t, room::ViewSettings) override { return {}; }
   void ack(std::uint32_t, std::uint64_t) override {}
+  void edits() override {}
   void pointer(std::optional<room::Pointing> at) override { pointers.push_back(at); }
   Result<void> look_together(bool leading, const std::optional<Uuid>& follow) override {
     if (follow == kGone) return fail(404, "Not here", "Who is to be followed has left.", "follow");
