@@ -36,7 +36,8 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
   const ViewHandle view = request.view;
   View& state = views_[view];
   Pushed pushed{true, std::nullopt};
-  if (state.waits) {
+  const bool waited = state.waits.has_value();
+  if (waited) {
     inherit(request, (*state.waits)->request);
     auto& askers = (*state.waits)->askers;
     const auto mine = std::find_if(askers.begin(), askers.end(), [&](const auto& one) { return one.view == view; });
@@ -45,7 +46,7 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
   } else if (askers_ >= max_askers_) {
     return {false, std::move(done)};
   }
-  enter_half(state, request.acting);
+  enter_half(state, request.acting, waited);
   // A whole picture is not forced on those who want a part of it.
   auto same = std::find_if(waiting_.begin(), waiting_.end(), [&](const FrameTask& other) {
     return other.request.changed.has_value() == request.changed.has_value() && same_picture(other.request, request);
@@ -64,7 +65,7 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
 }
 
 // Who comes to it has no credit and no debt there.
-void FrameQueue::enter_half(View& state, bool acting) {
+void FrameQueue::enter_half(View& state, bool acting, bool waited) {
   Half& to = half(acting);
   const bool is_empty = to.under_way == 0 && std::ranges::none_of(waiting_, [&](const FrameTask& task) {
                           return task.turn.acting == acting;
@@ -72,7 +73,7 @@ void FrameQueue::enter_half(View& state, bool acting) {
   if (is_empty) to.served_ms = std::max(to.served_ms, now_ms_);
   if (std::exchange(state.acting, acting) != acting)
     state.served_ms = to.now_ms;
-  else if (!state.under_way)
+  else if (!state.under_way && !waited)
     state.served_ms = std::max(state.served_ms, to.now_ms);
 }
 
@@ -104,9 +105,12 @@ bool FrameQueue::is_before(const FrameTask::Turn& a, const FrameTask::Turn& b) c
   return of_a < of_b || (of_a == of_b && a.acting);
 }
 
+bool FrameQueue::is_under_way(const FrameTask& task) const {
+  return std::ranges::any_of(task.askers, [&](const auto& asker) { return views_.at(asker.view).under_way; });
+}
+
 std::optional<ViewHandle> FrameQueue::drawer_of(const FrameTask& task) const {
-  for (const auto& asker : task.askers)
-    if (views_.at(asker.view).under_way) return std::nullopt;
+  if (is_under_way(task)) return std::nullopt;
   const auto has_it = [&](const View& state) { return state.drew && same_picture(*state.drew, task.request); };
   for (const auto& asker : task.askers)
     if (has_it(views_.at(asker.view))) return asker.view;
@@ -165,9 +169,21 @@ std::optional<FrameTask> FrameQueue::take() {
 
 std::optional<FrameTask> FrameQueue::take_part(std::span<const FrameTask::Turn> under_way) {
   std::lock_guard lock(mutex_);
+  // What is next in each half. A rectangle does not take the other half's turn, nor that of a whole picture to go before the other half:
+  // rectangles alone would use up all the time that their half has.
+  std::array<std::optional<FrameTask::Turn>, 2> next;
+  for (const FrameTask& task : waiting_) {
+    auto& first = next[task.turn.acting ? 0 : 1];
+    if (is_under_way(task)) continue;
+    if (const auto its = turn_of(task); !first || its.ms < first->ms) first = its;
+  }
   return take_if([&](const FrameTask& task, const FrameTask::Turn& its) {
-    return task.request.changed &&
-           std::ranges::all_of(under_way, [&](const FrameTask::Turn& one) { return is_before(its, one); });
+    if (!task.request.changed || is_under_way(task)) return false;
+    const auto &own = next[its.acting ? 0 : 1], &other = next[its.acting ? 1 : 0];
+    if (other && is_before(*other, its)) return false;
+    return std::ranges::all_of(under_way, [&](const FrameTask::Turn& one) {
+      return is_before(its, one) && (its.acting == one.acting || its.ms <= own->ms);
+    });
   });
 }
 

@@ -70,8 +70,9 @@ class FrameQueue {
   void leave(ViewHandle view, View& state);
   Half& half(bool acting) { return halves_[acting ? 0 : 1]; }
   const Half& half(bool acting) const { return halves_[acting ? 0 : 1]; }
-  void enter_half(View& state, bool acting);
-  bool is_acting(const FrameTask& task) const;  // any of its askers
+  void enter_half(View& state, bool acting, bool waited);
+  bool is_acting(const FrameTask& task) const;     // any of its askers
+  bool is_under_way(const FrameTask& task) const;  // another frame of one of its askers is
   bool is_before(const FrameTask::Turn& a, const FrameTask::Turn& b) const;
   FrameTask::Turn turn_of(const FrameTask& task) const;
   // The view to draw it; none while that one has another frame under way.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <map>
 
 #include "render/frame_queue.h"
@@ -176,6 +177,56 @@ TEST_F(FrameTurns, a_rectangle_of_who_acts_goes_before_the_half_done_picture_of_
   queue.finished(*part_of_3, 10);
   push(queue, acting(part(3)));
   EXPECT_FALSE(queue.take_part(half_done)) << "that half has had its share";
+}
+
+TEST_F(FrameTurns, rectangles_do_not_use_up_the_time_of_whole_pictures_of_those_who_act) {
+  FrameQueue queue(256);
+  constexpr ViewHandle kTurning = 500, kPainting = 501;
+  struct Drawing {
+    FrameTask task;
+    double busy_ms = 0;
+  };
+  std::deque<Drawing> under_way;  // as GpuThread has them: what comes before others in front
+  double turning_ms = 0, painting_ms = 0, onlookers_ms = 0;
+  const auto look_on = [&](ViewHandle view) { push(queue, part(view)); };
+  for (ViewHandle view = 1; view <= 100; ++view) look_on(view);
+  for (int now_ms = 0; now_ms < 20'000; now_ms += 5) {
+    // Newer requests take the place of what waits all the time.
+    push(queue, acting(whole(kTurning, now_ms + 1)));
+    push(queue, acting(part(kPainting)));
+    if (under_way.empty()) {
+      under_way.push_back({*queue.take()});
+    } else if (under_way.size() < 4) {
+      std::vector<FrameTask::Turn> turns;
+      for (const auto& [task, busy_ms] : under_way) turns.push_back({task.turn.acting, task.turn.ms + busy_ms});
+      if (auto before = queue.take_part(turns)) under_way.push_front({std::move(*before)});
+    }
+    Drawing& drawing = under_way.front();
+    const ViewHandle view = drawing.task.askers.front().view;
+    (view == kTurning ? turning_ms : view == kPainting ? painting_ms : onlookers_ms) += 5;
+    drawing.busy_ms += 5;
+    if (drawing.busy_ms < (view == kTurning ? 60 : view == kPainting ? 10 : 30)) continue;
+    queue.finished(drawing.task, drawing.busy_ms);
+    under_way.pop_front();
+    if (view < kTurning) look_on(view);
+  }
+  EXPECT_NEAR(onlookers_ms, 10'000, 500);
+  EXPECT_NEAR(turning_ms, 5'000, 500);
+  EXPECT_NEAR(painting_ms, 5'000, 500);
+}
+
+TEST_F(FrameTurns, who_asks_anew_while_they_wait_keep_their_turn) {
+  FrameQueue queue(8);
+  push(queue, part(3));
+  draw(queue, 5);
+  push(queue, whole(1));
+  const auto half_done = queue.take();
+  push(queue, whole(2));
+  push(queue, part(3));
+  ASSERT_TRUE(queue.take_part(std::vector{FrameTask::Turn{false, half_done->turn.ms + 20}}));
+  push(queue, part(4));
+  push(queue, whole(2));
+  EXPECT_EQ(draw(queue), 2u);
 }
 
 TEST_F(FrameTurns, who_ends_to_act_is_an_onlooker_like_others) {

@@ -1,6 +1,7 @@
 // A kiosk in a real browser: by its link alone, with fingers, left alone and come back to, without its server and with it again, loaded anew from afar and
 // revoked. The page's clock is the test's. STRATA_KIOSK_ROUNDS: how often it is visited and left while its memory is looked at; STRATA_KIOSK_ALONE_MIN: minutes of that
-// clock for which its tour plays alone after each. 200 and 50 are a week.
+// clock for which its tour plays alone after each; STRATA_KIOSK_STEP_S: how much of it passes at once then, with one stop of the tour each time.
+// 200, 50 and 30 are a week, in half an hour.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -11,6 +12,7 @@ import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kRounds = Number(process.env.STRATA_KIOSK_ROUNDS ?? 4);
 const kAlone_min = Number(process.env.STRATA_KIOSK_ALONE_MIN ?? 1);
+const kStep_s = Number(process.env.STRATA_KIOSK_STEP_S ?? 5);
 const kUpright = { width: 1080, height: 1920 };
 const kTarget_px = 57; // 15 mm
 const kMostHeapGrowth = 1.5; // MB, and of the server below: what the allocators of both make of the same work, and no leak of a picture a round
@@ -31,9 +33,9 @@ const heading = (name) => page.getByRole("heading", { level: 1, name, exact: tru
 const begin = page.getByRole("button", { name: /^Touch to begin/ });
 const live = () => wait_for(() => page.locator("strata-kiosk-stage canvas.live[data-still=true]").count(), "a live picture that is still");
 /** A time that the page's timers see pass, in steps between which it hears what the server says. */
-const pass = async (seconds) => {
-  for (let left = seconds; left > 0; left -= 5) {
-    await page.clock.fastForward(Math.min(5, left) * 1000);
+const pass = async (seconds, step_s = 5) => {
+  for (let left = seconds; left > 0; left -= step_s) {
+    await page.clock.fastForward(Math.min(step_s, left) * 1000);
     await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 0)));
   }
 };
@@ -294,7 +296,7 @@ try {
     await card.getByRole("heading", { name: "Sherd 3" }).waitFor();
     await wait_for(async () => (await pass(15), await begin.count()), "the visitor to be gone", 20);
     for (const title of ["Fourteen sherds", "The rim"]) await wait_for(async () => (await pass(3), await heading(title).count()), title, 20);
-    await pass(kAlone_min * 60);
+    await pass(kAlone_min * 60, kStep_s);
   };
   for (let round = 0; round < 8; ++round) await visit(); // until all is loaded and compiled
   const before = await used();
