@@ -44,6 +44,7 @@ export type TablePanelRequest =
 
 const kRow_px = 32;
 const kHead_px = 34;
+const kNarrow_px = 820; // of the panel, where one row of tools has no room for all
 const kAbove = 6; // rows drawn beyond those in sight
 const kKeyWidth = 92;
 const kMeasureWidth = 110;
@@ -98,6 +99,7 @@ export class StrataTablePanel extends LitElement {
   override willUpdate(): void {
     this.claim_edited();
     this.classList.toggle("over", this.over_);
+    this.classList.toggle("narrow", this.is_narrow);
     const { first, last } = this.in_sight();
     this.view.rows.want(first, last);
   }
@@ -126,6 +128,9 @@ export class StrataTablePanel extends LitElement {
     return { first, last: Math.ceil((top + height) / kRow_px) + kAbove };
   }
 
+  private get is_narrow(): boolean {
+    return this.clientWidth <= kNarrow_px;
+  }
   private get layer(): Layer | null {
     return this.session.layers.find(this.view.layer_id);
   }
@@ -190,10 +195,10 @@ export class StrataTablePanel extends LitElement {
         ? html`<button aria-label=${words.new_record} title=${words.new_record} @click=${() => this.request({ dialog: "record", layer, key: null })}>
               ${icon("plus")}<span class="words">${words.new_record}</span>
             </button>
-            <button class="icon quiet" aria-label=${words.undo} title=${words.undo} @click=${() => void view.undo()}>${icon("undo")}</button>
-            <button class="icon quiet" aria-label=${words.redo} title=${words.redo} @click=${() => void view.redo()}>${icon("redo")}</button>`
+            ${this.is_narrow ? nothing : this.turns("tool")}`
         : nothing}
       <strata-menu label=${words.more}>
+        ${this.can_write && this.is_narrow ? html`${this.turns("menuitem")}<hr />` : nothing}
         ${session.can_curate
           ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "column", table: table.id, column: null })}>
                 ${icon("plus")}${words.new_column}
@@ -214,6 +219,17 @@ export class StrataTablePanel extends LitElement {
       </strata-menu>
       <button class="icon quiet" aria-label=${words.close} title="${words.close} (T)" @click=${() => session.tables.close()}>${icon("close")}</button>
     </div>`;
+  }
+
+  /** Undo and redo, beside the other tools or in the menu. */
+  private turns(place: "tool" | "menuitem"): TemplateResult[] {
+    const { view } = this;
+    const words = texts.tables;
+    const turn = (glyph: "undo" | "redo", does: () => Promise<void>): TemplateResult =>
+      place === "tool"
+        ? html`<button class="icon quiet" aria-label=${words[glyph]} title=${words[glyph]} @click=${does}>${icon(glyph)}</button>`
+        : html`<button class="quiet" role="menuitem" @click=${does}>${icon(glyph)}${words[glyph]}</button>`;
+    return [turn("undo", () => view.undo()), turn("redo", () => view.redo())];
   }
 
   private terms_menu(table: Table): TemplateResult {

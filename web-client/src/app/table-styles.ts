@@ -296,21 +296,39 @@ export const table_styles = css`
     padding: 18px;
     color: var(--ink-soft);
   }
-  @media (max-width: 820px) {
-    .bar {
-      flex-wrap: wrap;
-    }
-    .bar > .grow {
-      display: none;
-    }
-    .bar > .icon:last-of-type {
-      margin-left: auto;
-    }
-    .filter {
-      order: 9;
-      flex-basis: 100%;
-      max-width: none;
-      margin-left: 0;
-    }
+  /* the title with what closes it, then the filter, then what is chosen */
+  :host(.narrow) .bar {
+    flex-wrap: wrap;
+    row-gap: 3px;
+  }
+  :host(.narrow) .bar h2 {
+    flex: 1 1 0;
+    min-width: 60px;
+    max-width: none;
+  }
+  :host(.narrow) .bar > .grow {
+    display: none;
+  }
+  :host(.narrow) .bar::after {
+    content: "";
+    order: 1;
+    flex-basis: 100%;
+  }
+  :host(.narrow) .filter {
+    order: 2;
+    max-width: none;
+    margin-left: 0;
+  }
+  :host(.narrow) .on-model {
+    order: 2;
+  }
+  :host(.narrow) .chosen {
+    order: 3;
+    flex: 1 0 100%;
+    overflow-x: auto;
+  }
+  :host(.narrow) .chosen > .ellipsis {
+    flex: 1 0 auto;
+    max-width: 60%;
   }
 `;
