@@ -115,6 +115,19 @@ describe("HTTP", () => {
     const api = new Api(() => Promise.reject(new TypeError("failed")));
     await expect(api.models()).rejects.toMatchObject({ status: 0 });
   });
+  it("a picture that nobody waits for any more is asked for no longer", async () => {
+    const given_up: string[] = [];
+    const api = new Api((path, init) => new Promise((_, reject) => init!.signal!.addEventListener("abort", () => {
+      given_up.push(path);
+      reject(new DOMException("stopped", "AbortError"));
+    }))); // prettier-ignore
+    const stop = new AbortController();
+    const camera = { op: "camera" } as unknown as Parameters<Api["frame"]>[1];
+    const pictures = [api.frame(1, camera, stop.signal), api.view_picture(1, 2, 256, stop.signal)];
+    stop.abort();
+    for (const picture of pictures) await expect(picture).rejects.toMatchObject({ status: 499 });
+    expect(given_up).toEqual(["/api/v1/models/1/frame", "/api/v1/models/1/views/2/picture?thumbnail=256"]);
+  });
   it("a layer is changed with the version that was read", async () => {
     const calls: [string, string, unknown][] = [];
     const api = new Api(async (path, init) => {

@@ -23,7 +23,8 @@ export class StrataThumbnail extends LitElement {
   view: View | null = null;
   @state() private state_: "waiting" | "drawn" | "failed" = "waiting";
   @query("canvas") private canvas_!: HTMLCanvasElement;
-  private stop_waiting_: (() => void) | null = null;
+  private wanted_: AbortController | null = null; // ends the wait for its picture, or the request
+  private settled_ = false; // drawn, or failed
 
   static override styles = [
     shared_styles,
@@ -56,38 +57,51 @@ export class StrataThumbnail extends LitElement {
     `,
   ];
 
+  /** Elements that a list moves to another place leave the page for a moment. */
+  override connectedCallback(): void {
+    super.connectedCallback();
+    if (this.wanted_ && !this.settled_) this.want();
+  }
+
   protected override updated(changed: PropertyValues): void {
-    if (this.stop_waiting_ && !changed.has("view")) return;
-    this.stop_waiting_?.();
-    this.stop_waiting_ = when_seen(this, () => (busy = busy.then(() => this.load())));
+    if (!this.wanted_ || changed.has("view")) this.want();
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    this.stop_waiting_?.();
+    this.wanted_?.abort();
   }
 
-  private async load(): Promise<void> {
-    if (!this.isConnected) return;
+  private want(): void {
+    this.wanted_?.abort();
+    this.settled_ = false;
+    const { signal } = (this.wanted_ = new AbortController());
+    signal.addEventListener("abort", when_seen(this, () => (busy = busy.then(() => this.load(signal)))));
+  }
+
+  private async load(signal: AbortSignal): Promise<void> {
+    if (signal.aborted) return;
     try {
-      const bitmap = await createImageBitmap(await this.picture());
+      const bitmap = await createImageBitmap(await this.picture(signal));
       this.canvas_.width = bitmap.width;
       this.canvas_.height = bitmap.height;
       this.canvas_.getContext("2d")?.drawImage(bitmap, 0, 0);
       bitmap.close();
       this.state_ = "drawn";
     } catch {
+      if (signal.aborted) return; // nobody waits for it any more
       this.state_ = "failed"; // the card says so; the model itself may still open
     }
+    if (!signal.aborted) this.settled_ = true;
   }
 
-  private picture(): Promise<Blob> {
-    if (this.view) return this.api.view_picture(this.model.id, this.view.id, kViewSide);
+  private picture(signal: AbortSignal): Promise<Blob> {
+    if (this.view) return this.api.view_picture(this.model.id, this.view.id, kViewSide, signal);
     const camera = new OrbitCamera();
     camera.set_model(this.model.bounds, this.model.up);
     camera.resize(kWidth, kHeight);
     camera.first_view();
-    return this.api.frame(this.model.id, camera.message());
+    return this.api.frame(this.model.id, camera.message(), signal);
   }
 
   override render(): TemplateResult {

@@ -380,8 +380,8 @@ export class Api {
     return this.json("GET", view_path(model, view));
   }
   /** What it shows now; no side of the picture is longer than `side` pixels. */
-  async view_picture(model: Id, view: Id, side: number): Promise<Blob> {
-    return (await this.request("GET", `${view_path(model, view)}/picture?thumbnail=${side}`)).blob();
+  async view_picture(model: Id, view: Id, side: number, signal: AbortSignal): Promise<Blob> {
+    return this.blob("GET", `${view_path(model, view)}/picture?thumbnail=${side}`, undefined, signal);
   }
   /** `key`: the same for each attempt at one view. */
   async create_view(model: Id, view: wire.ViewCreate, key: string): Promise<wire.View> {
@@ -645,9 +645,8 @@ export class Api {
     return this.upload("POST", path, files, progress, true);
   }
 
-  async frame(model: Id, camera: CameraMessage): Promise<Blob> {
-    const response = await this.request("POST", `/models/${encodeURIComponent(model)}/frame`, { camera, format: "jpeg" });
-    return response.blob();
+  async frame(model: Id, camera: CameraMessage, signal: AbortSignal): Promise<Blob> {
+    return this.blob("POST", `/models/${encodeURIComponent(model)}/frame`, { camera, format: "jpeg" }, signal);
   }
 
   /** A job whose file it is. */
@@ -656,12 +655,7 @@ export class Api {
   }
   /** The file itself, for small ones. */
   async figure(model: Id, figure: wire.FigureRequest, signal: AbortSignal): Promise<Blob> {
-    const response = await this.request("POST", figures_path(model), figure, {}, signal);
-    try {
-      return await response.blob();
-    } catch {
-      throw signal.aborted ? cancelled() : unreachable();
-    }
+    return this.blob("POST", figures_path(model), figure, signal);
   }
   /** What a job of this person made. */
   async job_file(id: Id): Promise<Blob> {
@@ -712,6 +706,16 @@ export class Api {
       return (await response.json()) as T;
     } catch {
       throw new ApiError(problem_of_text(502, ""));
+    }
+  }
+
+  /** A file whose request may be given up, also while it comes. */
+  private async blob(method: string, path: string, body: unknown, signal: AbortSignal): Promise<Blob> {
+    const response = await this.request(method, path, body, {}, signal);
+    try {
+      return await response.blob();
+    } catch {
+      throw signal.aborted ? cancelled() : unreachable();
     }
   }
 
