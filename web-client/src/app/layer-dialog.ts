@@ -150,9 +150,33 @@ export class StrataLayerDialog extends LitElement {
       .details .segments button {
         min-height: 38px;
       }
+      .chosen-lead {
+        display: none;
+      }
+      /* the fields below are to be seen as well */
       @media (max-width: 560px) {
         .kinds {
-          grid-template-columns: 1fr;
+          gap: 8px;
+        }
+        .kinds button {
+          position: relative;
+          align-content: center;
+          padding: 8px 11px;
+        }
+        .kinds button b {
+          font-size: 0.95rem;
+          line-height: 1.2;
+        }
+        .kinds button span {
+          position: absolute;
+          width: 1px;
+          height: 1px;
+          overflow: hidden;
+          clip-path: inset(50%);
+        }
+        .chosen-lead {
+          display: block;
+          margin-top: 8px;
         }
         .range {
           grid-template-columns: 1fr auto 1fr;
@@ -285,6 +309,7 @@ export class StrataLayerDialog extends LitElement {
         chosen: this.purpose_,
         choose: (purpose) => (this.purpose_ = purpose),
       })}
+      <p class="hint chosen-lead" aria-hidden="true">${kinds.find(([value]) => value === this.purpose_)?.[2]}</p>
     </div>`;
   }
 
