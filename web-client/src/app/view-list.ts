@@ -45,7 +45,13 @@ export class StrataViewList extends LitElement {
         align-items: start;
         gap: 10px;
       }
-      li button.go[aria-current="true"]:not(:disabled) {
+      ul {
+        margin: 0;
+      }
+      li {
+        border-radius: var(--radius-small);
+      }
+      li:has(> .go[aria-current="true"]) {
         background: var(--accent-soft);
       }
       strata-thumbnail {
