@@ -89,7 +89,7 @@ export class StrataHomePage extends LitElement {
   /** There is something else than the one that is shown. */
   private get leads_up(): boolean {
     const { shown } = this;
-    return this.is_missing || (shown !== null && (this.has_several || (this.models_ !== null && this.listed[0]?.project !== shown)));
+    return shown !== null && (this.has_several || (this.models_ !== null && this.listed[0]?.project !== shown));
   }
   /** There are several to choose among. Before it is known what is in them: surely. */
   private get has_several(): boolean {
@@ -145,19 +145,7 @@ export class StrataHomePage extends LitElement {
         ${this.leads_up
           ? html`<a class="up" href="/" @click=${follow}>${icon("back")}${texts.home.all_projects}</a>`
           : nothing}
-        <div class="title">
-          <h1 tabindex="-1">${this.heading}</h1>
-          ${this.about ? this.project_menu(this.about) : nothing}
-          <span class="hint grow">${this.counted}</span>
-          ${this.project === null && this.curated.length > 1 ? this.project_choice(this.curated) : nothing}
-          ${this.can_curate
-            ? html`<button class="primary" @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
-                <input type="file" accept=".ply,.obj,.stl,.gltf,.glb,.zip,.mtl,.bin,.png,.jpg,.jpeg" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
-            : nothing}
-          ${this.project === null && this.can_administer
-            ? html`<button @click=${() => void this.make_project()}>${icon("plus")}${texts.projects.new}</button>`
-            : nothing}
-        </div>
+        ${this.is_missing ? nothing : this.title_row()}
         ${this.shown?.description ? html`<p class="description">${this.shown.description}</p>` : nothing}
         ${this.imports.entries.length > 0
           ? html`<section class="imports" aria-live="polite">
@@ -172,14 +160,29 @@ export class StrataHomePage extends LitElement {
       </main>`;
   }
 
+  private title_row(): TemplateResult {
+    return html`<div class="title">
+      <h1 tabindex="-1">${this.heading}</h1>
+      ${this.about ? this.project_menu(this.about) : nothing}
+      <span class="hint grow">${this.counted}</span>
+      ${this.project === null && this.curated.length > 1 ? this.project_choice(this.curated) : nothing}
+      ${this.can_curate
+        ? html`<button class="primary" @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
+            <input type="file" accept=".ply,.obj,.stl,.gltf,.glb,.zip,.mtl,.bin,.png,.jpg,.jpeg" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
+        : nothing}
+      ${this.project === null && this.can_administer
+        ? html`<button @click=${() => void this.make_project()}>${icon("plus")}${texts.projects.new}</button>`
+        : nothing}
+    </div>`;
+  }
+
   private get heading(): string {
     const words = texts.home;
-    if (this.is_missing) return words.missing_title;
     return this.shown?.name ?? (this.is_gallery ? words.projects : words.title);
   }
   private get counted(): string {
     const words = texts.home;
-    if (!this.models_ || this.is_missing || this.models.length === 0) return ""; // that is said below
+    if (!this.models_ || this.models.length === 0) return ""; // that is said below
     return this.is_gallery ? words.count_projects(this.listed.length) : words.count(this.models.length);
   }
 
@@ -193,6 +196,7 @@ export class StrataHomePage extends LitElement {
   }
 
   private content(): TemplateResult {
+    if (this.is_missing) return this.missing();
     if (this.problem_) {
       return html`<div class="empty">
         <h2>${this.problem_}</h2>
@@ -200,7 +204,6 @@ export class StrataHomePage extends LitElement {
       </div>`;
     }
     if (!this.models_) return html`<p class="hint" role="status">${texts.loading}</p>`;
-    if (this.is_missing) return html`<div class="empty">${logo()}<p>${texts.home.missing_lead}</p></div>`;
     if (this.is_gallery) {
       return html`<ul class="gallery projects">
           ${repeat(
@@ -225,6 +228,17 @@ export class StrataHomePage extends LitElement {
         (model) => this.card(model),
       )}
     </ul>`;
+  }
+
+  /** As where a model is not here. */
+  private missing(): TemplateResult {
+    const words = texts.home;
+    return html`<div class="empty">
+      ${logo()}
+      <h1 tabindex="-1">${words.missing_title}</h1>
+      <p>${words.missing_lead}</p>
+      <a class="button" href="/" @click=${follow}>${icon("back")}${words.all_projects}</a>
+    </div>`;
   }
 
   private nothing_yet(): TemplateResult {

@@ -194,6 +194,9 @@ export const home_styles = css`
     width: 64px;
     height: 64px;
   }
+  .empty h1 {
+    font-size: 1.45rem;
+  }
   .empty p {
     color: var(--ink-soft);
   }
