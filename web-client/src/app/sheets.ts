@@ -102,7 +102,7 @@ export class StrataAboutSheet extends LitElement {
     return html`<strata-dialog wide prose heading=${model.name} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <dl>
         ${rows.map(([name, value]) => (value ? html`<dt>${name}</dt><dd class="numeric">${value}</dd>` : nothing))}
-        ${model.source_files.length > 0 || this.correctable
+        ${model.source_files.length > 0
           ? html`<dt>${words.files}</dt>
               <dd>
                 ${model.source_files.map(
@@ -114,11 +114,11 @@ export class StrataAboutSheet extends LitElement {
                       <span class="hint numeric">${format_bytes(file.bytes)}</span>
                     </div>`,
                 )}
-                ${may_download(this.viewer, model) || model.source_files.length === 0 ? nothing : html`<p class="hint">${texts.visibility.no_download}</p>`}
-                ${this.correctable ? this.download_choice() : nothing}
+                ${may_download(this.viewer, model) ? nothing : html`<p class="hint">${texts.visibility.no_download}</p>`}
               </dd>`
           : nothing}
       </dl>
+      ${this.correctable ? this.download_choice() : nothing}
       ${this.correctable
         ? html`<button slot="actions" @click=${() => this.dispatchEvent(new CustomEvent("correct"))}>
             ${texts.model.correct_size}
