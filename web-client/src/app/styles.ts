@@ -220,6 +220,20 @@ export const shared_styles = css`
     gap: 6px;
     justify-items: start;
   }
+  @media (max-width: 560px) {
+    .visibility .segments {
+      display: grid;
+      grid-template-columns: repeat(3, minmax(0, 1fr));
+      justify-self: stretch;
+    }
+    .visibility .segments button {
+      flex-direction: column;
+      gap: 2px;
+      padding: 6px 4px;
+      line-height: 1.2;
+      white-space: normal;
+    }
+  }
   .visually-hidden {
     position: absolute;
     width: 1px;
