@@ -1,12 +1,14 @@
 // <strata-map-dialog>: paints a layer from files: readings and vertex values (CSV), maps of areas, rasters, orthophotos, scanned maps.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, state } from "lit/decorators.js";
+import { customElement, property, query, state } from "lit/decorators.js";
 import { format_list, read_number } from "../core/locale";
 import { format_area } from "../core/measure";
 import type { EditResult } from "../core/protocol.gen";
 import type { Layer, MapContents } from "../core/types";
 import "./dialog";
+import type { StrataDialog } from "./dialog";
+import "./file-choice";
 import { follow_session } from "./follow-session";
 import "./map-colors";
 import {
@@ -41,6 +43,7 @@ export class StrataMapDialog extends LitElement {
   @state() private mode_: PictureMode = "luminance";
   @state() private rows_: readonly ColorRow[] = [];
   @state() private painting_ = false;
+  @query("strata-dialog") private dialog_!: StrataDialog;
   private radius_mm_ = 5;
   private tolerance_mm_ = 5;
   private source_ = "";
@@ -66,10 +69,6 @@ export class StrataMapDialog extends LitElement {
         grid-template-columns: repeat(auto-fit, minmax(140px, 1fr));
         gap: 12px;
       }
-      .part {
-        display: grid;
-        gap: 6px;
-      }
       .short {
         width: 110px;
       }
@@ -81,20 +80,22 @@ export class StrataMapDialog extends LitElement {
     return html`<strata-dialog heading=${words.title(this.layer.name)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <form id="map" @submit=${(event: Event) => this.on_submit(event)}>
         <p class="hint">${words.lead}</p>
-        <label class="field">
-          <span>${words.file}</span>
-          <input
-            type="file"
+        <div class="part">
+          <span class="caption">${words.file}</span>
+          <strata-file-choice
             multiple
+            label=${words.file}
             accept=${accepted([...kTableEndings, ...kMapEndings])}
             ?disabled=${this.painting_}
-            @change=${(event: Event) => void this.on_files(event)}
-          />
-        </label>
+            .names=${this.files_.map(({ name }) => name)}
+            @files=${(event: CustomEvent<File[]>) => void this.on_files(event.detail)}
+          ></strata-file-choice>
+        </div>
         ${this.files_.length === 0 ? html`<p class="hint">${words.file_hint}</p>` : nothing} ${this.fields()}
         ${this.sending_.problem ? html`<p class="error" role="alert">${this.sending_.problem}</p>` : nothing}
         ${this.sending_.busy ? progress_line(this.sending_.share, this.painting_ ? words.working : words.looking) : nothing}
       </form>
+      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" class="primary" form="map" ?disabled=${!ready}>${words.paint}</button>
     </strata-dialog>`;
   }
@@ -228,14 +229,12 @@ export class StrataMapDialog extends LitElement {
 
   // ── what is done ──────────────────────────────────────────────────────────────────────────────────────────────────
 
-  private async on_files(event: Event): Promise<void> {
-    const files = [...((event.target as HTMLInputElement).files ?? [])];
+  private async on_files(files: File[]): Promise<void> {
     this.sending_.cancel();
     [this.files_, this.kind_, this.contents_, this.attribute_, this.names_] = [files, null, null, "", ""];
     this.sending_.refuse("");
     const names = files.map(({ name }) => name);
     const kind = file_kind(names);
-    if (files.length === 0) return;
     if (kind === null) {
       this.sending_.refuse(words.unknown(unknown_file(names)));
     } else if (kind === "table") {

@@ -1,10 +1,12 @@
 // <strata-orthophoto-dialog>: makes a look of a picture that was taken along an axis.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, state } from "lit/decorators.js";
+import { customElement, property, query, state } from "lit/decorators.js";
 import { name_of_file } from "../core/api";
 import type { MapContents } from "../core/types";
 import "./dialog";
+import type { StrataDialog } from "./dialog";
+import "./file-choice";
 import { accepted, as_uploads, file_kind, kPictureEndings, unknown_file, world_numbers, type Along } from "./map-file";
 import { direction_field, found_line, progress_line, world_field } from "./map-place";
 import type { ModelSession } from "./model-session";
@@ -21,6 +23,7 @@ export class StrataOrthophotoDialog extends LitElement {
   @state() private files_: readonly File[] = [];
   @state() private contents_: MapContents | null = null;
   @state() private name_ = "";
+  @query("strata-dialog") private dialog_!: StrataDialog;
   private along_: Along = "-z";
   private world_ = "";
   private readonly sending_ = new Sending(this);
@@ -36,10 +39,16 @@ export class StrataOrthophotoDialog extends LitElement {
     return html`<strata-dialog heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <form id="orthophoto" @submit=${(event: Event) => void this.on_submit(event)}>
         <p class="hint">${words.lead}</p>
-        <label class="field">
-          <span>${words.file}</span>
-          <input type="file" multiple accept=${accepted(kPictureEndings)} @change=${(event: Event) => void this.on_files(event)} />
-        </label>
+        <div class="part">
+          <span class="caption">${words.file}</span>
+          <strata-file-choice
+            multiple
+            label=${words.file}
+            accept=${accepted(kPictureEndings)}
+            .names=${this.files_.map(({ name }) => name)}
+            @files=${(event: CustomEvent<File[]>) => void this.on_files(event.detail)}
+          ></strata-file-choice>
+        </div>
         ${contents
           ? html`${found_line(contents)}
               <label class="field">
@@ -59,17 +68,16 @@ export class StrataOrthophotoDialog extends LitElement {
         ${this.sending_.problem ? html`<p class="error" role="alert">${this.sending_.problem}</p>` : nothing}
         ${this.sending_.busy ? progress_line(this.sending_.share, texts.maps.looking) : nothing}
       </form>
+      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" class="primary" form="orthophoto" ?disabled=${!contents || this.sending_.busy}>${words.add}</button>
     </strata-dialog>`;
   }
 
-  private async on_files(event: Event): Promise<void> {
-    const files = [...((event.target as HTMLInputElement).files ?? [])];
+  private async on_files(files: File[]): Promise<void> {
     this.sending_.cancel();
     [this.files_, this.contents_] = [files, null];
     this.sending_.refuse("");
     const names = files.map(({ name }) => name);
-    if (files.length === 0) return;
     if (file_kind(names) !== "map") {
       this.sending_.refuse(texts.maps.unknown(unknown_file(names)));
       return;

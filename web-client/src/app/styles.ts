@@ -401,6 +401,10 @@ export const chip_styles = css`
 
 /** A dialog that sends files: what they hold, the numbers of their place, how far it is. */
 export const files_styles = css`
+  .part {
+    display: grid;
+    gap: 6px;
+  }
   .found {
     padding: 9px 12px;
     border-radius: var(--radius-small);

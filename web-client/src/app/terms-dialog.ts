@@ -1,14 +1,13 @@
 // <strata-terms-dialog>: a list of terms from a CSV or SKOS file, or more terms for one: first what the file would do, then it is done.
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError, name_of_file } from "../core/api";
 import { label_of } from "../core/cells";
 import type { RecordsReport, Table } from "../core/protocol.gen";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
-import { dropped_files } from "./drop";
-import { icon } from "./icons";
+import "./file-choice";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { is_useful, records_report, report_styles } from "./records-report";
@@ -36,35 +35,13 @@ export class StrataTermsDialog extends LitElement {
   @state() private report_: RecordsReport | null = null;
   @state() private problem_ = "";
   @state() private busy_ = false;
-  @state() private over_ = false;
   @query("strata-dialog") private dialog_!: StrataDialog;
-  @query("input[type=file]") private input_!: HTMLInputElement;
   private named_ = false; // by the person, and not after the file
   private asked_ = 0;
 
   static override styles = [
     shared_styles,
     report_styles,
-    css`
-      .file {
-        display: flex;
-        align-items: center;
-        gap: 12px;
-        padding: 12px;
-        border: var(--edge) dashed var(--line-strong);
-        border-radius: var(--radius-small);
-      }
-      .file.over {
-        border-color: var(--accent);
-        background: var(--accent-soft);
-      }
-      .file input {
-        display: none;
-      }
-      .file span {
-        overflow-wrap: anywhere;
-      }
-    `,
   ];
 
   override connectedCallback(): void {
@@ -78,11 +55,13 @@ export class StrataTermsDialog extends LitElement {
     const ready = report !== null && is_useful(report) && !this.busy_;
     return html`<strata-dialog wide heading=${list ? words.more_title(label_of(list)) : words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p class="hint">${list ? words.more_lead : words.lead}</p>
-      <div class="file ${this.over_ ? "over" : ""}" @dragover=${this.on_over} @dragleave=${() => (this.over_ = false)} @drop=${this.on_drop}>
-        <button type="button" ?disabled=${this.busy_} @click=${() => this.input_.click()}>${icon("upload")}${words.choose}</button>
-        <input type="file" tabindex="-1" aria-label=${words.choose} accept=${kTermsEndings} @change=${this.on_chosen} />
-        <span class=${file ? "" : "hint"}>${file?.name ?? words.drop}</span>
-      </div>
+      <strata-file-choice
+        label=${words.file}
+        accept=${kTermsEndings}
+        ?disabled=${this.busy_}
+        .names=${file ? [file.name] : []}
+        @files=${(event: CustomEvent<File[]>) => this.take(event.detail[0]!)}
+      ></strata-file-choice>
       ${list || !file ? nothing : this.new_list()}
       ${report ? records_report(report, words.rows) : html`<p class="hint" role="status" ?hidden=${!file || this.problem_ !== ""}>${words.looking}</p>`}
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
@@ -106,24 +85,6 @@ export class StrataTermsDialog extends LitElement {
         ${words.with_layer}
       </label>`;
   }
-
-  private readonly on_chosen = (): void => {
-    const [file] = this.input_.files ?? [];
-    this.input_.value = ""; // so that the same one, mended, can be chosen again
-    if (file) this.take(file);
-  };
-
-  private readonly on_over = (event: DragEvent): void => {
-    event.preventDefault();
-    this.over_ = true;
-  };
-
-  private readonly on_drop = (event: DragEvent): void => {
-    event.preventDefault();
-    this.over_ = false;
-    if (!event.dataTransfer || this.busy_) return;
-    void dropped_files(event.dataTransfer).then(([first]) => first && this.take(first.file));
-  };
 
   private on_name(event: Event): void {
     this.name_ = (event.target as HTMLInputElement).value.trim();

@@ -1319,6 +1319,12 @@ export const texts = {
     what: "Was nicht stimmt",
   },
 
+  file_choice: {
+    choose: "Datei wählen",
+    choose_several: "Dateien wählen",
+    drop: "oder hier ablegen",
+    drop_several: "oder hier ablegen",
+  },
   terms_dialog: {
     open: "Begriffsliste aus einer Datei …",
     open_more: "Begriffe importieren …",
@@ -1328,8 +1334,7 @@ export const texts = {
     more_title: (list) => `Begriffe für „${list}“`,
     lead: "SKOS (Turtle, N-Triples oder RDF/XML), wie Thesauri veröffentlicht werden, oder CSV mit den Spalten code, parent, label, label-de (oder eine andere Sprache), definition, uri, color und pattern; nur code muss da sein.",
     more_lead: "SKOS oder CSV. Begriffe, die die Liste nach Adresse oder Code schon hat, werden geändert und behalten, was mit ihnen gemalt ist; andere sind neu. Das lässt sich rückgängig machen.",
-    choose: "Datei wählen",
-    drop: "oder hier ablegen",
+    file: "Datei mit Begriffen",
     name: "Name der Liste",
     name_missing: "Bitte der Liste einen Namen geben.",
     with_layer: "Eine Ebene daraus machen, um darauf zu malen",

@@ -1304,6 +1304,12 @@ export const texts = {
     what: "What is wrong",
   },
 
+  file_choice: {
+    choose: "Choose a file",
+    choose_several: "Choose files",
+    drop: "or drop it here",
+    drop_several: "or drop them here",
+  },
   terms_dialog: {
     open: "A list of terms from a file…",
     open_more: "Import terms…",
@@ -1313,8 +1319,7 @@ export const texts = {
     more_title: (list: string) => `Terms for “${list}”`,
     lead: "SKOS (Turtle, N-Triples or RDF/XML), as thesauri are published, or CSV with the columns code, parent, label, label-es (or another language), definition, uri, color and pattern; only code must be there.",
     more_lead: "SKOS or CSV. Terms that the list has, by their address or code, are changed and keep what is painted with them; others are new. You can undo it.",
-    choose: "Choose a file",
-    drop: "or drop it here",
+    file: "File with terms",
     name: "Name of the list",
     name_missing: "Give the list a name.",
     with_layer: "Make a layer of it, to paint on",

@@ -1325,6 +1325,12 @@ export const texts = {
     what: "Qué es incorrecto",
   },
 
+  file_choice: {
+    choose: "Elegir un archivo",
+    choose_several: "Elegir archivos",
+    drop: "o suéltelo aquí",
+    drop_several: "o suéltelos aquí",
+  },
   terms_dialog: {
     open: "Una lista de términos de un archivo…",
     open_more: "Importar términos…",
@@ -1334,8 +1340,7 @@ export const texts = {
     more_title: (list) => `Términos para «${list}»`,
     lead: "SKOS (Turtle, N-Triples o RDF/XML), como se publican los tesauros, o CSV con las columnas code, parent, label, label-es (u otro idioma), definition, uri, color y pattern; solo code es obligatoria.",
     more_lead: "SKOS o CSV. Los términos que la lista ya tiene, por su dirección o código, se cambian y conservan lo pintado con ellos; los demás son nuevos. Se puede deshacer.",
-    choose: "Elegir un archivo",
-    drop: "o suéltelo aquí",
+    file: "Archivo con términos",
     name: "Nombre de la lista",
     name_missing: "Dé un nombre a la lista.",
     with_layer: "Hacer con ella una capa para pintar",

@@ -1,0 +1,112 @@
+// <strata-file-choice>: where a dialog takes files: a button, or they are dropped beside it. Tells them by "files".
+
+import { css, html, LitElement, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { format_list } from "../core/locale";
+import { dropped_files } from "./drop";
+import { icon } from "./icons";
+import { shared_styles } from "./styles";
+import { texts } from "./texts";
+
+const words = texts.file_choice;
+
+@customElement("strata-file-choice")
+export class StrataFileChoice extends LitElement {
+  /** What is asked for, in words. */
+  @property() label = "";
+  /** Endings, as an input takes them. */
+  @property() accept = "";
+  /** Files that belong together; otherwise the first one counts. */
+  @property({ type: Boolean }) multiple = false;
+  @property({ type: Boolean }) disabled = false;
+  /** That were taken so far. */
+  @property({ attribute: false }) names: readonly string[] = [];
+  @state() private over_ = false;
+  @query("input") private input_!: HTMLInputElement;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+      }
+      div {
+        display: flex;
+        align-items: center;
+        gap: 12px;
+        padding: 12px;
+        border: var(--edge) dashed var(--line-strong);
+        border-radius: var(--radius-small);
+      }
+      div.over {
+        border-color: var(--accent);
+        background: var(--accent-soft);
+      }
+      input {
+        display: none;
+      }
+      button {
+        flex: none;
+      }
+      span {
+        min-width: 0;
+        overflow-wrap: anywhere;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { label, names, multiple, disabled } = this;
+    const choose = multiple ? words.choose_several : words.choose;
+    const drop = multiple ? words.drop_several : words.drop;
+    return html`<div
+      role="group"
+      aria-label=${label}
+      class=${this.over_ ? "over" : ""}
+      @dragover=${this.on_over}
+      @dragleave=${() => (this.over_ = false)}
+      @drop=${this.on_drop}
+    >
+      <button type="button" ?disabled=${disabled} @click=${() => this.input_.click()}>${icon("upload")}${choose}</button>
+      <input
+        type="file"
+        tabindex="-1"
+        aria-label=${label}
+        accept=${this.accept}
+        ?multiple=${multiple}
+        ?disabled=${disabled}
+        @change=${this.on_chosen}
+      />
+      <span class=${names.length > 0 ? "" : "hint"} role="status">${names.length > 0 ? format_list(names) : drop}</span>
+    </div>`;
+  }
+
+  private take(files: readonly File[]): void {
+    const taken = this.multiple ? [...files] : files.slice(0, 1);
+    if (taken.length > 0) this.dispatchEvent(new CustomEvent<File[]>("files", { detail: taken }));
+  }
+
+  private readonly on_chosen = (): void => {
+    const files = [...(this.input_.files ?? [])];
+    this.input_.value = ""; // so that the same one, mended, can be chosen again
+    this.take(files);
+  };
+
+  private readonly on_over = (event: DragEvent): void => {
+    event.preventDefault();
+    this.over_ = true;
+  };
+
+  private readonly on_drop = (event: DragEvent): void => {
+    event.preventDefault();
+    this.over_ = false;
+    if (!event.dataTransfer || this.disabled) return;
+    void dropped_files(event.dataTransfer).then((dropped) => this.take(dropped.map(({ file }) => file)));
+  };
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "strata-file-choice": StrataFileChoice;
+  }
+}
