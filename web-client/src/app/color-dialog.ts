@@ -2,7 +2,7 @@
 // is seen on the model at once, by this person alone until it is kept.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
-import { customElement, property, state } from "lit/decorators.js";
+import { customElement, property, query, state } from "lit/decorators.js";
 import { holds_files, is_number, label_of } from "../core/cells";
 import { format_count, read_number, typed_number } from "../core/locale";
 import { holds_marks } from "../core/marks";
@@ -11,6 +11,7 @@ import type { Column, ColumnClasses } from "../core/protocol.gen";
 import type { Layer, Palette, PalettePoint } from "../core/types";
 import { describe_value } from "./brush-settings";
 import "./dialog";
+import type { StrataDialog } from "./dialog";
 import { follow_session } from "./follow-session";
 import { class_range, value_label } from "./legend";
 import type { ModelSession } from "./model-session";
@@ -42,6 +43,7 @@ export class StrataColorDialog extends LitElement {
   @state() private classes_: ColumnClasses | null = null;
   @state() private problem_ = "";
   @state() private working_ = false;
+  @query("strata-dialog") private dialog_!: StrataDialog;
   private before_: Palette | null = null; // what this person saw
   private asked_ = 0;
 
@@ -126,6 +128,7 @@ export class StrataColorDialog extends LitElement {
       ${layer.table === undefined ? nothing : this.choices(palette, column)}
       ${this.problem_ ? html`<p class="error" role="alert">${this.problem_}</p>` : nothing}
       ${palette.mode === "linear" ? nothing : this.rows(palette, column)} ${this.rest(palette)}
+      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" @click=${() => this.keep(false)}>${words.only_me}</button>
       ${session.can_curate
         ? html`<button slot="actions" class="primary" ?disabled=${this.working_} @click=${() => this.keep(true)}>${words.everyone}</button>`

@@ -374,8 +374,8 @@ export class StrataPeopleDialog extends LitElement {
           </fieldset>`
         : nothing}
       <div class="row">
+        <button type="button" @click=${() => (this.inviting_ = false)}>${texts.cancel}</button>
         <button class="primary" ?disabled=${this.busy_}>${words.invite_button}</button>
-        <button type="button" class="quiet" @click=${() => (this.inviting_ = false)}>${texts.cancel}</button>
       </div>
     </form>`;
   }

@@ -6,6 +6,7 @@ import { ApiError } from "../core/api";
 import { format_area } from "../core/measure";
 import type { Layer } from "../core/types";
 import "./dialog";
+import type { StrataDialog } from "./dialog";
 import "./expression-field";
 import type { StrataExpressionField } from "./expression-field";
 import { follow_session } from "./follow-session";
@@ -22,6 +23,7 @@ export class StrataWhereDialog extends LitElement {
   @property({ attribute: false }) layer!: Layer;
   @state() private erases_ = false;
   @state() private working_ = false;
+  @query("strata-dialog") private dialog_!: StrataDialog;
   @query("strata-expression-field") private condition_!: StrataExpressionField;
 
   constructor() {
@@ -82,6 +84,7 @@ export class StrataWhereDialog extends LitElement {
               .value=${session.painting.brush.value_of(layer)}
             ></strata-value-picker>`}
       </form>
+      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" class="primary" form="where" ?disabled=${this.working_} @click=${() => void this.apply()}>
         ${this.erases_ ? words.apply_erase : words.apply}
       </button>
