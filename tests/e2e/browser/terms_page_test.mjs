@@ -171,7 +171,7 @@ try {
   say("a file that is dropped on the list's table is terms for it, and one in the dialog takes its place; one that says nothing new is not imported");
   await drop(table, "none.csv", "code,parent\nlone,nowhere\n");
   await importer.getByText("nowhere").waitFor();
-  await drop(importer.locator(".file"), "same.ttl", `${prefixes}g:pinhole a skos:Concept ; skos:notation "pinhole" ; skos:broader g:glaze ; skos:prefLabel "Pinhole"@en .\n`);
+  await drop(importer.getByRole("group", { name: "File with terms" }), "same.ttl", `${prefixes}g:pinhole a skos:Concept ; skos:notation "pinhole" ; skos:broader g:glaze ; skos:prefLabel "Pinhole"@en .\n`);
   await importer.getByText("same.ttl").waitFor();
   await importer.getByText("The table holds all of that already.").waitFor();
   assert.ok(await button("Import").isDisabled());
