@@ -54,6 +54,10 @@ export class StrataViewList extends LitElement {
       li:has(> .go[aria-current="true"]) {
         background: var(--accent-soft);
       }
+      /* also below the pointer: words on both tints are hard to read */
+      li button.go[aria-current="true"]:not(:disabled) {
+        background: none;
+      }
       strata-thumbnail {
         border-radius: 4px;
       }
