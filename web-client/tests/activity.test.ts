@@ -80,7 +80,7 @@ describe("the activity of a model", () => {
     vi.useRealTimers();
   });
 
-  it("is read while somebody looks, once for all that happens in one go", async () => {
+  it("is read while somebody looks, once for all that happens in one go, and once more when that is saved", async () => {
     activity.outdated();
     vi.runAllTimers();
     expect(asked).toEqual([]);
@@ -90,11 +90,20 @@ describe("the activity of a model", () => {
     for (let i = 0; i < 5; ++i) activity.outdated();
     vi.runAllTimers();
     await settle();
-    expect(asked).toHaveLength(2);
+    expect(asked).toHaveLength(3);
+    activity.outdated();
+    vi.advanceTimersByTime(900);
+    activity.outdated();
+    vi.advanceTimersByTime(200);
+    await settle();
+    expect(asked).toHaveLength(4); // the second may not have been saved by then
+    vi.advanceTimersByTime(2900);
+    await settle();
+    expect(asked).toHaveLength(5);
     activity.outdated();
     activity.watch(false);
     vi.runAllTimers();
-    expect(asked).toHaveLength(2);
+    expect(asked).toHaveLength(5);
   });
 
   it("goes on where the page ended, and of the whole project begins anew", async () => {

@@ -79,14 +79,14 @@ describe("what waits for review", () => {
     expect(curator.reviews.count).toBe(2);
   });
 
-  it("is read once for what happens in one go", async () => {
+  it("is read once for what happens in one go, and once more when that is saved", async () => {
     vi.useFakeTimers();
     const { reviews, asked } = make("annotator");
     for (let i = 0; i < 20; ++i) reviews.on_event({ op: "layer", event: "edited", layer_id: 1, sequence: 10 + i, user: "ben", provisional: true });
     reviews.on_event({ op: "layer", event: "edited", layer_id: 2, sequence: 40, user: "ben" });
     await vi.runAllTimersAsync();
     vi.useRealTimers();
-    expect(asked).toEqual([1]);
+    expect(asked).toEqual([1, 1]);
   });
 
   it("tells its authors what became of it, and nobody else", () => {

@@ -1,7 +1,7 @@
 // A kiosk in a real browser: by its link alone, with fingers, left alone and come back to, without its server and with it again, loaded anew from afar and
 // revoked. The page's clock is the test's. STRATA_KIOSK_ROUNDS: how often it is visited and left while its memory is looked at; STRATA_KIOSK_ALONE_MIN: minutes of that
 // clock for which its tour plays alone after each; STRATA_KIOSK_STEP_S: how much of it passes at once then, with one stop of the tour each time.
-// 200, 50 and 30 are a week, in half an hour.
+// 200, 50 and 30 are a week.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";

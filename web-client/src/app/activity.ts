@@ -5,6 +5,7 @@ import { with_first_page, with_next_page, type ActivityLog } from "../core/activ
 import { ApiError, type Api } from "../core/api";
 import { name_in_text } from "../core/completion";
 import type { Activity } from "../core/protocol.gen";
+import { ReadAgain } from "../core/read-again";
 import type { Layer, Model } from "../core/types";
 import type { Comments } from "./comments";
 import type { LayerList } from "./layer-list";
@@ -14,7 +15,6 @@ import type { Tables } from "./tables";
 import type { ViewControl } from "./view-control";
 
 const kAtOnce = 50;
-const kSettled = 1000; // ms: what happens in one go is read once, when it is saved
 
 export interface ActivitiesHost {
   readonly view: ViewControl;
@@ -34,7 +34,7 @@ export class Activities {
   private whole_ = false;
   private watched_ = false;
   private log_ = kNone;
-  private timer_: ReturnType<typeof setTimeout> | null = null;
+  private readonly again_ = new ReadAgain(() => void this.load());
   private asked_ = 0; // the newest question; answers of older ones come too late
 
   constructor(
@@ -66,21 +66,17 @@ export class Activities {
     if (watched === this.watched_) return;
     this.watched_ = watched;
     if (watched) void this.load();
+    else this.again_.stop();
   }
 
   /** Something happened. */
   outdated(): void {
-    if (!this.watched_ || this.timer_ !== null) return;
-    this.timer_ = setTimeout(() => {
-      this.timer_ = null;
-      if (this.watched_) void this.load();
-    }, kSettled);
+    if (this.watched_) this.again_.news();
   }
 
   close(): void {
     this.watched_ = false;
-    if (this.timer_ !== null) clearTimeout(this.timer_);
-    this.timer_ = null;
+    this.again_.stop();
   }
 
   load(): Promise<void> {

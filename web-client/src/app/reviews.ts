@@ -3,6 +3,7 @@
 import { ApiError, type Api } from "../core/api";
 import { place_like } from "../core/look-along";
 import type { LayerEvent, Review, ReviewQueue, WaitingStroke } from "../core/protocol.gen";
+import { ReadAgain } from "../core/read-again";
 import type { Layer } from "../core/types";
 import type { LayerList } from "./layer-list";
 import { notices } from "./notices";
@@ -11,7 +12,6 @@ import type { ViewControl } from "./view-control";
 
 const words = texts.review;
 const kAtOnce = 200; // strokes of a layer that are listed; the oldest come first
-const kSettled_ms = 1000; // what happens in one go is read once
 
 export interface ReviewsHost {
   readonly view: ViewControl;
@@ -33,7 +33,7 @@ export class Reviews {
   private readonly told_ = new Set<number>(); // layers on which something waited, or was decided, since the page is open
   private readonly queues_ = new Map<number, ReviewQueue>(); // by layer
   private readonly outdated_ = new Set<number>();
-  private timer_: ReturnType<typeof setTimeout> | null = null;
+  private readonly again_ = new ReadAgain((last) => void this.load(last));
 
   constructor(
     private readonly api_: Api,
@@ -86,12 +86,11 @@ export class Reviews {
   /** Something changed there. */
   outdated(layer: number): void {
     this.outdated_.add(layer);
-    this.timer_ ??= setTimeout(() => void this.load(), kSettled_ms);
+    this.again_.news();
   }
 
   close(): void {
-    if (this.timer_ !== null) clearTimeout(this.timer_);
-    this.timer_ = null;
+    this.again_.stop();
   }
 
   /** What curators see holds layers, too, that ask for no review any more, of which something still waits. */
@@ -101,10 +100,9 @@ export class Reviews {
     await Promise.all(layers.map((layer) => this.read(layer.id)));
   }
 
-  private async load(): Promise<void> {
-    this.timer_ = null;
+  private async load(last: boolean): Promise<void> {
     const layers = this.host_.can_paint() ? [...this.outdated_].filter((id) => this.host_.layers.find(id)?.review || this.told_.has(id) || this.waits_on(id)) : [];
-    this.outdated_.clear();
+    if (last) this.outdated_.clear();
     await Promise.all(layers.map((id) => this.read(id)));
   }
   private waits_on(layer: number): boolean {
