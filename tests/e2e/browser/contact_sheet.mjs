@@ -1,6 +1,6 @@
 // Pictures of every screen and dialog of the page in the windows of a phone, a tablet and a desk, on one sheet that a person can judge. No test: it
 // finds nothing wrong by itself. `scripts/contact_sheet` runs it; the first argument is the folder that it writes, `--language` and `--theme`
-// say how the page is shown.
+// say how the page is shown, `--windows` in which windows: a wall's has 4K.
 import { mkdirSync, statSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -10,7 +10,7 @@ import { make_site, screens_of } from "../support/screens.mjs";
 import { StrataServer } from "../support/strata-server.mjs";
 import { texts_of } from "../support/texts.mjs";
 
-const kWindows = { phone: [390, 844], tablet: [820, 1180], desk: [1440, 900] };
+const kSizes = { phone: [390, 844], tablet: [820, 1180], desk: [1440, 900], wall: [3840, 2160] };
 const kDesk = { width: 1280, height: 800 }; // from which screens are reached
 const kScale = 0.3; // of the shots on the sheet
 const kMostBytes = 2_000_000; // of the sheet as one picture
@@ -20,13 +20,19 @@ const kFrame_ms = 20_000; // a picture that has not come by then is shown as it 
 
 const { values, positionals } = parseArgs({
   allowPositionals: true,
-  options: { language: { type: "string", default: "en" }, theme: { type: "string", default: "light" } },
+  options: {
+    language: { type: "string", default: "en" },
+    theme: { type: "string", default: "light" },
+    windows: { type: "string", default: "phone,tablet,desk" },
+  },
 });
 const { language, theme } = values;
-if (positionals.length !== 1 || !(language in kLocales) || !["light", "dark", "contrast"].includes(theme)) {
-  console.error("contact_sheet FOLDER [--language en|de|es] [--theme light|dark|contrast]");
+const windows = values.windows.split(",");
+if (positionals.length !== 1 || !(language in kLocales) || !["light", "dark", "contrast"].includes(theme) || !windows.every((each) => each in kSizes)) {
+  console.error("contact_sheet FOLDER [--language en|de|es] [--theme light|dark|contrast] [--windows phone,tablet,desk,wall]");
   process.exit(2);
 }
+const kWindows = Object.fromEntries(windows.map((each) => [each, kSizes[each]]));
 const folder = resolve(positionals[0]);
 mkdirSync(join(folder, "shots"), { recursive: true });
 
