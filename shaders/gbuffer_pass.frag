@@ -1,10 +1,15 @@
 #version 450 core
 #include "shared/mesh.h"
+#include "shared/museum_light.h"
 // Texture coordinate (16 bits each, floor of uv * 65536, so that a power of two of texels finds its texel exactly) and lit
 // base colour with the light itself in alpha, by which layers are lit later. HEADLIGHT,
 // RAKING_LIGHT or UNLIT take the place of the museum light; LOOKS is how many pictures lie over the colours of the vertices.
 layout(location = 0) in vec2 surface_uv;
+#ifdef LIT_VERTICES
+layout(location = 1) in float surface_light;
+#else
 layout(location = 1) in vec4 surface_normal;
+#endif
 layout(location = 2) in vec3 surface_color;
 #ifdef SECTION
 const vec3 kInsideColor = vec3(0.47, 0.36, 0.31);
@@ -18,29 +23,25 @@ layout(binding = 0) uniform sampler2D looks[LOOKS];  // sRGB codes, as all colou
 layout(location = 0) out uint packed_uv;
 layout(location = 1) out vec4 lit;
 
-// Two-sided: scans are open and their windings are not always right. Smooth normals lean away at silhouettes without the
-// surface being seen from behind, so only those that clearly do are turned.
-vec3 normal_towards_eye() {
-  vec3 n = normalize(surface_normal.xyz);
-  return surface_normal.w < -0.3 ? -n : n;
-}
-
-float light_on(vec3 n) {
+#ifdef LIT_VERTICES
+float light_here() { return surface_light; }
+#else
+float light_here() {
 #if defined(HEADLIGHT)
   return 0.1 + 0.9 * clamp(abs(surface_normal.w) / length(surface_normal.xyz), 0.0, 1.0);
-#elif defined(RAKING_LIGHT)
-  return min(0.04 + mesh.key_light.w * max(0.0, dot(n, mesh.key_light.xyz)), 1.0);
 #elif defined(UNLIT)
   return 1.0;
 #else
-  // Museum light: a soft key from the upper left, a weak fill from the camera's right, and a sky that is brighter above.
-  float key = dot(n, mesh.key_light.xyz);
-  float wrapped = max(0.0, key * 0.8 + 0.2);
-  float fill = max(0.0, dot(n, mesh.fill_light.xyz));
-  float sky = 0.5 + 0.5 * dot(n, mesh.up.xyz);
-  return min(0.22 + 0.18 * sky + 0.56 * wrapped * wrapped + 0.16 * fill, 1.0);
+  vec3 n = normalize(surface_normal.xyz);
+  if (is_seen_from_behind(surface_normal.w)) n = -n;
+#if defined(RAKING_LIGHT)
+  return min(0.04 + mesh.key_light.w * max(0.0, dot(n, mesh.key_light.xyz)), 1.0);
+#else
+  return museum_light(n, mesh);
+#endif
 #endif
 }
+#endif
 
 void main() {
   uvec2 q = uvec2(clamp(surface_uv, 0.0, 1.0) * 65536.0);
@@ -53,7 +54,7 @@ void main() {
     color = mix(color, look.rgb, look.a * mesh.look_opacity[i]);
   }
 #endif
-  float light = light_on(normal_towards_eye());
+  float light = light_here();
   lit = vec4(color * light, light);
 #ifdef SECTION
   bool inside = !gl_FrontFacing && mesh.eye_is_cut_away != 0u;

@@ -1,6 +1,8 @@
 #version 450 core
 #include "shared/mesh.h"
-// The one vertex stage of the mesh, for g-buffers and for depth alone, so that their depths are the same bits.
+#include "shared/museum_light.h"
+// The one vertex stage of the mesh, for g-buffers and for depth alone, so that their depths are the same bits. LIT_VERTICES: the
+// museum light of triangles so small that it is the same between their vertices as in each pixel.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;
 layout(location = 2) in vec2 uv;
@@ -12,13 +14,22 @@ invariant gl_Position;
 out float gl_ClipDistance[kSectionPlanes];
 #endif
 layout(location = 0) out vec2 surface_uv;
+#ifdef LIT_VERTICES
+layout(location = 1) out float surface_light;
+#else
 layout(location = 1) out vec4 surface_normal;  // w: cosine to the eye
+#endif
 layout(location = 2) out vec3 surface_color;
 
 void main() {
   gl_Position = mesh.clip_from_model * vec4(position, 1.0);
   surface_uv = uv;
-  surface_normal = vec4(normal.xyz, dot(normal.xyz, normalize(mesh.eye.xyz - position * mesh.eye.w)));
+  float to_eye = dot(normal.xyz, normalize(mesh.eye.xyz - position * mesh.eye.w));
+#ifdef LIT_VERTICES
+  surface_light = museum_light(is_seen_from_behind(to_eye) ? -normal.xyz : normal.xyz, mesh);
+#else
+  surface_normal = vec4(normal.xyz, to_eye);
+#endif
   surface_color = color.rgb;
 #ifdef SECTION
   for (uint i = 0u; i < kSectionPlanes; ++i) gl_ClipDistance[i] = dot(mesh.section[i].xyz, position) + mesh.section[i].w;

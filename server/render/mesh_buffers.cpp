@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -11,6 +12,7 @@ namespace strata::render {
 namespace {
 
 constexpr std::size_t kSliceBytes = std::size_t{4} << 20;  // ≈ 1 ms of copying
+constexpr std::size_t kTrianglesMeasured = 4096;
 
 // Whether all corners lie beyond one side of the clip volume. The slack covers the rounding of the vertex stage.
 bool outside(const mesh::ClusterBox& box, const glm::mat4& clip_from_model) {
@@ -36,12 +38,29 @@ constexpr std::array<gl::VertexAttribute, 4> kAttributes{{
     {3, 4, GL_UNSIGNED_BYTE, true, offsetof(mesh::Vertex, color)},
 }};
 
+// Of some thousand triangles all over the mesh. By area: a few large ones may be most of what is seen.
+float side_of_triangles(const mesh::Geometry& geometry) {
+  const auto corner = [&](std::size_t i) -> const glm::vec3& {
+    return geometry.vertices[geometry.indices[i]].position;
+  };
+  const std::size_t step = 1 + geometry.triangle_count() / kTrianglesMeasured;
+  double sum = 0, sum_of_squares = 0;
+  for (std::size_t i = 0; i < geometry.triangle_count(); i += step) {
+    const glm::vec3 a = corner(3 * i), b = corner(3 * i + 1), c = corner(3 * i + 2);
+    const double area = glm::length(glm::cross(b - a, c - a)) / 2;
+    sum += area;
+    sum_of_squares += area * area;
+  }
+  return sum > 0 ? static_cast<float>(std::sqrt(2 * sum_of_squares / sum)) : 0.0f;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<MeshBuffers>> MeshBuffers::create(std::shared_ptr<const mesh::Geometry> geometry,
                                                          GpuMemory& memory) {
   auto mesh = std::make_unique<MeshBuffers>();
   mesh->geometry_ = std::move(geometry);
+  mesh->triangle_side_ = side_of_triangles(*mesh->geometry_);
   auto share = memory.reserve(mesh->vertex_bytes() + mesh->index_bytes(), "a model's triangles");
   if (!share) return tl::unexpected(share.error());
   mesh->share_ = std::move(*share);
@@ -64,6 +83,20 @@ std::size_t MeshBuffers::visible_triangles(const glm::mat4& clip_from_model) con
   const auto clusters = std::count_if(geometry_->clusters.begin(), geometry_->clusters.end(),
                                       [&](const mesh::ClusterBox& box) { return !outside(box, clip_from_model); });
   return static_cast<std::size_t>(clusters) * mesh::Geometry::kTrianglesPerCluster;
+}
+
+float MeshBuffers::triangle_pixels(const glm::mat4& clip_from_model, int height) const {
+  const mesh::Geometry& mesh = *geometry_;
+  float nearest = std::numeric_limits<float>::infinity();
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const glm::vec4 position((corner & 1) != 0 ? mesh.box_max.x : mesh.box_min.x,
+                             (corner & 2) != 0 ? mesh.box_max.y : mesh.box_min.y,
+                             (corner & 4) != 0 ? mesh.box_max.z : mesh.box_min.z, 1);
+    nearest = std::min(nearest, (clip_from_model * position).w);
+  }
+  if (nearest <= 0) return std::numeric_limits<float>::infinity();
+  const glm::vec3 upwards(clip_from_model[0][1], clip_from_model[1][1], clip_from_model[2][1]);
+  return triangle_side_ * glm::length(upwards) / nearest * 0.5f * static_cast<float>(height);
 }
 
 std::vector<std::uint32_t> MeshBuffers::visible_clusters(const glm::mat4& clip_from_model, const glm::vec4& eye) const {

@@ -27,6 +27,9 @@ class MeshBuffers {
 
   // Of the clusters that reach into the window, whole ones counted.
   std::size_t visible_triangles(const glm::mat4& clip_from_model) const;
+  // Pixels along the short sides of the model's triangles where it is nearest to the eye, in a window of `height` pixels. Infinite
+  // where it reaches behind the eye.
+  float triangle_pixels(const glm::mat4& clip_from_model, int height) const;
   // Numbers of the geometry's clusters that reach into the window, nearest first as seen from `eye` (a point where w is 1, a
   // direction towards the eye where it is 0; model space).
   std::vector<std::uint32_t> visible_clusters(const glm::mat4& clip_from_model, const glm::vec4& eye) const;
@@ -36,6 +39,7 @@ class MeshBuffers {
   std::size_t index_bytes() const { return geometry_->indices.size() * sizeof(std::uint32_t); }
 
   std::shared_ptr<const mesh::Geometry> geometry_;
+  float triangle_side_ = 0;  // model space
   gl::Buffer vertices_, indices_, cluster_boxes_;
   gl::VertexArray vertex_array_;
   GpuMemory::Share share_;

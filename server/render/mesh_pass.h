@@ -61,7 +61,7 @@ class MeshPass {
 
  private:
   // Built when it is first needed.
-  Result<const gl::Program*> program(const MeshView& view);
+  Result<const gl::Program*> program(const MeshView& view, bool lit_at_vertices);
   Result<void> begin(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target, MeshProgress& progress);
 
   Kind kind_ = Kind::depth;

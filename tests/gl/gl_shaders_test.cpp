@@ -23,6 +23,8 @@ const std::map<std::vector<std::string>, Variants> kPrograms{
     {{"mesh.vert", "depth_pass.frag"}, {{}, {"SECTION"}}},
     {{"mesh.vert", "gbuffer_pass.frag"},
      {{"LOOKS 0"},
+      {"LIT_VERTICES", "LOOKS 4"},
+      {"SECTION", "LIT_VERTICES", "LOOKS 0"},
       {"HEADLIGHT", "LOOKS 1"},
       {"RAKING_LIGHT", "LOOKS 4"},
       {"UNLIT", "LOOKS 2"},

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <string>
 
 #include "support/gl_scene.h"
 
@@ -177,6 +178,32 @@ TEST_F(Looks, raking_light_shows_what_leans_towards_it) {
   request_.light.mode = LightMode::unlit;
   EXPECT_EQ(bright(kLeft), bright(kRight));
   EXPECT_GE(bright(kMiddle), lit);
+}
+
+// The usual light on a plane of this normal, whose axes are the eye's.
+double museum_light(const glm::dvec3& normal) {
+  const auto from = [&](const glm::dvec3& direction) { return glm::dot(normal, glm::normalize(direction)); };
+  const double wrapped = std::max(0.0, 0.8 * from({-0.45, 0.60, 0.75}) + 0.2);
+  return std::min(1.0, 0.22 + 0.18 * (0.5 + 0.5 * from({0, 1, 0.15})) + 0.56 * wrapped * wrapped +
+                           0.16 * std::max(0.0, from({0.80, 0.05, 0.45})));
+}
+
+TEST_F(Looks, museum_light_is_the_same_in_each_pixel_as_at_the_vertices_of_small_triangles) {
+  // Two triangles are lit in each pixel, 80,000 of less than two pixels at their vertices.
+  for (const int quads : {1, 200}) {
+    request_.view = renderer_.add_view(renderer_.add(make_scene(flat_square(quads), 256)));
+    for (const glm::dvec3 eye : {glm::dvec3{0, 0, 2}, {-1, 1, 1}, {1.5, -1, 1}, {-1, -0.5, -1}, {0.2, 0.3, -2}}) {
+      request_.camera = orthographic_camera(eye, {0, 0, 0}, kSize, kSize, 0.5);
+      const glm::dvec3 up = glm::dmat3(request_.camera.view) * glm::dvec3(0, 0, 1);
+      request_.light.mode = LightMode::unlit;
+      Color wanted = pixel(kSize / 2, kSize / 2);
+      for (int& channel : wanted)
+        channel = static_cast<int>(std::lround(channel * museum_light(eye.z > 0 ? up : -up)));  // as bright from behind
+      request_.light.mode = LightMode::museum;
+      SCOPED_TRACE(std::to_string(quads) + " quads, eye at " + std::to_string(eye.x) + " " + std::to_string(eye.z));
+      expect_near(pixel(kSize / 2, kSize / 2), wanted, 2);
+    }
+  }
 }
 
 TEST_F(Looks, a_view_is_drawn_anew_when_only_its_light_changes) {
