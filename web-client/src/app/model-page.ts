@@ -8,7 +8,7 @@ import { ApiError, type Api } from "../core/api";
 import { label_of } from "../core/cells";
 import type { Project, TourEntry } from "../core/protocol.gen";
 import type { Column, Layer, Me, Model, Role } from "../core/types";
-import { kPaintingTools } from "../tools/tool";
+import { kPaintingTools, type ToolName } from "../tools/tool";
 import "./account-menu";
 import "./blank";
 import type { WhereRequest } from "./brush-panel";
@@ -64,6 +64,7 @@ import "./tour-dialog";
 import type { TourRequest } from "./tour-list";
 import "./transfer-dialog";
 import "./value-readout";
+import { wants_less_motion } from "./view-control";
 import "./view-dialog";
 import type { ViewRequest } from "./view-list";
 import "./view-panel";
@@ -93,9 +94,11 @@ export class StrataModelPage extends LitElement {
   @state() private panel_shown_ = window.innerWidth > kNarrow;
   @query("strata-stage") private stage_!: StrataStage | null;
   @query("strata-tour") private tour_!: StrataTour | null;
+  @query(".options") private options_!: HTMLElement | null;
   private session_: ModelSession | null = null;
   private asked_scale_ = false;
   private measures_ = false;
+  private tool_: ToolName | null = null; // whose options are in sight
   private role_: Role | null = null; // of the newest welcome
   private wanted_comment_: number | null = null; // by the address
   private wanted_view_: string | null = null;
@@ -134,6 +137,7 @@ export class StrataModelPage extends LitElement {
   override updated(): void {
     this.tour_?.requestUpdate(); // what it speaks of may be elsewhere now
     const session = this.session_;
+    if (session) this.bring_options(session.tools.active);
     const narrow = matchMedia(`(max-width: ${kNarrow}px)`).matches;
     if (session?.tables.view) this.lift_notices(narrow ? "52dvh" : `${this.table_height_}px`);
     else this.lift_notices(narrow && session && session.comments.card !== null ? "calc(48dvh - 56px)" : null); // its sheet lies over the tools
@@ -182,6 +186,14 @@ export class StrataModelPage extends LitElement {
     const measures = session.tools.active === "measure";
     if (measures && !this.measures_) this.panel_shown_ = true;
     this.measures_ = measures;
+  }
+
+  /** Whoever takes up a tool sees what can be chosen for it, however far the panel was scrolled. */
+  private bring_options(tool: ToolName): void {
+    const { options_: options } = this;
+    if (tool === this.tool_) return;
+    this.tool_ = tool;
+    options?.parentElement?.scrollTo({ top: options.offsetTop, behavior: wants_less_motion() ? "instant" : "smooth" });
   }
 
   private readonly on_hash = (event: HashChangeEvent): void => {
@@ -358,8 +370,8 @@ export class StrataModelPage extends LitElement {
         @keydown=${this.on_splitter_key}
       ></div>
       <div class="scroll">
-        ${session.tools.active === "measure" ? html`<section><strata-measure-panel .session=${session}></strata-measure-panel></section>` : nothing}
-        ${paints ? html`<section><strata-brush-panel .session=${session} @request=${request}></strata-brush-panel></section>` : nothing}
+        ${session.tools.active === "measure" ? html`<section class="options"><strata-measure-panel .session=${session}></strata-measure-panel></section>` : nothing}
+        ${paints ? html`<section class="options"><strata-brush-panel .session=${session} @request=${request}></strata-brush-panel></section>` : nothing}
         <section>
           <strata-layer-panel
             .session=${session}
