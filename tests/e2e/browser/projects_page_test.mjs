@@ -134,7 +134,7 @@ try {
   await pia.page.getByText("Delete its model first").waitFor();
   assert.equal(await inside(pia).getByRole("button", { name: "Delete", exact: true }).count(), 0);
   await shoot(pia, "with_models_phone_dark");
-  await inside(pia).locator('button[slot="actions"]').tap();
+  await inside(pia).locator("footer").getByRole("button", { name: "Close" }).tap();
   await is_closed(pia);
 
   say("with tables only, these are named, and its name is typed");
@@ -147,7 +147,7 @@ try {
   await heading(pia, "No models yet");
   await from_menu(pia, "Villa Giulia, Rome", "Delete…");
   await heading(pia, "Models of “Villa Giulia, Rome” lie in the Bin");
-  await inside(pia).locator('button[slot="actions"]').tap();
+  await inside(pia).locator("footer").getByRole("button", { name: "Close" }).tap();
   await is_closed(pia);
   await server.request("DELETE", `/projects/villa-giulia/bin/model-${model}`);
   await pia.page.reload();

@@ -1,7 +1,7 @@
 // <strata-bin-dialog>: what was deleted in a project, to restore or to delete for ever. Opened by open_bin().
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, query, state } from "lit/decorators.js";
+import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../core/api";
 import { format_bytes } from "../core/measure";
@@ -9,7 +9,6 @@ import type { BinEntry, BinList, Project } from "../core/protocol.gen";
 import type { Model } from "../core/types";
 import { told_restored, type BinApi } from "./bin";
 import { ask } from "./dialog";
-import type { StrataDialog } from "./dialog";
 import { icon, type IconName } from "./icons";
 import { notices } from "./notices";
 import { shared_styles } from "./styles";
@@ -29,7 +28,6 @@ export class StrataBinDialog extends LitElement {
   @state() private bin_: BinList | null = null;
   @state() private note_: { kind: "error" | "done"; text: string } | null = null;
   @state() private busy_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog;
   private changed_ = false;
 
   static override styles = [
@@ -97,14 +95,13 @@ export class StrataBinDialog extends LitElement {
 
   override render(): TemplateResult {
     const { bin_: bin, note_: note } = this;
-    return html`<strata-dialog broad heading=${words.title_of(this.project.name)} @closed=${() => this.finish()}>
+    return html`<strata-dialog broad heading=${words.title_of(this.project.name)} way_out=${texts.close} @closed=${() => this.finish()}>
       ${bin ? html`<p class="hint">${bin.days === 0 ? words.not_kept_lead : words.lead(bin.days)}</p>` : nothing}
       <p class=${note?.kind ?? "done"} role=${note?.kind === "error" ? "alert" : "status"} tabindex="-1" ?hidden=${!note}>${note?.text}</p>
       ${bin
         ? this.entries(bin)
         : html`<p class="hint" role="status" ?hidden=${note !== null}>${texts.loading}</p>
             ${note ? html`<div><button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button></div>` : nothing}`}
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.close}</button>
     </strata-dialog>`;
   }
 

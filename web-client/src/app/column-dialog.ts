@@ -64,16 +64,15 @@ export class StrataColumnDialog extends LitElement {
   override render(): TemplateResult {
     const { column, outcome_: outcome } = this;
     const heading = column ? words.edit_title(label_of(column)) : words.create_title(label_of(this.table));
-    return html`<strata-dialog heading=${heading} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog heading=${heading} way_out=${outcome ? "" : texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       ${outcome ? this.lost(outcome) : this.form()}
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
       ${outcome
         ? html`<button slot="actions" ?disabled=${this.busy_} @click=${() => void this.take_back()}>${words.take_back}</button>
             <button slot="actions" class="primary" @click=${() => this.dialog_.close()}>${words.keep}</button>`
-        : html`<button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
-            <button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>
-              ${column ? texts.save : words.create}
-            </button>`}
+        : html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>
+            ${column ? texts.save : words.create}
+          </button>`}
     </strata-dialog>`;
   }
 

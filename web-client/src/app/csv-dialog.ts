@@ -1,11 +1,10 @@
 // <strata-csv-dialog>: records from a CSV file: first what it would do, line by line where something is wrong, then it is done.
 
 import { html, LitElement, type TemplateResult } from "lit";
-import { customElement, property, query, state } from "lit/decorators.js";
+import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
 import type { RecordsReport } from "../core/protocol.gen";
 import "./dialog";
-import type { StrataDialog } from "./dialog";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { is_useful, records_report, report_styles } from "./records-report";
@@ -23,7 +22,6 @@ export class StrataCsvDialog extends LitElement {
   @state() private report_: RecordsReport | null = null;
   @state() private problem_ = "";
   @state() private busy_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog;
 
   static override styles = [shared_styles, report_styles];
 
@@ -34,10 +32,9 @@ export class StrataCsvDialog extends LitElement {
 
   override render(): TemplateResult {
     const report = this.report_;
-    return html`<strata-dialog wide heading=${words.csv_title(this.file.name)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog wide heading=${words.csv_title(this.file.name)} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       ${report ? records_report(report, words.csv_rows) : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${words.csv_looking}</p>`}
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" class="primary" ?disabled=${this.busy_ || !report || !is_useful(report)} @click=${() => void this.send(false)}>${words.csv_import}</button>
     </strata-dialog>`;
   }

@@ -68,7 +68,7 @@ class StrataDeleteProjectDialog extends LitElement {
     const { has_binned_: has_binned } = this;
     const is_kept = models.length > 0 || has_binned;
     const heading = has_binned ? words.kept_by_bin_title : is_kept ? words.kept_title : words.delete_title;
-    return html`<strata-dialog heading=${heading(project.name)} @closed=${() => this.finish()}>
+    return html`<strata-dialog heading=${heading(project.name)} way_out=${is_kept ? texts.close : texts.cancel} @closed=${() => this.finish()}>
       ${has_binned
         ? html`<p>${words.kept_by_bin_lead}</p>
             <div><button @click=${() => void this.look_into_bin()}>${icon("trash")}${texts.bin.open}</button></div>`
@@ -77,7 +77,6 @@ class StrataDeleteProjectDialog extends LitElement {
           : this.consequences()}
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
       ${this.problem_ && !this.tables_ ? html`<div><button @click=${() => void this.read()}>${texts.try_again}</button></div>` : nothing}
-      <button slot="actions" @click=${() => this.dialog_.close()}>${is_kept ? texts.close : texts.cancel}</button>
       ${is_kept
         ? nothing
         : html`<button slot="actions" class="danger" ?disabled=${this.busy_ || !this.is_confirmed} @click=${() => void this.delete_project()}>${texts.delete}</button>`}

@@ -1,11 +1,10 @@
 // <strata-delete-record-dialog>: deletes a record; where its key is painted, asks what becomes of that.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, query, state } from "lit/decorators.js";
+import { customElement, property, state } from "lit/decorators.js";
 import { ApiError, type TexelsOfDeleted } from "../core/api";
 import { tell_binned } from "./bin";
 import "./dialog";
-import type { StrataDialog } from "./dialog";
 import type { ModelSession } from "./model-session";
 import { radio_group } from "./radio-group";
 import "./record-chooser";
@@ -25,7 +24,6 @@ export class StrataDeleteRecordDialog extends LitElement {
   @state() private to_: readonly number[] = [];
   @state() private problem_ = "";
   @state() private busy_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog;
 
   static override styles = [
     shared_styles,
@@ -38,11 +36,10 @@ export class StrataDeleteRecordDialog extends LitElement {
 
   override render(): TemplateResult {
     const name = this.session.tables.label(this.table, this.key) ?? words.record(this.key);
-    return html`<strata-dialog heading=${words.delete_title(name)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog heading=${words.delete_title(name)} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p>${this.painted_ || words.delete_lead}</p>
       ${this.painted_ ? this.choice() : nothing}
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button
         slot="actions"
         class="danger"

@@ -1,7 +1,7 @@
-// <strata-dialog>: a modal sheet with a heading, content and a row of buttons (slot "actions").
+// <strata-dialog>: a modal sheet with a heading, content and a row of buttons: the way out of it, then what it does (slot "actions").
 
-import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, query } from "lit/decorators.js";
+import { css, html, LitElement, nothing, ReactiveElement, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
 import { icon } from "./icons";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -14,6 +14,8 @@ export const modal_is_open = (): boolean => open_dialogs.size > 0;
 @customElement("strata-dialog")
 export class StrataDialog extends LitElement {
   @property() heading = "";
+  /** What the button says that leaves it as it is; empty: only the cross does. */
+  @property() way_out = "";
   @property({ type: Boolean, reflect: true }) wide = false;
   /** For tables. */
   @property({ type: Boolean, reflect: true }) broad = false;
@@ -25,10 +27,14 @@ export class StrataDialog extends LitElement {
   @property({ type: Boolean, reflect: true }) aside = false;
   /** Asked before a person closes it by Escape, its cross or beside it; null: it closes. close() does not ask. */
   @property({ attribute: false }) may_close: (() => Promise<boolean>) | null = null;
+  @state() private acts_ = false; // has buttons of its own
   private asking_ = false;
   private closes_ = false; // what closes it was asked, or need not ask
+  private used_ = false; // by keys or the pointer
 
   @query("dialog") private dialog_!: HTMLDialogElement;
+  @query(".content") private content_!: HTMLElement;
+  @query(".way-out") private way_out_!: HTMLButtonElement | null;
 
   static override styles = [
     shared_styles,
@@ -43,6 +49,7 @@ export class StrataDialog extends LitElement {
         background: var(--surface);
         color: var(--ink);
         box-shadow: var(--shadow);
+        outline: none; /* it has the keyboard where nothing in it takes any */
       }
       dialog[open] {
         display: flex;
@@ -118,6 +125,21 @@ export class StrataDialog extends LitElement {
   override firstUpdated(): void {
     this.dialog_.showModal();
     open_dialogs.add(this.dialog_);
+    void this.begin();
+  }
+
+  /** Where the keyboard begins: what asks for it, or else the first control, or the way out; never the cross, which is the browser's choice. */
+  private async begin(): Promise<void> {
+    const asks = this.querySelector<HTMLElement>("[autofocus]");
+    if (asks) return asks.focus();
+    const first = (this.prose ? this.content_ : await first_stop(this.content_)) ?? this.way_out_;
+    if (this.used_ || !this.dialog_.open) return;
+    (first && !opens_keyboard(first) ? first : this.dialog_).focus();
+  }
+
+  /** What it had to ask the server for has come. */
+  private on_content(): void {
+    if (!this.used_ && this.dialog_.open) void this.begin();
   }
 
   override disconnectedCallback(): void {
@@ -143,7 +165,18 @@ export class StrataDialog extends LitElement {
   }
 
   override render(): TemplateResult {
-    return html`<dialog aria-labelledby="heading" @cancel=${this.on_cancel} @close=${this.on_close} @click=${this.on_click}>
+    const used = (): void => void (this.used_ = true);
+    return html`<dialog
+      aria-labelledby="heading"
+      tabindex="-1"
+      autofocus
+      @cancel=${this.on_cancel}
+      @close=${this.on_close}
+      @click=${this.on_click}
+      @keydown=${used}
+      @pointerdown=${used}
+      @input=${used}
+    >
       <div class="head">
         <h2 id="heading">${this.heading}</h2>
         <button class="icon quiet" aria-label=${texts.close} title=${texts.close} @click=${() => void this.leave()}>
@@ -156,15 +189,18 @@ export class StrataDialog extends LitElement {
         role=${this.prose ? "region" : nothing}
         aria-labelledby=${this.prose ? "heading" : nothing}
       >
-        <slot></slot>
+        <slot @slotchange=${this.on_content}></slot>
       </div>
-      <footer class="empty"><slot name="actions" @slotchange=${this.on_actions}></slot></footer>
+      <footer class=${this.way_out || this.acts_ ? "" : "empty"}>
+        <slot name="told"></slot>
+        ${this.way_out ? html`<button class="way-out" @click=${() => void this.leave()}>${this.way_out}</button>` : nothing}
+        <slot name="actions" @slotchange=${this.on_actions}></slot>
+      </footer>
     </dialog>`;
   }
 
   private on_actions(event: Event): void {
-    const slot = event.target as HTMLSlotElement;
-    slot.parentElement?.classList.toggle("empty", slot.assignedElements().length === 0);
+    this.acts_ = (event.target as HTMLSlotElement).assignedElements().length > 0;
   }
 
   private on_cancel(event: Event): void {
@@ -188,6 +224,23 @@ export class StrataDialog extends LitElement {
   }
 }
 
+const kStops = "a[href], button, input, select, textarea, summary, [tabindex]";
+
+/** The first control that the Tab key reaches in it, within elements of their own and slots, too. */
+async function first_stop(root: Element): Promise<HTMLElement | null> {
+  const is_stop = root instanceof HTMLElement && root.matches(kStops) && root.tabIndex >= 0 && !root.matches(":disabled") && root.checkVisibility();
+  if (is_stop) return root;
+  if (root instanceof ReactiveElement) await root.updateComplete;
+  for (const each of root instanceof HTMLSlotElement ? root.assignedElements() : (root.shadowRoot ?? root).children) {
+    const found = await first_stop(each);
+    if (found) return found;
+  }
+  return null;
+}
+
+/** On touch screens fields bring up a keyboard that covers half of the dialog. */
+const opens_keyboard = (element: HTMLElement): boolean => matchMedia("(pointer: coarse)").matches && element.matches("input[type=text], input[type=password], textarea");
+
 /** A question with two answers; asked by ask(). */
 @customElement("strata-question")
 class StrataQuestion extends LitElement {
@@ -203,9 +256,8 @@ class StrataQuestion extends LitElement {
   private answered_ = false;
 
   override render(): TemplateResult {
-    return html`<strata-dialog heading=${this.heading} @closed=${() => this.finish()}>
+    return html`<strata-dialog heading=${this.heading} way_out=${texts.cancel} @closed=${() => this.finish()}>
       <p>${this.lead}</p>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button
         slot="actions"
         class=${this.danger ? "danger" : "primary"}
@@ -249,14 +301,13 @@ class StrataTextQuestion extends LitElement {
   private answered_: string | null = null;
 
   override render(): TemplateResult {
-    return html`<strata-dialog heading=${this.heading} @closed=${() => this.finish()}>
+    return html`<strata-dialog heading=${this.heading} way_out=${texts.cancel} @closed=${() => this.finish()}>
       <form id="question" @submit=${this.on_submit}>
         <label class="field">
           <span>${this.label}</span>
           <input type="text" required maxlength="200" .value=${this.text} autofocus />
         </label>
       </form>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" class="primary" form="question">${this.yes}</button>
     </strata-dialog>`;
   }

@@ -2,7 +2,7 @@
 // with `view` of what a named view shows.
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
-import { customElement, property, query, state } from "lit/decorators.js";
+import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
 import type { CameraMessage } from "../core/camera";
 import { holds_files, label_of } from "../core/cells";
@@ -15,7 +15,6 @@ import { holds_marks } from "../core/marks";
 import type { FigureLabels, FigureRequest, View } from "../core/protocol.gen";
 import type { Column, Layer, ProblemBody } from "../core/types";
 import "./dialog";
-import type { StrataDialog } from "./dialog";
 import "./face-hint";
 import "./figure-preview";
 import { figure_styles } from "./figure-styles";
@@ -53,7 +52,6 @@ export class StrataFigureDialog extends LitElement {
   @state() private problem_: { field: string; text: string } | null = null;
   @state() private asking_ = false; // for a face: the dialog is aside
   @state() private sending_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog | null;
   private readonly kept_ = new Kept<unknown>(() => localStorage, "strata.figure", null);
   private camera_: CameraMessage | null = null; // that this person sees by
   private opener_: HTMLElement | null = null;
@@ -123,7 +121,7 @@ export class StrataFigureDialog extends LitElement {
   override render(): TemplateResult {
     const { session, view } = this;
     if (this.asking_) return html`<strata-face-hint .session=${session}></strata-face-hint>`;
-    return html`<strata-dialog vast heading=${view ? words.title_of_view(view.name) : words.title} @closed=${this.on_closed}>
+    return html`<strata-dialog vast heading=${view ? words.title_of_view(view.name) : words.title} way_out=${this.job && is_busy(this.job) ? "" : texts.close} @closed=${this.on_closed}>
       <div class="editor">
         <form id="figure" class="fields" novalidate @submit=${this.on_submit}>
           ${this.direction()} ${this.scale()} ${this.sheet()} ${this.resolution()} ${this.format()} ${this.written()}
@@ -328,18 +326,16 @@ export class StrataFigureDialog extends LitElement {
     const percent = Math.round((job?.job.progress ?? 0) * 100);
     const general = this.problem_?.field === "" ? this.problem_.text : "";
     return html`${busy
-      ? html`<div slot="actions" class="making">
+      ? html`<div slot="told" class="making">
           <div class="bar" role="progressbar" aria-label=${words.making} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${percent}>
             <i ${styled({ width: `${percent}%` })}></i>
           </div>
           <span class="hint">${job.job.state === "queued" ? texts.layer_jobs.queued : job.job.message || words.making}</span>
         </div>`
-      : html`<div slot="actions" class="told ${general || saved ? "" : "nothing"}">
+      : html`<div slot="told" class="told ${general || saved ? "" : "nothing"}">
           ${general ? html`<span class="error" role="alert">${general}</span>` : html`<span class="hint" role="status">${saved ? words.saved(saved) : ""}</span>`}
         </div>`}
-    ${busy
-      ? html`<button slot="actions" @click=${() => void this.cancel(job)}>${words.cancel}</button>`
-      : html`<button slot="actions" @click=${() => this.dialog_?.close()}>${texts.close}</button>`}
+    ${busy ? html`<button slot="actions" @click=${() => void this.cancel(job)}>${words.cancel}</button>` : nothing}
     <button slot="actions" class="primary" form="figure" ?disabled=${busy || this.sending_}>${words.make}</button>`;
   }
 

@@ -225,11 +225,11 @@ export class StrataLayerDialog extends LitElement {
     return html`<strata-dialog
       wide
       heading=${layer ? words.edit_title(layer.name) : words.create_title}
+      way_out=${texts.cancel}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
       ${layer && !this.base_ ? html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>` : this.form()}
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       ${layer && (this.stale_ || !this.base_)
         ? html`<button slot="actions" class="primary" @click=${() => void this.read(layer)}>
             ${this.stale_ ? words.reload : texts.try_again}

@@ -1,13 +1,12 @@
 // <strata-map-dialog>: paints a layer from files: readings and vertex values (CSV), maps of areas, rasters, orthophotos, scanned maps.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, query, state } from "lit/decorators.js";
+import { customElement, property, state } from "lit/decorators.js";
 import { format_list, read_number } from "../core/locale";
 import { format_area } from "../core/measure";
 import type { EditResult } from "../core/protocol.gen";
 import type { Layer, MapContents } from "../core/types";
 import "./dialog";
-import type { StrataDialog } from "./dialog";
 import "./file-choice";
 import { follow_session } from "./follow-session";
 import "./map-colors";
@@ -43,7 +42,6 @@ export class StrataMapDialog extends LitElement {
   @state() private mode_: PictureMode = "luminance";
   @state() private rows_: readonly ColorRow[] = [];
   @state() private painting_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog;
   private radius_mm_ = 5;
   private tolerance_mm_ = 5;
   private source_ = "";
@@ -77,7 +75,7 @@ export class StrataMapDialog extends LitElement {
 
   override render(): TemplateResult {
     const ready = this.kind_ !== null && !this.sending_.busy;
-    return html`<strata-dialog heading=${words.title(this.layer.name)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog heading=${words.title(this.layer.name)} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <form id="map" @submit=${(event: Event) => this.on_submit(event)}>
         <p class="hint">${words.lead}</p>
         <div class="part">
@@ -95,7 +93,6 @@ export class StrataMapDialog extends LitElement {
         ${this.sending_.problem ? html`<p class="error" role="alert">${this.sending_.problem}</p>` : nothing}
         ${this.sending_.busy ? progress_line(this.sending_.share, this.painting_ ? words.working : words.looking) : nothing}
       </form>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" class="primary" form="map" ?disabled=${!ready}>${words.paint}</button>
     </strata-dialog>`;
   }

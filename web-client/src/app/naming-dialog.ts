@@ -55,7 +55,7 @@ export class StrataNamingDialog extends LitElement {
 
   override render(): TemplateResult {
     const { words, called } = this;
-    return html`<strata-dialog ?aside=${this.aside} heading=${this.heading} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog ?aside=${this.aside} heading=${this.heading} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       ${this.lead ? html`<p class="hint">${this.lead}</p>` : nothing}
       <form @submit=${this.on_submit} @input=${this.on_input}>
         <label class="field">
@@ -68,7 +68,6 @@ export class StrataNamingDialog extends LitElement {
         </label>
       </form>
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>${this.yes}</button>
     </strata-dialog>`;
   }

@@ -1,11 +1,10 @@
 // <strata-orthophoto-dialog>: makes a look of a picture that was taken along an axis.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, query, state } from "lit/decorators.js";
+import { customElement, property, state } from "lit/decorators.js";
 import { name_of_file } from "../core/api";
 import type { MapContents } from "../core/types";
 import "./dialog";
-import type { StrataDialog } from "./dialog";
 import "./file-choice";
 import { accepted, as_uploads, file_kind, kPictureEndings, unknown_file, world_numbers, type Along } from "./map-file";
 import { direction_field, found_line, progress_line, world_field } from "./map-place";
@@ -23,7 +22,6 @@ export class StrataOrthophotoDialog extends LitElement {
   @state() private files_: readonly File[] = [];
   @state() private contents_: MapContents | null = null;
   @state() private name_ = "";
-  @query("strata-dialog") private dialog_!: StrataDialog;
   private along_: Along = "-z";
   private world_ = "";
   private readonly sending_ = new Sending(this);
@@ -36,7 +34,7 @@ export class StrataOrthophotoDialog extends LitElement {
 
   override render(): TemplateResult {
     const { contents_: contents } = this;
-    return html`<strata-dialog heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog heading=${words.title} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <form id="orthophoto" @submit=${(event: Event) => void this.on_submit(event)}>
         <p class="hint">${words.lead}</p>
         <div class="part">
@@ -68,7 +66,6 @@ export class StrataOrthophotoDialog extends LitElement {
         ${this.sending_.problem ? html`<p class="error" role="alert">${this.sending_.problem}</p>` : nothing}
         ${this.sending_.busy ? progress_line(this.sending_.share, texts.maps.looking) : nothing}
       </form>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" class="primary" form="orthophoto" ?disabled=${!contents || this.sending_.busy}>${words.add}</button>
     </strata-dialog>`;
   }

@@ -1,12 +1,11 @@
 // <strata-photos-dialog>: many files at once, whose names say which records they are of: first which go where, then they are sent.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, query, state } from "lit/decorators.js";
+import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
 import { label_column, label_of } from "../core/cells";
 import type { AttachmentMatches, Column, MatchedName } from "../core/protocol.gen";
 import "./dialog";
-import type { StrataDialog } from "./dialog";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { choices_styles, shared_styles } from "./styles";
@@ -40,7 +39,6 @@ export class StrataPhotosDialog extends LitElement {
   @state() private problem_ = "";
   @state() private sent_ = 0;
   @state() private busy_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog;
   private timer_: ReturnType<typeof setTimeout> | null = null;
   private asked_ = 0;
   private stopped_ = false;
@@ -102,7 +100,7 @@ export class StrataPhotosDialog extends LitElement {
     const { matches_: matches, session } = this;
     const named = session.tables.find(this.table)?.columns.filter(({ kind }) => kind === "text" || kind === "integer" || kind === "enumeration") ?? [];
     const ready = matches !== null && matches.matched.length > 0 && !this.busy_;
-    return html`<strata-dialog wide heading=${words.folder_title(this.files.length)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog wide heading=${words.folder_title(this.files.length)} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <div class="choices" ?inert=${this.busy_}>
         <label
           ><span class="caption">${words.by_column}</span>
@@ -126,7 +124,6 @@ export class StrataPhotosDialog extends LitElement {
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
       ${matches ? this.found(matches) : nothing}
       ${this.busy_ ? html`<p class="hint" role="status">${words.sending(this.sent_ + 1, matches?.matched.length ?? 0)}</p>` : nothing}
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" class="primary" ?disabled=${!ready} @click=${() => void this.send()}>${words.send(matches?.matched.length ?? 0)}</button>
     </strata-dialog>`;
   }

@@ -11,8 +11,7 @@ import type { Layer } from "../core/types";
 import "./cell-input";
 import "./copy-field";
 import type { StrataCellInput } from "./cell-input";
-import "./dialog";
-import { ask, type StrataDialog } from "./dialog";
+import { ask } from "./dialog";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
@@ -37,7 +36,6 @@ export class StrataRecordDialog extends LitElement {
   @state() private written_ = ""; // what was in the form when somebody took the record over
   private claim_: RecordClaim | null = null;
   private shut_ = false; // somebody else has the record, as far as was drawn
-  @query("strata-dialog") private dialog_!: StrataDialog;
   @query("form") private form_!: HTMLFormElement | null;
 
   constructor() {
@@ -124,13 +122,13 @@ export class StrataRecordDialog extends LitElement {
     const name = table && record ? label_of_record(table, record) || words.record(record.key) : "";
     return html`<strata-dialog
       heading=${key === null ? words.new_record_of(table ? label_of(table) : "") : name}
+      way_out=${texts.cancel}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
       ${this.claim_?.other ? this.held(this.claim_, name) : nothing} ${record ? this.facts(record) : nothing}
       ${ready ? this.form(table) : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`}
       <p class="hint" role="status" ?hidden=${!this.sending_}>${this.sending_}</p>
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       ${key === null
         ? html`<button slot="actions" ?disabled=${this.busy_ || !ready} @click=${() => void this.save(true)}>${words.save_next}</button>`
         : nothing}

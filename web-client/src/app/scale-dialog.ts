@@ -52,7 +52,7 @@ export class StrataScaleDialog extends LitElement {
     if (!model) return html``;
     const metres = metres_per(this.unit_);
     const sides = [0, 1, 2].map((axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres);
-    return html`<strata-dialog aside heading=${words.title(format_size(sides))} @closed=${this.on_closed}>
+    return html`<strata-dialog aside heading=${words.title(format_size(sides))} way_out=${model.scale_verified ? texts.cancel : words.later} @closed=${this.on_closed}>
       <p class="hint">${model.unit_assumed ? words.lead_assumed : words.lead}</p>
       <div class="question">
         <span class="caption" id="unit">${words.unit}</span>
@@ -78,7 +78,6 @@ export class StrataScaleDialog extends LitElement {
           choose: (up) => this.choose_up(up),
         })}
       </div>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${model.scale_verified ? texts.cancel : words.later}</button>
       <button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => void this.confirm()}>${words.yes}</button>
     </strata-dialog>`;
   }

@@ -5,7 +5,6 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError, name_of_file } from "../core/api";
 import { in_square, kShapeSide, likely_part, to_shape, type ShapePart } from "../core/shape";
 import "./dialog";
-import type { StrataDialog } from "./dialog";
 import type { ModelSession } from "./model-session";
 import { radio_group } from "./radio-group";
 import { form_styles, shared_styles } from "./styles";
@@ -20,7 +19,6 @@ export class StrataShapeDialog extends LitElement {
   @state() private part_: ShapePart | null = null; // null: the picture is being read
   @state() private problem_ = "";
   @state() private working_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog;
   @query("canvas") private canvas_!: HTMLCanvasElement;
   @query("input") private name_!: HTMLInputElement;
 
@@ -46,7 +44,7 @@ export class StrataShapeDialog extends LitElement {
 
   override render(): TemplateResult {
     const words = texts.shapes;
-    return html`<strata-dialog heading=${words.new_title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog heading=${words.new_title} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <form id="shape" @submit=${(event: Event) => this.on_submit(event)}>
         <p class="hint">${words.lead}</p>
         <canvas width=${kShapeSide} height=${kShapeSide} role="img" aria-label=${words.preview}></canvas>
@@ -63,7 +61,6 @@ export class StrataShapeDialog extends LitElement {
         </label>
         ${this.problem_ ? html`<p class="error" role="alert">${this.problem_}</p>` : nothing}
       </form>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" class="primary" form="shape" ?disabled=${this.part_ === null || this.working_ || this.problem_ !== ""}>
         ${this.working_ ? words.adding : words.add}
       </button>

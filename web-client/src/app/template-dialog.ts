@@ -102,7 +102,7 @@ export class StrataTemplateDialog extends LitElement {
 
   override render(): TemplateResult {
     const { templates_: templates } = this;
-    return html`<strata-dialog wide heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog wide prose heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p class="hint">${words.lead}</p>
       ${templates
         ? templates.length === 0

@@ -53,7 +53,7 @@ export class StrataTermsDialog extends LitElement {
     const { report_: report, file_: file } = this;
     const list = this.table === null ? null : this.session.tables.find(this.table);
     const ready = report !== null && is_useful(report) && !this.busy_;
-    return html`<strata-dialog wide heading=${list ? words.more_title(label_of(list)) : words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog wide heading=${list ? words.more_title(label_of(list)) : words.title} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p class="hint">${list ? words.more_lead : words.lead}</p>
       <strata-file-choice
         label=${words.file}
@@ -65,7 +65,6 @@ export class StrataTermsDialog extends LitElement {
       ${list || !file ? nothing : this.new_list()}
       ${report ? records_report(report, words.rows) : html`<p class="hint" role="status" ?hidden=${!file || this.problem_ !== ""}>${words.looking}</p>`}
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" class="primary" ?disabled=${!ready} @click=${() => void this.send()}>${words.import}</button>
     </strata-dialog>`;
   }

@@ -203,20 +203,20 @@ export class StrataTourDialog extends LitElement {
     return html`<strata-dialog
       vast
       heading=${this.tour ? words.edit_title(this.tour.name) : words.new_title}
+      way_out=${draft ? texts.cancel : ""}
       .may_close=${this.may_close}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
       ${draft ? this.content(draft) : html`<p class="hint" role="status" ?hidden=${problem !== null}>${texts.loading}</p>`}
       ${this.theirs_
-        ? html`<div slot="actions" class="told" role="alert">
+        ? html`<div slot="told" class="told" role="alert">
             <span>${words.conflict}</span>
             <button class="link" @click=${() => void this.take_theirs()}>${words.take_theirs}</button>
           </div>`
         : nothing}
-      ${problem && this.general(problem.field) ? html`<p slot="actions" class="error told" role="alert">${problem.text}</p>` : nothing}
+      ${problem && this.general(problem.field) ? html`<p slot="told" class="error told" role="alert">${problem.text}</p>` : nothing}
       ${draft
-        ? html`<button slot="actions" @click=${() => void this.dialog_?.leave()}>${texts.cancel}</button>
-            <button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => void this.save()}>${texts.save}</button>`
+        ? html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => void this.save()}>${texts.save}</button>`
         : nothing}
       ${!draft && problem ? html`<button slot="actions" @click=${() => void this.read()}>${texts.try_again}</button>` : nothing}
     </strata-dialog>`;

@@ -101,7 +101,7 @@ export class StrataTransferDialog extends LitElement {
   }
 
   override render(): TemplateResult {
-    return html`<strata-dialog heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog heading=${words.title} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p class="hint">${words.lead}</p>
       ${this.models_ === null
         ? html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`
@@ -109,7 +109,6 @@ export class StrataTransferDialog extends LitElement {
           ? html`<p>${words.no_models}</p>`
           : this.form(this.models_)}
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button
         slot="actions"
         class="primary"

@@ -6,7 +6,6 @@ import { ApiError } from "../core/api";
 import { format_area } from "../core/measure";
 import type { Layer } from "../core/types";
 import "./dialog";
-import type { StrataDialog } from "./dialog";
 import "./expression-field";
 import type { StrataExpressionField } from "./expression-field";
 import { follow_session } from "./follow-session";
@@ -23,7 +22,6 @@ export class StrataWhereDialog extends LitElement {
   @property({ attribute: false }) layer!: Layer;
   @state() private erases_ = false;
   @state() private working_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog;
   @query("strata-expression-field") private condition_!: StrataExpressionField;
 
   constructor() {
@@ -56,7 +54,7 @@ export class StrataWhereDialog extends LitElement {
   override render(): TemplateResult {
     const words = texts.areas;
     const { session, layer } = this;
-    return html`<strata-dialog heading=${words.where_title(layer.name)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog heading=${words.where_title(layer.name)} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <form id="where" @submit=${(event: Event) => this.on_submit(event)}>
         <p class="hint">${words.where_lead}</p>
         <strata-expression-field
@@ -84,7 +82,6 @@ export class StrataWhereDialog extends LitElement {
               .value=${session.painting.brush.value_of(layer)}
             ></strata-value-picker>`}
       </form>
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" class="primary" form="where" ?disabled=${this.working_} @click=${() => void this.apply()}>
         ${this.erases_ ? words.apply_erase : words.apply}
       </button>
