@@ -2,7 +2,7 @@
 // is seen on the model at once, by this person alone until it is kept.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
-import { customElement, property, query, state } from "lit/decorators.js";
+import { customElement, property, state } from "lit/decorators.js";
 import { holds_files, is_number, label_of } from "../core/cells";
 import { format_count, read_number, typed_number } from "../core/locale";
 import { holds_marks } from "../core/marks";
@@ -11,7 +11,6 @@ import type { Column, ColumnClasses } from "../core/protocol.gen";
 import type { Layer, Palette, PalettePoint } from "../core/types";
 import { describe_value } from "./brush-settings";
 import "./dialog";
-import type { StrataDialog } from "./dialog";
 import { follow_session } from "./follow-session";
 import { class_range, value_label } from "./legend";
 import type { ModelSession } from "./model-session";
@@ -43,7 +42,6 @@ export class StrataColorDialog extends LitElement {
   @state() private classes_: ColumnClasses | null = null;
   @state() private problem_ = "";
   @state() private working_ = false;
-  @query("strata-dialog") private dialog_!: StrataDialog;
   private before_: Palette | null = null; // what this person saw
   private asked_ = 0;
 
@@ -124,11 +122,10 @@ export class StrataColorDialog extends LitElement {
     const words = texts.colors;
     const { session, layer, palette_: palette, column } = this;
     if (!palette) return html``;
-    return html`<strata-dialog aside heading=${words.title(layer.name)} @closed=${() => this.on_closed()}>
+    return html`<strata-dialog aside heading=${words.title(layer.name)} way_out=${texts.cancel} @closed=${() => this.on_closed()}>
       ${layer.table === undefined ? nothing : this.choices(palette, column)}
       ${this.problem_ ? html`<p class="error" role="alert">${this.problem_}</p>` : nothing}
       ${palette.mode === "linear" ? nothing : this.rows(palette, column)} ${this.rest(palette)}
-      <button slot="actions" @click=${() => this.dialog_.close()}>${texts.cancel}</button>
       <button slot="actions" @click=${() => this.keep(false)}>${words.only_me}</button>
       ${session.can_curate
         ? html`<button slot="actions" class="primary" ?disabled=${this.working_} @click=${() => this.keep(true)}>${words.everyone}</button>`
@@ -176,6 +173,12 @@ export class StrataColorDialog extends LitElement {
     </div>`;
   }
 
+  /** A palette has colours for records that may come: those have no name yet, and no line. */
+  private is_there({ at }: PalettePoint): boolean {
+    const { table } = this.layer;
+    return this.palette_?.column !== undefined || table === undefined || !this.session.tables.lacks(table, at);
+  }
+
   private rows(palette: Palette, column: Column | undefined): TemplateResult {
     const words = texts.colors;
     const name = (point: PalettePoint, index: number): string => {
@@ -185,6 +188,7 @@ export class StrataColorDialog extends LitElement {
     };
     return html`<ul>
       ${palette.points.map((point, index) => {
+        if (!this.is_there(point)) return nothing;
         const text = name(point, index);
         const records = this.classes_?.classes[index]?.records;
         return html`<li>
@@ -213,7 +217,9 @@ export class StrataColorDialog extends LitElement {
     const words = texts.colors;
     const { classes_: classes } = this;
     const patterned = palette.points.some((point) => (point.pattern ?? "solid") !== "solid");
-    return html`${classes && (classes.unclassified > 0 || classes.without > 0)
+    const by_record = this.layer.table !== undefined && !palette.column && !palette.others && palette.points.length > 0;
+    return html`${by_record ? html`<p class="hint">${words.further}</p>` : nothing}
+    ${classes && (classes.unclassified > 0 || classes.without > 0)
       ? html`<p class="hint">
           ${classes.unclassified > 0 ? words.unclassified(classes.unclassified) : nothing} ${classes.without > 0 ? words.without_count(classes.without) : nothing}
         </p>`

@@ -902,6 +902,7 @@ export const texts = {
     patterned_hint: "Was darunter liegt, bleibt lesbar, und Klassen sind auch in Schwarzweiß zu unterscheiden.",
     by: (column) => `Nach ${column}`,
     others: "Andere, oder kein Wert",
+    further: "Datensätze, die später dazukommen, erhalten je eine eigene Farbe.",
     without: "Kein Wert",
     no_values: "In dieser Spalte hat noch kein Datensatz einen Wert.",
     unclassified: (n) => `${records(n)} ${plural(n, "hat", "haben")} seltenere Werte.`,

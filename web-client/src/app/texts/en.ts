@@ -888,6 +888,7 @@ export const texts = {
     patterned_hint: "What lies below stays legible, and classes can be told apart in black and white.",
     by: (column: string) => `By ${column}`,
     others: "Others, or no value",
+    further: "Records that come later are each given a colour of their own.",
     without: "No value",
     no_values: "No record has a value in this column yet.",
     unclassified: (n: number) => `${count(n, "record has", "records have")} rarer values.`,

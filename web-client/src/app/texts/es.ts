@@ -908,6 +908,7 @@ export const texts = {
     patterned_hint: "Lo de debajo sigue legible y las clases se distinguen también en blanco y negro.",
     by: (column) => `Por ${column}`,
     others: "Otros, o sin valor",
+    further: "Cada registro que se añada después recibe un color propio.",
     without: "Sin valor",
     no_values: "Ningún registro tiene todavía un valor en esta columna.",
     unclassified: (n) => `${records(n)} ${plural(n, "tiene", "tienen")} valores menos frecuentes.`,
