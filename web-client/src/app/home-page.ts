@@ -109,6 +109,11 @@ export class StrataHomePage extends LitElement {
     return (this.models_ ?? []).filter(({ project }) => !shown || project === shown.slug);
   }
 
+  /** It is known that there is none here: what to do about it stands in the middle. */
+  private get has_none(): boolean {
+    return this.models_ !== null && this.models.length === 0;
+  }
+
   private get can_curate(): boolean {
     return this.into !== null;
   }
@@ -167,7 +172,7 @@ export class StrataHomePage extends LitElement {
       <span class="hint grow">${this.counted}</span>
       ${this.project === null && this.curated.length > 1 ? this.project_choice(this.curated) : nothing}
       ${this.can_curate
-        ? html`<button class="primary" @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
+        ? html`<button class=${this.has_none ? "" : "primary"} @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
             <input type="file" accept=".ply,.obj,.stl,.gltf,.glb,.zip,.mtl,.bin,.png,.jpg,.jpeg" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
         : nothing}
       ${this.project === null && this.can_administer
@@ -218,9 +223,9 @@ export class StrataHomePage extends LitElement {
               </li>`,
           )}
         </ul>
-        ${this.models_.length === 0 ? this.nothing_yet() : nothing}`;
+        ${this.has_none ? this.nothing_yet() : nothing}`;
     }
-    if (this.models.length === 0) return this.nothing_yet();
+    if (this.has_none) return this.nothing_yet();
     return html`<ul class="gallery">
       ${repeat(
         this.models,
