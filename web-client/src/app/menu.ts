@@ -100,6 +100,9 @@ export class StrataMenu extends LitElement {
     this.list_.style.top = `${Math.max(margin, Math.min(top, innerHeight - box.height - margin))}px`;
   };
 
+  /** Commands come and go while it is open: in a narrower window it takes up what stood beside it. */
+  private readonly grown_ = new ResizeObserver(this.place);
+
   /** Before the command hears of it: a dialog that it opens gives the focus back to this menu's button, which has it by then. */
   private readonly closing_ = { handleEvent: (): void => this.list_.hidePopover(), capture: true };
 
@@ -115,15 +118,21 @@ export class StrataMenu extends LitElement {
   private on_toggle(event: ToggleEvent): void {
     if (event.newState === "open") {
       addEventListener("resize", this.place);
+      this.grown_.observe(this.list_);
       this.items()[0]?.focus();
     } else {
-      removeEventListener("resize", this.place);
+      this.stay();
     }
   }
 
   override disconnectedCallback(): void {
     super.disconnectedCallback();
+    this.stay();
+  }
+
+  private stay(): void {
     removeEventListener("resize", this.place);
+    this.grown_.disconnect();
   }
 
   private on_key(event: KeyboardEvent): void {
