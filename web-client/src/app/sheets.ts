@@ -7,6 +7,7 @@ import { detail_choices, format_area, format_bytes, format_length, format_size, 
 import { may_download, type Model, type Role } from "../core/types";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
+import { has_fingers_only } from "./pointers";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -54,7 +55,7 @@ export class StrataHelpSheet extends LitElement {
       html`<h3>${title}</h3>
         <dl class="keys">${rows.map(([keys, does]) => html`<dt>${keys}</dt><dd>${does}</dd>`)}</dl>`;
     return html`<strata-dialog wide prose heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      ${part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
+      ${has_fingers_only() ? nothing : part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
       ${part(words.brush, words.brush_rows)} ${part(words.terms, words.terms_rows)} ${part(words.table, words.table_rows)} ${part(words.layers, words.layer_rows)}
       <button slot="actions" @click=${this.show_tour}>${texts.tour.again}</button>
     </strata-dialog>`;

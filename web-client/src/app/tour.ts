@@ -8,6 +8,7 @@ import { modal_is_open } from "./dialog";
 import { follow_session } from "./follow-session";
 import { has_keyboard } from "./keyboard";
 import type { ModelSession } from "./model-session";
+import { has_fingers_only } from "./pointers";
 import { keep_tour_over, tour_is_over } from "./preferences";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -47,7 +48,7 @@ export class StrataTour extends LitElement {
         display: grid;
         gap: 8px;
         overflow-y: auto;
-        width: min(360px, calc(100vw - 24px));
+        width: min(25rem, calc(100vw - 24px));
         padding: 14px 16px 12px;
         border: var(--edge) solid var(--accent);
         border-radius: var(--radius);
@@ -61,7 +62,7 @@ export class StrataTour extends LitElement {
         }
       }
       section.wide {
-        width: min(520px, calc(100vw - 24px));
+        width: min(32.5rem, calc(100vw - 24px));
       }
       .head {
         align-items: baseline;
@@ -198,7 +199,7 @@ export class StrataTour extends LitElement {
   }
 
   private text(step: StepName, { is_way }: TourThing): string {
-    const hand = matchMedia("(pointer: coarse)").matches ? "touch" : "mouse";
+    const hand = has_fingers_only() ? "touch" : "mouse";
     switch (step) {
       case "layers": {
         const { way, paint, look } = words.steps.layers;
