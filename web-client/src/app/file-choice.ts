@@ -1,9 +1,9 @@
 // <strata-file-choice>: where a dialog takes files: a button, or they are dropped beside it. Tells them by "files".
 
 import { css, html, LitElement, type TemplateResult } from "lit";
-import { customElement, property, query, state } from "lit/decorators.js";
+import { customElement, property, query } from "lit/decorators.js";
 import { format_list } from "../core/locale";
-import { dropped_files } from "./drop";
+import { FileDrop } from "./drop";
 import { icon } from "./icons";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -21,8 +21,8 @@ export class StrataFileChoice extends LitElement {
   @property({ type: Boolean }) disabled = false;
   /** That were taken so far. */
   @property({ attribute: false }) names: readonly string[] = [];
-  @state() private over_ = false;
   @query("input") private input_!: HTMLInputElement;
+  private readonly drop_ = new FileDrop(this, (files) => this.take(files));
 
   static override styles = [
     shared_styles,
@@ -62,10 +62,7 @@ export class StrataFileChoice extends LitElement {
     return html`<div
       role="group"
       aria-label=${label}
-      class=${this.over_ ? "over" : ""}
-      @dragover=${this.on_over}
-      @dragleave=${() => (this.over_ = false)}
-      @drop=${this.on_drop}
+      class=${this.drop_.over ? "over" : ""}
     >
       <button type="button" ?disabled=${disabled} @click=${() => this.input_.click()}>${icon("upload")}${choose}</button>
       <input
@@ -82,6 +79,7 @@ export class StrataFileChoice extends LitElement {
   }
 
   private take(files: readonly File[]): void {
+    if (this.disabled) return;
     const taken = this.multiple ? [...files] : files.slice(0, 1);
     if (taken.length > 0) this.dispatchEvent(new CustomEvent<File[]>("files", { detail: taken }));
   }
@@ -90,18 +88,6 @@ export class StrataFileChoice extends LitElement {
     const files = [...(this.input_.files ?? [])];
     this.input_.value = ""; // so that the same one, mended, can be chosen again
     this.take(files);
-  };
-
-  private readonly on_over = (event: DragEvent): void => {
-    event.preventDefault();
-    this.over_ = true;
-  };
-
-  private readonly on_drop = (event: DragEvent): void => {
-    event.preventDefault();
-    this.over_ = false;
-    if (!event.dataTransfer || this.disabled) return;
-    void dropped_files(event.dataTransfer).then((dropped) => this.take(dropped.map(({ file }) => file)));
   };
 }
 

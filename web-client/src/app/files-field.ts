@@ -6,7 +6,7 @@ import { ApiError } from "../core/api";
 import { label_of } from "../core/cells";
 import { format_bytes } from "../core/measure";
 import type { Attachment, Column, Visibility } from "../core/protocol.gen";
-import { dropped_files } from "./drop";
+import { FileDrop } from "./drop";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
@@ -28,8 +28,8 @@ export class StrataFilesField extends LitElement {
   @state() private pending_: File[] = [];
   @state() private known_ = new Map<number, Attachment>();
   @state() private is_known_ = false; // which of the files this person sees
-  @state() private over_ = false;
   @query("input") private input_!: HTMLInputElement;
+  private readonly drop_ = new FileDrop(this, (files) => (this.pending_ = [...this.pending_, ...files]));
 
   static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
 
@@ -129,7 +129,7 @@ export class StrataFilesField extends LitElement {
   }
 
   override render(): TemplateResult {
-    return html`<div class="field ${this.over_ ? "over" : ""}" role="group" aria-label=${label_of(this.column)} @dragover=${this.on_over} @dragleave=${() => (this.over_ = false)} @drop=${this.on_drop}>
+    return html`<div class="field ${this.drop_.over ? "over" : ""}" role="group" aria-label=${label_of(this.column)}>
       ${this.ids.filter((id) => !this.is_known_ || this.known_.has(id)).map((id) => this.kept(id))} ${this.pending_.map((file) => this.waiting(file))}
       <button type="button" class="add" @click=${() => this.input_.click()}>${icon("plus")}${this.is_pictures ? words.add_pictures : words.add_documents}</button>
       <input type="file" multiple tabindex="-1" aria-label=${words.choose} accept=${this.is_pictures ? "image/*" : ""} @change=${this.on_chosen} />
@@ -193,19 +193,6 @@ export class StrataFilesField extends LitElement {
   private readonly on_chosen = (): void => {
     this.pending_ = [...this.pending_, ...(this.input_.files ?? [])];
     this.input_.value = "";
-  };
-
-  private readonly on_over = (event: DragEvent): void => {
-    event.preventDefault();
-    this.over_ = true;
-  };
-
-  private readonly on_drop = (event: DragEvent): void => {
-    event.preventDefault();
-    event.stopPropagation();
-    this.over_ = false;
-    if (!event.dataTransfer) return;
-    void dropped_files(event.dataTransfer).then((files) => (this.pending_ = [...this.pending_, ...files.map(({ file }) => file)]));
   };
 }
 

@@ -5,6 +5,7 @@ import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import type { Tool, ToolShape } from "../core/protocol.gen";
 import { ask, ask_text } from "./dialog";
+import { FileDrop } from "./drop";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import "./menu";
@@ -23,15 +24,16 @@ const is_picture = ({ type }: { type: string }): boolean => type === "image/png"
 export class StrataShapePicker extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   @state() private file_: File | null = null; // that becomes a shape
-  @state() private over_ = false; // files are held over it
   @query("input[type=file]") private input_!: HTMLInputElement;
+  private readonly drop_ = new FileDrop(
+    this,
+    ([file]) => file && this.take(file),
+    () => this.session.can_paint,
+  );
 
   constructor() {
     super();
     follow_session(this);
-    this.addEventListener("dragover", (event) => this.on_drag_over(event));
-    this.addEventListener("dragleave", () => (this.over_ = false));
-    this.addEventListener("drop", (event) => this.on_drop(event));
   }
 
   static override styles = [
@@ -111,7 +113,7 @@ export class StrataShapePicker extends LitElement {
       content: html`<svg viewBox="0 0 24 24" aria-hidden="true">${content}</svg><span class="visually-hidden">${texts.brush[value]}</span>`,
     });
     return html`<span class="caption">${texts.brush.shape}</span>
-      <div class="area ${this.over_ ? "over" : ""}">
+      <div class="area ${this.drop_.over ? "over" : ""}">
         ${radio_group<ToolShape>({
           label: texts.brush.shape,
           class: "shapes",
@@ -149,17 +151,7 @@ export class StrataShapePicker extends LitElement {
     this.input_.value = "";
   }
 
-  private on_drag_over(event: DragEvent): void {
-    if (!this.session.can_paint || ![...(event.dataTransfer?.items ?? [])].some(({ kind }) => kind === "file")) return;
-    event.preventDefault();
-    this.over_ = true;
-  }
-
-  private on_drop(event: DragEvent): void {
-    this.over_ = false;
-    const [file] = event.dataTransfer?.files ?? [];
-    if (!file || !this.session.can_paint) return;
-    event.preventDefault();
+  private take(file: File): void {
     if (is_picture(file)) this.file_ = file;
     else notices.show("problem", texts.shapes.unreadable(file.name));
   }

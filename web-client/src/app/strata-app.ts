@@ -13,7 +13,7 @@ import { ask } from "./dialog";
 import { invitation_of } from "./entry";
 import "./home-page";
 import { icon } from "./icons";
-import { dropped_files, without_folders, type DroppedFile } from "./drop";
+import { dropped_files, has_files, without_folders, type DroppedFile } from "./drop";
 import { choose_scans, Imports, type Scan } from "./imports";
 import "./join-page";
 import "./kiosks-dialog";
@@ -316,5 +316,3 @@ export class StrataApp extends LitElement {
     else if (event.dataTransfer) void dropped_files(event.dataTransfer).then((files) => this.import_files(files));
   };
 }
-
-const has_files = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;

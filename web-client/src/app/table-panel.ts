@@ -14,7 +14,7 @@ import type { CellEdit } from "./cell-edits";
 import "./cell-input";
 import { takes_typing, type StrataCellInput } from "./cell-input";
 import { ask } from "./dialog";
-import { dropped_files } from "./drop";
+import { FileDrop } from "./drop";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import "./menu";
@@ -70,10 +70,14 @@ export class StrataTablePanel extends LitElement {
   @state() private editing_: Editing | null = null;
   @state() private editor_problem_ = "";
   private claim_: RecordClaim | null = null; // of the record that is written into
-  @state() private over_ = false; // a file is held over it
   @query(".scroller") private scroller_!: HTMLElement | null;
   @query(".editor strata-cell-input") private input_!: StrataCellInput | null;
   @query(".filter input") private filter_!: HTMLInputElement;
+  private readonly drop_ = new FileDrop(
+    this,
+    (files) => this.take_files(files),
+    () => this.can_write,
+  );
   private readonly widths_ = new Map<string, number>();
   private observer_: ResizeObserver | null = null;
   private from_ = 0; // the row that the next one with Shift goes on from
@@ -81,9 +85,6 @@ export class StrataTablePanel extends LitElement {
   constructor() {
     super();
     follow_session(this);
-    this.addEventListener("dragover", (event) => this.on_drag_over(event));
-    this.addEventListener("dragleave", () => (this.over_ = false));
-    this.addEventListener("drop", (event) => this.on_drop(event));
   }
 
   static override styles = [shared_styles, table_styles];
@@ -98,7 +99,7 @@ export class StrataTablePanel extends LitElement {
 
   override willUpdate(): void {
     this.claim_edited();
-    this.classList.toggle("over", this.over_);
+    this.classList.toggle("over", this.drop_.over);
     this.classList.toggle("narrow", this.is_narrow);
     const { first, last } = this.in_sight();
     this.view.rows.want(first, last);
@@ -851,18 +852,6 @@ export class StrataTablePanel extends LitElement {
     input.click();
   }
 
-  private on_drag_over(event: DragEvent): void {
-    if (!this.can_write || ![...(event.dataTransfer?.items ?? [])].some(({ kind }) => kind === "file")) return;
-    event.preventDefault();
-    this.over_ = true;
-  }
-
-  private on_drop(event: DragEvent): void {
-    this.over_ = false;
-    if (!event.dataTransfer || !this.can_write) return;
-    event.preventDefault();
-    void dropped_files(event.dataTransfer).then((dropped) => this.take_files(dropped.map(({ file }) => file)));
-  }
   /** One text is records, or terms where the table is a list of them; everything else is files of records. */
   private take_files(files: File[]): void {
     const table = this.view.table_id;
