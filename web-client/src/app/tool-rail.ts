@@ -8,6 +8,7 @@ import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import "./menu";
 import type { ModelSession } from "./model-session";
+import { ScrollFade } from "./scroll-fade";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 import type { StepName } from "./tour-steps";
@@ -37,6 +38,7 @@ export class StrataToolRail extends LitElement {
   constructor() {
     super();
     follow_session(this);
+    new ScrollFade(this);
   }
 
   static override styles = [
@@ -84,6 +86,20 @@ export class StrataToolRail extends LitElement {
           padding: 6px;
           border-right: 0;
           border-top: var(--edge) solid var(--line);
+          --fade: 34px;
+          --from: 0px;
+          --to: 0px;
+          scroll-padding-inline: var(--fade); /* a button that the keyboard comes to is seen whole */
+        }
+        :host([more-before]) {
+          --from: var(--fade);
+        }
+        :host([more-after]) {
+          --to: var(--fade);
+        }
+        :host([more-before]),
+        :host([more-after]) {
+          mask-image: linear-gradient(to right, transparent, black var(--from), black calc(100% - var(--to)), transparent);
         }
         hr:not(strata-menu > hr) {
           width: 0;
