@@ -1,5 +1,5 @@
 // Every screen and dialog of the page: what axe-core finds in it, in English and German; its contrast in each theme; no overflow in the longest
-// language, in four sizes of the window; keyboards reach every control, see where they are, stay in dialogs and come back from them.
+// language, in four sizes of the window; keyboards begin in dialogs where it is sensible, reach every control, see where they are, stay in dialogs and come back from them.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -44,6 +44,10 @@ async function check(language, { page }, screen) {
       await page.evaluate(() => (document.documentElement.dataset.theme = "light"));
     }
     await page.setViewportSize({ width: 1280, height: 800 });
+  }
+  if (language === "en" && (await page.locator("dialog[open]").count()) > 0) {
+    const begins = await active(page);
+    if (/^(button\.icon\.quiet “Close”)?$/.test(begins)) wrong.push(`${language}, ${screen.name}: the keyboard begins ${begins === "" ? "nowhere" : "at the cross"}`);
   }
   if (language === "en" && screen.keyboard) {
     const { unreached, unseen, stops } = await walk(page);

@@ -27,7 +27,7 @@ const kDeep = `
 `;
 const evaluate = (page, body) => page.evaluate(`(() => { ${kDeep} ${body} })()`);
 
-/** What is wider than its room: the document, dialogs and menus as wholes, and words that leave their control. */
+/** What is wider than its room: the document, dialogs and menus as wholes, words that leave their control, and buttons of a dialog that do not stand in one row. */
 export const overflows = (page) =>
   evaluate(
     page,
@@ -51,6 +51,11 @@ export const overflows = (page) =>
              break;
            }
          }
+       }
+       if (each.matches("dialog[open] footer")) {
+         const buttons = [...each.querySelectorAll(".way-out"), ...each.querySelector("slot[name=actions]").assignedElements()].filter((button) => button.matches("button"));
+         const rows = new Set(buttons.map((button) => Math.round(button.getBoundingClientRect().top)));
+         if (rows.size > 1) found.push("buttons in " + rows.size + " rows: " + buttons.map(told).join(", "));
        }
        const inside = each.closest("dialog[open]");
        if (inside && each.matches(".content, footer") && each.scrollWidth > each.clientWidth + 1) found.push(told(each) + ": " + each.scrollWidth + " in " + each.clientWidth);

@@ -105,6 +105,14 @@ export class StrataDialog extends LitElement {
         display: none;
       }
       @media (max-width: 560px) {
+        footer {
+          gap: 8px;
+          padding: 12px 14px 14px;
+        }
+        .way-out,
+        ::slotted(button[slot="actions"]) {
+          padding: 0 10px !important;
+        }
         dialog {
           width: 100vw;
           margin: auto 0 0;

@@ -81,9 +81,10 @@ export class StrataTour extends LitElement {
       }
       .choices button {
         min-height: 34px;
+        padding: 0 12px;
       }
       .choices .skip {
-        margin: 0 auto 0 -14px;
+        margin: 0 auto 0 -12px;
         outline-offset: -3px; /* within the card */
       }
       .ring {

@@ -1239,7 +1239,7 @@ export const texts = {
     delete: "Datensatz löschen",
     new_record: "Neuer Datensatz",
     new_record_of: (table) => `Neuer Datensatz von ${table}`,
-    save_next: "Speichern und nächster",
+    save_next: "Speichern & neu",
     undo: "Meine letzte Änderung an der Tabelle zurücknehmen",
     redo: "Wiederherstellen",
     undone: (created, changed, deleted) => `Zurückgenommen: ${what_changed(created, changed, deleted) || "eine Spalte"}.`,

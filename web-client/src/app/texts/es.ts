@@ -1245,7 +1245,7 @@ export const texts = {
     delete: "Eliminar el registro",
     new_record: "Registro nuevo",
     new_record_of: (table) => `Registro nuevo de ${table}`,
-    save_next: "Guardar y siguiente",
+    save_next: "Guardar y otro",
     undo: "Deshacer mi último cambio de la tabla",
     redo: "Rehacerlo",
     undone: (created, changed, deleted) => `Deshecho: ${what_changed(created, changed, deleted) || "una columna"}.`,
