@@ -46,10 +46,10 @@ export class StrataAccountDialog extends LitElement {
     css`
       section {
         display: grid;
-        gap: 12px;
+        gap: 0.75rem;
       }
       section + section {
-        padding-top: 18px;
+        padding-top: 1.125rem;
         border-top: var(--edge) solid var(--line);
       }
       h3 {
@@ -57,12 +57,12 @@ export class StrataAccountDialog extends LitElement {
       }
       form {
         display: grid;
-        gap: 12px;
+        gap: 0.75rem;
       }
       .beside {
         display: flex;
         align-items: end;
-        gap: 10px;
+        gap: 0.625rem;
       }
       .beside > label {
         flex: 1;
@@ -82,8 +82,8 @@ export class StrataAccountDialog extends LitElement {
       li {
         display: flex;
         align-items: center;
-        gap: 12px;
-        padding: 7px 0;
+        gap: 0.75rem;
+        padding: 0.4375rem 0;
       }
       li + li {
         border-top: var(--edge) solid var(--line);
@@ -107,8 +107,8 @@ export class StrataAccountDialog extends LitElement {
       }
       .made {
         display: grid;
-        gap: 10px;
-        padding: 14px;
+        gap: 0.625rem;
+        padding: 0.875rem;
         border-radius: var(--radius);
         background: var(--calm-soft);
       }
@@ -117,7 +117,7 @@ export class StrataAccountDialog extends LitElement {
       }
       pre {
         margin: 0;
-        padding: 9px 11px;
+        padding: 0.5625rem 0.6875rem;
         border-radius: var(--radius-small);
         background: var(--surface);
         font: 0.8rem/1.5 var(--mono);

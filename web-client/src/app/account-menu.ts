@@ -31,8 +31,8 @@ export class StrataAccountMenu extends LitElement {
       .face {
         display: grid;
         place-items: center;
-        width: 30px;
-        height: 30px;
+        width: 1.875rem;
+        height: 1.875rem;
         border-radius: 50%;
         background: var(--calm);
         color: var(--calm-ink);
@@ -42,8 +42,8 @@ export class StrataAccountMenu extends LitElement {
       }
       .who {
         display: grid;
-        max-width: 260px;
-        padding: 8px 14px 10px;
+        max-width: 16.25rem;
+        padding: 0.5rem 0.875rem 0.625rem;
         overflow-wrap: anywhere;
       }
       .who span {

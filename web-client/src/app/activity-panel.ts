@@ -35,7 +35,7 @@ export class StrataActivityPanel extends FoldingPanel {
     person_mark_styles,
     css`
       h3 {
-        margin: 6px 0 0;
+        margin: 0.375rem 0 0;
         font-size: 0.8rem;
         font-weight: 600;
         color: var(--ink-soft);
@@ -47,8 +47,8 @@ export class StrataActivityPanel extends FoldingPanel {
         grid-row: span 2;
         display: grid;
         place-items: center;
-        width: 26px;
-        height: 26px;
+        width: 1.625rem;
+        height: 1.625rem;
         color: var(--ink-soft);
       }
       .what {

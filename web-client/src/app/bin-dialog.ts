@@ -43,8 +43,8 @@ export class StrataBinDialog extends LitElement {
         display: grid;
         grid-template-columns: auto minmax(0, 1fr) auto;
         align-items: center;
-        gap: 4px 12px;
-        padding: 10px 0;
+        gap: 4px 0.75rem;
+        padding: 0.625rem 0;
         border-top: var(--edge) solid var(--line);
       }
       li:first-child {
@@ -69,7 +69,7 @@ export class StrataBinDialog extends LitElement {
       .buttons {
         display: flex;
         flex-wrap: wrap;
-        gap: 8px;
+        gap: 0.5rem;
       }
       .done {
         color: var(--calm);

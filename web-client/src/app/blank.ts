@@ -17,18 +17,18 @@ export class StrataBlank extends LitElement {
         display: grid;
         place-items: center;
         min-height: 100dvh;
-        padding: 24px;
+        padding: 1.5rem;
         text-align: center;
       }
       div {
         display: grid;
         justify-items: center;
-        gap: 14px;
-        max-width: 440px;
+        gap: 0.875rem;
+        max-width: 27.5rem;
       }
       .logo {
-        width: 52px;
-        height: 52px;
+        width: 3.25rem;
+        height: 3.25rem;
       }
       h1 {
         font-size: 1.45rem;

@@ -39,31 +39,31 @@ export class StrataBrushPanel extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 13px;
+        gap: 0.8125rem;
       }
       h2 {
         font-size: 1.08rem;
       }
       .width {
         display: grid;
-        grid-template-columns: 1fr 92px;
+        grid-template-columns: 1fr 5.75rem;
         align-items: center;
-        gap: 8px 12px;
+        gap: 0.5rem 0.75rem;
       }
       .slant {
         display: grid;
-        grid-template-columns: 1fr 92px;
+        grid-template-columns: 1fr 5.75rem;
         align-items: center;
-        gap: 12px;
+        gap: 0.75rem;
       }
       .slant input:disabled + span {
         opacity: var(--unavailable);
       }
       .locked {
         display: flex;
-        gap: 9px;
+        gap: 0.5625rem;
         align-items: start;
-        padding: 10px 12px;
+        padding: 0.625rem 0.75rem;
         border: var(--edge) solid var(--calm);
         border-radius: var(--radius-small);
         background: var(--calm-soft);
@@ -76,7 +76,7 @@ export class StrataBrushPanel extends LitElement {
       .pair {
         display: flex;
         flex-wrap: wrap;
-        gap: 10px;
+        gap: 0.625rem;
       }
       .pair .segments {
         flex: 1 1 auto;

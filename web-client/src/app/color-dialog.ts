@@ -56,7 +56,7 @@ export class StrataColorDialog extends LitElement {
     css`
       ul {
         display: grid;
-        gap: 6px;
+        gap: 0.375rem;
         margin: 0;
         padding: 0;
         list-style: none;
@@ -65,37 +65,37 @@ export class StrataColorDialog extends LitElement {
       }
       li {
         display: grid;
-        grid-template-columns: 22px 34px minmax(0, 1fr) auto 96px;
+        grid-template-columns: 1.375rem 2.125rem minmax(0, 1fr) auto 6rem;
         align-items: center;
-        gap: 9px;
+        gap: 0.5625rem;
         font-size: 0.9rem;
       }
       li .swatch {
-        width: 22px;
-        height: 22px;
+        width: 1.375rem;
+        height: 1.375rem;
       }
       li input[type="color"] {
-        width: 34px;
-        height: 28px;
+        width: 2.125rem;
+        height: 1.75rem;
         padding: 2px;
       }
       li select {
-        min-height: 30px;
-        padding: 2px 6px;
+        min-height: 1.875rem;
+        padding: 2px 0.375rem;
       }
       .ramps {
         display: flex;
-        gap: 8px;
+        gap: 0.5rem;
       }
       .ramps button {
         flex: 1;
-        min-height: 30px;
+        min-height: 1.875rem;
         padding: 5px;
       }
       .ramps i {
         display: block;
         width: 100%;
-        height: 16px;
+        height: 1rem;
         border-radius: 4px;
       }
     `,

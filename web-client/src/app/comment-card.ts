@@ -53,8 +53,8 @@ export class StrataCommentCard extends LitElement {
         pointer-events: auto;
         display: grid;
         grid-template: auto minmax(0, 1fr) auto / minmax(0, 1fr);
-        width: min(330px, calc(100% - 28px));
-        max-height: min(480px, calc(100% - 28px));
+        width: min(20.625rem, calc(100% - 1.75rem));
+        max-height: min(30rem, calc(100% - 1.75rem));
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
@@ -66,33 +66,33 @@ export class StrataCommentCard extends LitElement {
       }
       .head {
         gap: 2px;
-        padding: 6px 6px 6px 13px;
+        padding: 0.375rem 0.375rem 0.375rem 0.8125rem;
         border-bottom: var(--edge) solid var(--line);
       }
       h2 {
         font-size: 1.02rem;
       }
       .head button {
-        min-height: 32px;
-        padding: 0 8px;
+        min-height: 2rem;
+        padding: 0 0.5rem;
         font-size: 0.86rem;
       }
       .head button.icon {
-        width: 32px;
+        width: 2rem;
         padding: 0;
       }
       .list {
         display: grid;
         align-content: start;
-        gap: 13px;
-        padding: 11px 13px;
+        gap: 0.8125rem;
+        padding: 0.6875rem 0.8125rem;
         overflow: hidden auto;
         overscroll-behavior: contain;
       }
       article {
         display: grid;
         grid-template-columns: auto minmax(0, 1fr);
-        gap: 3px 9px;
+        gap: 3px 0.5625rem;
       }
       article > .person-mark {
         grid-row: span 2;
@@ -101,8 +101,8 @@ export class StrataCommentCard extends LitElement {
         display: flex;
         flex-wrap: wrap;
         align-items: baseline;
-        gap: 2px 8px;
-        min-height: 20px;
+        gap: 2px 0.5rem;
+        min-height: 1.25rem;
       }
       .by b {
         overflow-wrap: anywhere;
@@ -120,7 +120,7 @@ export class StrataCommentCard extends LitElement {
       }
       .acts {
         grid-column: 2;
-        gap: 14px;
+        gap: 0.875rem;
       }
       .acts button.link {
         font-size: 0.82rem;
@@ -136,18 +136,18 @@ export class StrataCommentCard extends LitElement {
       }
       .settled {
         display: flex;
-        gap: 6px;
+        gap: 0.375rem;
         align-items: center;
         color: var(--calm);
       }
       .settled svg.glyph {
-        width: 16px;
-        height: 16px;
+        width: 1rem;
+        height: 1rem;
       }
       form {
         display: grid;
-        gap: 8px;
-        padding: 10px 13px 12px;
+        gap: 0.5rem;
+        padding: 0.625rem 0.8125rem 0.75rem;
       }
       article form {
         grid-column: 2;
@@ -157,8 +157,8 @@ export class StrataCommentCard extends LitElement {
         border-top: var(--edge) solid var(--line);
       }
       textarea {
-        min-height: 58px;
-        max-height: 200px;
+        min-height: 3.625rem;
+        max-height: 12.5rem;
         field-sizing: content;
         resize: none;
         unicode-bidi: plaintext;
@@ -167,7 +167,7 @@ export class StrataCommentCard extends LitElement {
         justify-content: flex-end;
       }
       form .row button {
-        min-height: 34px;
+        min-height: 2.125rem;
       }
       @media (max-width: 820px) {
         section {
@@ -175,7 +175,7 @@ export class StrataCommentCard extends LitElement {
           inset: auto 0 0 0 !important;
           width: auto;
           max-height: 48dvh; /* what the camera flies to stays above it */
-          border-radius: 16px 16px 0 0;
+          border-radius: 1rem 1rem 0 0;
           border-bottom: 0;
           padding-bottom: env(safe-area-inset-bottom);
           box-shadow: var(--shadow-above);
@@ -183,13 +183,13 @@ export class StrataCommentCard extends LitElement {
       }
       @media (pointer: coarse) {
         .head button {
-          min-height: 40px;
+          min-height: 2.5rem;
         }
         .head button.icon {
-          width: 40px;
+          width: 2.5rem;
         }
         .acts button.link {
-          min-height: 32px;
+          min-height: 2rem;
         }
       }
     `,

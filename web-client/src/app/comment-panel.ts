@@ -36,8 +36,8 @@ export class StrataCommentPanel extends FoldingPanel {
       }
       .dot {
         flex: none;
-        width: 9px;
-        height: 9px;
+        width: 0.5625rem;
+        height: 0.5625rem;
         border-radius: 50%;
         background: var(--news);
       }
@@ -64,12 +64,12 @@ export class StrataCommentPanel extends FoldingPanel {
       .state {
         display: flex;
         align-items: center;
-        gap: 6px;
-        min-height: 20px;
+        gap: 0.375rem;
+        min-height: 1.25rem;
       }
       .state svg.glyph {
-        width: 16px;
-        height: 16px;
+        width: 1rem;
+        height: 1rem;
         color: var(--calm);
       }
     `,

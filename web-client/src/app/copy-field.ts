@@ -19,7 +19,7 @@ export class StrataCopyField extends LitElement {
       :host {
         position: relative; /* of what is hidden for eyes */
         display: flex;
-        gap: 8px;
+        gap: 0.5rem;
       }
       input[type="text"] {
         flex: 1;
@@ -27,7 +27,7 @@ export class StrataCopyField extends LitElement {
         font: 0.84rem var(--mono);
       }
       button {
-        min-height: 38px;
+        min-height: 2.375rem;
       }
     `,
   ];

@@ -23,6 +23,8 @@ export class StrataDialog extends LitElement {
   @property({ type: Boolean, reflect: true }) vast = false;
   /** Holds words to read and hardly a control: it is scrolled by keys as well. */
   @property({ type: Boolean }) prose = false;
+  /** Has so much to read that it stands in two columns on walls. */
+  @property({ type: Boolean, reflect: true }) long = false;
   /** Leaves the picture behind it visible: for questions about what is seen. */
   @property({ type: Boolean, reflect: true }) aside = false;
   /** Asked before a person closes it by Escape, its cross or beside it; null: it closes. close() does not ask. */
@@ -40,12 +42,12 @@ export class StrataDialog extends LitElement {
     shared_styles,
     css`
       dialog {
-        width: min(460px, calc(100vw - 24px));
+        width: min(28.75rem, calc(100vw - 1.5rem));
         max-width: none;
-        max-height: calc(100dvh - 24px);
+        max-height: calc(100dvh - 1.5rem);
         padding: 0;
         border: var(--edge) solid var(--line);
-        border-radius: 14px;
+        border-radius: 0.875rem;
         background: var(--surface);
         color: var(--ink);
         box-shadow: var(--shadow);
@@ -56,19 +58,24 @@ export class StrataDialog extends LitElement {
         flex-direction: column;
       }
       :host([wide]) dialog {
-        width: min(640px, calc(100vw - 24px));
+        width: min(40rem, calc(100vw - 1.5rem));
       }
       :host([broad]) dialog {
-        width: min(820px, calc(100vw - 24px));
+        width: min(51.25rem, calc(100vw - 1.5rem));
       }
       :host([vast]) dialog {
-        width: min(1060px, calc(100vw - 24px));
+        width: min(66.25rem, calc(100vw - 1.5rem));
+      }
+      @media (min-width: 2560px) {
+        :host([long]) dialog {
+          width: 84rem;
+        }
       }
       dialog::backdrop {
         background: var(--veil);
       }
       :host([aside]) dialog {
-        margin: 66px 14px auto auto;
+        margin: 4.125rem 0.875rem auto auto;
       }
       :host([aside]) dialog::backdrop {
         background: var(--thin-veil);
@@ -76,8 +83,8 @@ export class StrataDialog extends LitElement {
       .head {
         display: flex;
         align-items: flex-start;
-        gap: 12px;
-        padding: 20px 14px 0 24px;
+        gap: 0.75rem;
+        padding: 1.25rem 0.875rem 0 1.5rem;
       }
       h2 {
         flex: 1;
@@ -88,8 +95,8 @@ export class StrataDialog extends LitElement {
       }
       .content {
         display: grid;
-        gap: 16px;
-        padding: 14px 24px 20px;
+        gap: 1rem;
+        padding: 0.875rem 1.5rem 1.25rem;
         overflow: auto;
         outline-offset: -3px;
       }
@@ -97,8 +104,8 @@ export class StrataDialog extends LitElement {
         display: flex;
         flex-wrap: wrap;
         justify-content: flex-end;
-        gap: 10px;
-        padding: 14px 24px 18px;
+        gap: 0.625rem;
+        padding: 0.875rem 1.5rem 1.125rem;
         border-top: var(--edge) solid var(--line);
       }
       footer.empty {
@@ -106,17 +113,17 @@ export class StrataDialog extends LitElement {
       }
       @media (max-width: 560px) {
         footer {
-          gap: 8px;
-          padding: 12px 14px 14px;
+          gap: 0.5rem;
+          padding: 0.75rem 0.875rem 0.875rem;
         }
         .way-out,
         ::slotted(button[slot="actions"]) {
-          padding: 0 10px !important;
+          padding: 0 0.625rem !important;
         }
         dialog {
           width: 100vw;
           margin: auto 0 0;
-          border-radius: 16px 16px 0 0;
+          border-radius: 1rem 1rem 0 0;
         }
         :host([wide]) dialog,
         :host([broad]) dialog,

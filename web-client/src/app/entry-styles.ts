@@ -7,32 +7,32 @@ export const entry_styles = css`
     display: grid;
     place-items: center;
     min-height: 100dvh;
-    padding: 20px;
+    padding: 1.25rem;
   }
   main {
-    width: min(420px, 100%);
+    width: min(26.25rem, 100%);
   }
   .card {
     display: grid;
-    gap: 18px;
-    padding: 36px 34px 32px;
+    gap: 1.125rem;
+    padding: 2.25rem 2.125rem 2rem;
     border: var(--edge) solid var(--line);
-    border-radius: 16px;
+    border-radius: 1rem;
     background: var(--surface);
     box-shadow: var(--shadow);
   }
   form {
     display: grid;
-    gap: 16px;
+    gap: 1rem;
   }
   .logo {
-    width: 44px;
-    height: 44px;
+    width: 2.75rem;
+    height: 2.75rem;
   }
   .brand {
     display: flex;
     align-items: center;
-    gap: 14px;
+    gap: 0.875rem;
   }
   .brand b {
     font: 600 1.5rem/1.1 var(--serif);
@@ -47,10 +47,10 @@ export const entry_styles = css`
     overflow-wrap: anywhere;
   }
   h1 + p {
-    margin-top: 6px;
+    margin-top: 0.375rem;
   }
   strata-preferences {
-    padding-top: 16px;
+    padding-top: 1rem;
     border-top: var(--edge) solid var(--line);
   }
   code {
@@ -59,7 +59,7 @@ export const entry_styles = css`
   }
   @media (max-width: 480px) {
     .card {
-      padding: 28px 22px 26px;
+      padding: 1.75rem 1.375rem 1.625rem;
     }
   }
 `;

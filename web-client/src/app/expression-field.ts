@@ -44,7 +44,7 @@ export class StrataExpressionField extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 8px;
+        gap: 0.5rem;
       }
       .editor {
         position: relative;
@@ -68,8 +68,8 @@ export class StrataExpressionField extends LitElement {
       li {
         display: flex;
         justify-content: space-between;
-        gap: 16px;
-        padding: 5px 9px;
+        gap: 1rem;
+        padding: 5px 0.5625rem;
         border-radius: var(--radius-small);
         font-size: 0.88rem;
         cursor: pointer;
@@ -88,7 +88,7 @@ export class StrataExpressionField extends LitElement {
       }
       pre {
         margin: 0;
-        padding: 6px 9px;
+        padding: 0.375rem 0.5625rem;
         white-space: pre-wrap;
         word-break: break-word;
         font: 0.86rem var(--mono);

@@ -6,13 +6,13 @@ export const figure_styles = css`
   .editor {
     display: grid;
     grid-template-columns: minmax(0, 5fr) minmax(0, 6fr);
-    gap: 16px 26px;
+    gap: 1rem 1.625rem;
     align-items: start;
   }
   .fields {
     display: grid;
     grid-template-columns: minmax(0, 1fr) minmax(0, 1fr);
-    gap: 14px 12px;
+    gap: 0.875rem 0.75rem;
   }
   .fields > * {
     min-width: 0;
@@ -22,7 +22,7 @@ export const figure_styles = css`
   }
   .fields > .error {
     grid-column: 1 / -1;
-    margin-top: -6px;
+    margin-top: -0.375rem;
   }
   .group {
     display: grid;
@@ -33,24 +33,24 @@ export const figure_styles = css`
     display: flex;
   }
   .segments button {
-    padding: 0 6px;
+    padding: 0 0.375rem;
     min-width: 0;
   }
   .own {
     display: flex;
     align-items: center;
-    gap: 8px;
+    gap: 0.5rem;
   }
   .own input {
-    width: 110px;
+    width: 6.875rem;
   }
   textarea {
-    min-height: 58px;
+    min-height: 3.625rem;
   }
   .formats {
     display: grid;
     grid-template-columns: minmax(0, 1fr) minmax(0, 1fr);
-    gap: 8px;
+    gap: 0.5rem;
   }
   .formats button {
     display: grid;
@@ -58,7 +58,7 @@ export const figure_styles = css`
     justify-items: start;
     align-content: start;
     gap: 1px;
-    padding: 7px 11px;
+    padding: 0.4375rem 0.6875rem;
     text-align: start;
     white-space: normal;
   }
@@ -75,13 +75,13 @@ export const figure_styles = css`
     top: 0;
     display: grid;
     grid-template-columns: minmax(0, 1fr);
-    gap: 10px;
+    gap: 0.625rem;
   }
   .warning {
     display: flex;
     flex-wrap: wrap;
-    gap: 4px 14px;
-    padding: 10px 14px;
+    gap: 4px 0.875rem;
+    padding: 0.625rem 0.875rem;
     border-radius: var(--radius-small);
     background: var(--warn-soft);
     color: var(--ink);
@@ -89,7 +89,7 @@ export const figure_styles = css`
   }
   .making,
   .told {
-    flex: 1 1 240px;
+    flex: 1 1 15rem;
     align-self: center;
     display: grid;
     gap: 4px;
@@ -100,7 +100,7 @@ export const figure_styles = css`
     flex-basis: 0; /* the buttons stay beside each other */
   }
   .bar {
-    height: 6px;
+    height: 0.375rem;
     border-radius: 3px;
     overflow: hidden;
     background: var(--line);
@@ -120,7 +120,7 @@ export const figure_styles = css`
     }
     strata-figure-preview {
       --most-sheet: 36dvh;
-      --least-sheet: 180px;
+      --least-sheet: 11.25rem;
     }
   }
 `;

@@ -33,8 +33,8 @@ export class StrataFileChoice extends LitElement {
       div {
         display: flex;
         align-items: center;
-        gap: 12px;
-        padding: 12px;
+        gap: 0.75rem;
+        padding: 0.75rem;
         border: var(--edge) dashed var(--line-strong);
         border-radius: var(--radius-small);
       }

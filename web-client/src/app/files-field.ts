@@ -42,9 +42,9 @@ export class StrataFilesField extends LitElement {
       .field {
         display: flex;
         flex-wrap: wrap;
-        gap: 8px;
+        gap: 0.5rem;
         align-items: stretch;
-        padding: 8px;
+        padding: 0.5rem;
         border: var(--edge) dashed var(--line-strong);
         border-radius: var(--radius-small);
       }
@@ -55,9 +55,9 @@ export class StrataFilesField extends LitElement {
       figure {
         position: relative;
         display: grid;
-        grid-template-rows: 72px auto auto;
+        grid-template-rows: 4.5rem auto auto;
         gap: 3px;
-        width: 104px;
+        width: 6.5rem;
         margin: 0;
         font-size: 0.76rem;
       }
@@ -66,7 +66,7 @@ export class StrataFilesField extends LitElement {
         place-items: center;
         overflow: hidden;
         border: var(--edge) solid var(--line);
-        border-radius: 6px;
+        border-radius: 0.375rem;
         background: var(--raised);
         color: var(--ink-soft);
       }
@@ -76,7 +76,7 @@ export class StrataFilesField extends LitElement {
         object-fit: cover;
       }
       figure select {
-        min-height: 28px;
+        min-height: 1.75rem;
         padding: 0 4px;
         font-size: 0.76rem;
       }
@@ -87,12 +87,12 @@ export class StrataFilesField extends LitElement {
         position: absolute;
         top: 2px;
         right: 2px;
-        width: 26px;
-        min-height: 26px;
+        width: 1.625rem;
+        min-height: 1.625rem;
         background: var(--raised);
       }
       .add {
-        min-width: 104px;
+        min-width: 6.5rem;
       }
       input {
         display: none;

@@ -17,7 +17,7 @@ export const folding_styles = [
     .heading {
       display: flex;
       align-items: center;
-      gap: 8px;
+      gap: 0.5rem;
     }
     h2 {
       flex: 1;
@@ -26,10 +26,10 @@ export const folding_styles = [
     h2 button {
       width: 100%;
       justify-content: flex-start;
-      gap: 8px;
-      min-height: 36px;
-      margin-left: -8px;
-      padding: 0 8px;
+      gap: 0.5rem;
+      min-height: 2.25rem;
+      margin-left: -0.5rem;
+      padding: 0 0.5rem;
       font: inherit;
     }
     h2 svg.glyph {
@@ -46,8 +46,8 @@ export const folding_styles = [
     .parts {
       display: grid;
       grid-template-columns: minmax(0, 1fr);
-      gap: 10px;
-      margin-top: 8px;
+      gap: 0.625rem;
+      margin-top: 0.5rem;
     }
     .segments {
       display: flex;

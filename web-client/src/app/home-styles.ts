@@ -5,7 +5,7 @@ export const card_styles = css`
   .about {
     display: grid;
     gap: 2px;
-    padding: 13px 16px 15px;
+    padding: 0.8125rem 1rem 0.9375rem;
   }
   .about b {
     font: 600 1.08rem/1.3 var(--serif);
@@ -24,36 +24,36 @@ export const home_styles = css`
   header {
     display: flex;
     align-items: center;
-    gap: 14px;
-    padding: 12px clamp(16px, 4vw, 56px);
+    gap: 0.875rem;
+    padding: 0.75rem clamp(1rem, 4vw, 3.5rem);
     border-bottom: var(--edge) solid var(--line);
     background: var(--surface);
   }
   .brand {
     display: flex;
     align-items: center;
-    gap: 11px;
+    gap: 0.6875rem;
     color: inherit;
     text-decoration: none;
     font: 600 1.25rem var(--serif);
   }
   .logo {
-    width: 34px;
-    height: 34px;
+    width: 2.125rem;
+    height: 2.125rem;
   }
   .tagline {
     color: var(--ink-soft);
     font-size: 0.9rem;
   }
   main {
-    max-width: 1720px;
+    max-width: 107.5rem;
     margin: 0 auto;
-    padding: clamp(20px, 4vw, 44px) clamp(16px, 4vw, 56px) 64px;
+    padding: clamp(1.25rem, 4vw, 2.75rem) clamp(1rem, 4vw, 3.5rem) 4rem;
   }
   .no-password {
-    margin-bottom: 22px;
-    padding: 10px 16px;
-    border-radius: 12px;
+    margin-bottom: 1.375rem;
+    padding: 0.625rem 1rem;
+    border-radius: 0.75rem;
     background: var(--calm-soft);
     color: var(--calm);
   }
@@ -67,17 +67,17 @@ export const home_styles = css`
     display: flex;
     align-items: baseline;
     flex-wrap: wrap;
-    gap: 14px;
-    margin-bottom: 24px;
+    gap: 0.875rem;
+    margin-bottom: 1.5rem;
   }
   .up {
     display: flex;
     width: max-content;
     max-width: 100%;
     align-items: center;
-    gap: 6px;
-    min-height: 36px;
-    margin-bottom: 6px;
+    gap: 0.375rem;
+    min-height: 2.25rem;
+    margin-bottom: 0.375rem;
     color: var(--ink-soft);
     text-decoration: none;
   }
@@ -87,7 +87,7 @@ export const home_styles = css`
   }
   .description {
     max-width: 74ch;
-    margin: -10px 0 24px;
+    margin: -0.625rem 0 1.5rem;
     color: var(--ink-soft);
     overflow-wrap: anywhere;
   }
@@ -98,12 +98,12 @@ export const home_styles = css`
   }
   .title strata-menu {
     display: flex;
-    margin-left: -8px;
+    margin-left: -0.5rem;
   }
   .into {
     display: flex;
     align-items: center;
-    gap: 8px;
+    gap: 0.5rem;
     min-width: 0;
   }
   .into span {
@@ -112,7 +112,7 @@ export const home_styles = css`
   .into select {
     width: auto;
     min-width: 0;
-    max-width: 260px;
+    max-width: 16.25rem;
   }
   h1 {
     font-size: clamp(1.6rem, 3vw, 2.1rem);
@@ -126,11 +126,19 @@ export const home_styles = css`
   }
   .gallery {
     display: grid;
-    grid-template-columns: repeat(auto-fill, minmax(min(270px, 100%), 1fr));
-    gap: 22px;
+    grid-template-columns: repeat(auto-fill, minmax(min(16.875rem, 100%), 1fr));
+    gap: 1.375rem;
     margin: 0;
     padding: 0;
     list-style: none;
+  }
+  @media (min-width: 2560px) {
+    main {
+      max-width: none;
+    }
+    .gallery {
+      grid-template-columns: repeat(auto-fill, minmax(23rem, 1fr));
+    }
   }
   li {
     position: relative;
@@ -139,7 +147,7 @@ export const home_styles = css`
     display: block;
     overflow: hidden;
     border: var(--edge) solid var(--line);
-    border-radius: 12px;
+    border-radius: 0.75rem;
     background: var(--surface);
     color: inherit;
     text-decoration: none;
@@ -153,8 +161,8 @@ export const home_styles = css`
   }
   .chip {
     justify-self: start;
-    margin-top: 6px;
-    padding: 2px 9px;
+    margin-top: 0.375rem;
+    padding: 2px 0.5625rem;
     border-radius: 99px;
     background: var(--warn-soft);
     color: var(--warn);
@@ -163,8 +171,8 @@ export const home_styles = css`
   }
   .options {
     position: absolute;
-    top: 10px;
-    right: 10px;
+    top: 0.625rem;
+    right: 0.625rem;
     opacity: 0;
     transition: opacity 120ms;
   }
@@ -179,20 +187,20 @@ export const home_styles = css`
   }
   @media (pointer: coarse) {
     .up {
-      min-height: 44px;
+      min-height: 2.75rem;
     }
   }
   .empty {
     display: grid;
     justify-items: center;
-    gap: 14px;
-    max-width: 460px;
+    gap: 0.875rem;
+    max-width: 28.75rem;
     margin: 8vh auto;
     text-align: center;
   }
   .empty .logo {
-    width: 64px;
-    height: 64px;
+    width: 4rem;
+    height: 4rem;
   }
   .empty h1 {
     font-size: 1.45rem;
@@ -202,16 +210,16 @@ export const home_styles = css`
   }
   .imports {
     display: grid;
-    gap: 10px;
-    margin-bottom: 26px;
+    gap: 0.625rem;
+    margin-bottom: 1.625rem;
   }
   .import {
     display: flex;
     align-items: center;
-    gap: 16px;
-    padding: 13px 16px;
+    gap: 1rem;
+    padding: 0.8125rem 1rem;
     border: var(--edge) solid var(--line);
-    border-radius: 12px;
+    border-radius: 0.75rem;
     background: var(--surface);
   }
   .import b {
@@ -230,8 +238,8 @@ export const home_styles = css`
     color: var(--ink);
   }
   .bar {
-    height: 6px;
-    margin-top: 9px;
+    height: 0.375rem;
+    margin-top: 0.5625rem;
     border-radius: 3px;
     background: var(--line);
     overflow: hidden;
@@ -254,7 +262,7 @@ export const home_styles = css`
       flex-basis: auto;
     }
     .title h1 {
-      max-width: calc(100% - 42px); /* its menu stands beside it */
+      max-width: calc(100% - 2.625rem); /* its menu stands beside it */
     }
     .into {
       flex: 1 1 100%;

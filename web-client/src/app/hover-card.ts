@@ -39,10 +39,10 @@ export class StrataHoverCard extends LitElement {
       section {
         position: absolute;
         display: grid;
-        gap: 7px;
+        gap: 0.4375rem;
         width: max-content;
-        max-width: 236px;
-        padding: 9px 12px 10px;
+        max-width: 14.75rem;
+        padding: 0.5625rem 0.75rem 0.625rem;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
@@ -56,20 +56,20 @@ export class StrataHoverCard extends LitElement {
         }
       }
       .row {
-        gap: 8px;
+        gap: 0.5rem;
       }
       .swatch {
-        width: 13px;
-        height: 13px;
+        width: 0.8125rem;
+        height: 0.8125rem;
       }
       b {
         font: 600 0.98rem var(--serif);
       }
       img {
         display: block;
-        width: 210px;
+        width: 13.125rem;
         max-width: 100%;
-        height: 104px; /* also until it is here, so that the card keeps its place */
+        height: 6.5rem; /* also until it is here, so that the card keeps its place */
         object-fit: cover;
         border-radius: var(--radius-small);
         background: var(--stage);
@@ -77,7 +77,7 @@ export class StrataHoverCard extends LitElement {
       dl {
         display: grid;
         grid-template-columns: minmax(0, auto) minmax(0, 1.6fr);
-        gap: 2px 12px;
+        gap: 2px 0.75rem;
         margin: 0;
       }
       dt {

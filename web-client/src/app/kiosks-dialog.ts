@@ -43,11 +43,11 @@ export class StrataKiosksDialog extends LitElement {
     number_field_styles,
     css`
       .fields {
-        grid-template-columns: minmax(0, 1fr) 150px;
+        grid-template-columns: minmax(0, 1fr) 9.375rem;
         align-items: end;
       }
       .number input {
-        padding-right: 56px;
+        padding-right: 3.5rem;
       }
       button.new {
         justify-self: start;
@@ -62,8 +62,8 @@ export class StrataKiosksDialog extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr) auto;
         align-items: center;
-        gap: 4px 14px;
-        padding: 10px 0;
+        gap: 4px 0.875rem;
+        padding: 0.625rem 0;
         border-top: var(--edge) solid var(--line);
       }
       li:first-child {
@@ -76,7 +76,7 @@ export class StrataKiosksDialog extends LitElement {
       }
       .about > .row {
         flex-wrap: wrap;
-        gap: 4px 8px;
+        gap: 4px 0.5rem;
       }
       b {
         font-weight: 600;
@@ -89,7 +89,7 @@ export class StrataKiosksDialog extends LitElement {
       li .buttons {
         display: flex;
         flex-wrap: wrap;
-        gap: 8px;
+        gap: 0.5rem;
       }
       li .error,
       li .done {

@@ -26,16 +26,16 @@ export class StrataLabelsField extends LitElement {
       :host,
       .rows {
         display: grid;
-        gap: 6px;
+        gap: 0.375rem;
       }
       .rows > div {
         display: grid;
-        grid-template-columns: 104px minmax(0, 1fr) auto;
-        gap: 6px;
+        grid-template-columns: 6.5rem minmax(0, 1fr) auto;
+        gap: 0.375rem;
       }
       button.add {
         justify-self: start;
-        min-height: 32px;
+        min-height: 2rem;
       }
       .caption {
         margin-bottom: -1px;

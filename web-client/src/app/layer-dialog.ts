@@ -79,8 +79,8 @@ export class StrataLayerDialog extends LitElement {
       .kinds {
         display: grid;
         grid-template-columns: repeat(2, 1fr);
-        gap: 10px;
-        margin-top: 6px;
+        gap: 0.625rem;
+        margin-top: 0.375rem;
       }
       .kinds button {
         display: grid;
@@ -88,7 +88,7 @@ export class StrataLayerDialog extends LitElement {
         justify-items: start;
         gap: 3px;
         height: auto;
-        padding: 12px 13px;
+        padding: 0.75rem 0.8125rem;
         text-align: left;
         white-space: normal;
         border-radius: var(--radius);
@@ -111,7 +111,7 @@ export class StrataLayerDialog extends LitElement {
       }
       .two {
         display: flex;
-        gap: 12px;
+        gap: 0.75rem;
         align-items: end;
       }
       .two > label:first-child {
@@ -119,25 +119,25 @@ export class StrataLayerDialog extends LitElement {
       }
       .classes {
         display: grid;
-        gap: 7px;
-        max-height: 270px;
+        gap: 0.4375rem;
+        max-height: 16.875rem;
         overflow: auto;
         padding: 3px;
         margin: -3px;
       }
       .class {
         display: flex;
-        gap: 8px;
+        gap: 0.5rem;
         align-items: center;
       }
       .range {
         display: grid;
-        grid-template-columns: 1fr auto 1fr 96px;
+        grid-template-columns: 1fr auto 1fr 6rem;
         align-items: end;
-        gap: 10px;
+        gap: 0.625rem;
       }
       .range > span {
-        padding-bottom: 9px;
+        padding-bottom: 0.5625rem;
         color: var(--ink-soft);
       }
       .details {
@@ -148,7 +148,7 @@ export class StrataLayerDialog extends LitElement {
         display: flex;
       }
       .details .segments button {
-        min-height: 38px;
+        min-height: 2.375rem;
       }
       .chosen-lead {
         display: none;
@@ -156,12 +156,12 @@ export class StrataLayerDialog extends LitElement {
       /* the fields below are to be seen as well */
       @media (max-width: 560px) {
         .kinds {
-          gap: 8px;
+          gap: 0.5rem;
         }
         .kinds button {
           position: relative;
           align-content: center;
-          padding: 8px 11px;
+          padding: 0.5rem 0.6875rem;
         }
         .kinds button b {
           font-size: 0.95rem;
@@ -176,7 +176,7 @@ export class StrataLayerDialog extends LitElement {
         }
         .chosen-lead {
           display: block;
-          margin-top: 8px;
+          margin-top: 0.5rem;
         }
         .range {
           grid-template-columns: 1fr auto 1fr;

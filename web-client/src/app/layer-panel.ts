@@ -57,8 +57,8 @@ export class StrataLayerPanel extends LitElement {
       .heading {
         display: flex;
         align-items: center;
-        gap: 8px;
-        margin-bottom: 8px;
+        gap: 0.5rem;
+        margin-bottom: 0.5rem;
       }
       h2 {
         flex: 1;
@@ -66,7 +66,7 @@ export class StrataLayerPanel extends LitElement {
       }
       .list {
         display: grid;
-        gap: 6px;
+        gap: 0.375rem;
         margin: 0;
         padding: 0;
         list-style: none;
@@ -90,8 +90,8 @@ export class StrataLayerPanel extends LitElement {
         flex: 1;
         justify-content: flex-start;
         min-width: 0;
-        padding: 0 8px;
-        gap: 10px;
+        padding: 0 0.5rem;
+        gap: 0.625rem;
       }
       .name.off {
         color: var(--ink-soft);
@@ -103,13 +103,13 @@ export class StrataLayerPanel extends LitElement {
       .seen-by {
         display: grid;
         place-items: center;
-        width: 22px;
+        width: 1.375rem;
         color: var(--ink-soft);
       }
       .locked {
         display: flex;
         align-items: start;
-        gap: 8px;
+        gap: 0.5rem;
         color: var(--ink-soft);
         font-size: 0.88rem;
       }
@@ -121,8 +121,8 @@ export class StrataLayerPanel extends LitElement {
       }
       .more {
         display: grid;
-        gap: 12px;
-        padding: 6px 14px 14px;
+        gap: 0.75rem;
+        padding: 0.375rem 0.875rem 0.875rem;
         border-top: var(--edge) solid var(--line);
       }
       .more p.description {
@@ -132,9 +132,9 @@ export class StrataLayerPanel extends LitElement {
       }
       .opacity {
         display: grid;
-        grid-template-columns: auto 1fr 52px;
+        grid-template-columns: auto 1fr 3.25rem;
         align-items: center;
-        gap: 10px;
+        gap: 0.625rem;
         font-size: 0.88rem;
       }
       .opacity output {
@@ -145,9 +145,9 @@ export class StrataLayerPanel extends LitElement {
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: 4px 14px;
-        margin-top: 10px;
-        padding: 9px 12px;
+        gap: 4px 0.875rem;
+        margin-top: 0.625rem;
+        padding: 0.5625rem 0.75rem;
         border-radius: var(--radius-small);
         background: var(--calm-soft);
         font-size: 0.86rem;
@@ -160,7 +160,7 @@ export class StrataLayerPanel extends LitElement {
       }
       .formula {
         display: grid;
-        gap: 8px;
+        gap: 0.5rem;
         justify-items: start;
         font-size: 0.88rem;
       }
@@ -171,9 +171,9 @@ export class StrataLayerPanel extends LitElement {
       }
       .empty {
         display: grid;
-        gap: 10px;
+        gap: 0.625rem;
         justify-items: start;
-        padding: 16px;
+        padding: 1rem;
         border: var(--edge) dashed var(--line-strong);
         border-radius: var(--radius);
       }

@@ -13,13 +13,13 @@ import { texts } from "./texts";
 
 export const legend_styles = css`
   .legend-gradient {
-    height: 14px;
+    height: 0.875rem;
     border-radius: 4px;
     box-shadow: inset 0 0 0 1px var(--swatch-rim);
   }
   .legend-ticks {
     position: relative;
-    height: 20px;
+    height: 1.25rem;
     margin: 0 2px;
     font-size: 0.76rem;
     color: var(--ink-soft);
@@ -57,17 +57,17 @@ export const legend_styles = css`
     padding: 0;
     list-style: none;
     font-size: 0.9rem;
-    max-height: 260px;
+    max-height: 16.25rem;
     overflow: auto;
   }
   .legend-column {
     display: grid;
-    gap: 7px;
+    gap: 0.4375rem;
   }
   .legend-classes li {
     display: flex;
     align-items: center;
-    gap: 9px;
+    gap: 0.5625rem;
     min-width: 0;
   }
 `;

@@ -26,14 +26,14 @@ export class StrataLightPad extends LitElement {
     css`
       :host {
         display: grid;
-        grid-template-columns: 112px 1fr;
+        grid-template-columns: 7rem 1fr;
         align-items: center;
-        gap: 14px;
+        gap: 0.875rem;
       }
       .pad {
         position: relative;
-        width: 112px;
-        height: 112px;
+        width: 7rem;
+        height: 7rem;
         border: var(--edge) solid var(--line-strong);
         border-radius: 50%;
         background: radial-gradient(circle at var(--x) var(--y), var(--ball-lit) 0, var(--ball-bright) 30%, var(--ball-dim) 72%, var(--ball-dark) 100%);
@@ -51,9 +51,9 @@ export class StrataLightPad extends LitElement {
         position: absolute;
         left: var(--x);
         top: var(--y);
-        width: 20px;
-        height: 20px;
-        margin: -10px 0 0 -10px;
+        width: 1.25rem;
+        height: 1.25rem;
+        margin: -0.625rem 0 0 -0.625rem;
         border: 2px solid var(--mark-light);
         border-radius: 50%;
         background: var(--accent);
@@ -62,16 +62,16 @@ export class StrataLightPad extends LitElement {
       }
       @media (pointer: coarse) {
         :host {
-          grid-template-columns: 136px 1fr;
+          grid-template-columns: 8.5rem 1fr;
         }
         .pad {
-          width: 136px;
-          height: 136px;
+          width: 8.5rem;
+          height: 8.5rem;
         }
         .handle {
-          width: 28px;
-          height: 28px;
-          margin: -14px 0 0 -14px;
+          width: 1.75rem;
+          height: 1.75rem;
+          margin: -0.875rem 0 0 -0.875rem;
         }
       }
     `,

@@ -29,21 +29,21 @@ export class StrataLookList extends LitElement {
     list_head_styles,
     css`
       ul {
-        gap: 6px;
+        gap: 0.375rem;
       }
       li {
         display: grid;
-        grid-template-columns: auto 44px minmax(0, 1fr) auto;
+        grid-template-columns: auto 2.75rem minmax(0, 1fr) auto;
         align-items: center;
-        gap: 2px 8px;
-        padding: 3px 4px 6px 2px;
+        gap: 2px 0.5rem;
+        padding: 3px 4px 0.375rem 2px;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
       }
       li img {
-        width: 44px;
-        height: 34px;
+        width: 2.75rem;
+        height: 2.125rem;
         object-fit: cover;
         border-radius: 4px;
         background: var(--paper);
@@ -57,10 +57,10 @@ export class StrataLookList extends LitElement {
       li .opacity {
         grid-column: 2 / -1;
         display: grid;
-        grid-template-columns: 1fr 52px;
+        grid-template-columns: 1fr 3.25rem;
         align-items: center;
-        gap: 10px;
-        padding-right: 10px;
+        gap: 0.625rem;
+        padding-right: 0.625rem;
         font-size: 0.88rem;
       }
       output {
@@ -70,7 +70,7 @@ export class StrataLookList extends LitElement {
       .personal {
         display: flex;
         flex-wrap: wrap;
-        gap: 4px 14px;
+        gap: 4px 0.875rem;
       }
     `,
   ];

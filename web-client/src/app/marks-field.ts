@@ -32,28 +32,28 @@ export class StrataMarksField extends LitElement {
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: 8px;
-        padding: 8px;
+        gap: 0.5rem;
+        padding: 0.5rem;
         border: var(--edge) solid var(--line-strong);
         border-radius: var(--radius-small);
       }
       .mark {
         display: inline-flex;
         align-items: center;
-        gap: 6px;
-        padding-left: 9px;
+        gap: 0.375rem;
+        padding-left: 0.5625rem;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius-small);
         background: var(--raised);
         font-size: 0.9rem;
       }
       .mark svg.glyph {
-        width: 16px;
-        height: 16px;
+        width: 1rem;
+        height: 1rem;
       }
       .mark button.icon {
-        width: 30px;
-        min-height: 30px;
+        width: 1.875rem;
+        min-height: 1.875rem;
       }
     `,
   ];

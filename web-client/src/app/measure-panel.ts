@@ -41,7 +41,7 @@ export class StrataMeasurePanel extends LitElement {
       }
       .all {
         display: grid;
-        gap: 11px;
+        gap: 0.6875rem;
       }
       h2 {
         font-size: 1.12rem;
@@ -53,7 +53,7 @@ export class StrataMeasurePanel extends LitElement {
       dl {
         display: grid;
         grid-template-columns: minmax(0, auto) auto;
-        gap: 5px 12px;
+        gap: 5px 0.75rem;
         margin: 0;
       }
       dt {
@@ -73,14 +73,14 @@ export class StrataMeasurePanel extends LitElement {
       .acts {
         display: flex;
         flex-wrap: wrap;
-        gap: 7px;
+        gap: 0.4375rem;
       }
       .acts button {
-        padding: 0 11px;
+        padding: 0 0.6875rem;
         font-size: 0.88rem;
       }
       .chip {
-        padding: 6px 10px;
+        padding: 0.375rem 0.625rem;
         border-radius: var(--radius-small);
         background: var(--warn-soft);
         color: var(--warn);
@@ -92,11 +92,11 @@ export class StrataMeasurePanel extends LitElement {
       .choices {
         display: flex;
         flex-wrap: wrap;
-        gap: 9px 14px;
+        gap: 0.5625rem 0.875rem;
         align-items: center;
       }
       .choices label.field {
-        flex: 1 1 150px;
+        flex: 1 1 9.375rem;
       }
     `,
   ];

@@ -31,9 +31,9 @@ export class StrataMenu extends LitElement {
         margin: 0;
         padding: 5px;
         width: max-content;
-        min-width: 180px;
-        max-height: calc(100dvh - 16px);
-        max-width: calc(100vw - 16px);
+        min-width: 11.25rem;
+        max-height: calc(100dvh - 1rem);
+        max-width: calc(100vw - 1rem);
         overflow-y: auto;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
@@ -45,8 +45,8 @@ export class StrataMenu extends LitElement {
         display: inline-flex;
       }
       :host([small]) button.icon {
-        width: 26px;
-        min-height: 26px;
+        width: 1.625rem;
+        min-height: 1.625rem;
       }
       :host([wide]) button.icon {
         width: auto;

@@ -26,6 +26,7 @@ import { ask, modal_is_open } from "./dialog";
 import { icon, logo } from "./icons";
 import { handle_key, is_for_field } from "./keyboard";
 import "./figure-dialog";
+import { growing, growth } from "./growth";
 import "./hover-card";
 import "./kiosks-dialog";
 import "./layer-dialog";
@@ -73,7 +74,7 @@ import "./where-dialog";
 type OpenDialog = LayerPanelRequest | TablePanelRequest | ViewRequest | WhereRequest | Extract<TourRequest, { dialog: "kiosks" }> | { dialog: "scale" | "help" | "about" | "orthophoto" } | null;
 
 const kNarrow = 820; // pixels of a window where the panel lies over the model
-const kPanelWidth = { least: 270, first: 330, most: 620 };
+const kPanelWidth = { least: 270, first: 330, most: 620 }; // pixels where words have their usual size; it grows with them
 const kPanelKey = "strata.panel_width";
 const kTableHeight = { least: 120, first: 280 };
 const kTableKey = "strata.table_height";
@@ -236,7 +237,7 @@ export class StrataModelPage extends LitElement {
     if (!session) return html``;
     return html`<div
         class="page ${this.panel_shown_ ? "" : "without-panel"} ${session.tables.view ? "with-table" : ""}"
-        ${styled({ "--panel": `${this.panel_width_}px`, "--table": `${this.table_height_}px` })}
+        ${styled({ "--panel": growing(this.panel_width_), "--table": `${this.table_height_}px` })}
         @click=${{ handleEvent: give_back_keyboard, capture: true }}
       >
         <strata-tour .session=${session} .held=${this.dialog_ !== null || this.tour_editor_ !== null}></strata-tour>
@@ -366,7 +367,7 @@ export class StrataModelPage extends LitElement {
         aria-valuemin=${kPanelWidth.least}
         aria-valuemax=${kPanelWidth.most}
         tabindex="0"
-        @pointerdown=${(event: PointerEvent) => follow_drag(event, (at) => this.set_panel_width(window.innerWidth - at.clientX))}
+        @pointerdown=${(event: PointerEvent) => follow_drag(event, (at) => this.set_panel_width((window.innerWidth - at.clientX) / growth()))}
         @keydown=${this.on_splitter_key}
       ></div>
       <div class="scroll">
@@ -574,7 +575,7 @@ export class StrataModelPage extends LitElement {
   }
 
   private set_panel_width(width: number): void {
-    const most = Math.min(kPanelWidth.most, window.innerWidth * 0.6);
+    const most = Math.min(kPanelWidth.most, (window.innerWidth * 0.6) / growth());
     this.panel_width_ = Math.round(Math.min(most, Math.max(kPanelWidth.least, width)));
     localStorage.setItem(kPanelKey, String(this.panel_width_));
   }

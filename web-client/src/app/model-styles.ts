@@ -7,7 +7,7 @@ export const model_styles = css`
   .page {
     display: grid;
     grid-template:
-      "header header header" 54px
+      "header header header" 3.375rem
       "rail stage panel" minmax(0, 1fr)
       / auto minmax(0, 1fr) var(--panel);
     height: 100dvh;
@@ -15,7 +15,7 @@ export const model_styles = css`
   }
   .page.with-table {
     grid-template:
-      "header header header" 54px
+      "header header header" 3.375rem
       "rail stage panel" minmax(0, 1fr)
       "rail table panel" min(var(--table), 75dvh)
       / auto minmax(0, 1fr) var(--panel);
@@ -35,8 +35,8 @@ export const model_styles = css`
     grid-area: header;
     display: flex;
     align-items: center;
-    gap: 8px;
-    padding: 0 12px;
+    gap: 0.5rem;
+    padding: 0 0.75rem;
     border-bottom: var(--edge) solid var(--line);
     background: var(--surface);
   }
@@ -45,15 +45,15 @@ export const model_styles = css`
     place-items: center;
     flex: none;
     padding: 4px;
-    border-radius: 9px;
+    border-radius: 0.5625rem;
   }
   .logo {
-    width: 32px;
-    height: 32px;
+    width: 2rem;
+    height: 2rem;
   }
   h1 {
     font-size: 1.15rem;
-    padding-left: 6px;
+    padding-left: 0.375rem;
   }
   strata-tool-rail {
     grid-area: rail;
@@ -81,14 +81,14 @@ export const model_styles = css`
     position: absolute;
     top: 3px;
     right: 3px;
-    width: 9px;
-    height: 9px;
+    width: 0.5625rem;
+    height: 0.5625rem;
     border-radius: 50%;
     background: var(--news);
   }
   .scale-chip {
-    min-height: 28px;
-    padding: 0 12px;
+    min-height: 1.75rem;
+    padding: 0 0.75rem;
     border-color: transparent;
     border-radius: 99px;
     background: var(--warn-soft);
@@ -99,16 +99,16 @@ export const model_styles = css`
   .saving {
     display: flex;
     align-items: center;
-    gap: 6px;
-    padding: 4px 11px 4px 8px;
+    gap: 0.375rem;
+    padding: 4px 0.6875rem 4px 0.5rem;
     border-radius: 99px;
     font-size: 0.86rem;
     color: var(--ink-soft);
     white-space: nowrap;
   }
   .saving svg.glyph {
-    width: 17px;
-    height: 17px;
+    width: 1.0625rem;
+    height: 1.0625rem;
   }
   .saving.saved svg {
     color: var(--calm);
@@ -121,15 +121,15 @@ export const model_styles = css`
   .banner {
     position: absolute;
     z-index: 5;
-    top: 14px;
+    top: 0.875rem;
     left: 50%;
     transform: translateX(-50%);
     display: flex;
     align-items: center;
-    gap: 12px;
+    gap: 0.75rem;
     width: max-content;
-    max-width: calc(100% - 28px);
-    padding: 8px 8px 8px 14px;
+    max-width: calc(100% - 1.75rem);
+    padding: 0.5rem 0.5rem 0.5rem 0.875rem;
     border: var(--edge) solid var(--warn);
     border-radius: var(--radius);
     background: var(--warn-soft);
@@ -141,19 +141,19 @@ export const model_styles = css`
   }
   .readings {
     display: grid;
-    gap: 8px;
+    gap: 0.5rem;
     justify-items: end;
     pointer-events: none;
     position: absolute;
-    right: 14px;
-    bottom: 14px;
-    max-width: min(340px, calc(100% - 220px));
+    right: 0.875rem;
+    bottom: 0.875rem;
+    max-width: min(21.25rem, calc(100% - 13.75rem));
   }
   .splitter {
     position: absolute;
     z-index: 1;
     inset: 0 auto 0 0;
-    width: 7px;
+    width: 0.4375rem;
     cursor: col-resize;
     touch-action: none;
   }
@@ -161,7 +161,7 @@ export const model_styles = css`
     inset: -3px 0 auto 0;
     z-index: 6;
     width: auto;
-    height: 7px;
+    height: 0.4375rem;
     cursor: row-resize;
   }
   .splitter:hover {
@@ -178,10 +178,10 @@ export const model_styles = css`
     position: relative; /* what is hidden for eyes in it would lengthen the page otherwise */
     height: 100%;
     overflow: hidden auto;
-    padding: 0 14px 24px;
+    padding: 0 0.875rem 1.5rem;
   }
   aside section {
-    padding: 15px 0 17px;
+    padding: 0.9375rem 0 1.0625rem;
   }
   aside section + section {
     border-top: var(--edge) solid var(--line);
@@ -191,7 +191,7 @@ export const model_styles = css`
     .page,
     .page.without-panel {
       grid-template:
-        "header" 50px
+        "header" 3.125rem
         "stage" minmax(0, 1fr)
         "panel" auto
         "rail" auto
@@ -199,7 +199,7 @@ export const model_styles = css`
     }
     .page.with-table {
       grid-template:
-        "header" 50px
+        "header" 3.125rem
         "stage" minmax(0, 1fr)
         "table" 52dvh
         "rail" auto
@@ -216,15 +216,15 @@ export const model_styles = css`
       max-height: 44dvh;
       border-left: 0;
       border-top: var(--edge) solid var(--line);
-      border-radius: 16px 16px 0 0;
+      border-radius: 1rem 1rem 0 0;
       box-shadow: var(--shadow-above);
       z-index: 2;
     }
     .scroll {
-      padding: 0 16px 10px;
+      padding: 0 1rem 0.625rem;
     }
     strata-tool-rail {
-      padding-bottom: max(6px, env(safe-area-inset-bottom));
+      padding-bottom: max(0.375rem, env(safe-area-inset-bottom));
       z-index: 3;
     }
     .saving span,
@@ -235,22 +235,22 @@ export const model_styles = css`
       display: inline;
     }
     .people {
-      padding: 0 2px 0 9px;
+      padding: 0 2px 0 0.5625rem;
     }
     .saving {
-      padding: 4px 6px;
+      padding: 4px 0.375rem;
     }
     header {
       gap: 2px;
-      padding: 0 6px;
+      padding: 0 0.375rem;
     }
     h1 {
       font-size: 1.02rem;
     }
     .readings {
-      right: 10px;
-      bottom: 10px;
-      max-width: calc(100% - 20px);
+      right: 0.625rem;
+      bottom: 0.625rem;
+      max-width: calc(100% - 1.25rem);
     }
   }
 `;

@@ -20,25 +20,25 @@ export class StrataNotices extends LitElement {
       :host {
         position: fixed;
         z-index: 50;
-        left: 76px; /* beside the tools and above the scale bar */
-        bottom: calc(76px + var(--beneath, 0px)); /* what the page has below the picture */
+        left: 4.75rem; /* beside the tools and above the scale bar */
+        bottom: calc(4.75rem + var(--beneath, 0px)); /* what the page has below the picture */
         display: grid;
-        gap: 8px;
-        width: min(440px, calc(100vw - 88px));
+        gap: 0.5rem;
+        width: min(27.5rem, calc(100vw - 5.5rem));
         pointer-events: none;
       }
       @media (max-width: 820px) {
         :host {
-          left: 12px;
-          bottom: calc(68px + var(--beneath, 0px) + env(safe-area-inset-bottom));
-          width: calc(100vw - 24px);
+          left: 0.75rem;
+          bottom: calc(4.25rem + var(--beneath, 0px) + env(safe-area-inset-bottom));
+          width: calc(100vw - 1.5rem);
         }
       }
       .notice {
         display: flex;
         align-items: flex-start;
-        gap: 10px;
-        padding: 11px 8px 11px 14px;
+        gap: 0.625rem;
+        padding: 0.6875rem 0.5rem 0.6875rem 0.875rem;
         border: var(--edge) solid var(--line);
         border-left: 4px solid var(--calm);
         border-radius: var(--radius);
@@ -67,17 +67,17 @@ export class StrataNotices extends LitElement {
         font-size: 0.9rem;
       }
       button.icon {
-        width: 28px;
-        min-height: 28px;
+        width: 1.75rem;
+        min-height: 1.75rem;
       }
       button svg.glyph {
-        width: 16px;
-        height: 16px;
+        width: 1rem;
+        height: 1rem;
       }
       @keyframes rise {
         from {
           opacity: 0;
-          transform: translateY(8px);
+          transform: translateY(0.5rem);
         }
       }
     `,

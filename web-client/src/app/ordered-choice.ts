@@ -36,7 +36,7 @@ export class StrataOrderedChoice extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 6px;
+        gap: 0.375rem;
         min-width: 0;
       }
       ol {
@@ -50,8 +50,8 @@ export class StrataOrderedChoice extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr) auto;
         align-items: center;
-        gap: 2px 8px;
-        padding: 2px 2px 2px 10px;
+        gap: 2px 0.5rem;
+        padding: 2px 2px 2px 0.625rem;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius-small);
         background: var(--raised);
@@ -62,7 +62,7 @@ export class StrataOrderedChoice extends LitElement {
       .name {
         display: flex;
         align-items: center;
-        gap: 8px;
+        gap: 0.5rem;
         min-width: 0;
         font-size: 0.93rem;
         overflow-wrap: anywhere;
@@ -71,8 +71,8 @@ export class StrataOrderedChoice extends LitElement {
         display: flex;
       }
       .buttons button.icon {
-        width: 32px;
-        min-height: 32px;
+        width: 2rem;
+        min-height: 2rem;
       }
       .seen-by {
         display: grid;
@@ -81,18 +81,18 @@ export class StrataOrderedChoice extends LitElement {
       .more {
         grid-column: 1 / -1;
         display: grid;
-        grid-template-columns: repeat(auto-fit, minmax(min(100%, 150px), 1fr));
-        gap: 6px;
-        padding: 0 8px 8px 0;
+        grid-template-columns: repeat(auto-fit, minmax(min(100%, 9.375rem), 1fr));
+        gap: 0.375rem;
+        padding: 0 0.5rem 0.5rem 0;
       }
       .more input[type="text"] {
-        min-height: 34px;
+        min-height: 2.125rem;
         font-size: 0.88rem;
       }
       @media (pointer: coarse) {
         .buttons button.icon {
-          width: 40px;
-          min-height: 44px;
+          width: 2.5rem;
+          min-height: 2.75rem;
         }
       }
     `,

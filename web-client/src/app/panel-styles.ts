@@ -7,7 +7,7 @@ export const panel_line_styles = css`
   ul {
     display: grid;
     gap: 2px;
-    margin: 0 -8px;
+    margin: 0 -0.5rem;
     padding: 0;
     list-style: none;
   }
@@ -16,10 +16,10 @@ export const panel_line_styles = css`
     grid-template-columns: auto minmax(0, 1fr) auto;
     justify-content: stretch;
     align-items: start;
-    gap: 1px 10px;
+    gap: 1px 0.625rem;
     width: 100%;
     min-height: 0;
-    padding: 8px;
+    padding: 0.5rem;
     text-align: left;
     white-space: normal;
   }
@@ -33,11 +33,11 @@ export const list_head_styles = css`
   :host {
     display: grid;
     grid-template-columns: minmax(0, 1fr);
-    gap: 10px;
+    gap: 0.625rem;
   }
   .row {
     flex-wrap: wrap;
-    min-height: 30px;
+    min-height: 1.875rem;
   }
   h3 {
     flex: 1;
@@ -57,7 +57,7 @@ export const list_head_styles = css`
 /** Rows of such a list: a button with a name, as wide as the panel, and its menu. */
 export const list_row_styles = css`
   ul {
-    margin-left: -8px;
+    margin-left: -0.5rem;
   }
   li {
     display: grid;
@@ -68,7 +68,7 @@ export const list_row_styles = css`
   li > button {
     display: grid;
     justify-content: stretch;
-    padding: 7px 8px;
+    padding: 0.4375rem 0.5rem;
     text-align: start;
     white-space: normal;
   }

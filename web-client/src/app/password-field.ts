@@ -29,13 +29,13 @@ export const password_styles = css`
     position: relative;
   }
   .password input {
-    padding-right: 44px;
+    padding-right: 2.75rem;
   }
   .password button {
     position: absolute;
     right: 1px;
     top: 1px;
-    width: 38px;
+    width: 2.375rem;
     min-height: calc(100% - 2px);
     color: var(--ink-soft);
   }

@@ -49,18 +49,18 @@ export class StrataPeopleDialog extends LitElement {
       .bar {
         position: sticky;
         z-index: 1;
-        top: -14px; /* over the padding of the dialog */
+        top: -0.875rem; /* over the padding of the dialog */
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: 10px 12px;
-        padding: 14px 0 10px;
-        margin: -14px 0 -6px;
+        gap: 0.625rem 0.75rem;
+        padding: 0.875rem 0 0.625rem;
+        margin: -0.875rem 0 -0.375rem;
         background: var(--surface);
       }
       .bar input {
-        flex: 1 1 180px;
-        max-width: 300px;
+        flex: 1 1 11.25rem;
+        max-width: 18.75rem;
       }
       .fields {
         grid-template-columns: 1fr 1fr 1fr;
@@ -69,7 +69,7 @@ export class StrataPeopleDialog extends LitElement {
       fieldset {
         display: flex;
         flex-wrap: wrap;
-        gap: 6px 16px;
+        gap: 0.375rem 1rem;
         margin: 0;
         padding: 0;
         border: 0;
@@ -80,13 +80,13 @@ export class StrataPeopleDialog extends LitElement {
       fieldset label {
         display: flex;
         align-items: center;
-        gap: 8px;
-        min-height: 28px;
+        gap: 0.5rem;
+        min-height: 1.75rem;
         overflow-wrap: anywhere;
       }
       fieldset input {
-        width: 17px;
-        height: 17px;
+        width: 1.0625rem;
+        height: 1.0625rem;
         flex: none;
         margin: 0;
         accent-color: var(--accent);
@@ -100,17 +100,17 @@ export class StrataPeopleDialog extends LitElement {
         border-collapse: collapse;
       }
       th {
-        padding: 4px 10px 6px 0;
+        padding: 4px 0.625rem 0.375rem 0;
         text-align: left;
         font-size: 0.8rem;
         color: var(--ink-soft);
       }
       td {
-        padding: 7px 10px 7px 0;
+        padding: 0.4375rem 0.625rem 0.4375rem 0;
         border-top: var(--edge) solid var(--line);
       }
       td:last-child {
-        width: 36px;
+        width: 2.25rem;
         padding-right: 0;
       }
       td b {
@@ -131,8 +131,8 @@ export class StrataPeopleDialog extends LitElement {
       }
       td select {
         width: auto;
-        min-height: 34px;
-        padding: 3px 8px;
+        min-height: 2.125rem;
+        padding: 3px 0.5rem;
       }
       .seen {
         white-space: nowrap;
@@ -182,8 +182,8 @@ export class StrataPeopleDialog extends LitElement {
           display: grid;
           grid-template-columns: auto 1fr auto;
           align-items: center;
-          gap: 6px 12px;
-          padding: 10px 0;
+          gap: 0.375rem 0.75rem;
+          padding: 0.625rem 0;
           border-top: var(--edge) solid var(--line);
         }
         td {

@@ -35,15 +35,15 @@ export class StrataPeopleMenu extends LitElement {
       }
       .faces {
         display: flex;
-        padding: 0 2px 0 7px;
+        padding: 0 2px 0 0.4375rem;
         pointer-events: auto; /* each tells a name */
       }
       .face {
         display: grid;
         flex: none;
         place-items: center;
-        width: 28px;
-        height: 28px;
+        width: 1.75rem;
+        height: 1.75rem;
         border: 2px solid var(--surface);
         border-radius: 50%;
         font-size: 0.7rem;
@@ -66,7 +66,7 @@ export class StrataPeopleMenu extends LitElement {
       .who {
         display: grid;
         min-width: 0;
-        max-width: 280px;
+        max-width: 17.5rem;
         text-align: left;
         line-height: 1.25;
       }
@@ -75,18 +75,18 @@ export class StrataPeopleMenu extends LitElement {
         font-size: 0.82rem;
       }
       button {
-        min-height: 42px;
-        gap: 10px;
-        padding: 3px 12px 3px 8px;
+        min-height: 2.625rem;
+        gap: 0.625rem;
+        padding: 3px 0.75rem 3px 0.5rem;
       }
       .sign {
         display: grid;
         flex: none;
         place-items: center;
-        width: 28px;
+        width: 1.75rem;
       }
       .alone {
-        padding: 8px 12px;
+        padding: 0.5rem 0.75rem;
         color: var(--ink-soft);
       }
       .wide {

@@ -49,7 +49,7 @@ export class StrataProfilePlot extends LitElement {
       }
       .plot {
         cursor: crosshair;
-        margin-bottom: 7px; /* of the focus's line */
+        margin-bottom: 0.4375rem; /* of the focus's line */
         touch-action: pan-y;
         border-radius: var(--radius-small);
       }

@@ -38,8 +38,8 @@ export class StrataProjectCard extends LitElement {
         background: var(--paper);
       }
       .no-picture .logo {
-        width: 56px;
-        height: 56px;
+        width: 3.5rem;
+        height: 3.5rem;
         opacity: 0.4;
       }
       .about b {

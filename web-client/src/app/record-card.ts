@@ -31,13 +31,13 @@ export class StrataRecordCard extends LitElement {
     css`
       :host {
         display: block;
-        width: min(300px, 100%);
+        width: min(18.75rem, 100%);
         pointer-events: auto;
       }
       section {
         display: grid;
-        gap: 8px;
-        padding: 8px 8px 10px 13px;
+        gap: 0.5rem;
+        padding: 0.5rem 0.5rem 0.625rem 0.8125rem;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
@@ -48,22 +48,22 @@ export class StrataRecordCard extends LitElement {
         font: 600 1.02rem var(--serif);
       }
       .row button.icon {
-        width: 28px;
-        min-height: 28px;
+        width: 1.75rem;
+        min-height: 1.75rem;
       }
       .picture img {
         display: block;
         width: 100%;
-        max-height: min(180px, 14dvh);
+        max-height: min(11.25rem, 14dvh);
         object-fit: cover;
         border-radius: var(--radius-small);
       }
       dl {
         display: grid;
         grid-template-columns: auto minmax(0, 1fr);
-        gap: 3px 14px;
+        gap: 3px 0.875rem;
         margin: 0;
-        max-height: 130px;
+        max-height: 8.125rem;
         overflow: auto;
       }
       dt {
@@ -74,7 +74,7 @@ export class StrataRecordCard extends LitElement {
         overflow-wrap: anywhere;
       }
       .row button {
-        min-height: 30px;
+        min-height: 1.875rem;
       }
     `,
   ];

@@ -50,14 +50,14 @@ export class StrataRecordDialog extends LitElement {
       .facts {
         display: flex;
         align-items: center;
-        gap: 10px;
+        gap: 0.625rem;
       }
       .other {
         display: grid;
         grid-template-columns: auto 1fr auto;
         align-items: center;
-        gap: 8px 10px;
-        padding: 10px 12px;
+        gap: 0.5rem 0.625rem;
+        padding: 0.625rem 0.75rem;
         border: var(--edge) solid var(--calm);
         border-radius: var(--radius-small);
         background: var(--calm-soft);

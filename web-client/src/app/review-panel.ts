@@ -54,8 +54,8 @@ export class StrataReviewPanel extends FoldingPanel {
         display: flex;
         flex-wrap: wrap;
         align-items: center;
-        gap: 6px;
-        margin-top: 6px;
+        gap: 0.375rem;
+        margin-top: 0.375rem;
       }
       li {
         display: grid;
@@ -68,13 +68,13 @@ export class StrataReviewPanel extends FoldingPanel {
       .people {
         display: flex;
         flex-wrap: wrap;
-        gap: 2px 14px;
+        gap: 2px 0.875rem;
       }
       form {
         grid-column: 1 / -1;
         display: grid;
-        gap: 8px;
-        padding: 4px 8px 10px;
+        gap: 0.5rem;
+        padding: 4px 0.5rem 0.625rem;
       }
       form .row {
         justify-content: end;

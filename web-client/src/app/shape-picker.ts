@@ -42,10 +42,10 @@ export class StrataShapePicker extends LitElement {
       :host {
         display: grid;
         grid-template-columns: auto 1fr auto;
-        gap: 10px;
+        gap: 0.625rem;
       }
       .caption {
-        line-height: 46px;
+        line-height: 2.875rem;
       }
       strata-menu {
         align-self: start;
@@ -54,13 +54,13 @@ export class StrataShapePicker extends LitElement {
       .shapes {
         display: flex;
         flex-wrap: wrap;
-        gap: 6px;
+        gap: 0.375rem;
       }
       .area {
         display: flex;
         flex-wrap: wrap;
-        gap: 6px;
-        max-height: 156px;
+        gap: 0.375rem;
+        max-height: 9.75rem;
         overflow-y: auto;
         padding: 2px;
         border-radius: var(--radius-small);
@@ -71,9 +71,9 @@ export class StrataShapePicker extends LitElement {
       }
       .shapes button,
       .area > button {
-        width: 44px;
-        min-height: 44px;
-        padding: 6px;
+        width: 2.75rem;
+        min-height: 2.75rem;
+        padding: 0.375rem;
       }
       .shapes button[aria-checked="true"] {
         border-color: var(--accent);
@@ -85,13 +85,13 @@ export class StrataShapePicker extends LitElement {
       }
       .shape {
         width: 100%;
-        height: 30px;
+        height: 1.875rem;
         background: currentColor;
         mask: center / contain no-repeat;
       }
       .shapes svg {
-        width: 30px;
-        height: 30px;
+        width: 1.875rem;
+        height: 1.875rem;
         fill: currentColor;
       }
     `,

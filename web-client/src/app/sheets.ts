@@ -13,13 +13,13 @@ import { texts } from "./texts";
 
 const sheet_styles = css`
   h3 {
-    margin: 2px 0 -8px;
+    margin: 2px 0 -0.5rem;
     font: 600 1rem var(--serif);
   }
   dl {
     display: grid;
-    grid-template-columns: minmax(150px, auto) 1fr;
-    gap: 7px 18px;
+    grid-template-columns: minmax(9.375rem, auto) 1fr;
+    gap: 0.4375rem 1.125rem;
     margin: 0;
   }
   dt {
@@ -29,16 +29,37 @@ const sheet_styles = css`
     margin: 0;
     overflow-wrap: anywhere;
   }
+  .parts section + section {
+    margin-top: 1rem;
+  }
+  .parts h3 {
+    margin: 2px 0 0.5rem;
+    break-after: avoid;
+  }
   dl.keys {
-    grid-template-columns: minmax(110px, 44%) 1fr;
+    display: block;
+  }
+  .keys > div {
+    display: grid;
+    grid-template-columns: minmax(6.875rem, 44%) 1fr;
+    gap: 1.125rem;
+    padding-bottom: 0.4375rem;
+    break-inside: avoid;
   }
   .keys dt {
     color: var(--ink);
     font-weight: 600;
   }
+  @media (min-width: 2560px) {
+    .parts {
+      columns: 2;
+      column-gap: 3rem;
+    }
+  }
   @media (max-width: 560px) {
-    dl {
-      grid-template-columns: minmax(110px, 40%) 1fr;
+    dl,
+    .keys > div {
+      grid-template-columns: minmax(6.875rem, 40%) 1fr;
     }
   }
 `;
@@ -52,11 +73,15 @@ export class StrataHelpSheet extends LitElement {
   override render(): TemplateResult {
     const words = texts.help;
     const part = (title: string, rows: readonly (readonly [string, string])[]): TemplateResult =>
-      html`<h3>${title}</h3>
-        <dl class="keys">${rows.map(([keys, does]) => html`<dt>${keys}</dt><dd>${does}</dd>`)}</dl>`;
-    return html`<strata-dialog wide prose heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      ${has_fingers_only() ? nothing : part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
-      ${part(words.brush, words.brush_rows)} ${part(words.terms, words.terms_rows)} ${part(words.table, words.table_rows)} ${part(words.layers, words.layer_rows)}
+      html`<section>
+        <h3>${title}</h3>
+        <dl class="keys">${rows.map(([keys, does]) => html`<div><dt>${keys}</dt><dd>${does}</dd></div>`)}</dl>
+      </section>`;
+    return html`<strata-dialog wide prose long heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+      <div class="parts">
+        ${has_fingers_only() ? nothing : part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
+        ${part(words.brush, words.brush_rows)} ${part(words.terms, words.terms_rows)} ${part(words.table, words.table_rows)} ${part(words.layers, words.layer_rows)}
+      </div>
       <button slot="actions" @click=${this.show_tour}>${texts.tour.again}</button>
     </strata-dialog>`;
   }

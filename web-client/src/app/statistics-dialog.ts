@@ -36,26 +36,26 @@ export class StrataStatisticsDialog extends LitElement {
       .total {
         display: flex;
         align-items: baseline;
-        gap: 10px;
+        gap: 0.625rem;
       }
       .total b {
         font: 600 1.7rem var(--serif);
       }
       .bars {
         display: grid;
-        gap: 10px;
+        gap: 0.625rem;
         margin: 0;
         padding: 0;
         list-style: none;
       }
       .bars .words {
         display: flex;
-        gap: 9px;
+        gap: 0.5625rem;
         align-items: center;
         font-size: 0.92rem;
       }
       .bars .track {
-        height: 9px;
+        height: 0.5625rem;
         margin-top: 4px;
         border-radius: 3px;
         background: var(--hover);
@@ -69,8 +69,8 @@ export class StrataStatisticsDialog extends LitElement {
       }
       dl {
         display: grid;
-        grid-template-columns: repeat(auto-fit, minmax(110px, 1fr));
-        gap: 12px;
+        grid-template-columns: repeat(auto-fit, minmax(6.875rem, 1fr));
+        gap: 0.75rem;
         margin: 0;
       }
       dt {
@@ -86,7 +86,7 @@ export class StrataStatisticsDialog extends LitElement {
         display: flex;
         align-items: flex-end;
         gap: 1px;
-        height: 120px;
+        height: 7.5rem;
         border-bottom: var(--edge) solid var(--line-strong);
       }
       .histogram i {
@@ -95,7 +95,7 @@ export class StrataStatisticsDialog extends LitElement {
       }
       .limits {
         position: relative;
-        height: 24px;
+        height: 1.5rem;
       }
       .limits input {
         position: absolute;
@@ -105,8 +105,8 @@ export class StrataStatisticsDialog extends LitElement {
         appearance: none;
       }
       .limits input::-webkit-slider-thumb {
-        width: 14px;
-        height: 20px;
+        width: 0.875rem;
+        height: 1.25rem;
         border: 2px solid var(--raised);
         border-radius: 5px;
         background: var(--accent);
@@ -115,8 +115,8 @@ export class StrataStatisticsDialog extends LitElement {
         appearance: none;
       }
       .limits input::-moz-range-thumb {
-        width: 12px;
-        height: 18px;
+        width: 0.75rem;
+        height: 1.125rem;
         border-radius: 5px;
         background: var(--accent);
         cursor: ew-resize;

@@ -41,8 +41,8 @@ export const shared_styles = css`
     align-items: center;
     justify-content: center;
     gap: 0.5em;
-    min-height: 36px;
-    padding: 0 14px;
+    min-height: 2.25rem;
+    padding: 0 0.875rem;
     border: var(--edge) solid var(--line);
     border-radius: var(--radius-small);
     background: var(--raised);
@@ -86,7 +86,7 @@ export const shared_styles = css`
     background: var(--hover);
   }
   button.icon {
-    width: 36px;
+    width: 2.25rem;
     padding: 0;
     flex: none;
   }
@@ -111,15 +111,15 @@ export const shared_styles = css`
   select,
   textarea {
     width: 100%;
-    min-height: 38px;
-    padding: 6px 10px;
+    min-height: 2.375rem;
+    padding: 0.375rem 0.625rem;
     border: var(--edge) solid var(--line-strong);
     border-radius: var(--radius-small);
     background: var(--raised);
   }
   textarea {
     resize: vertical;
-    min-height: 64px;
+    min-height: 4rem;
   }
   input:focus-visible,
   select:focus-visible,
@@ -133,12 +133,18 @@ export const shared_styles = css`
     width: 100%;
     min-width: 0;
     margin: 0;
-    height: 24px;
+    height: 1.5rem;
     accent-color: var(--accent);
   }
+  input[type="checkbox"],
+  input[type="radio"] {
+    flex: none;
+    width: 0.8125rem;
+    height: 0.8125rem;
+  }
   input[type="color"] {
-    width: 38px;
-    height: 38px;
+    width: 2.375rem;
+    height: 2.375rem;
     flex: none;
     padding: 3px;
     border: var(--edge) solid var(--line-strong);
@@ -175,7 +181,7 @@ export const shared_styles = css`
   .row {
     display: flex;
     align-items: center;
-    gap: 10px;
+    gap: 0.625rem;
   }
   .ellipsis {
     overflow: hidden;
@@ -185,8 +191,8 @@ export const shared_styles = css`
   .swatch {
     display: inline-block;
     flex: none;
-    width: 16px;
-    height: 16px;
+    width: 1rem;
+    height: 1rem;
     border-radius: 4px;
     box-shadow: inset 0 0 0 1px var(--swatch-rim);
   }
@@ -201,8 +207,8 @@ export const shared_styles = css`
   }
   .segments button {
     flex: 1;
-    min-height: 30px;
-    padding: 0 10px;
+    min-height: 1.875rem;
+    padding: 0 0.625rem;
     border: 0;
     border-radius: 4px;
     background: transparent;
@@ -217,7 +223,7 @@ export const shared_styles = css`
   }
   .visibility {
     display: grid;
-    gap: 6px;
+    gap: 0.375rem;
     justify-items: start;
   }
   @media (max-width: 560px) {
@@ -229,7 +235,7 @@ export const shared_styles = css`
     .visibility .segments button {
       flex-direction: column;
       gap: 2px;
-      padding: 6px 4px;
+      padding: 0.375rem 4px;
       line-height: 1.2;
       white-space: normal;
     }
@@ -243,8 +249,8 @@ export const shared_styles = css`
     white-space: nowrap;
   }
   svg.glyph {
-    width: 20px;
-    height: 20px;
+    width: 1.25rem;
+    height: 1.25rem;
     flex: none;
     fill: none;
     stroke: currentColor;
@@ -278,16 +284,16 @@ export const shared_styles = css`
   @media (pointer: coarse) {
     button,
     .button {
-      min-height: 44px;
+      min-height: 2.75rem;
     }
     button.icon {
-      width: 44px;
+      width: 2.75rem;
     }
   }
   label.check {
     display: flex;
     align-items: center;
-    gap: 9px;
+    gap: 0.5625rem;
   }
 `;
 
@@ -295,7 +301,7 @@ export const shared_styles = css`
 export const form_styles = css`
   form {
     display: grid;
-    gap: 14px;
+    gap: 0.875rem;
   }
 `;
 
@@ -304,8 +310,8 @@ export const link_making_styles = css`
   form,
   .made {
     display: grid;
-    gap: 12px;
-    padding: 14px;
+    gap: 0.75rem;
+    padding: 0.875rem;
     border-radius: var(--radius);
   }
   form {
@@ -313,7 +319,7 @@ export const link_making_styles = css`
   }
   .fields {
     display: grid;
-    gap: 12px;
+    gap: 0.75rem;
   }
   .made {
     background: var(--calm-soft);
@@ -331,7 +337,7 @@ export const choices_styles = css`
   .choices {
     display: grid;
     grid-template-columns: 1fr 1fr;
-    gap: 12px;
+    gap: 0.75rem;
   }
   .choices .full {
     grid-column: 1 / -1;
@@ -344,12 +350,12 @@ export const number_field_styles = css`
     position: relative;
   }
   .number input {
-    padding-right: 34px;
+    padding-right: 2.125rem;
     text-align: right;
   }
   .number span {
     position: absolute;
-    right: 10px;
+    right: 0.625rem;
     top: 50%;
     transform: translateY(-50%);
     color: var(--ink-soft);
@@ -379,8 +385,8 @@ export const drag_styles = css`
   .grip {
     display: grid;
     place-items: center;
-    width: 22px;
-    height: 34px;
+    width: 1.375rem;
+    height: 2.125rem;
     color: var(--line-strong);
     cursor: grab;
   }
@@ -389,7 +395,7 @@ export const drag_styles = css`
 /** A word or two about what stands beside it. */
 export const chip_styles = css`
   .chip {
-    padding: 1px 8px;
+    padding: 1px 0.5rem;
     border-radius: 99px;
     background: var(--calm-soft);
     color: var(--calm);
@@ -403,10 +409,10 @@ export const chip_styles = css`
 export const files_styles = css`
   .part {
     display: grid;
-    gap: 6px;
+    gap: 0.375rem;
   }
   .found {
-    padding: 9px 12px;
+    padding: 0.5625rem 0.75rem;
     border-radius: var(--radius-small);
     background: var(--calm-soft);
     font-size: 0.9rem;
@@ -416,7 +422,7 @@ export const files_styles = css`
   }
   progress {
     width: 100%;
-    height: 6px;
+    height: 0.375rem;
     accent-color: var(--accent);
   }
 `;

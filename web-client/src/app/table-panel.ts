@@ -16,6 +16,7 @@ import { takes_typing, type StrataCellInput } from "./cell-input";
 import { ask } from "./dialog";
 import { FileDrop } from "./drop";
 import { follow_session } from "./follow-session";
+import { growth } from "./growth";
 import { icon } from "./icons";
 import "./menu";
 import type { ModelSession } from "./model-session";
@@ -80,6 +81,7 @@ export class StrataTablePanel extends LitElement {
   );
   private readonly widths_ = new Map<string, number>();
   private observer_: ResizeObserver | null = null;
+  private growth_ = 1;
   private from_ = 0; // the row that the next one with Shift goes on from
 
   constructor() {
@@ -98,6 +100,7 @@ export class StrataTablePanel extends LitElement {
   }
 
   override willUpdate(): void {
+    this.growth_ = growth();
     this.claim_edited();
     this.classList.toggle("over", this.drop_.over);
     this.classList.toggle("narrow", this.is_narrow);
@@ -123,14 +126,21 @@ export class StrataTablePanel extends LitElement {
 
   // ── what is in sight ──────────────────────────────────────────────────────────────────────────────────────────────
 
+  private get row_px(): number {
+    return kRow_px * this.growth_;
+  }
+  private get head_px(): number {
+    return kHead_px * this.growth_;
+  }
+
   private in_sight(): { first: number; last: number } {
     const { scrollTop: top = 0, clientHeight: height = 300 } = this.scroller_ ?? {};
-    const first = Math.max(0, Math.floor(top / kRow_px) - kAbove);
-    return { first, last: Math.ceil((top + height) / kRow_px) + kAbove };
+    const first = Math.max(0, Math.floor(top / this.row_px) - kAbove);
+    return { first, last: Math.ceil((top + height) / this.row_px) + kAbove };
   }
 
   private get is_narrow(): boolean {
-    return this.clientWidth <= kNarrow_px;
+    return this.clientWidth <= kNarrow_px * this.growth_;
   }
   private get layer(): Layer | null {
     return this.session.layers.find(this.view.layer_id);
@@ -140,14 +150,14 @@ export class StrataTablePanel extends LitElement {
   }
 
   private width_of(column: Column): number {
-    return this.widths_.get(column.slug) ?? kWidths[column.kind] ?? kUsualWidth;
+    return this.widths_.get(column.slug) ?? (kWidths[column.kind] ?? kUsualWidth) * this.growth_;
   }
   private width_of_measure({ name }: RecordMeasure): number {
-    return this.widths_.get(name) ?? kMeasureWidth;
+    return this.widths_.get(name) ?? kMeasureWidth * this.growth_;
   }
   /** Left edges of the columns, then of what is measured; at last the right one. */
   private edges(table: Table): number[] {
-    const edges = [this.widths_.get("key") ?? kKeyWidth];
+    const edges = [this.widths_.get("key") ?? kKeyWidth * this.growth_];
     const widths = [...table.columns.map((column) => this.width_of(column)), ...measures_of(table).map((measure) => this.width_of_measure(measure))];
     for (const width of widths) edges.push(edges[edges.length - 1]! + width);
     return edges;
@@ -335,12 +345,12 @@ export class StrataTablePanel extends LitElement {
       aria-rowcount=${rows.total + 1}
       aria-colcount=${widths.length}
       aria-activedescendant=${indices.includes(row) ? `cell-${row}-${column}` : nothing}
-      ${styled({ "--columns": widths.map((width) => `${width}px`).join(" "), "--row": `${kRow_px}px` })}
+      ${styled({ "--columns": widths.map((width) => `${width}px`).join(" "), "--row": `${this.row_px}px` })}
       @scroll=${() => this.requestUpdate()}
       @keydown=${this.on_key}
     >
       ${this.head(table)}
-      <div class="body" role="rowgroup" ${styled({ height: `${rows.total * kRow_px}px` })}>
+      <div class="body" role="rowgroup" ${styled({ height: `${rows.total * this.row_px}px` })}>
         ${repeat(
           indices,
           (index) => index,
@@ -415,7 +425,7 @@ export class StrataTablePanel extends LitElement {
       role="row"
       aria-rowindex=${index + 2}
       aria-selected=${chosen}
-      ${styled({ top: `${index * kRow_px}px` })}
+      ${styled({ top: `${index * this.row_px}px` })}
     >
       <div class="cell key numeric ${is_active(0)}" role="rowheader" id="cell-${index}-0" @click=${(event: MouseEvent) => this.on_key_cell(event, index)}>
         ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}${record?.key ?? "…"}
@@ -467,7 +477,7 @@ export class StrataTablePanel extends LitElement {
     const width = Math.max(this.width_of(editing.column), kEditorWidth[editing.column.kind] ?? 0);
     return html`<div
         class="editor"
-        ${styled({ top: `${editing.row * kRow_px}px`, left: `${edges[at]!}px`, width: `${width}px` })}
+        ${styled({ top: `${editing.row * this.row_px}px`, left: `${edges[at]!}px`, width: `${width}px` })}
         @keydown=${this.on_editor_key}
         @focusout=${this.on_editor_left}
       >
@@ -531,8 +541,8 @@ export class StrataTablePanel extends LitElement {
   /** Below the row, or above it where there is more room. */
   private beside(row: number, left: number): Record<string, string | null> {
     const { scrollTop = 0, clientHeight = 0 } = this.scroller_ ?? {};
-    const below = row === 0 || row * kRow_px - scrollTop < (clientHeight - kHead_px) / 2;
-    const [top, bottom] = below ? [(row + 1) * kRow_px + 3, null] : [null, (this.view.rows.total - row) * kRow_px + 3];
+    const below = row === 0 || row * this.row_px - scrollTop < (clientHeight - this.head_px) / 2;
+    const [top, bottom] = below ? [(row + 1) * this.row_px + 3, null] : [null, (this.view.rows.total - row) * this.row_px + 3];
     return { left: `${left}px`, top: top === null ? null : `${top}px`, bottom: bottom === null ? null : `${bottom}px` };
   }
 
@@ -689,9 +699,9 @@ export class StrataTablePanel extends LitElement {
   private scroll_to_active(table: Table): void {
     const box = this.scroller_!;
     const { row, column } = this.active_;
-    const top = row * kRow_px;
+    const top = row * this.row_px;
     if (top < box.scrollTop) box.scrollTop = top;
-    else if (top + kRow_px > box.scrollTop + box.clientHeight - kHead_px) box.scrollTop = top + kRow_px - box.clientHeight + kHead_px;
+    else if (top + this.row_px > box.scrollTop + box.clientHeight - this.head_px) box.scrollTop = top + this.row_px - box.clientHeight + this.head_px;
     if (column === 0) return;
     const edges = this.edges(table);
     const left = edges[column - 1]!;
@@ -714,7 +724,7 @@ export class StrataTablePanel extends LitElement {
   private on_grid_key(event: KeyboardEvent, table: Table, row: number, column: number, total: number): boolean {
     const { key } = event;
     const last = table.columns.length + measures_of(table).length;
-    const page = Math.max(1, Math.floor(((this.scroller_?.clientHeight ?? 0) - kHead_px) / kRow_px) - 1);
+    const page = Math.max(1, Math.floor(((this.scroller_?.clientHeight ?? 0) - this.head_px) / this.row_px) - 1);
     if (event.ctrlKey || event.metaKey) {
       if (event.altKey) return false;
       if (key.toLowerCase() === "z") {

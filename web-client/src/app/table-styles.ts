@@ -15,8 +15,8 @@ export const table_styles = css`
   .bar {
     display: flex;
     align-items: center;
-    gap: 6px;
-    padding: 5px 8px 5px 14px;
+    gap: 0.375rem;
+    padding: 5px 0.5rem 5px 0.875rem;
     border-bottom: var(--edge) solid var(--line);
   }
   .bar h2 {
@@ -29,20 +29,20 @@ export const table_styles = css`
   }
   .bar button,
   .bar input[type="text"] {
-    min-height: 32px;
+    min-height: 2rem;
   }
   .bar button.icon {
-    width: 32px;
+    width: 2rem;
   }
   .filter {
     position: relative;
-    flex: 1 1 160px;
-    min-width: 90px;
-    max-width: 460px;
-    margin-left: 6px;
+    flex: 1 1 10rem;
+    min-width: 5.625rem;
+    max-width: 28.75rem;
+    margin-left: 0.375rem;
   }
   .filter input {
-    padding-right: 30px;
+    padding-right: 1.875rem;
     font: 0.86rem var(--mono);
   }
   .filter button {
@@ -62,10 +62,10 @@ export const table_styles = css`
     color: var(--accent);
   }
   .on-model .hint {
-    padding-right: 6px;
+    padding-right: 0.375rem;
   }
   .chosen > .ellipsis {
-    min-width: 64px;
+    min-width: 4rem;
   }
   .chosen > button {
     flex: none;
@@ -76,14 +76,14 @@ export const table_styles = css`
       display: none;
     }
     .bar:has(.chosen) .count {
-      max-width: 84px;
+      max-width: 5.25rem;
       overflow: hidden;
       text-overflow: ellipsis;
     }
   }
   .thumbnail {
-    height: 24px;
-    width: 32px;
+    height: 1.5rem;
+    width: 2rem;
     margin-right: 3px;
     object-fit: cover;
     border-radius: 3px;
@@ -94,7 +94,7 @@ export const table_styles = css`
     align-items: center;
     flex: 0 1 auto;
     gap: 2px;
-    padding: 2px 4px 2px 10px;
+    padding: 2px 4px 2px 0.625rem;
     border-radius: var(--radius-small);
     background: var(--accent-soft);
     font-size: 0.88rem;
@@ -103,7 +103,7 @@ export const table_styles = css`
   .wrong {
     display: grid;
     gap: 2px;
-    padding: 6px 14px;
+    padding: 0.375rem 0.875rem;
     border-bottom: var(--edge) solid var(--line);
     background: var(--danger-soft);
   }
@@ -144,8 +144,8 @@ export const table_styles = css`
     position: sticky;
     z-index: 3;
     top: 0;
-    grid-auto-rows: 33px;
-    height: 34px;
+    grid-auto-rows: 2.0625rem;
+    height: 2.125rem;
     border-bottom: var(--edge) solid var(--line-strong);
     background: var(--paper);
   }
@@ -167,7 +167,7 @@ export const table_styles = css`
     display: flex;
     align-items: center;
     min-width: 0;
-    padding: 0 9px;
+    padding: 0 0.5625rem;
     border-right: var(--edge) solid var(--line);
     cursor: default;
   }
@@ -178,7 +178,7 @@ export const table_styles = css`
     position: sticky;
     z-index: 1;
     left: 0;
-    gap: 8px;
+    gap: 0.5rem;
     background: var(--surface);
     cursor: pointer;
   }
@@ -188,16 +188,16 @@ export const table_styles = css`
     color: var(--accent);
   }
   .cell.key .writer .glyph {
-    width: 15px;
-    height: 15px;
+    width: 0.9375rem;
+    height: 0.9375rem;
   }
   .line.held:not(.chosen-row),
   .line.held:not(.chosen-row) .cell.key {
     background: var(--calm-soft);
   }
   .cell.key .swatch {
-    width: 12px;
-    height: 12px;
+    width: 0.75rem;
+    height: 0.75rem;
   }
   .cell.saving {
     color: var(--ink-soft);
@@ -223,8 +223,8 @@ export const table_styles = css`
     flex: 1;
     justify-content: flex-start;
     min-width: 0;
-    min-height: 28px;
-    padding: 0 6px;
+    min-height: 1.75rem;
+    padding: 0 0.375rem;
     border: 0;
     background: none;
     font-weight: 600;
@@ -242,8 +242,8 @@ export const table_styles = css`
     color: var(--danger);
   }
   .head svg.glyph {
-    width: 14px;
-    height: 14px;
+    width: 0.875rem;
+    height: 0.875rem;
   }
   .edge {
     position: absolute;
@@ -251,7 +251,7 @@ export const table_styles = css`
     right: -4px;
     top: 0;
     bottom: 0;
-    width: 8px;
+    width: 0.5rem;
     cursor: col-resize;
     touch-action: none;
   }
@@ -270,10 +270,10 @@ export const table_styles = css`
     position: absolute;
     z-index: 5;
     display: grid;
-    gap: 6px;
+    gap: 0.375rem;
     width: max-content;
-    max-width: 380px;
-    padding: 8px 12px;
+    max-width: 23.75rem;
+    padding: 0.5rem 0.75rem;
     border: var(--edge) solid var(--danger);
     border-radius: var(--radius-small);
     background: var(--raised);
@@ -284,16 +284,16 @@ export const table_styles = css`
   }
   .bubble .row {
     flex-wrap: wrap;
-    gap: 6px;
+    gap: 0.375rem;
   }
   .bubble button {
-    min-height: 28px;
+    min-height: 1.75rem;
   }
   .empty {
     display: grid;
-    gap: 8px;
+    gap: 0.5rem;
     justify-items: start;
-    padding: 18px;
+    padding: 1.125rem;
     color: var(--ink-soft);
   }
   /* the title with what closes it, then the filter, then what is chosen */
@@ -303,7 +303,7 @@ export const table_styles = css`
   }
   :host(.narrow) .bar h2 {
     flex: 1 1 0;
-    min-width: 60px;
+    min-width: 3.75rem;
     max-width: none;
   }
   :host(.narrow) .bar > .grow {

@@ -32,7 +32,7 @@ export class StrataTemplateDialog extends LitElement {
     css`
       ul {
         display: grid;
-        gap: 10px;
+        gap: 0.625rem;
         margin: 0;
         padding: 0;
         list-style: none;
@@ -41,8 +41,8 @@ export class StrataTemplateDialog extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr) auto;
         align-items: start;
-        gap: 6px 14px;
-        padding: 13px 14px;
+        gap: 0.375rem 0.875rem;
+        padding: 0.8125rem 0.875rem;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--raised);
@@ -59,12 +59,12 @@ export class StrataTemplateDialog extends LitElement {
       .made div {
         display: flex;
         align-items: center;
-        gap: 8px;
+        gap: 0.5rem;
         min-width: 0;
       }
       .made svg.glyph {
-        width: 16px;
-        height: 16px;
+        width: 1rem;
+        height: 1rem;
         color: var(--ink-soft);
       }
       .made .hint {
@@ -75,8 +75,8 @@ export class StrataTemplateDialog extends LitElement {
         gap: 3px;
       }
       .colors span {
-        width: 11px;
-        height: 11px;
+        width: 0.6875rem;
+        height: 0.6875rem;
         border-radius: 3px;
       }
       li .error {

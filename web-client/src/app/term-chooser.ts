@@ -9,6 +9,7 @@ import { color_of, point_of, swatch_style } from "../core/palette";
 import type { ListedTerm, TermTree as FoundTerms } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 import { follow_session } from "./follow-session";
+import { growth } from "./growth";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
 import { shared_styles } from "./styles";
@@ -19,8 +20,9 @@ import { texts } from "./texts";
 
 const words = texts.terms;
 
-const kRow_px = matchMedia("(pointer: coarse)").matches ? 44 : 30;
-const kTree_px = 300;
+const kFingers = matchMedia("(pointer: coarse)").matches;
+const kRow_px = Math.round((kFingers ? 44 : 30) * growth());
+const kTree_px = Math.round(300 * growth());
 const kIndent_px = 16;
 const kAbove = 4; // rows drawn beyond those in sight
 
@@ -57,14 +59,14 @@ export class StrataTermChooser extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 7px;
+        gap: 0.4375rem;
         min-width: 0;
       }
       .now {
         display: grid;
         grid-template-columns: auto minmax(0, 1fr);
         align-items: center;
-        gap: 2px 9px;
+        gap: 2px 0.5625rem;
       }
       .now .above {
         color: var(--ink-soft);
@@ -80,7 +82,7 @@ export class StrataTermChooser extends LitElement {
         position: relative;
       }
       .search input {
-        padding-right: 40px;
+        padding-right: 2.5rem;
       }
       .search button {
         position: absolute;
@@ -103,9 +105,9 @@ export class StrataTermChooser extends LitElement {
         right: 0;
         display: flex;
         align-items: center;
-        gap: 8px;
+        gap: 0.5rem;
         height: ${kRow_px}px;
-        padding-right: 8px;
+        padding-right: 0.5rem;
         font-size: 0.92rem;
         cursor: pointer;
       }
@@ -126,25 +128,25 @@ export class StrataTermChooser extends LitElement {
         display: grid;
         place-items: center;
         flex: none;
-        width: ${kRow_px === 44 ? 36 : 24}px;
+        width: ${kFingers ? 2.25 : 1.5}rem;
         height: 100%;
         color: var(--ink-soft);
       }
       .fold svg.glyph {
-        width: 14px;
-        height: 14px;
+        width: 0.875rem;
+        height: 0.875rem;
       }
       .term[aria-expanded="true"] .fold svg.glyph {
         transform: rotate(90deg);
       }
       @media (max-width: 820px) {
         .tree {
-          max-height: 220px;
+          max-height: 13.75rem;
         }
       }
       .term > svg.glyph {
-        width: 15px;
-        height: 15px;
+        width: 0.9375rem;
+        height: 0.9375rem;
         margin-left: auto;
         color: var(--accent);
       }

@@ -40,9 +40,9 @@ export class StrataTogetherBar extends LitElement {
         position: absolute;
         top: 0;
         left: 50%;
-        max-width: calc(100% - 24px);
-        min-height: 32px;
-        padding: 0 10px 0 14px;
+        max-width: calc(100% - 1.5rem);
+        min-height: 2rem;
+        padding: 0 0.625rem 0 0.875rem;
         border: 0;
         border-radius: 0 0 var(--radius) var(--radius);
         background: var(--calm);
@@ -55,8 +55,8 @@ export class StrataTogetherBar extends LitElement {
       }
       button svg.glyph {
         flex: none;
-        width: 16px;
-        height: 16px;
+        width: 1rem;
+        height: 1rem;
       }
       .key {
         font-weight: 400;

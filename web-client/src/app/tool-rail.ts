@@ -49,13 +49,13 @@ export class StrataToolRail extends LitElement {
         flex-direction: column;
         align-items: center;
         gap: 4px;
-        padding: 10px 8px;
+        padding: 0.625rem 0.5rem;
         background: var(--surface);
         border-right: var(--edge) solid var(--line);
       }
       button.icon {
-        width: 42px;
-        min-height: 42px;
+        width: 2.625rem;
+        min-height: 2.625rem;
       }
       button[aria-pressed="true"] {
         background: var(--accent);
@@ -66,14 +66,14 @@ export class StrataToolRail extends LitElement {
         background: var(--accent);
       }
       hr:not(strata-menu > hr) {
-        width: 28px;
+        width: 1.75rem;
         margin: 5px 0;
         border: 0;
         border-top: var(--edge) solid var(--line);
       }
       kbd {
         margin-left: auto;
-        padding-left: 18px;
+        padding-left: 1.125rem;
         color: var(--ink-soft);
         font: 0.8rem var(--mono);
       }
@@ -83,10 +83,10 @@ export class StrataToolRail extends LitElement {
           justify-content: safe center;
           overflow-x: auto;
           gap: 2px;
-          padding: 6px;
+          padding: 0.375rem;
           border-right: 0;
           border-top: var(--edge) solid var(--line);
-          --fade: 34px;
+          --fade: 2.125rem;
           --from: 0px;
           --to: 0px;
           scroll-padding-inline: var(--fade); /* a button that the keyboard comes to is seen whole */
@@ -103,7 +103,7 @@ export class StrataToolRail extends LitElement {
         }
         hr:not(strata-menu > hr) {
           width: 0;
-          height: 26px;
+          height: 1.625rem;
           margin: 0 3px;
           border-left: var(--edge) solid var(--line);
           border-top: 0;
@@ -112,8 +112,8 @@ export class StrataToolRail extends LitElement {
         strata-menu {
           flex: 1 1 0;
           width: auto;
-          min-width: 34px;
-          max-width: 52px;
+          min-width: 2.125rem;
+          max-width: 3.25rem;
         }
         strata-menu {
           text-align: center;

@@ -62,16 +62,16 @@ export class StrataTourDialog extends LitElement {
       .editor {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
-        gap: 18px;
+        gap: 1.125rem;
       }
       .about {
         display: grid;
-        grid-template-columns: minmax(0, 1fr) minmax(230px, max-content);
+        grid-template-columns: minmax(0, 1fr) minmax(14.375rem, max-content);
         align-items: end;
-        gap: 12px 16px;
+        gap: 0.75rem 1rem;
       }
       .about textarea {
-        min-height: 38px;
+        min-height: 2.375rem;
       }
       .about .full,
       .about strata-tour-languages,
@@ -80,16 +80,16 @@ export class StrataTourDialog extends LitElement {
       }
       .stops {
         display: grid;
-        grid-template-columns: 270px minmax(0, 1fr);
-        gap: 20px;
-        padding-top: 14px;
+        grid-template-columns: 16.875rem minmax(0, 1fr);
+        gap: 1.25rem;
+        padding-top: 0.875rem;
         border-top: var(--edge) solid var(--line);
       }
       strata-tour-stops {
         position: sticky; /* beside the fields of a stop, which are longer */
         top: 0;
         align-self: start;
-        max-height: calc(100dvh - 190px);
+        max-height: calc(100dvh - 11.875rem);
         margin: -5px;
         padding: 5px;
         overflow: auto;
@@ -102,19 +102,19 @@ export class StrataTourDialog extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
         align-content: start;
-        gap: 12px;
+        gap: 0.75rem;
         min-width: 0;
       }
       .stop > .hint {
-        padding: 24px 0;
+        padding: 1.5rem 0;
         text-align: center;
       }
       .told {
         flex: 1 1 100%;
         display: flex;
         flex-wrap: wrap;
-        gap: 4px 14px;
-        padding: 10px 14px;
+        gap: 4px 0.875rem;
+        padding: 0.625rem 0.875rem;
         border-radius: var(--radius-small);
         background: var(--warn-soft);
         color: var(--ink);

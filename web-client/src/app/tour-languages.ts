@@ -23,12 +23,12 @@ export class StrataTourLanguages extends LitElement {
     css`
       :host {
         display: grid;
-        gap: 6px;
+        gap: 0.375rem;
       }
       ul {
         display: flex;
         flex-wrap: wrap;
-        gap: 6px;
+        gap: 0.375rem;
         margin: 0;
         padding: 0;
         list-style: none;
@@ -37,29 +37,29 @@ export class StrataTourLanguages extends LitElement {
         display: inline-flex;
         align-items: center;
         gap: 4px;
-        padding-left: 12px;
+        padding-left: 0.75rem;
         border-radius: 99px;
         background: var(--accent-soft);
         font-size: 0.9rem;
       }
       li:only-child {
-        padding: 6px 12px;
+        padding: 0.375rem 0.75rem;
       }
       li small {
         color: var(--ink-soft);
       }
       li button.icon {
-        width: 30px;
-        min-height: 30px;
+        width: 1.875rem;
+        min-height: 1.875rem;
         border-radius: 50%;
       }
       .add select {
-        flex: 0 1 240px;
+        flex: 0 1 15rem;
       }
       @media (pointer: coarse) {
         li button.icon {
-          width: 40px;
-          min-height: 40px;
+          width: 2.5rem;
+          min-height: 2.5rem;
         }
       }
     `,

@@ -44,16 +44,16 @@ export class StrataTourStopFields extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
         align-content: start;
-        gap: 14px;
+        gap: 0.875rem;
       }
       .part {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
-        gap: 6px;
+        gap: 0.375rem;
       }
       .view {
         display: flex;
-        gap: 8px;
+        gap: 0.5rem;
       }
       .view select {
         flex: 1;
@@ -61,29 +61,29 @@ export class StrataTourStopFields extends LitElement {
       }
       .words {
         display: grid;
-        grid-template-columns: repeat(auto-fit, minmax(min(100%, 210px), 1fr));
-        gap: 12px;
+        grid-template-columns: repeat(auto-fit, minmax(min(100%, 13.125rem), 1fr));
+        gap: 0.75rem;
       }
       .language {
         display: grid;
         align-content: start;
-        gap: 8px;
+        gap: 0.5rem;
         min-width: 0;
       }
       .segments {
         justify-self: start;
       }
       .segments button {
-        gap: 6px;
+        gap: 0.375rem;
       }
       .dot {
-        width: 8px;
-        height: 8px;
+        width: 0.5rem;
+        height: 0.5rem;
         border-radius: 50%;
         background: var(--warn);
       }
       textarea {
-        min-height: 104px;
+        min-height: 6.5rem;
       }
       textarea[aria-invalid="true"],
       select[aria-invalid="true"] {
@@ -91,9 +91,9 @@ export class StrataTourStopFields extends LitElement {
       }
       .times {
         display: grid;
-        grid-template-columns: repeat(auto-fit, minmax(150px, 1fr));
+        grid-template-columns: repeat(auto-fit, minmax(9.375rem, 1fr));
         align-items: end;
-        gap: 12px;
+        gap: 0.75rem;
       }
       .times .segments {
         display: flex;

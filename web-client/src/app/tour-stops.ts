@@ -54,11 +54,11 @@ export class StrataTourStops extends LitElement {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
         align-content: start;
-        gap: 8px;
+        gap: 0.5rem;
       }
       ol {
         display: grid;
-        gap: 6px;
+        gap: 0.375rem;
         margin: 0;
         padding: 0;
         list-style: none;
@@ -80,24 +80,24 @@ export class StrataTourStops extends LitElement {
       }
       button.stop {
         display: grid;
-        grid-template-columns: 52px minmax(0, 1fr);
+        grid-template-columns: 3.25rem minmax(0, 1fr);
         justify-content: stretch;
-        gap: 1px 10px;
-        min-height: 52px;
-        padding: 6px 4px;
+        gap: 1px 0.625rem;
+        min-height: 3.25rem;
+        padding: 0.375rem 4px;
         text-align: start;
         white-space: normal;
       }
       strata-thumbnail,
       .no-view {
         grid-row: span 3;
-        width: 52px;
+        width: 3.25rem;
         border-radius: 4px;
       }
       .no-view {
         display: grid;
         place-items: center;
-        height: 39px;
+        height: 2.4375rem;
         color: var(--danger);
       }
       b {
@@ -118,8 +118,8 @@ export class StrataTourStops extends LitElement {
         display: flex;
         flex-wrap: wrap;
         align-items: baseline;
-        gap: 2px 12px;
-        padding: 8px 12px;
+        gap: 2px 0.75rem;
+        padding: 0.5rem 0.75rem;
         border-radius: var(--radius-small);
         background: var(--calm-soft);
         font-size: 0.88rem;
@@ -127,7 +127,7 @@ export class StrataTourStops extends LitElement {
       }
       .add {
         display: grid;
-        gap: 6px;
+        gap: 0.375rem;
       }
     `,
   ];

@@ -46,10 +46,10 @@ export class StrataTour extends LitElement {
         position: fixed;
         z-index: 9; /* over everything of the page, under menus and dialogs */
         display: grid;
-        gap: 8px;
+        gap: 0.5rem;
         overflow-y: auto;
-        width: min(25rem, calc(100vw - 24px));
-        padding: 14px 16px 12px;
+        width: min(25rem, calc(100vw - 1.5rem));
+        padding: 0.875rem 1rem 0.75rem;
         border: var(--edge) solid var(--accent);
         border-radius: var(--radius);
         background: var(--raised);
@@ -62,7 +62,7 @@ export class StrataTour extends LitElement {
         }
       }
       section.wide {
-        width: min(32.5rem, calc(100vw - 24px));
+        width: min(32.5rem, calc(100vw - 1.5rem));
       }
       .head {
         align-items: baseline;
@@ -77,14 +77,14 @@ export class StrataTour extends LitElement {
       .choices {
         flex-wrap: wrap;
         justify-content: flex-end;
-        gap: 6px;
+        gap: 0.375rem;
       }
       .choices button {
-        min-height: 34px;
-        padding: 0 12px;
+        min-height: 2.125rem;
+        padding: 0 0.75rem;
       }
       .choices .skip {
-        margin: 0 auto 0 -12px;
+        margin: 0 auto 0 -0.75rem;
         outline-offset: -3px; /* within the card */
       }
       .ring {
@@ -96,7 +96,7 @@ export class StrataTour extends LitElement {
       }
       @media (pointer: coarse) {
         .choices button {
-          min-height: 44px;
+          min-height: 2.75rem;
         }
       }
     `,

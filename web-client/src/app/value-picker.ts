@@ -40,9 +40,9 @@ export class StrataValuePicker extends LitElement {
       }
       .classes {
         display: grid;
-        grid-template-columns: repeat(auto-fit, minmax(118px, 1fr));
-        gap: 6px;
-        max-height: 208px;
+        grid-template-columns: repeat(auto-fit, minmax(7.375rem, 1fr));
+        gap: 0.375rem;
+        max-height: 13rem;
         overflow: auto;
         padding: 2px;
         margin: -2px;
@@ -50,7 +50,7 @@ export class StrataValuePicker extends LitElement {
       .classes button {
         justify-content: flex-start;
         min-width: 0;
-        padding: 0 10px;
+        padding: 0 0.625rem;
       }
       .classes button[aria-checked="true"] {
         border-color: var(--accent);
@@ -60,12 +60,12 @@ export class StrataValuePicker extends LitElement {
       .line {
         display: flex;
         align-items: center;
-        gap: 9px;
+        gap: 0.5625rem;
         min-width: 0;
       }
       .value {
         display: grid;
-        gap: 6px;
+        gap: 0.375rem;
       }
     `,
   ];

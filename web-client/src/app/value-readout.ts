@@ -31,7 +31,7 @@ export class StrataValueReadout extends LitElement {
       div.card {
         display: grid;
         gap: 4px;
-        padding: 9px 13px 10px;
+        padding: 0.5625rem 0.8125rem 0.625rem;
         border: var(--edge) solid var(--line);
         border-radius: var(--radius);
         background: var(--hint);
@@ -41,16 +41,16 @@ export class StrataValueReadout extends LitElement {
       .line {
         display: flex;
         align-items: center;
-        gap: 8px;
+        gap: 0.5rem;
         min-width: 0;
       }
       .swatch {
-        width: 12px;
-        height: 12px;
+        width: 0.75rem;
+        height: 0.75rem;
       }
       .line b {
         margin-left: auto;
-        padding-left: 14px;
+        padding-left: 0.875rem;
         font-weight: 600;
       }
       .line b.none {

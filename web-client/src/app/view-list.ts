@@ -41,9 +41,9 @@ export class StrataViewList extends LitElement {
     list_row_styles,
     css`
       button.go {
-        grid-template-columns: 64px minmax(0, 1fr);
+        grid-template-columns: 4rem minmax(0, 1fr);
         align-items: start;
-        gap: 10px;
+        gap: 0.625rem;
       }
       ul {
         margin: 0;

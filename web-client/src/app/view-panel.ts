@@ -32,22 +32,22 @@ export class StrataViewPanel extends FoldingPanel {
     folding_styles,
     css`
       h2 .dot {
-        width: 8px;
-        height: 8px;
+        width: 0.5rem;
+        height: 0.5rem;
         border-radius: 50%;
         background: var(--accent);
       }
       .parts {
-        gap: 18px;
-        margin-top: 10px;
+        gap: 1.125rem;
+        margin-top: 0.625rem;
       }
       .part {
         display: grid;
         grid-template-columns: minmax(0, 1fr);
-        gap: 10px;
+        gap: 0.625rem;
       }
       .part > .row {
-        min-height: 30px;
+        min-height: 1.875rem;
         justify-content: space-between;
       }
       h3 {
@@ -56,7 +56,7 @@ export class StrataViewPanel extends FoldingPanel {
         color: var(--ink-soft);
       }
       .segments button {
-        padding: 0 6px;
+        padding: 0 0.375rem;
         min-width: 0;
       }
       output {
@@ -65,9 +65,9 @@ export class StrataViewPanel extends FoldingPanel {
       }
       .slider {
         display: grid;
-        grid-template-columns: auto 1fr 76px;
+        grid-template-columns: auto 1fr 4.75rem;
         align-items: center;
-        gap: 10px;
+        gap: 0.625rem;
         font-size: 0.88rem;
       }
       .box {
