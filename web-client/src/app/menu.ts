@@ -88,6 +88,8 @@ export class StrataMenu extends LitElement {
     event.stopPropagation();
     this.list_.showPopover();
     this.place();
+    addEventListener("resize", this.place);
+    this.grown_.observe(this.list_);
   }
 
   private readonly place = (): void => {
@@ -116,13 +118,8 @@ export class StrataMenu extends LitElement {
   }
 
   private on_toggle(event: ToggleEvent): void {
-    if (event.newState === "open") {
-      addEventListener("resize", this.place);
-      this.grown_.observe(this.list_);
-      this.items()[0]?.focus();
-    } else {
-      this.stay();
-    }
+    if (event.newState === "open") this.items()[0]?.focus();
+    else this.stay();
   }
 
   override disconnectedCallback(): void {
