@@ -27,7 +27,7 @@ const kDeep = `
 `;
 const evaluate = (page, body) => page.evaluate(`(() => { ${kDeep} ${body} })()`);
 
-/** What is wider than its room: the document, dialogs and menus as wholes, words that leave their control, and buttons of a dialog that do not stand in one row. */
+/** What is wider than its room: the document, dialogs and menus as wholes, words that leave their control, and buttons of a dialog or of the tour that do not stand in one row. */
 export const overflows = (page) =>
   evaluate(
     page,
@@ -52,8 +52,9 @@ export const overflows = (page) =>
            }
          }
        }
-       if (each.matches("dialog[open] footer")) {
-         const buttons = [...each.querySelectorAll(".way-out"), ...each.querySelector("slot[name=actions]").assignedElements()].filter((button) => button.matches("button"));
+       if (each.matches("dialog[open] footer, section > .choices")) {
+         const slotted = each.querySelector("slot[name=actions]")?.assignedElements() ?? [];
+         const buttons = [...each.querySelectorAll("button"), ...slotted.filter((button) => button.matches("button"))];
          const rows = new Set(buttons.map((button) => Math.round(button.getBoundingClientRect().top)));
          if (rows.size > 1) found.push("buttons in " + rows.size + " rows: " + buttons.map(told).join(", "));
        }

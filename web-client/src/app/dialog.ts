@@ -113,12 +113,12 @@ export class StrataDialog extends LitElement {
       }
       @media (max-width: 560px) {
         footer {
-          gap: 0.5rem;
+          gap: 6px;
           padding: 0.75rem 0.875rem 0.875rem;
         }
         .way-out,
         ::slotted(button[slot="actions"]) {
-          padding: 0 0.625rem !important;
+          padding: 0 0.5rem !important;
         }
         dialog {
           width: 100vw;

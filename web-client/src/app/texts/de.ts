@@ -1811,7 +1811,7 @@ export const texts = {
     progress: (at, of) => `${at} von ${of}`,
     next: "Weiter",
     back: "Zurück",
-    skip: "Rundgang beenden",
+    skip: "Beenden",
     done: "Fertig",
     steps: {
       turn: {
