@@ -320,7 +320,9 @@ try {
   await kiosks(ada).getByText(/^A whole number of days/).waitFor();
   await kiosks(ada).getByLabel("Good for").fill("30");
   await button(kiosks(ada), "Make link").click();
-  const link = await kiosks(ada).getByLabel("Link for “Entrance hall”").inputValue();
+  const link_field = kiosks(ada).getByLabel("Link for “Entrance hall”");
+  const link = await link_field.inputValue();
+  assert.ok(await link_field.evaluate((field) => field === field.getRootNode().activeElement), "the keyboard is where the form was, and the link chosen");
   assert.match(link, /^http:\/\/[^/]+\/kiosk\/.+$/);
   await kiosks(ada).getByRole("listitem").getByText("not opened yet").waitFor();
   await shot(ada, "kiosk_made");

@@ -266,7 +266,7 @@ export class StrataAccountDialog extends LitElement {
   private made({ secret, token }: ScriptTokenMade): TemplateResult {
     return html`<div class="made" role="status">
       <p>${words.token_made(token.name)}</p>
-      <strata-copy-field label=${words.token_made(token.name)} .text=${secret}></strata-copy-field>
+      <strata-copy-field follows_form label=${words.token_made(token.name)} .text=${secret}></strata-copy-field>
       <p class="caption">${words.token_example}</p>
       <pre>curl -H "Authorization: Bearer ${secret}" ${location.origin}/api/v1/models</pre>
     </div>`;

@@ -10,6 +10,8 @@ import { texts } from "./texts";
 export class StrataCopyField extends LitElement {
   @property() label = "";
   @property() text = "";
+  /** Takes the keyboard as it comes: it stands where a form was that is done. */
+  @property({ type: Boolean }) follows_form = false;
   @state() private told_ = "";
   @query("input") private input_!: HTMLInputElement;
 
@@ -31,6 +33,10 @@ export class StrataCopyField extends LitElement {
       }
     `,
   ];
+
+  override firstUpdated(): void {
+    if (this.follows_form) this.input_.focus();
+  }
 
   override render(): TemplateResult {
     return html`<input type="text" readonly aria-label=${this.label} .value=${this.text} @focus=${() => this.input_.select()} />

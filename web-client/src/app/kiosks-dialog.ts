@@ -230,7 +230,7 @@ export class StrataKiosksDialog extends LitElement {
         <b>${title}</b>
         <p>${words.link_lead}</p>
       </div>
-      <strata-copy-field label=${title} .text=${new URL(path, location.origin).href}></strata-copy-field>
+      <strata-copy-field follows_form label=${title} .text=${new URL(path, location.origin).href}></strata-copy-field>
       <button @click=${() => (this.made_ = null)}>${words.link_done}</button>
     </div>`;
   }

@@ -387,7 +387,7 @@ export class StrataPeopleDialog extends LitElement {
         <b>${title}</b>
         <p>${words.link_lead(told_time(expires))}</p>
       </div>
-      <strata-copy-field label=${title} .text=${new URL(path, location.origin).href}></strata-copy-field>
+      <strata-copy-field follows_form label=${title} .text=${new URL(path, location.origin).href}></strata-copy-field>
       <button @click=${() => (this.invitation_ = null)}>${words.link_done}</button>
     </div>`;
   }
