@@ -153,6 +153,23 @@ TEST(ProtocolMessages, a_refused_message_still_tells_its_id) {
   EXPECT_EQ(problem["ref"], "abc");
 }
 
+TEST(ProtocolMessages, a_problem_keeps_its_bounds_whatever_was_sent) {
+  // What was sent stands in the detail and in the field; every cut of it falls within a character of three bytes.
+  for (const std::size_t before : {0, 1, 2}) {
+    std::string sent(before, 'x');
+    for (int i = 0; i < 5000; ++i) sent += "語";
+    const Problem problem{422, "Not a language of the tour", "The tour has no `" + sent + "`.", "title." + sent};
+    const json body = problem_body(problem), message = to_json(problem_message(problem));
+    EXPECT_TRUE(validate(Schema::Problem, body));
+    EXPECT_TRUE(validate(Schema::ProblemMessage, message));
+    for (const json& told : {body, message}) {
+      EXPECT_NO_THROW(static_cast<void>(told.dump())) << "not UTF-8";
+      EXPECT_TRUE(told["field"].get<std::string>().starts_with("title." + sent.substr(0, 400)));
+      EXPECT_TRUE(told["detail"].get<std::string>().ends_with("語…"));
+    }
+  }
+}
+
 TEST(ProtocolMessages, a_long_list_of_numbers_is_looked_through_to_its_end) {
   const auto with = [](std::size_t place, const json& item) {
     json request{{"points", json::array()}, {"layers", {"moisture"}}};

@@ -14,6 +14,17 @@ std::string dump(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+// What somebody sent may stand in a problem, and may be long; a problem has its bounds all the same (Problem in http.schema.json).
+constexpr std::size_t kMaxTitle = 200, kMaxDetail = 10'000, kMaxField = 500;
+constexpr std::string_view kMore = "…";
+
+std::string bounded(const std::string& text, std::size_t most) {
+  if (text.size() <= most) return text;
+  std::size_t end = most - kMore.size();
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;  // not within a character
+  return text.substr(0, end).append(kMore);
+}
+
 template <class Message, class SchemaOf>
 Result<Message> parse_message(std::string_view text, std::string* ref, const JsonLimits& limits,
                               SchemaOf&& schema_of_op) {
@@ -51,18 +62,20 @@ std::string to_text(const ServerMessage& message) { return dump(to_json(message)
 ProblemMessage problem_message(const Problem& problem, const std::optional<std::string>& ref) {
   ProblemMessage message;
   if (ref && !ref->empty()) message.ref = ref->substr(0, kMaxRef);
-  message.title = problem.title;
+  message.title = bounded(problem.title, kMaxTitle);
   message.status = std::clamp(problem.status, 400, 599);
-  message.detail = problem.detail;
-  if (!problem.field.empty()) message.field = problem.field;
+  message.detail = bounded(problem.detail, kMaxDetail);
+  if (!problem.field.empty()) message.field = bounded(problem.field, kMaxField);
   if (problem.offset) message.offset = static_cast<int>(*problem.offset);
   return message;
 }
 
 nlohmann::json problem_body(const Problem& problem) {
-  nlohmann::json json{
-      {"type", "about:blank"}, {"title", problem.title}, {"status", problem.status}, {"detail", problem.detail}};
-  if (!problem.field.empty()) json["field"] = problem.field;
+  nlohmann::json json{{"type", "about:blank"},
+                      {"title", bounded(problem.title, kMaxTitle)},
+                      {"status", problem.status},
+                      {"detail", bounded(problem.detail, kMaxDetail)}};
+  if (!problem.field.empty()) json["field"] = bounded(problem.field, kMaxField);
   if (problem.offset) json["offset"] = *problem.offset;
   return json;
 }
