@@ -14,14 +14,19 @@ namespace {
 constexpr std::size_t kSliceBytes = std::size_t{4} << 20;  // ≈ 1 ms of copying
 constexpr std::size_t kTrianglesMeasured = 4096;
 
+constexpr unsigned kCorners = 8;
+
+glm::vec4 corner_of(const mesh::ClusterBox& box, unsigned corner) {
+  return {(corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
+          (corner & 4) != 0 ? box.max.z : box.min.z, 1};
+}
+
 // Whether all corners lie beyond one side of the clip volume. The slack covers the rounding of the vertex stage.
 bool outside(const mesh::ClusterBox& box, const glm::mat4& clip_from_model) {
   constexpr float kSlack = 1e-5f;
   unsigned beyond = 0x3f;  // a bit a side
-  for (unsigned corner = 0; corner < 8 && beyond != 0; ++corner) {
-    const glm::vec3 position{corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                             corner & 4 ? box.max.z : box.min.z};
-    const glm::vec4 clip = clip_from_model * glm::vec4(position, 1);
+  for (unsigned corner = 0; corner < kCorners && beyond != 0; ++corner) {
+    const glm::vec4 clip = clip_from_model * corner_of(box, corner);
     for (int axis = 0; axis < 3; ++axis) {
       const float slack = kSlack * (std::abs(clip[axis]) + std::abs(clip.w));
       if (clip[axis] <= clip.w + slack) beyond &= ~(1u << (2 * axis));
@@ -86,14 +91,10 @@ std::size_t MeshBuffers::visible_triangles(const glm::mat4& clip_from_model) con
 }
 
 float MeshBuffers::triangle_pixels(const glm::mat4& clip_from_model, int height) const {
-  const mesh::Geometry& mesh = *geometry_;
+  const mesh::ClusterBox box{geometry_->box_min, geometry_->box_max};
   float nearest = std::numeric_limits<float>::infinity();
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    const glm::vec4 position((corner & 1) != 0 ? mesh.box_max.x : mesh.box_min.x,
-                             (corner & 2) != 0 ? mesh.box_max.y : mesh.box_min.y,
-                             (corner & 4) != 0 ? mesh.box_max.z : mesh.box_min.z, 1);
-    nearest = std::min(nearest, (clip_from_model * position).w);
-  }
+  for (unsigned corner = 0; corner < kCorners; ++corner)
+    nearest = std::min(nearest, (clip_from_model * corner_of(box, corner)).w);
   if (nearest <= 0) return std::numeric_limits<float>::infinity();
   const glm::vec3 upwards(clip_from_model[0][1], clip_from_model[1][1], clip_from_model[2][1]);
   return triangle_side_ * glm::length(upwards) / nearest * 0.5f * static_cast<float>(height);
