@@ -23,11 +23,10 @@ layout(binding = 0) uniform sampler2D looks[LOOKS];  // sRGB codes, as all colou
 layout(location = 0) out uint packed_uv;
 layout(location = 1) out vec4 lit;
 
-#ifdef LIT_VERTICES
-float light_here() { return surface_light; }
-#else
 float light_here() {
-#if defined(HEADLIGHT)
+#if defined(LIT_VERTICES)
+  return surface_light;
+#elif defined(HEADLIGHT)
   return 0.1 + 0.9 * clamp(abs(surface_normal.w) / length(surface_normal.xyz), 0.0, 1.0);
 #elif defined(UNLIT)
   return 1.0;
@@ -41,7 +40,6 @@ float light_here() {
 #endif
 #endif
 }
-#endif
 
 void main() {
   uvec2 q = uvec2(clamp(surface_uv, 0.0, 1.0) * 65536.0);

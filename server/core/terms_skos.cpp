@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "core/utf8.h"
+
 namespace strata {
 namespace {
 
@@ -103,10 +105,7 @@ std::string code_of(const std::string& iri, const Concept& about) {
   }
   if (code.empty()) code = plainest(about.labels);
   if (code.empty()) code = "term";
-  // Room for a number; a character is not cut in two.
-  std::size_t end = std::min(code.size(), kLongestCode - 10);
-  while (end < code.size() && end > 0 && (static_cast<unsigned char>(code[end]) & 0xc0) == 0x80) --end;
-  return code.substr(0, end);
+  return std::string(first_bytes(code, kLongestCode - 10));  // room for a number
 }
 
 std::string iri_text(std::string_view text) {

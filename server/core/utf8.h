@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -11,5 +12,8 @@ bool is_utf8(std::string_view text);
 
 // Each byte that belongs to no character becomes U+FFFD.
 std::string mended_utf8(std::string_view text);
+
+// As many of its first bytes as are wanted, without a part of a character at their end.
+std::string_view first_bytes(std::string_view text, std::size_t most);
 
 }  // namespace strata

@@ -22,7 +22,7 @@ const char* light_define(LightMode mode) {
 // A plane that faces the viewer is shown in middle grey, however low the light stands.
 constexpr double kRakingOnPlane = 0.5, kMostRaking = 3;
 
-// Smaller triangles are lit at their vertices: who looks sees no difference, and a software renderer draws a tenth faster.
+// Smaller triangles are lit at their vertices: who looks sees no difference, and a software renderer draws a thirteenth faster.
 constexpr float kPixelsLitAtVertices = 10;
 
 // A part of the clusters that are left is drawn before the others are looked at; a few are drawn sooner than looked at.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/utf8.h"
 #include "protocol/json_values.h"
 
 namespace strata::protocol {
@@ -20,9 +21,7 @@ constexpr std::string_view kMore = "…";
 
 std::string bounded(const std::string& text, std::size_t most) {
   if (text.size() <= most) return text;
-  std::size_t end = most - kMore.size();
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;  // not within a character
-  return text.substr(0, end).append(kMore);
+  return std::string(first_bytes(text, most - kMore.size())).append(kMore);
 }
 
 template <class Message, class SchemaOf>
