@@ -3,6 +3,7 @@
 import { css, html, LitElement, nothing, ReactiveElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { icon } from "./icons";
+import { has_fingers } from "./pointers";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -254,7 +255,7 @@ async function first_stop(root: Element): Promise<HTMLElement | null> {
 }
 
 /** On touch screens fields bring up a keyboard that covers half of the dialog. */
-const opens_keyboard = (element: HTMLElement): boolean => matchMedia("(pointer: coarse)").matches && element.matches("input[type=text], input[type=password], textarea");
+const opens_keyboard = (element: HTMLElement): boolean => has_fingers() && element.matches("input[type=text], input[type=password], textarea");
 
 /** A question with two answers; asked by ask(). */
 @customElement("strata-question")

@@ -12,6 +12,7 @@ import { follow_session } from "./follow-session";
 import { growth } from "./growth";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
+import { has_fingers } from "./pointers";
 import { shared_styles } from "./styles";
 import { styled } from "./styled";
 import { folded_at_first, path_to, rows_of, tree_step, type TermRow } from "./term-rows";
@@ -20,7 +21,7 @@ import { texts } from "./texts";
 
 const words = texts.terms;
 
-const kFingers = matchMedia("(pointer: coarse)").matches;
+const kFingers = has_fingers();
 const kRow_px = Math.round((kFingers ? 44 : 30) * growth());
 const kTree_px = Math.round(300 * growth());
 const kIndent_px = 16;
