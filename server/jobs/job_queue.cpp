@@ -1,7 +1,5 @@
 #include "jobs/job_queue.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -12,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/give_back_memory.h"
 #include "core/log.h"
 
 namespace strata::jobs {
@@ -51,9 +50,6 @@ Result<JobResult> run(const JobQueue::Work& work, Progress& progress) {
                 "The server could not finish this because of a fault of its own; its log says more.");
   }
 }
-
-// Long work leaves a gigabyte of small freed pieces in the allocator's lists, which keeps them for the process; the system can use them.
-void give_back_memory() { ::malloc_trim(0); }
 
 }  // namespace
 

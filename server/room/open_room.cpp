@@ -617,7 +617,7 @@ void OpenRoom::tell_layer(std::optional<Visibility> before, const Layer& layer) 
 void OpenRoom::leave(RoomMember* member) {
   {
     std::lock_guard lock(members_mutex_);
-    std::erase(members_, member);
+    departed_ += std::erase(members_, member);
     followers_.leave(member->session());
   }
   touch();
@@ -680,9 +680,14 @@ void OpenRoom::touch() {
   last_used_ = std::chrono::steady_clock::now();
 }
 
-bool OpenRoom::empty() const {
+std::size_t OpenRoom::people() const {
   std::lock_guard lock(members_mutex_);
-  return members_.empty();
+  return members_.size();
+}
+
+std::size_t OpenRoom::take_departed() {
+  std::lock_guard lock(members_mutex_);
+  return std::exchange(departed_, 0);
 }
 
 bool OpenRoom::drop_map() {
@@ -690,7 +695,7 @@ bool OpenRoom::drop_map() {
 }
 
 bool OpenRoom::deserted(std::chrono::steady_clock::time_point now) const {
-  if (!empty()) return false;
+  if (people() > 0) return false;
   std::lock_guard lock(mutex_);
   return now - last_used_ > parts_.options.close_after;
 }

@@ -130,7 +130,8 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void gpu_lost();
   bool deserted(std::chrono::steady_clock::time_point now) const;  // nobody for `close_after`
   void touch();
-  bool empty() const;  // nobody is in it
+  std::size_t people() const;   // who are in it, a connection each
+  std::size_t take_departed();  // who have left it since this was asked
   const SurfaceMaps& maps() const { return *maps_; }
   bool drop_map();  // the one that was not used for the longest time, where nothing is being painted. Blocks
   void take_no_edits() { takes_edits_ = false; }  // new ones are refused
@@ -213,6 +214,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
 
   mutable std::recursive_mutex members_mutex_;  // recursive: a listener may ask for presence while it is told
   std::vector<RoomMember*> members_;
+  std::size_t departed_ = 0;
   Followers followers_;
 };
 

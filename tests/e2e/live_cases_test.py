@@ -7,15 +7,18 @@ import signal
 import sys
 import threading
 import uuid
+from contextlib import ExitStack
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.cameras import camera_from
 from support.live_client import LAST_RECTANGLE, Closed, LiveClient, Refused
 from support.meshes import folded_grid
+from support.process_memory import resident_mb
 from support.strata_server import StrataServer, wait_for
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 M, L = "/models/grid", "/models/grid/layers/marks"
+VIEWERS = 16
 
 
 def new_id():
@@ -209,6 +212,25 @@ def check_slow_client(server):
     assert server.get("//livez").status == 200
 
 
+def check_leaving(server):
+    """What the views of many took the system has again when they have left."""
+    model = server.get(M).json()
+    with ExitStack() as people:
+        def come(number):
+            live = people.enter_context(LiveClient(server, "grid"))
+            live.hello()
+            live.send({"op": "camera", "seq": 1, "moving": False, **camera_from(model, (0.3, number / VIEWERS, 1), 1280, 720)})
+            wait_for_picture(live, 1)
+
+        come(0)
+        alone = resident_mb(server)
+        for number in range(1, VIEWERS):
+            come(number)
+        most = resident_mb(server)
+        assert most > alone + 8 * VIEWERS, f"{VIEWERS} views at rest take only {most - alone:.0f} MB: this test shows nothing"
+    wait_for(lambda: resident_mb(server) < alone + (most - alone) / 2, "the memory of those who left")
+
+
 def check_end(server):
     """SIGTERM in mid-load: what was answered is kept, what is refused is not there, and the exit status is 0."""
     answered, refused = [], []
@@ -263,6 +285,7 @@ def main():
         server.import_model(folded_grid(), "grid.ply", unit="mm", name="Grid")
         for name in ("Marks", "Other"):
             server.ok("POST", M + "/layers", {"name": name, "type": "u8"})
+        check_leaving(server)  # first: others' leftovers would be used again
         check_upgrade(server)
         check_sign_out(server)
         check_bad_messages(server)

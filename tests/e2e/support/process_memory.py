@@ -6,21 +6,25 @@ def _of(process, name):
         return next(int(line.split()[1]) for line in file if line.startswith(name)) / 1024
 
 
+def resident_mb(server):
+    return _of(server.process, "VmRSS")
+
+
 class PeakGrowth:
     """How much more than at first was taken at any moment within: `mb`, known at the end."""
 
     def __init__(self, server):
-        self.process, self.mb = server.process, 0.0
+        self.server, self.mb = server, 0.0
 
     def __enter__(self):
-        with open(f"/proc/{self.process.pid}/clear_refs", "w", encoding="ascii") as file:
+        with open(f"/proc/{self.server.process.pid}/clear_refs", "w", encoding="ascii") as file:
             file.write("5")  # the peak begins anew
-        self.first = _of(self.process, "VmRSS")
+        self.first = resident_mb(self.server)
         return self
 
     def __exit__(self, *failure):
-        self.mb = _of(self.process, "VmHWM") - self.first
-        self.after_mb = _of(self.process, "VmRSS") - self.first
+        self.mb = _of(self.server.process, "VmHWM") - self.first
+        self.after_mb = resident_mb(self.server) - self.first
 
     def checked(self, most_mb):
         """In words, once it was compared."""
