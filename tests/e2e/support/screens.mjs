@@ -470,6 +470,8 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       await page.getByRole("button", { name: w.review.title }).click();
       await server.json("POST", `/models/${site.model}/layers/finds/review`, { decision: "reject", all: true });
       await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: false });
+      // Heard of while the next screen is walked through, it would be a control that the keyboard never reaches.
+      await page.getByRole("button", { name: w.review.title }).waitFor({ state: "detached" });
     }, keyboard: true },
     { name: "new comment", start: async () => {
       await tool("c");
