@@ -2,6 +2,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import golden from "../../protocol/golden/frame_headers.json";
 import { Connection, type ConnectionCallbacks, type StrokeOptions } from "../src/core/connection";
+import type { ChangeMessage } from "../src/core/outbox";
 import type { Layer } from "../src/core/protocol.gen";
 import { FakeSocket, welcome } from "./fake-socket";
 
@@ -20,6 +21,7 @@ let sockets: FakeSocket[];
 let frames: (() => void)[];
 let callbacks: { [Name in keyof ConnectionCallbacks]: ReturnType<typeof vi.fn<ConnectionCallbacks[Name]>> };
 let connection: Connection;
+let shelved: ChangeMessage[]; // what the browser keeps beyond the page
 
 const socket = (): FakeSocket => sockets[sockets.length - 1]!;
 const draw = (): void => frames.splice(0).forEach((frame) => frame());
@@ -53,7 +55,9 @@ beforeEach(() => {
     presence: vi.fn(),
     picked: vi.fn(),
     problem: vi.fn(),
+    taken_up: vi.fn(),
   };
+  shelved = [];
   connection = new Connection(
     {
       url: "ws://here/api/v1/models/1/live",
@@ -62,6 +66,14 @@ beforeEach(() => {
       make_socket: (url, protocol) => {
         sockets.push(new FakeSocket(url, protocol));
         return socket();
+      },
+      make_shelf: (user) => {
+        expect(user).toBe("owner");
+        return {
+          read: async () => [...shelved],
+          put: (message) => void shelved.push(message),
+          remove: (ids) => void (shelved = shelved.filter(({ id }) => !ids.includes(id))),
+        };
       },
       next_frame: (callback) => void frames.push(callback),
       random: () => 0.5,
@@ -267,6 +279,48 @@ describe("a lost connection", () => {
     expect(again).toEqual(wanted);
     expect(again.map((message) => message.op)).toEqual(["stroke.begin", "stroke.extend", "stroke.extend", "stroke.end"]);
     expect(saving()).toEqual({ waiting: 2, failing: false });
+  });
+
+  it("keeps what is not saved beyond the page, and nothing else", () => {
+    connect();
+    const stroke = connection.begin_stroke(stroke_options)!;
+    stroke.extend([[1, 1]]);
+    stroke.extend([[2, 2]]);
+    stroke.end();
+    connection.send_change({ op: "undo", id: "u", layer: 7 });
+    expect(shelved.map(({ op }) => op)).toEqual(["stroke.begin", "stroke.extend", "stroke.extend", "stroke.end", "undo"]);
+    socket().receive({ op: "saved", stroke: stroke.stroke, n: 0, sequence: 1 });
+    expect(shelved.map(({ op }) => op)).toEqual(["stroke.begin", "stroke.extend", "stroke.end", "undo"]);
+    socket().receive({ op: "saved", stroke: stroke.stroke, n: 1, sequence: 2 });
+    expect(shelved.map(({ op }) => op)).toEqual(["undo"]);
+    socket().receive({ op: "problem", ref: "u", status: 409, title: "Nothing to undo", detail: "" });
+    expect(shelved).toEqual([]);
+  });
+
+  it("sends what an earlier page left, before its own, and ends the stroke that was being drawn", async () => {
+    shelved = [
+      { op: "stroke.begin", id: "b", stroke: "s", layer: 7, value: 3, camera, radius_px: 12, shape: "disc" },
+      { op: "stroke.extend", id: "e0", stroke: "s", n: 0, path: [[1, 1]] },
+      { op: "stroke.extend", id: "e1", stroke: "s", n: 1, path: [[2, 2]] },
+      { op: "undo", id: "u", layer: 7 },
+    ];
+    connect([{ stroke: "s", n: 0 }]); // whose answer the earlier page never heard
+    connection.send_change({ op: "redo", id: "mine", layer: 7 });
+    await vi.advanceTimersByTimeAsync(0);
+    expect(callbacks.taken_up.mock.calls).toEqual([[3]]);
+    expect(saving()).toEqual({ waiting: 3, failing: false });
+    expect(socket().sent.slice(-5).map((message) => ("id" in message ? message.id : ""))).toEqual(["b", "e1", expect.any(String), "u", "mine"]);
+    expect(socket().of("stroke.end").map(({ stroke }) => stroke)).toEqual(["s"]);
+    socket().receive({ op: "saved", stroke: "s", n: 1, sequence: 5 });
+    for (const id of ["u", "mine"]) socket().receive({ op: "saved", id, sequence: 6 });
+    expect([shelved, saving()]).toEqual([[], { waiting: 0, failing: false }]);
+  });
+
+  it("keeps nothing of a model that is gone", () => {
+    connect();
+    connection.send_change({ op: "undo", id: "u", layer: 7 });
+    connection.forget();
+    expect(shelved).toEqual([]);
   });
 
   it("sends nothing again when all was saved", () => {

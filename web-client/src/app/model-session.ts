@@ -11,6 +11,7 @@ import type { FrameMessage } from "../core/frame-header";
 import type { GestureHandler, PointerSample } from "../core/input";
 import type { Background, LayerEvent, ModelEvent, Picked, ProblemMessage, Welcome } from "../core/protocol.gen";
 import { complete_layer, may_curate, may_paint, type Column, type Layer, type Model, type ModelPatch, type Role } from "../core/types";
+import { UnsavedShelf } from "../core/unsaved-shelf";
 import { BrushTool } from "../tools/brush";
 import { BucketTool } from "../tools/bucket";
 import { CommentTool } from "../tools/comment";
@@ -262,7 +263,13 @@ export class ModelSession {
     const url = `${protocol === "https:" ? "wss" : "ws"}://${host}/api/v1/models/${encodeURIComponent(this.model_id)}/live`;
     const client = "strata-page/0.1";
     return new Connection(
-      { url, client, device_pixel_ratio: window.devicePixelRatio, ...(make_socket ? { make_socket } : {}) },
+      {
+        url,
+        client,
+        device_pixel_ratio: window.devicePixelRatio,
+        ...(make_socket ? { make_socket } : {}),
+        make_shelf: (user, model) => new UnsavedShelf(user, model, not_kept),
+      },
       {
         state: (state) => this.on_state(state),
         welcome: (message) => this.on_welcome(message),
@@ -307,6 +314,7 @@ export class ModelSession {
           if (!this.cursors.answer(message) && !this.together.answer(message)) this.pointer.answer(message);
         },
         problem: (problem) => this.on_problem(problem),
+        taken_up: (changes) => notices.show("info", texts.saving.taken_up(changes), texts.saving.taken_up_hint),
       },
     );
   }
@@ -417,7 +425,7 @@ export class ModelSession {
     this.tell_left_behind();
   }
 
-  /** Ends the connection; what is not saved is lost. */
+  /** Ends the connection; what is not saved is sent when the same person comes back to the model. */
   discard(): void {
     forget(this);
     this.saving = { waiting: 0, failing: false };
@@ -609,6 +617,7 @@ export class ModelSession {
   private on_deleted(): void {
     const { waiting } = this.saving;
     if (waiting > 0) notices.show("problem", texts.saving.lost_with_model(waiting, this.name));
+    this.connection_.forget();
     this.deleted = true;
     this.discard();
     this.changed();
@@ -706,4 +715,10 @@ export class ModelSession {
 }
 
 /** It is painting that was on its way when the layer was locked. */
+let told_not_kept = false;
+const not_kept = (why: unknown): void => {
+  if (told_not_kept) return;
+  told_not_kept = true;
+  notices.show("problem", texts.saving.not_kept, `${texts.saving.not_kept_hint} (${String(why)})`);
+};
 const is_of_lock = ({ status, field }: Omit<ProblemMessage, "op">): boolean => status === 403 && field === "layer";

@@ -15,7 +15,7 @@ export function check_connections(): void {
   for (const session of sessions) session.check_connection();
 }
 
-/** Somebody else signed in, in whose name they must not go out. Returns how many changes are lost. */
+/** Somebody else signed in, in whose name they must not go out. Returns how many changes wait for them to come back. */
 export function discard_unsaved(): number {
   const lost = unsaved_changes();
   for (const session of [...sessions]) session.discard();

@@ -77,6 +77,15 @@ export interface ConnectionCallbacks {
   picked(message: Picked): void;
   /** A refusal. What was refused for good is no longer waiting. */
   problem(problem: Omit<ProblemMessage, "op">): void;
+  /** So many changes that an earlier page could not have saved are sent again. */
+  taken_up(changes: number): void;
+}
+
+/** Where changes wait that are to outlive the page (unsaved-shelf.ts). */
+export interface Shelf {
+  read(): Promise<ChangeMessage[]>;
+  put(message: ChangeMessage): void;
+  remove(ids: readonly string[]): void;
 }
 
 export interface ConnectionOptions {
@@ -84,6 +93,8 @@ export interface ConnectionOptions {
   client: string;
   device_pixel_ratio: number;
   make_socket?: (url: string, protocol: string) => SocketLike;
+  /** Of the person who paints here; without it what is not saved lives as long as the connection. */
+  make_shelf?: (user: string, model: number) => Shelf;
   /** Calls back before the next picture is drawn. */
   next_frame?: (callback: () => void) => void;
   random?: () => number;
@@ -126,7 +137,8 @@ export class Connection {
   private resend_slice_ = 100; // messages a second, so that the server's limit is kept
   private resending_: ChangeMessage[] = []; // still to go out again; new changes queue behind them
 
-  private readonly outbox_ = new Outbox();
+  private shelf_: Shelf | null = null;
+  private readonly outbox_ = new Outbox((ids) => this.shelf_?.remove(ids));
   private readonly silenced_ = new Set<string>(); // ids whose answers say nothing new: given up, or signs of life
 
   private camera_: { camera: CameraMessage; moving: boolean } | null = null;
@@ -183,7 +195,7 @@ export class Connection {
     this.set_silence_timer(kOpening_ms, () => this.give_up_socket());
   }
 
-  /** For good; what is not saved is lost. */
+  /** For good; what is not saved stays on the shelf. */
   close(): void {
     this.forget_timers();
     const socket = this.socket_;
@@ -292,6 +304,7 @@ export class Connection {
   }
 
   private change(message: ChangeMessage): void {
+    this.shelf_?.put(message);
     this.outbox_.add(message);
     if (this.resending_.length > 0) this.resending_.push(message);
     else if (this.state_ === "open") this.send(message);
@@ -413,6 +426,22 @@ export class Connection {
     if (this.camera_) this.send_camera();
     this.resend();
     this.report_saving();
+    if (!this.shelf_ && this.options_.make_shelf) {
+      this.shelf_ = this.options_.make_shelf(message.user, message.model.id);
+      void this.take_up(this.shelf_, message.strokes);
+    }
+  }
+
+  /** What this person's earlier pages could not have saved. */
+  private async take_up(shelf: Shelf, known: Welcome["strokes"]): Promise<void> {
+    const messages = await shelf.read();
+    if (this.state_ === "closed") return;
+    const changes = this.outbox_.adopt(messages);
+    for (const { stroke, n } of known) this.outbox_.saved_through(stroke, n);
+    if (changes === 0) return;
+    this.callbacks_.taken_up(changes);
+    if (this.state_ === "open") this.resend();
+    this.report_saving();
   }
 
   private on_problem(message: ProblemMessage): void {
@@ -435,6 +464,11 @@ export class Connection {
     for (const id of this.outbox_.give_up(message.ref)) if (id !== message.ref) this.silenced_.add(id);
     this.report_saving();
     this.callbacks_.problem(problem);
+  }
+
+  /** The model is gone, and with it what waits. */
+  forget(): void {
+    this.shelf_?.remove(this.outbox_.messages().map((message) => message.id));
   }
 
   private resend(): void {

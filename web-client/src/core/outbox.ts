@@ -1,6 +1,7 @@
 // Everything this page asked the server to change and that is not known to be durable yet, in the order it was asked.
 // Ids never change, so sending a message again paints nothing twice.
 
+import { new_id } from "./api";
 import type { EditRequest, Redo, StrokeBegin, StrokeEnd, StrokeExtend, Undo } from "./protocol.gen";
 
 export type ChangeMessage = StrokeBegin | StrokeExtend | StrokeEnd | EditRequest | Undo | Redo;
@@ -21,6 +22,9 @@ type Entry = StrokeEntry | SingleEntry;
 export class Outbox {
   private entries_: Entry[] = [];
 
+  /** `dropped` hears the ids of what waits no longer. */
+  constructor(private readonly dropped_: (ids: string[]) => void = () => {}) {}
+
   /** Changes that are not durable. */
   get waiting(): number {
     return this.entries_.reduce((sum, entry) => sum + (entry.kind === "stroke" ? entry.parts.length : 1), 0);
@@ -36,13 +40,25 @@ export class Outbox {
         break;
       case "stroke.end": {
         const entry = this.stroke(message.stroke);
-        if (entry) entry.end = message;
-        this.drop_finished();
+        if (entry) this.shrink(() => (entry.end = message), [message]);
         break;
       }
       default:
         this.entries_.push({ kind: "single", message });
     }
+  }
+
+  /** What an earlier page left goes before what this one asked for. Strokes that it was drawing end. Returns how many changes are new here. */
+  adopt(messages: readonly ChangeMessage[]): number {
+    const before = this.waiting;
+    const left = messages.filter((message) => !this.has(message.id));
+    const own = this.entries_;
+    this.entries_ = [];
+    for (const message of left) this.add(message);
+    for (const entry of [...this.entries_])
+      if (entry.kind === "stroke" && !entry.end) this.add({ op: "stroke.end", id: new_id(), stroke: entry.begin.stroke });
+    this.entries_.push(...own);
+    return this.waiting - before;
   }
 
   has_stroke(stroke: string): boolean {
@@ -59,13 +75,14 @@ export class Outbox {
   }
 
   saved(answer: { id?: string | undefined; stroke?: string | undefined; n?: number | undefined }): void {
-    if (answer.stroke !== undefined && answer.n !== undefined) {
-      const entry = this.stroke(answer.stroke);
-      if (entry) entry.parts = entry.parts.filter((part) => part.n !== answer.n);
-    } else if (answer.id !== undefined) {
-      this.entries_ = this.entries_.filter((entry) => entry.kind !== "single" || entry.message.id !== answer.id);
-    }
-    this.drop_finished();
+    this.shrink(() => {
+      if (answer.stroke !== undefined && answer.n !== undefined) {
+        const entry = this.stroke(answer.stroke);
+        if (entry) entry.parts = entry.parts.filter((part) => part.n !== answer.n);
+      } else if (answer.id !== undefined) {
+        this.entries_ = this.entries_.filter((entry) => entry.kind !== "single" || entry.message.id !== answer.id);
+      }
+    });
   }
 
   /** Whether the message is a stroke's batch, and one before it waits, too. */
@@ -76,28 +93,16 @@ export class Outbox {
   /** The server keeps all batches of the stroke up to n. */
   saved_through(stroke: string, n: number): void {
     const entry = this.stroke(stroke);
-    if (entry) entry.parts = entry.parts.filter((part) => part.n > n);
-    this.drop_finished();
+    if (entry) this.shrink(() => (entry.parts = entry.parts.filter((part) => part.n > n)));
   }
 
   /** The server will never take this message. Returns the ids that are given up with it. */
   give_up(id: string): string[] {
-    const given_up: string[] = [];
-    for (const entry of this.entries_) {
-      if (entry.kind === "single") {
-        if (entry.message.id === id) given_up.push(id);
-      } else if (entry.begin.id === id) {
-        given_up.push(id, ...entry.parts.map((part) => part.id), ...(entry.end ? [entry.end.id] : []));
-      } else if (entry.parts.some((part) => part.id === id)) {
-        given_up.push(id);
-        entry.parts = entry.parts.filter((part) => part.id !== id);
-      }
-    }
-    this.entries_ = this.entries_.filter(
-      (entry) => (entry.kind === "single" ? entry.message.id : entry.begin.id) !== id,
-    );
-    this.drop_finished();
-    return given_up;
+    return this.shrink(() => {
+      for (const entry of this.entries_)
+        if (entry.kind === "stroke") entry.parts = entry.parts.filter((part) => part.id !== id);
+      this.entries_ = this.entries_.filter((entry) => (entry.kind === "single" ? entry.message.id : entry.begin.id) !== id);
+    });
   }
 
   /** What to send again, in order. */
@@ -113,9 +118,14 @@ export class Outbox {
     );
   }
 
-  private drop_finished(): void {
-    this.entries_ = this.entries_.filter(
-      (entry) => entry.kind === "single" || entry.end === null || entry.parts.length > 0,
-    );
+  /** Strokes that ended and of which every batch is saved go, too. Returns the ids of what went; `besides`: came meanwhile. */
+  private shrink(change: () => void, besides: readonly ChangeMessage[] = []): string[] {
+    const before = [...this.messages(), ...besides];
+    change();
+    this.entries_ = this.entries_.filter((entry) => entry.kind === "single" || entry.end === null || entry.parts.length > 0);
+    const left = new Set(this.messages());
+    const gone = before.filter((message) => !left.has(message)).map((message) => message.id);
+    if (gone.length > 0) this.dropped_(gone);
+    return gone;
   }
 }

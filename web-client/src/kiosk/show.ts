@@ -219,6 +219,7 @@ export class KioskShow {
         saving: nothing,
         applied: nothing,
         saved: nothing,
+        taken_up: nothing,
         tool: nothing,
         record: nothing,
         table: nothing,

@@ -1,0 +1,78 @@
+// Changes that are not known to be durable, in the browser's own database, so that they outlive the page: they go out again, under the same
+// ids, when the same person opens the model here the next time. Two pages of one person may send the same change: nothing is painted twice.
+
+import type { ChangeMessage } from "./outbox";
+
+const kDatabase = "strata";
+const kStore = "unsaved"; // messages by [user, model, when made in µs, id]
+const kChanges: readonly string[] = ["stroke.begin", "stroke.extend", "stroke.end", "edit", "undo", "redo"] satisfies ChangeMessage["op"][];
+
+type Key = [user: string, model: number, made: number, id: string];
+
+const result_of = <T>(request: IDBRequest<T>): Promise<T> =>
+  new Promise((done, failed) => {
+    request.onsuccess = () => done(request.result);
+    request.onerror = () => failed(request.error ?? new Error("IndexedDB"));
+  });
+
+let database: Promise<IDBDatabase> | null = null;
+
+function open(): Promise<IDBDatabase> {
+  if (database) return database;
+  const request = indexedDB.open(kDatabase, 1);
+  request.onupgradeneeded = () => void request.result.createObjectStore(kStore);
+  database = result_of(request);
+  database.catch(() => (database = null));
+  return database;
+}
+
+const is_change = (row: unknown): row is ChangeMessage =>
+  typeof row === "object" && row !== null && "id" in row && typeof row.id === "string" && "op" in row && kChanges.includes(row.op as string);
+
+/** What one person asked for on one model. `failed` hears when the browser does not keep it; then it lives as long as the page. */
+export class UnsavedShelf {
+  private readonly keys_ = new Map<string, Key>();
+  private made_ = 0;
+
+  constructor(
+    private readonly user_: string,
+    private readonly model_: number,
+    private readonly failed_: (why: unknown) => void,
+  ) {}
+
+  /** In the order it was made. */
+  async read(): Promise<ChangeMessage[]> {
+    try {
+      const store = (await open()).transaction(kStore).objectStore(kStore);
+      const mine = IDBKeyRange.bound([this.user_, this.model_], [this.user_, this.model_, []]);
+      const [keys, rows] = await Promise.all([result_of(store.getAllKeys(mine)), result_of<unknown[]>(store.getAll(mine))]);
+      for (const key of keys as Key[]) this.keys_.set(key[3], key);
+      return rows.filter(is_change);
+    } catch {
+      return []; // told when something is to be kept
+    }
+  }
+
+  put(message: ChangeMessage): void {
+    this.made_ = Math.max(this.made_ + 1, Date.now() * 1000);
+    const key: Key = [this.user_, this.model_, this.made_, message.id];
+    this.keys_.set(message.id, key);
+    this.change((store) => store.put(message, key));
+  }
+
+  remove(ids: readonly string[]): void {
+    const keys = ids.map((id) => this.keys_.get(id)).filter((key) => key !== undefined);
+    for (const id of ids) this.keys_.delete(id);
+    this.change(...keys.map((key) => (store: IDBObjectStore) => store.delete(key)));
+  }
+
+  private change(...changes: ((store: IDBObjectStore) => IDBRequest)[]): void {
+    if (changes.length === 0) return;
+    const all = async (): Promise<void> => {
+      // Relaxed: it is to outlive the page, not the machine; a tablet's flash need not hear of each batch of a stroke.
+      const store = (await open()).transaction(kStore, "readwrite", { durability: "relaxed" }).objectStore(kStore);
+      await Promise.all(changes.map((each) => result_of(each(store))));
+    };
+    all().catch(this.failed_);
+  }
+}
