@@ -714,11 +714,12 @@ export class ModelSession {
   }
 }
 
-/** It is painting that was on its way when the layer was locked. */
 let told_not_kept = false;
 const not_kept = (why: unknown): void => {
   if (told_not_kept) return;
   told_not_kept = true;
   notices.show("problem", texts.saving.not_kept, `${texts.saving.not_kept_hint} (${String(why)})`);
 };
+
+/** It is painting that was on its way when the layer was locked. */
 const is_of_lock = ({ status, field }: Omit<ProblemMessage, "op">): boolean => status === 403 && field === "layer";

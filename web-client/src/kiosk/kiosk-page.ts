@@ -88,7 +88,7 @@ export class StrataKiosk extends LitElement {
     const asked = session.idle.presence.is === "asked";
     const covered = asked || session.resting || session.enlarged !== null;
     return html`
-      ${repeat([show], (each) => each, () => html`<strata-kiosk-stage .session=${session} .show=${show} .changes=${this.changes_} ?inert=${covered}></strata-kiosk-stage>`)}
+      ${repeat([show], (each) => each, () => html`<strata-kiosk-stage class=${session.resting ? "resting" : ""} .session=${session} .show=${show} .changes=${this.changes_} ?inert=${covered}></strata-kiosk-stage>`)}
       ${show.away ? html`<p class="sign away" role="status">${words.stored}</p>` : nothing}
       ${!session.resting && session.index === 0 && show.untouched && show.drawn ? html`<p class="sign">${words.hint}</p>` : nothing}
       ${this.panel(covered)} ${session.enlarged ? this.enlarged(asked) : nothing} ${session.resting ? this.invitation() : nothing}

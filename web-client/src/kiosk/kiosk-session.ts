@@ -138,8 +138,9 @@ export class KioskSession {
     this.show?.show_layers(this.overrides());
     this.changed();
   }
-  /** To the next of the layers; after the last one comes none. */
+  /** To the next of the layers; after the last one comes none. Not beneath a card. */
   swipe(by: 1 | -1): void {
+    if (this.card) return;
     const next = this.choices[this.choices.indexOf(this.choice) + by];
     if (next !== undefined && this.show && !this.show.away) this.choose_layer(next);
   }
@@ -189,7 +190,6 @@ export class KioskSession {
     this.choice = first_choice(stop, this.choices);
     const flight_s = stop.stop.transition === "cut" ? 0 : stop.stop.transition_s;
     show?.go_to(stop.view, this.overrides(), flight_s);
-    if (this.resting) show?.drift(flight_s);
     void this.name_records();
     this.changed();
   }
@@ -246,6 +246,7 @@ export class KioskSession {
   }
 
   private async on_worthless(): Promise<void> {
+    if (this.worthless) return;
     this.worthless = true;
     this.idle.stop();
     this.attract_.stop();
@@ -313,7 +314,7 @@ export class KioskSession {
     if (!stop || !show) return void this.changed();
     this.choices = choices_of(stop, show.layers);
     this.choice = this.choices.find((each) => each?.id === choice?.id) ?? first_choice(stop, this.choices);
-    if (show.go_on(stop.view, this.overrides()) && this.resting) show.drift(0);
+    show.go_on(stop.view, this.overrides());
     void this.name_records();
     this.changed();
   }

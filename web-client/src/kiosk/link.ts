@@ -1,11 +1,13 @@
 // The kiosk's link to its server: signs in with the link's secret, and asks from time to time whether it is still good, the tour still the
-// same, and whether the page is to be loaded anew. A server that is away is asked again for ever, ever more seldom.
+// same, and whether the page is to be loaded anew. A server that is away is asked again for ever, ever more seldom; and so is, every five minutes, one
+// that knows no such link: what was in the Bin may be restored.
 
 import { ApiError } from "../core/api";
 import type { KioskSelf } from "../core/protocol.gen";
 
 const kHeartbeat_s = 30;
 const kFirstRetry_s = 1;
+const kWorthless_s = 300;
 
 export interface LinkServer {
   sign_in_kiosk(link: string): Promise<KioskSelf>;
@@ -16,7 +18,7 @@ export interface LinkHost {
   told(self: KioskSelf): void;
   /** No answer, or none that says anything. */
   missed(): void;
-  /** It was revoked, or is over; nothing is asked any more. */
+  /** It was revoked, is over, or its tour is in the Bin. Told each time. If it is good again, the page is loaded anew. */
   worthless(): void;
   reload(): void;
 }
@@ -24,6 +26,7 @@ export interface LinkHost {
 export class KioskLink {
   private signed_in_ = false;
   private ended_ = false;
+  private worthless_ = false;
   private asking_ = false;
   private failures_ = 0;
   private timer_: ReturnType<typeof setTimeout> | null = null;
@@ -61,7 +64,7 @@ export class KioskLink {
       this.asking_ = false;
     }
     if (this.ended_) return;
-    const wait_s = this.failures_ === 0 ? kHeartbeat_s : Math.min(kHeartbeat_s, kFirstRetry_s * 2 ** (this.failures_ - 1));
+    const wait_s = this.worthless_ ? kWorthless_s : this.failures_ === 0 ? kHeartbeat_s : Math.min(kHeartbeat_s, kFirstRetry_s * 2 ** (this.failures_ - 1));
     this.timer_ = setTimeout(() => void this.turn(), wait_s * 1000);
   }
 
@@ -98,11 +101,12 @@ export class KioskLink {
 
   private take(self: KioskSelf | null): void {
     if (this.ended_) return;
-    if (self) {
-      this.host_.told(self);
-      return;
-    }
-    this.stop();
-    this.host_.worthless();
+    if (!self) {
+      this.worthless_ = true;
+      this.host_.worthless();
+    } else if (this.worthless_) {
+      this.stop();
+      this.host_.reload();
+    } else this.host_.told(self);
   }
 }

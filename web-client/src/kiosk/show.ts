@@ -1,6 +1,6 @@
 // The model on the kiosk's stage: the live connection, the camera, and what the stop that is seen shows of layers, looks and light.
 
-import { ViewControl, wants_less_motion } from "../app/view-control";
+import { ViewControl } from "../app/view-control";
 import { new_id } from "../core/api";
 import { Connection, type SocketLike } from "../core/connection";
 import type { FrameMessage } from "../core/frame-header";
@@ -14,7 +14,6 @@ import { as_kiosk } from "./as-kiosk";
 
 const kAway_ms = 3000; // so long a lost connection is no news
 const kTapReach_css = 14; // a finger on glass
-const kDrift = 0.05; // radians a second
 
 export interface ShowHost {
   /** The model, its layers, or a named view are known, or others; `views`: those of the tour are to be read again. */
@@ -46,7 +45,6 @@ export class KioskShow {
   private stands_at_view_ = false; // nobody has moved the camera since
   private placed_ = false; // the camera has been where the view has it
   private away_timer_: ReturnType<typeof setTimeout> | null = null;
-  private drift_ = 0; // of requestAnimationFrame; 0: none
   private pick_ = ""; // the newest tap that is not answered
 
   constructor(
@@ -88,7 +86,6 @@ export class KioskShow {
     this.connection_.open();
   }
   close(): void {
-    this.end_drift();
     this.view.stop();
     this.stop_expecting();
     this.connection_.close();
@@ -100,7 +97,6 @@ export class KioskShow {
 
   /** As the view has it, but with these layers; `flight_s`: how long the way there takes. */
   go_to(view: View, layers: LayerOverride[], flight_s: number): void {
-    this.end_drift();
     this.view_shown_ = view;
     this.stands_at_view_ = true;
     this.show_settings(view, layers);
@@ -110,13 +106,11 @@ export class KioskShow {
     this.view.fly(place_like(view.camera, this.view.camera), this.drawn ? flight_s * 1000 : 0);
   }
 
-  /** What is known of the model, or of the view, may be something else than before. Where visitors have turned to stays, unless the view itself was changed.
-   *  Returns whether the camera went to the view. */
-  go_on(view: View, layers: LayerOverride[]): boolean {
+  /** What is known of the model, or of the view, may be something else than before. Where visitors have turned to stays, unless the view itself was changed. */
+  go_on(view: View, layers: LayerOverride[]): void {
     const same = this.placed_ && JSON.stringify(this.view_shown_?.camera) === JSON.stringify(view.camera);
     if (same) this.show_settings(view, layers);
     else this.go_to(view, layers, 0);
-    return !same;
   }
 
   /** Nobody has turned it since it came to the view. */
@@ -132,25 +126,6 @@ export class KioskShow {
   }
   show_layers(layers: LayerOverride[]): void {
     this.connection_.set_layer_overrides(layers);
-  }
-
-  /** Turns slowly, from when it has arrived, until somebody moves it or another view is gone to. Not for people who want less motion. */
-  drift(after_s: number): void {
-    this.end_drift();
-    if (wants_less_motion()) return;
-    const begin_ms = performance.now() + after_s * 1000;
-    let last_ms = begin_ms;
-    const step = (): void => {
-      const now_ms = performance.now();
-      if (now_ms > begin_ms && this.drawn) this.view.twist(-kDrift * Math.min(0.1, (now_ms - last_ms) / 1000));
-      last_ms = Math.max(begin_ms, now_ms);
-      this.drift_ = requestAnimationFrame(step);
-    };
-    this.drift_ = requestAnimationFrame(step);
-  }
-  end_drift(): void {
-    if (this.drift_) cancelAnimationFrame(this.drift_);
-    this.drift_ = 0;
   }
 
   /** CSS pixels, and window pixels for each. */
@@ -170,7 +145,6 @@ export class KioskShow {
   }
 
   private move(change: () => void): void {
-    this.end_drift();
     const first = this.stands_at_view_;
     this.stands_at_view_ = false;
     change();

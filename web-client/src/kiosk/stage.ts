@@ -68,9 +68,21 @@ export class StrataKioskStage extends LitElement {
     canvas.live {
       opacity: 1;
     }
+    /* Something moves while nobody is there, at no cost to the server: it is the same picture of full quality, for all screens at this stop. */
+    :host(.resting) :is(canvas, img) {
+      animation: come-near 20s ease-in-out infinite alternate;
+    }
+    @keyframes come-near {
+      to {
+        transform: scale(1.08);
+      }
+    }
     @media (prefers-reduced-motion: reduce) {
       canvas {
         transition: none;
+      }
+      :host(.resting) :is(canvas, img) {
+        animation: none;
       }
     }
   `;
