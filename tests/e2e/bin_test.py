@@ -5,6 +5,7 @@ import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.cameras import camera_from
+from support.kiosk_site import make_kiosk
 from support.live_client import LiveClient, Refused
 from support.meshes import folded_grid
 from support.sql_reader import Reader, free_port
@@ -128,6 +129,8 @@ def models(site):
     server = site.server
     site.ok("carl", "DELETE", f"{BIN}/{site.listed()[0]['id']}")
     before = [site.ok("carl", "GET", M + path).body for path in ("/layers", "/layers/cracks-2/texels.npy", "/views", "/comments", "/source/sheet.ply")]
+    server.ok("POST", M + "/tours", {"name": "Round", "languages": ["en"], "stops": [{"view": "front", "title": {"en": "The front"}}]})
+    _, link = make_kiosk(server, M + "/tours/round")
     with LiveClient(server, "sheet") as live:
         live.hello(dpr=1, accept=["jpeg"])
         site.ok("carl", "DELETE", M, headers={"If-Match": "*"})
@@ -135,6 +138,7 @@ def models(site):
             pass
     for path in (M, f"/models/{site.model['id']}", M + "/layers", M + "/views", M + "/comments", M + "/source/sheet.ply", "/comments/1", M + "/events"):
         assert server.get(path).status == 404, path
+    assert server.post("/auth/kiosk", {"link": link}, token=False).status in (401, 404), "a kiosk of a model in the Bin"
     try:
         LiveClient(server, "sheet")
         raise AssertionError("the model is in the Bin")
@@ -149,6 +153,7 @@ def models(site):
     assert entries[0]["bytes"] > 1000, entries
     site.ok("carl", "POST", f"{BIN}/{entries[0]['id']}/restore")
     assert [site.ok("carl", "GET", M + path).body for path in ("/layers", "/layers/cracks-2/texels.npy", "/views", "/comments", "/source/sheet.ply")] == before
+    assert server.post("/auth/kiosk", {"link": link}, token=False).status == 200, "the links of kiosks come back"
     told = [(line["kind"], line["op"]) for line in server.ok("GET", "/projects/default/activity?limit=2").json()["activity"]]
     assert told == [("model", "restored"), ("model", "deleted")], told
 
