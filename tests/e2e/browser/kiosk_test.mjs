@@ -102,7 +102,8 @@ try {
   await heading("Fourteen sherds").waitFor();
   assert.equal((await page.context().cookies()).filter(({ name }) => name !== "strata_kiosk").length, 0);
 
-  say("who wants less motion sees none of its own");
+  say("at rest the server is asked for nothing; the picture comes nearer by itself, but not for who wants less motion");
+  const comes_near = () => page.locator("strata-kiosk-stage canvas").evaluate((canvas) => canvas.getAnimations().some(({ animationName }) => animationName === "come-near"));
   /** How often its camera was sent within a moment; null where the stop was another one at its end. */
   const moves = async () => {
     const [title, seq] = [await page.locator("h1").textContent(), sent.camera.seq];
@@ -110,10 +111,14 @@ try {
     return title === (await page.locator("h1").textContent()) ? sent.camera.seq - seq : null;
   };
   await wait_for(async () => (await moves()) === 0, "a stop that stands still");
+  assert.equal(await comes_near(), false);
   await page.emulateMedia({ reducedMotion: "no-preference" });
-  await wait_for(async () => (await moves()) > 10, "the slow turn");
+  await wait_for(comes_near, "the picture to come nearer");
+  await wait_for(async () => (await moves()) > 10, "the way to a stop");
+  await wait_for(async () => (await moves()) === 0, "a stop that stands still, for the server");
+  await shot("nearer");
   await page.emulateMedia({ reducedMotion: "reduce" });
-  await wait_for(async () => (await moves()) === 0, "an end of it");
+  await wait_for(async () => !(await comes_near()), "an end of it");
 
   say("a touch begins at the first stop, and does nothing else");
   await page.touchscreen.tap(540, 400);
