@@ -1,10 +1,15 @@
 // Every screen of the page, and one way to each: what holds something against all of them goes it (accessibility_test.mjs), and so does what
 // takes their pictures (contact_sheet.mjs).
 import assert from "node:assert/strict";
+import { encode_png } from "./png.mjs";
 import { wait_for } from "./strata-server.mjs";
 
 const kGroup = "Students of the summer school in Northern Archaeology 2026";
 const kOtherProject = "Excavation at the East Gate, Northern Profile";
+
+const kSide = 64;
+const kPhoto = encode_png({ width: kSide, height: kSide, data: Uint8Array.from({ length: kSide * kSide * 4 }, (_, at) => (at % 4 === 3 || (at / 4) % kSide < kSide / 2 ? 255 : 20)) });
+const file_of = (name, mimeType, content) => ({ name, mimeType, buffer: Buffer.from(content) });
 
 /** A site with a bit of everything on a server that has the demo; `bea` becomes the browser of somebody else at its model. */
 export async function make_site(server, bea) {
@@ -75,6 +80,13 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
   const from_menu = (menu, name) => async () => {
     await button(menu).click();
     await open(item(name));
+  };
+  const with_files = (name, files) => async () => {
+    await button(w.tables.more).click();
+    const chooser = page.waitForEvent("filechooser");
+    await item(name).click();
+    await (await chooser).setFiles(files);
+    await dialog.first().waitFor();
   };
   const escape = () => page.keyboard.press("Escape");
   const of_layer = (layer, name) => from_menu(w.layers.options(layer), name);
@@ -390,6 +402,11 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       await escape();
       await page.locator("strata-tour section").waitFor({ state: "detached" });
     } },
+    { name: "shape of the brush", start: async () => {
+      await tool("b");
+      await page.locator("strata-shape-picker input[type=file]").setInputFiles(file_of("leaf.png", "image/png", kPhoto));
+      await page.locator("strata-shape-dialog dialog[open]").waitFor();
+    }, end: close_dialog, keyboard: true },
     { name: "about", start: () => open(button(w.model.details)), end: close_dialog },
     { name: "size", start: async () => {
       await open(button(w.model.details));
@@ -403,6 +420,8 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     }, keyboard: true },
     { name: "menu of a table", start: () => button(w.tables.more).click(), end: escape },
     { name: "new column", start: from_menu(w.tables.more, w.tables.new_column), end: close_dialog, keyboard: true },
+    { name: "records from a file", start: with_files(w.tables.import_csv, [file_of("finds.csv", "text/csv", "key,name,depth\n1,Handle of a jug,1.5\n,Spout,deep\n")]), end: close_dialog, keyboard: true },
+    { name: "photos by their names", start: with_files(w.files.add_menu, ["Handle_1.png", "Lid_1.png"].map((name) => file_of(name, "image/png", kPhoto))), end: close_dialog, keyboard: true },
     { name: "record", start: () => open(page.locator("strata-table-panel").getByRole("button", exact(w.tables.new_record))), end: close_dialog },
     { name: "delete a record", start: async () => {
       await page.getByRole("grid").getByRole("rowheader", exact("1")).click();
