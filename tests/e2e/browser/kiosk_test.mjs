@@ -14,6 +14,7 @@ const kRounds = Number(process.env.STRATA_KIOSK_ROUNDS ?? 4);
 const kAlone_min = Number(process.env.STRATA_KIOSK_ALONE_MIN ?? 1);
 const kStep_s = Number(process.env.STRATA_KIOSK_STEP_S ?? 5);
 const kUpright = { width: 1080, height: 1920 };
+const kScreens = [{ width: 1920, height: 1080 }, { width: 768, height: 1024 }, kUpright]; // the last one is the test's own
 const kTarget_px = 57; // 15 mm
 const kMostHeapGrowth = 1.5; // MB, and of the server below: what the allocators of both make of the same work, and no leak of a picture a round
 const kMostServerGrowth = 48; // MB
@@ -22,6 +23,7 @@ const kMostNodeGrowth = 60;
 const browser = await Browser.open({ viewport: kUpright, hasTouch: true });
 const server = new StrataServer({ demo: true });
 const { page } = browser;
+await page.addInitScript(() => ["VideoDecoder", "ImageDecoder", "VideoFrame", "EncodedVideoChunk"].forEach((name) => delete globalThis[name])); // a kiosk needs none of WebCodecs
 let step = "start";
 const say = (text) => console.log((step = text));
 
@@ -63,8 +65,15 @@ const middle = async (locator) => {
   return [x + width / 2, y + height / 2];
 };
 
-/** All that can be touched is large enough, in the lower half, and leads nowhere. */
+/** On each screen, all that can be touched is large enough, in the lower half, and leads nowhere. */
 async function assert_within_reach(where) {
+  for (const screen of kScreens) {
+    await page.setViewportSize(screen);
+    if (screen !== kUpright) await shot(`${where.replaceAll(" ", "_")}_${screen.width}`);
+    await assert_within_reach_on(screen, `${where} at ${screen.width} × ${screen.height}`);
+  }
+}
+async function assert_within_reach_on({ height }, where) {
   const found = await page.evaluate(() => {
     const all = (root) => [...root.querySelectorAll("*")].flatMap((each) => [each, ...(each.shadowRoot ? all(each.shadowRoot) : [])]);
     const seen = all(document).filter((each) => each.checkVisibility({ visibilityProperty: true }));
@@ -77,7 +86,6 @@ async function assert_within_reach(where) {
   assert.equal(found.links, 0, `${where}: something leads away`);
   assert.equal(found.overflow, false, `${where}: the page scrolls`);
   assert.ok(found.buttons.length > 0, where);
-  const { height } = page.viewportSize();
   for (const { name, width, height: high, bottom, top } of found.buttons) {
     assert.ok(width >= kTarget_px && high >= kTarget_px, `${where}: ${name} is ${width} × ${high}`);
     assert.ok(high > height * 0.9 || (top + bottom) / 2 > height / 2, `${where}: ${name} is not in the lower half`);
@@ -128,6 +136,40 @@ try {
   await assert_within_reach("first stop");
   await assert_accessible("first stop");
   await shot("first");
+
+  say("keys reach all of it: Tab goes to a button, Enter presses it, and the object has its own");
+  const focused = () => page.evaluate(() => {
+    let at = document.activeElement;
+    while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
+    return at.textContent.trim() || at.ariaLabel || at.tagName;
+  });
+  const tab_to = async (name, key = "Tab") => {
+    const passed = [];
+    while (passed.at(-1) !== name) {
+      assert.ok(passed.length < 30, `${key} does not reach ${name}: ${passed.join(", ")}`);
+      await page.keyboard.press(key);
+      passed.push(await focused());
+    }
+  };
+  await tab_to(await page.locator("strata-kiosk-stage .surface").getAttribute("aria-label"));
+  for (const key of ["+", "-", "ArrowRight", "ArrowLeft", "ArrowUp", "ArrowDown"]) {
+    const before = sent.camera;
+    await page.keyboard.press(key);
+    await wait_for(() => apart(eye(sent.camera), eye(before)) > 1, `${key} on the object`);
+  }
+  await tab_to("Next");
+  await page.keyboard.press("Enter");
+  await heading("Fourteen sherds").waitFor();
+  await tab_to("Sherd 3", "Shift+Tab");
+  await page.keyboard.press("Enter");
+  await page.locator(".card").getByRole("heading", { name: "Sherd 3" }).waitFor();
+  await tab_to("Close");
+  await page.keyboard.press("Enter");
+  await page.locator(".card").waitFor({ state: "detached" });
+  await tab_to("Previous");
+  await page.keyboard.press("Enter");
+  await heading("The pot from the well").waitFor();
+  await live();
 
   say("one finger turns, two move, enlarge and tilt");
   const stage = await page.locator("strata-kiosk-stage").boundingBox();
