@@ -48,7 +48,7 @@ describe("what keeps visitors on the page", () => {
     expect(refuses("touchmove", { touches: [1] })).toBe(false);
   });
 
-  it.each(["+", "-", "=", "0"])("refuses Ctrl and Cmd with %s, and leaves the key alone to the object", (key) => {
+  it.each(["+", "-", "=", "0", "p"])("refuses Ctrl and Cmd with %s, and leaves the key alone to the object", (key) => {
     expect(refuses("keydown", { key, ctrlKey: true })).toBe(true);
     expect(refuses("keydown", { key, metaKey: true })).toBe(true);
     expect(refuses("keydown", { key })).toBe(false);

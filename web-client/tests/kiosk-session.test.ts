@@ -301,6 +301,21 @@ describe("the kiosk", () => {
     expect([session.stops.map(({ view: { slug } }) => slug), session.index]).toEqual([["c"], 0]);
   });
 
+  it("changes no layer beneath an open card", async () => {
+    const { session, sockets } = make();
+    await settle();
+    sockets[0]!.open();
+    const layers = ["sherds", "cracks"].map((slug, place) => ({ id: place + 1, slug }) as NonNullable<(typeof session.choices)[number]>);
+    session.choices = layers;
+    session.choice = layers[0]!;
+    session.card = {} as NonNullable<typeof session.card>;
+    session.swipe(1);
+    expect([session.choice.slug, session.card === null]).toEqual(["sherds", false]);
+    session.card = null;
+    session.swipe(1);
+    expect(session.choice.slug).toBe("cracks");
+  });
+
   it("says so when its link is worthless, and keeps nothing", async () => {
     const { site, session, sockets, store } = make();
     await settle();

@@ -1,4 +1,4 @@
-// Keeps visitors on the page: no menu, no selection, no dragging out, no zoom of the whole page, no way back. What the browser itself offers (its bars,
+// Keeps visitors on the page: no menu, no selection, no dragging out, no zoom of the whole page, no printing, no way back. What the browser itself offers (its bars,
 // its keys) only its own kiosk mode takes away.
 
 const refuse = (event: Event): void => event.preventDefault();
@@ -9,7 +9,7 @@ export function keep_on_page(): void {
   // Safari zooms with two fingers whatever the page's viewport says; the stage's own gestures are of pointers.
   document.addEventListener("touchmove", (event) => event.touches.length > 1 && event.cancelable && event.preventDefault(), { passive: false });
   document.addEventListener("keydown", (event) => {
-    if ((event.ctrlKey || event.metaKey) && ["+", "-", "=", "0"].includes(event.key)) event.preventDefault();
+    if ((event.ctrlKey || event.metaKey) && ["+", "-", "=", "0", "p"].includes(event.key)) event.preventDefault();
     if (event.altKey && ["ArrowLeft", "ArrowRight"].includes(event.key)) event.preventDefault();
   });
   history.pushState(null, "", location.href);
