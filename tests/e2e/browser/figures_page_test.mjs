@@ -306,8 +306,11 @@ try {
   const phone_hint = phone.page.locator("strata-face-hint section");
   await phone_hint.waitFor();
   await shot(phone, "phone_pick");
+  // The dialog that stepped aside left the stage of another shape: what is tapped is what is seen there then.
+  const fits = (canvas) => Math.abs(canvas.width / canvas.height - canvas.clientWidth / canvas.clientHeight) < 0.02;
+  await wait_for(() => phone.page.locator("strata-stage canvas").first().evaluate(fits), "the picture in the stage's new shape");
   const stage = await phone.stage_box();
-  await phone.page.touchscreen.tap(stage.x + stage.width / 2, stage.y + stage.height / 2);
+  await phone.page.touchscreen.tap(stage.x + stage.width / 2, stage.y + 0.58 * stage.height);
   await phone_hint.waitFor({ state: "detached" });
   await wait_for(() => asked.get(phone).preview.normal, "the face to be asked for");
   await sheet(phone);
