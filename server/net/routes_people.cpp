@@ -107,6 +107,8 @@ Result<Response> delete_person(const RouteContext& context, const Request& reque
   if (!out) return tl::unexpected(out.error());
   context.auth.forget();
   context.live_sockets.close_user(person->name, kClosePolicy, "your account was deleted");
+  // What they drew last may be on its way to the journal still.
+  if (auto settled = context.rooms.settle(); !settled) return tl::unexpected(settled.error());
   if (auto done = context.store.delete_person(person->name); !done) return tl::unexpected(done.error());
   return empty_response(204);
 }

@@ -309,6 +309,8 @@ class Rooms {
   // From now on edits that would paint the key of the table are refused (409). Those that were let in are durable when it returns; of a
   // Problem this is not known, and the key is retired all the same. Blocks.
   Result<void> retire_key(std::int64_t table_id, std::int64_t key);
+  // Returns when every edit that was let in is durable. Of a Problem this is not known, and to ask again is right. Blocks.
+  Result<void> settle();
   void admit_keys(std::int64_t table_id, std::span<const std::int64_t> keys);  // they have records again
   void forget(std::int64_t model_id);  // the model was deleted: members are told, the room closes
   std::size_t open_rooms() const;

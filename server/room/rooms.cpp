@@ -229,6 +229,14 @@ Result<void> Rooms::retire_key(std::int64_t table_id, std::int64_t key) {
   }
   return {};
 }
+
+Result<void> Rooms::settle() {
+  for (const auto& room : impl_->open_ones())
+    if (auto settled = room->settle(); !settled && settled.error().status != 410)  // whose model was deleted meanwhile
+      return settled;
+  return {};
+}
+
 void Rooms::admit_keys(std::int64_t table_id, std::span<const std::int64_t> keys) {
   impl_->retired_keys.admit(table_id, keys);
 }

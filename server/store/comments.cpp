@@ -251,10 +251,7 @@ Result<void> rename_in_comments(PgConnection& connection, const std::string& nam
   for (const char* sql :
        {"UPDATE comments SET user_name = $2 WHERE user_name = $1",
         "UPDATE comments SET resolved_by = $2 WHERE resolved_by = $1",
-        // In any case, as names are; where no longer name and no address of a mail begins or ends there.
-        "UPDATE comments SET text = left(regexp_replace(text, '(^|[^A-Za-z0-9._@-])@' || replace($1, '.', '\\.') || "
-        "'(?![A-Za-z0-9_@-]|\\.[A-Za-z0-9])', '\\1@' || $2, 'gi'), 10000) "
-        "WHERE position('@' || lower($1) IN lower(text)) > 0"})
+        "UPDATE comments SET text = " STRATA_CALL_RENAMED("text", "10000") " WHERE " STRATA_CALLS_THEM("text")})
     if (auto done = connection.query(sql, Params().text(name).text(former)); !done) return tl::unexpected(done.error());
   return {};
 }

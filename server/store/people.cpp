@@ -263,7 +263,6 @@ Result<void> Store::delete_person(const std::string& name) {
     const std::string former = std::string(kFormer) + std::to_string(person->id);
     for (const char* sql :
          {"UPDATE users SET name = $2, full_name = '', password = NULL, deleted = now() WHERE name = $1",
-          "UPDATE edits SET user_name = $2 WHERE user_name = $1",
           "UPDATE table_edits SET user_name = $2 WHERE user_name = $1",
           "UPDATE attachments SET user_name = $2 WHERE user_name = $1",
           "UPDATE views SET user_name = $2 WHERE user_name = $1",
@@ -272,13 +271,14 @@ Result<void> Store::delete_person(const std::string& name) {
           "UPDATE tours SET user_name = $2 WHERE user_name = $1",
           "UPDATE kiosks SET user_name = $2 WHERE user_name = $1"})
       if (auto done = run(connection, sql, Params().text(person->name).text(former)); !done) return done;
+    if (auto done = rename_in_journal(connection, person->name, former); !done) return done;
     if (auto done = rename_in_comments(connection, person->name, former); !done) return done;
     if (auto done = rename_in_activity(connection, person->name, former); !done) return done;
     // Answers that are kept for calls that come again may tell it, as the name of somebody or in what is said to them; names hold
     // nothing that JSON writes otherwise.
     return run(connection,
                "DELETE FROM answers WHERE position('\"' || $1 || '\"' IN replace(answer::text, '\\', '')) > 0 "
-               "OR position('@' || lower($1) IN lower(answer::text)) > 0",
+               "OR " STRATA_CALLS_THEM("answer::text"),
                Params().text(person->name));
   });
 }

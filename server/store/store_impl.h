@@ -19,7 +19,15 @@ Result<void> insert_answer(PgConnection& connection, const std::string& key, con
 
 // In the transaction at hand: what it changes is told as this person's doing (db/migrations/000018_activity.sql). Empty: as nobody's.
 Result<void> act_as(PgConnection& connection, const std::string& user);
+
+// Of somebody who is deleted, in the transaction at hand: $1 and $2 of the SQL are the name and the one that stands for it from now on.
 Result<void> rename_in_activity(PgConnection& connection, const std::string& name, const std::string& former);
+Result<void> rename_in_journal(PgConnection& connection, const std::string& name, const std::string& former);
+// Texts that may call them with @: in any case, as names are, and where no longer name and no address of a mail begins or ends there.
+#define STRATA_CALLS_THEM(text) "position('@' || lower($1) IN lower(" text ")) > 0"
+#define STRATA_CALL_RENAMED(text, longest)                                                             \
+  "left(regexp_replace(" text ", '(^|[^A-Za-z0-9._@-])@' || replace($1, '.', '\\.') || "               \
+  "'(?![A-Za-z0-9_@-]|\\.[A-Za-z0-9])', '\\1@' || $2, 'gi'), " longest ")"
 
 // In the transaction at hand: what is said of them holds until it is written.
 Result<Person> lock_person(PgConnection& connection, const std::string& name);

@@ -427,6 +427,40 @@ TEST_F(RoomRecovery, a_layer_that_waits_for_edits_is_answered_when_its_room_clos
   }
 }
 
+TEST_F(RoomRecovery, who_waits_until_the_rooms_are_settled_waits_for_what_is_on_its_way_to_the_journal) {
+  options_.retry_for = std::chrono::milliseconds(60'000);
+  restart();
+  const Layer layer = make_layer(ValueType::u8);
+  std::future<Answer> painted;
+  std::future<Result<void>> settled;
+  {
+    const test::Hang hang(test::shared_cluster());
+    painted = start(stroke(layer, 5, {{300, 240}}, 20));
+    settled = std::async(std::launch::async, [&] { return rooms_->settle(); });
+    EXPECT_EQ(settled.wait_for(std::chrono::milliseconds(50)), std::future_status::timeout);
+  }
+  ASSERT_TRUE(settled.get());
+  EXPECT_EQ(room()->durable_sequence(), 1);
+  EXPECT_TRUE(painted.get());
+}
+
+TEST_F(RoomRecovery, rooms_that_close_before_they_are_settled_say_so) {
+  options_.drain_for = std::chrono::milliseconds(100);
+  restart();
+  const Layer layer = make_layer(ValueType::u8);
+  std::future<Answer> painted;
+  {
+    const test::Hang hang(test::shared_cluster());
+    painted = start(stroke(layer, 5, {{300, 240}}, 20));
+    auto settled = std::async(std::launch::async, [&] { return rooms_->settle(); });
+    rooms_->drain();
+    EXPECT_EQ(painted.get().error().status, 503);
+    const auto answer = settled.get();
+    ASSERT_FALSE(answer) << "whether the edit is durable is not known";
+    EXPECT_EQ(answer.error().status, 503);
+  }
+}
+
 TEST_F(RoomRecovery, no_layers_means_no_values) {
   make_layer(ValueType::u8);
   const auto point = room()->position({0, 0, 0}, {});
