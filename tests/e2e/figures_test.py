@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Measured figures: what is so long in the world is so long on paper, in every direction, kind of file and resolution; parts join without seams;
 one state of the layers; jobs; who sees what; and what is refused."""
+import math
 import os
 import re
 import subprocess
@@ -24,6 +25,7 @@ PAPER = {"a5": (148, 210), "a4": (210, 297), "a3": (297, 420)}
 UNLIT = {"mode": "unlit"}
 RED = (255, 0, 0)
 MARKS = [{"layer": "marks", "visible": True}]
+SVG = "{http://www.w3.org/2000/svg}"
 BARE = {"legend": False, "light": UNLIT, "looks": [], "title": "", "credit": ""}
 
 
@@ -54,9 +56,9 @@ def fill(server, where, value=1, layer="marks", model="sheet"):
     server.ok("POST", f"/models/{model}/layers/{layer}/edits", {"op": "fill", "mode": "where", "where": where, "value": value})
 
 
-def dab(server, x, y, value=1, layer="marks", radius=2):
+def dab(server, x, y, value=1, layer="marks", radius=2, model="sheet"):
     """A disc as seen from above, whatever lies below it."""
-    fill(server, f"(x - {x}) * (x - {x}) + (y - {y}) * (y - {y}) < {radius * radius}", value, layer)
+    fill(server, f"(x - {x}) * (x - {x}) + (y - {y}) * (y - {y}) < {radius * radius}", value, layer, model)
 
 
 def lengths(server):
@@ -84,11 +86,66 @@ def lengths(server):
     assert middle(spots(drawn(server, direction="top", scale=1, dpi=100, layers=MARKS, **BARE)))[1] < middle(plan)[1] - 20
 
 
+def group_of(svg, name):
+    """What an SVG draws under this name: paths as rows of x and y in millimetres on paper, and words."""
+    group = next(each for each in xml.fromstring(svg).iter(SVG + "g") if each.get("id") == name)
+    paths = [numpy.array(re.findall(r"-?[\d.]+(?:e-?\d+)?", each.get("d")), float).reshape(-1, 2) for each in group.iter(SVG + "path")]
+    return paths, [each.text for each in group.iter(SVG + "text")]
+
+
+def bars(server):
+    """The scale bar is so long on paper, in vectors and in pixels, as what it says is at that scale; from a find of a few centimetres at 5 : 1 to a site at 1 : 500."""
+    site = {"model": "site", "direction": "top", "paper": "a3", "orientation": "landscape", "layers": MARKS, **BARE}
+    server.import_model(folded_grid(), "site.ply", name="Site", unit="m")
+    server.ok("POST", "/models/site/layers", {"name": "Marks", "type": "u8", "resolution": 2048, "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000"}]}})
+    for x, radius in ((20, 2), (80, 4)):
+        dab(server, x, 50, radius=radius, model="site")
+    for scale in (500, 350):
+        found = spots(drawn(server, dpi=100, scale=scale, **site))
+        left = found[:, 0] < (found[:, 0].min() + found[:, 0].max()) / 2
+        apart = (middle(found[~left]) - middle(found[left]))[0] / 100 * 25.4 * scale / 1000
+        assert abs(apart - 60) < 0.00025 * scale, (scale, apart)
+    for scale, dpi, asked in ((500, 300, site), (350, 150, site), (1, 300, {"direction": "top"}), (0.2, 150, {"direction": "top", "paper": "a5"}), (2.5, 300, {"direction": "front"})):
+        steps, words = group_of(figure(server, format="svg", scale=scale, dpi=50, **asked).body, "scale-bar")
+        ends = numpy.concatenate(steps)
+        low, high = ends.min(axis=0), ends.max(axis=0)
+        number, unit = words[len(steps)].split()
+        world_mm = float(number) * {"mm": 1, "cm": 10, "m": 1000, "km": 1e6}[unit]
+        assert abs((high - low)[0] * scale - world_mm) < 1e-3 * world_mm, (scale, low, high, words)
+        assert [float(each) for each in words[:len(steps)]] == [float(number) * i / len(steps) for i in range(len(steps))], words
+        # The same in pixels, outline and all.
+        per_mm = dpi / 25.4
+        row = drawn(server, dpi=dpi, scale=scale, **asked)[round((low[1] + high[1]) / 2 * per_mm)].mean(axis=1) < 128
+        dark = numpy.nonzero(row[round((low[0] - 1) * per_mm):round((high[0] + 1) * per_mm)])[0]
+        assert abs(dark.max() + 1 - dark.min() - world_mm / scale * per_mm) < 0.2 * per_mm + 1.5, (scale, dpi, dark.min(), dark.max())
+
+
+def north(server):
+    """The arrow points along what lies north of something, whichever axis is up, from above and from below."""
+    palette = {"mode": "categorical", "points": [{"at": 11, "color": "#ff0000"}, {"at": 12, "color": "#00ff00"}]}
+    asked = {"model": "ball", "scale": 1, "dpi": 100, "layers": [{"layer": "marks", "palette": palette}], **BARE}
+    for up, (east, ahead, height), direction, degrees in (("z", "xyz", "top", 0), ("z", "xyz", "top", 30), ("z", "xyz", "bottom", -100), ("y", "xzy", "top", 200), ("x", "yzx", "top", 75)):
+        server.ok("PATCH", "/models/ball", {"up": up, "north": str(degrees)})
+        fill(server, "true", 0, model="ball")
+        turn = math.radians(degrees)
+        sign = -1 if up == "y" else 1  # y up: north is away from who looks along -z
+        for value, away in ((11, 0), (12, 25)):
+            fill(server, f"{height} {'>' if direction == 'top' else '<'} 0 and ({east} - {away * math.sin(turn)}) * ({east} - {away * math.sin(turn)}) + "
+                         f"({ahead} - {sign * away * math.cos(turn)}) * ({ahead} - {sign * away * math.cos(turn)}) < 9", value, model="ball")
+        rows = drawn(server, direction=direction, **asked)
+        to_north = middle(spots(rows, (0, 255, 0))) - middle(spots(rows))
+        arrow, words = group_of(figure(server, format="svg", direction=direction, **asked).body, "north")
+        tip, _, notch = arrow[0]
+        assert words == ["N"]
+        off = (math.degrees(math.atan2(*to_north) - math.atan2(*(tip - notch))) + 180) % 360 - 180
+        assert abs(off) < 1.5, (up, direction, degrees, off)
+
+
 def seams(server):
-    """At 600 dpi the drawing is made of parts of three inches: together they are the picture of few."""
-    asked = {"direction": "top", "scale": 0.5, "paper": "a4", "orientation": "landscape", "layers": MARKS, **BARE}
-    fine, coarse = drawn(server, dpi=600, **asked).astype(int), drawn(server, dpi=100, **asked).astype(int)
-    assert fine.shape == (4961, 7016, 3), fine.shape
+    """A3 at 600 dpi, the largest: the drawing is made of parts of three inches, and together they are the picture of few."""
+    asked = {"direction": "top", "scale": 0.35, "paper": "a3", "orientation": "landscape", "layers": MARKS, **BARE}
+    fine, coarse = drawn(server, dpi=600, **asked), drawn(server, dpi=100, **asked).astype(int)
+    assert fine.shape == (7016, 9921, 3), fine.shape
     rows, columns = coarse.shape[0] - 2, coarse.shape[1] - 2
     means = fine[:6 * rows, :6 * columns].reshape(rows, 6, columns, 6, 3).mean(axis=(1, 3))[1:, 1:]
     around = numpy.stack([coarse[1 + dy:rows + dy, 1 + dx:columns + dx] for dy in (-1, 0, 1) for dx in (-1, 0, 1)])
@@ -132,7 +189,7 @@ def kinds(server, folder):
 
     svg = figure(server, format="svg", **wish).body
     root = xml.fromstring(svg)
-    name = lambda tag: "{http://www.w3.org/2000/svg}" + tag
+    name = lambda tag: SVG + tag
     groups = {each.get("id") for each in root.iter(name("g"))}
     assert {"frame", "legend", "caption", "scale-bar"} <= groups and "north" not in groups, groups
     texts = [each.text for each in root.iter(name("text"))]
@@ -168,7 +225,7 @@ def names(server):
     wish = {"direction": "top", "format": "svg", "dpi": 60, "scale": 1, "labels": {"layer": "units", "column": "label"}}
 
     def told(**more):
-        group = [each for each in xml.fromstring(figure(server, **{**wish, **more}).body).iter("{http://www.w3.org/2000/svg}g") if each.get("id") == "labels"]
+        group = [each for each in xml.fromstring(figure(server, **{**wish, **more}).body).iter(SVG + "g") if each.get("id") == "labels"]
         return {each.text: (float(each.get("x")), float(each.get("y"))) for each in group[0]} if group else {}
 
     at = told()
@@ -273,6 +330,8 @@ def main():
         server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8", "resolution": 2048,
                                           "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000", "label": "One mark"}]}})
         lengths(server)
+        bars(server)
+        north(server)
         seams(server)
         kinds(server, folder)
         labels = names(server)
