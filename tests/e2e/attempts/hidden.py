@@ -73,9 +73,9 @@ def kiosk(table):
         tour = kiosk_site.ALL + "/" + server.ok("POST", kiosk_site.ALL, kiosk_site.TOUR).json()["slug"]
         made, secret = kiosk_site.make_kiosk(server, tour)
         answered, refused = kiosk_site.sweep(server, secret, tour, files, thread)
-        section.tried("Every call of the contract that changes something, or reads what the tour does not show", 403, 403, "a list of what is open: all else is closed, what is added later, too", f"{refused} calls; {answered} that read the tour's model are open")
+        section.tried("Every call of the contract that changes something, or reads what no kiosk shows", 403, 403, "a list of what is open: all else is closed, what is added later, too", f"{refused} calls; {answered} that read the tour's model are open")
         kiosk_site.others_closed(server, secret, files)
-        section.tried("Other models, other tables, files that are private or of records outside the tour", 404, 404, "the address is held against the tour")
+        section.tried("Other models, tables that are neither behind its layers nor in the tour, private files", 404, 404, "the address is held against the tour")
         section.tried("Signing in with it, or accepting an invitation", statuses([server.post("/login", {"token": secret}, token=False, headers={"Origin": server.url}), server.post("/invitations/accept", {"invitation": secret, "password": "seven blue herons at noon"}, token=False, headers={"Origin": server.url})]), {401, 403}, "it is no token of a person")
         as_session = {server.get(kiosk_site.M, token=False, headers={"Cookie": "strata_session=" + secret}).status, server.get(kiosk_site.M, token=False, headers={"Cookie": "strata_kiosk=" + secret}).status, upgraded(server, token="", cookie="strata_session=" + secret, origin=server.url)}
         section.tried("As the cookie of a session, or its own cookie without the page's mark", as_session, 401, "each cookie counts for its own page alone")
