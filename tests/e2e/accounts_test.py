@@ -17,6 +17,34 @@ OTHER = "no herons any more, a pity"
 FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
 
 
+def owner_link(server):
+    """Each start prints one link until the owner has a password; what was printed before is worthless then."""
+    earlier = server.link
+    assert server.stop() == 0
+    server.start()
+    later = server.link
+    assert "/login?link=" in earlier and "/login?link=" in later and earlier != later, (earlier, later)
+
+    def opened(link):
+        browser = Browser(server)
+        return browser, browser.request("GET", "/" + link[link.index("/login"):])
+
+    browser, answer = opened(later)
+    assert answer.status == 303 and answer.headers["Location"] == "/", answer
+    assert browser.ok("GET", "/me").json() == {"user": "owner", "full_name": "", "role": "owner", "has_password": False}
+    assert opened(later + "x")[1].status == 401
+    other, answer = opened(earlier)
+    assert answer.status == 303, "a link is good for a day"
+    browser.ok("POST", "/me/password", {"password": PASSWORD})
+    assert other.request("GET", "/me").status == 401, "the password ends other sessions"
+    for link in (earlier, later):
+        assert opened(link)[1].status == 401, link
+    assert server.stop() == 0
+    server.start()
+    assert server.link == server.url + "/", server.link
+    assert Browser(server).sign_in("owner", PASSWORD).status == 200
+
+
 def invitations(server):
     """A link is good once, for a week, for one person, and is no token."""
     made = server.ok("POST", "/users", {"user": "Ada", "full_name": "Ada L.", "role": "annotator"})
@@ -263,6 +291,9 @@ def reach(server):
 
 
 def main():
+    with StrataServer() as server:
+        owner_link(server)
+        server.assert_clean_log()
     with StrataServer() as server:
         server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
         server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8", "resolution": 2048})

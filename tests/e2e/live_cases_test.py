@@ -178,6 +178,23 @@ def check_presence(server):
         assert "following" not in users[sessions[0]] and users[sessions[2]]["following"] == sessions[0], users
 
 
+def check_colors(server):
+    """Who looks at one model is told apart by colour, as long as there are colours; somebody at two browsers has one."""
+    tokens = [server.add_person(f"guest{i}", "viewer") for i in range(5)]
+    lives = [LiveClient(server, "grid", token=token) for token in [*tokens, tokens[0]]]
+    try:
+        sessions = [live.hello()["session"] for live in lives]
+        while True:
+            users = {user["session"]: user for user in lives[0].receive_until("presence")["users"]}
+            if set(sessions) <= set(users):
+                break
+        colors = [users[session]["color"] for session in sessions]
+        assert len(set(colors[:5])) == 5 and colors[5] == colors[0], users
+    finally:
+        for live in lives:
+            live.socket.close()
+
+
 def wait_for_picture(live, seq):
     while True:
         frame = live.receive_until("frame")
@@ -290,6 +307,7 @@ def main():
         check_sign_out(server)
         check_bad_messages(server)
         check_presence(server)
+        check_colors(server)
         check_slow_client(server)
         answered = check_end(server)
         assert server.stop() == 0

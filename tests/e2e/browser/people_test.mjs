@@ -7,6 +7,7 @@ import { StrataServer, wait_for } from "../support/strata-server.mjs";
 const kOwnersPassword = "four words of mine";
 const kAdasPassword = "engines weave algebra";
 const kAdasNext = "as the loom weaves flowers";
+const kAdasThird = "notes upon the memoir";
 // What the browser says of answers that the test wants, and of sockets that the server ends.
 const kExpected = ["status of 401", "status of 403", "status of 404", "status of 409", "status of 422", ...kOfLostServer];
 
@@ -199,6 +200,40 @@ try {
   await alert_of(ada, "Name or password does not fit");
   await sign_in(ada, "ada", kAdasNext);
   await ada.drawn();
+
+  say("she changes her password on the page, with the one until now; it ends her other sessions");
+  await choose_in_menu(phone, "Account…");
+  const change = async (current, password, repeat = password) => {
+    await phone.page.getByLabel("Password until now").fill(current);
+    await phone.page.getByLabel("New password", { exact: true }).fill(password);
+    await phone.page.getByLabel("New password, once more").fill(repeat);
+    await phone.page.getByRole("button", { name: "Change password" }).click();
+  };
+  await change("", kAdasThird);
+  await alert_of(phone, "Give the password that you have now.");
+  await change(kAdasPassword, kAdasThird);
+  await alert_of(phone, "not the password that you have now");
+  await change(kAdasNext, "short");
+  await alert_of(phone, "at least 10 characters");
+  await change(kAdasNext, kAdasThird);
+  await phone.page.getByText("Your password is set.").waitFor();
+  await shot(phone, "password_changed");
+  await at_sign_in(ada);
+  await sign_in(ada, "ada", kAdasNext);
+  await alert_of(ada, "Name or password does not fit");
+  await sign_in(ada, "ada", kAdasThird);
+  await ada.drawn();
+  await close_dialog(phone);
+
+  say("she signs out at one of her browsers, from another");
+  await choose_in_menu(phone, "Account…");
+  await phone.page.getByText("this browser").waitFor();
+  await phone.page.getByRole("button", { name: /^Sign out: / }).click();
+  await at_sign_in(ada);
+  await phone.page.getByRole("button", { name: /^Sign out: / }).waitFor({ state: "detached" });
+  await sign_in(ada, "ada", kAdasThird);
+  await ada.drawn();
+  await close_dialog(phone);
 
   say("she sees where she is signed in, and signs out there");
   await choose_in_menu(phone, "Account…");
