@@ -6,6 +6,8 @@ import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { parseArgs } from "node:util";
 import { Browser } from "../support/browser.mjs";
+import { kiosk_screens_of } from "../support/kiosk-screens.mjs";
+import { make_kiosk_site } from "../support/kiosk-site.mjs";
 import { make_site, screens_of } from "../support/screens.mjs";
 import { StrataServer } from "../support/strata-server.mjs";
 import { texts_of } from "../support/texts.mjs";
@@ -47,9 +49,10 @@ const file_of = (screen, window) => `shots/${screen.name.replaceAll(/\W+/g, "_")
 /** In a window of another size the server draws the model anew. */
 async function settled() {
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  if ((await page.locator("strata-stage canvas").count()) === 0) return;
+  const canvas = page.locator("strata-stage canvas, strata-kiosk-stage canvas.live").first();
+  if ((await canvas.count()) === 0) return;
   const fits = () =>
-    page.locator("strata-stage canvas").first().evaluate((canvas) => {
+    canvas.evaluate((canvas) => {
       const { width, height } = canvas.getBoundingClientRect();
       return Math.abs(canvas.width / canvas.height - width / height) < 0.02;
     });
@@ -98,13 +101,20 @@ try {
   await page.addInitScript((name) => document.addEventListener("DOMContentLoaded", () => (document.documentElement.dataset.theme = name)), theme);
   const site = await make_site(server, bea);
   const screens = screens_of(viewer, texts_of(language), site);
-  for (const screen of screens) {
-    console.log((step = screen.name));
-    await screen.start();
-    await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
-    await take(screen);
-    await screen.end?.();
-  }
+  const take_all = async (of) => {
+    for (const screen of of) {
+      console.log((step = screen.name));
+      await screen.start();
+      await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
+      await take(screen);
+      await screen.end?.();
+    }
+  };
+  await take_all(screens);
+  step = "the site of a kiosk";
+  const of_kiosk = kiosk_screens_of(viewer, server, await make_kiosk_site(server));
+  await take_all(of_kiosk);
+  screens.push(...of_kiosk);
   const sheet = join(folder, "index.html");
   writeFileSync(sheet, sheet_of(screens));
   console.log(`${sheet}\n${await picture_of(sheet)}`);

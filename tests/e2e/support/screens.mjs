@@ -5,6 +5,7 @@ import { encode_png } from "./png.mjs";
 import { wait_for } from "./strata-server.mjs";
 
 const kGroup = "Students of the summer school in Northern Archaeology 2026";
+const kGoneLayer = "Condition before the cleaning";
 const kOtherProject = "Excavation at the East Gate, Northern Profile";
 
 const kSide = 64;
@@ -33,6 +34,9 @@ export async function make_site(server, bea) {
   for (const [name, depth, state] of [["Handle", 1.25, "broken"], ["Rim", 0.5, "whole"], ["Base", 2, "whole"]])
     await server.json("POST", `/tables/${finds.id}/records`, { values: { name, depth, state } });
   await server.json("POST", `/models/${model}/layers`, { name: "Finds", kind: "database", type: "u16", resolution: 2048, table: finds.slug });
+  const gone = await server.json("POST", `/models/${model}/layers`, { name: kGoneLayer, type: "u8", resolution: 2048 });
+  await server.json("POST", `/models/${model}/layers/${gone.slug}/edits`, { op: "fill", value: 1, mode: "where", where: "true" });
+  await server.request("DELETE", `/models/${model}/layers/${gone.slug}`);
   const made = await server.json("POST", `/projects/${project}/templates/stone-condition`, { model: String(model) });
   const { slug: other } = await server.json("POST", "/projects", { name: kOtherProject });
   const { id: group } = await server.json("POST", "/groups", { name: kGroup, members: ["ada"] });
@@ -152,6 +156,10 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       await from_menu(w.home.options(kOtherProject), w.bin.open)();
       await page.getByText(w.bin.none).waitFor();
     }, end: close_dialog },
+    { name: "Bin", start: async () => {
+      await from_menu(w.home.options("Demo"), w.bin.open)();
+      await page.getByText(kGoneLayer).waitFor();
+    }, end: close_dialog, keyboard: true },
     { name: "delete a project", start: async () => {
       await from_menu(w.home.options(kOtherProject), w.layers.delete)();
       await page.getByText(w.projects.delete_lead).waitFor();
