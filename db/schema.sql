@@ -1116,6 +1116,8 @@ CREATE TABLE public.tokens (
     id bigint NOT NULL,
     label text DEFAULT ''::text NOT NULL,
     last_used timestamp with time zone,
+    project_id bigint,
+    CONSTRAINT tokens_check CHECK (((project_id IS NULL) OR (kind = 'script'::text))),
     CONSTRAINT tokens_hash_check CHECK ((octet_length(hash) = 32)),
     CONSTRAINT tokens_kind_check CHECK ((kind = ANY (ARRAY['session'::text, 'script'::text, 'owner_link'::text, 'invitation'::text])))
 );
@@ -1441,6 +1443,8 @@ CREATE INDEX tile_revisions_edit ON public.tile_revisions USING btree (layer_id,
 
 CREATE INDEX tile_revisions_key ON public.tile_revisions USING btree (layer_id, tile_y, tile_x, sequence) WHERE (key_tile IS NOT NULL);
 
+CREATE INDEX tokens_project ON public.tokens USING btree (project_id) WHERE (project_id IS NOT NULL);
+
 CREATE INDEX tokens_user ON public.tokens USING btree (user_name);
 
 CREATE UNIQUE INDEX tool_shapes_slug ON public.tool_shapes USING btree (slug) WHERE (deleted IS NULL);
@@ -1607,6 +1611,9 @@ ALTER TABLE ONLY public.tile_revisions
 
 ALTER TABLE ONLY public.tile_sums
     ADD CONSTRAINT tile_sums_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.tokens
+    ADD CONSTRAINT tokens_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.tokens
     ADD CONSTRAINT tokens_user_name_fkey FOREIGN KEY (user_name) REFERENCES public.users(name) ON UPDATE CASCADE ON DELETE CASCADE;

@@ -142,12 +142,18 @@ Result<void> remove_person(store::Store& store, const PeopleOptions&, const stor
 Result<void> add_token_of(store::Store& store, const PeopleOptions& options) {
   const auto person = store.person(options.user);
   if (!person) return tl::unexpected(person.error());
-  const Role role = parse_role(options.role).value_or(person->role);
-  if (role > person->role)
+  std::optional<std::int64_t> only;
+  if (!options.project.empty()) {
+    const auto project = store.project(options.project);
+    if (!project) return tl::unexpected(project.error());
+    only = project->id;  // what its person may do there holds, whatever it is by then
+  }
+  const Role role = parse_role(options.role).value_or(only ? Role::curator : person->role);
+  if (!only && role > person->role)
     return fail(400, "Role above the person's",
                 person->name + " is " + std::string(name(person->role)) + ": a token can do no more.", "--role");
-  const auto made =
-      store.create_token(TokenKind::script, person->name, role, std::chrono::hours(24 * options.days), options.name);
+  const auto made = store.create_token(TokenKind::script, person->name, role, std::chrono::hours(24 * options.days),
+                                       options.name, {}, only);
   if (!made) return tl::unexpected(made.error());
   std::cout << made->secret << std::endl;
   return {};
@@ -161,7 +167,7 @@ Result<void> list_tokens(store::Store& store, const PeopleOptions& options) {
   for (const store::Token& token : *tokens)
     std::cout << std::left << std::setw(8) << token.id << std::setw(15) << name(token.role) << "until " << std::setw(12)
               << day_of(token.expires) << "last used " << std::setw(12) << day_of(token.last_used) << token.label
-              << "\n";
+              << (token.project ? " (only " + *token.project + ")" : "") << "\n";
   return {};
 }
 
@@ -215,6 +221,7 @@ Command add_token(CLI::App& app) {
   auto* made = add_of("add", "A new token, printed this once");
   made->add_option("name", options->name, "What it is for")->required();
   add_role(*made, options, "At most what it may do (as its person)");
+  made->add_option("--project", options->project, "The only project that it is good in");
   made->add_option("--days", options->days, "Until it expires")->check(CLI::Range(1, 3650))->capture_default_str();
   add_of("list", "Tokens of a person");
   add_of("revoke", "Makes a token worthless")->add_option("id", options->id, "As `list` tells it")->required();

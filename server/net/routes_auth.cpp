@@ -3,6 +3,7 @@
 
 #include "core/utf8.h"
 #include "net/origin.h"
+#include "net/project_gate.h"
 #include "net/routes.h"
 #include "net/sign_in_gate.h"
 #include "net/wire.h"
@@ -124,6 +125,7 @@ nlohmann::json token_json(const store::Token& token) {
                       {"name", token.label},
                       {"role", std::string(name(token.role))},
                       {"created", utc_text(token.created)}};
+  if (token.project) json["project"] = *token.project;
   if (const auto expires = text_of(token.expires)) json["expires"] = *expires;
   if (const auto used = text_of(token.last_used)) json["last_used"] = *used;
   return json;
@@ -161,13 +163,29 @@ Result<Response> end_others(const RouteContext& context, const Request& request)
 Result<Response> create_token(const RouteContext& context, const Request& request) {
   const auto asked = body_of<protocol::ScriptTokenCreate>(request);
   if (!asked) return tl::unexpected(asked.error());
-  const Role own = request.principal->roles.highest();
-  const Role role = asked->role ? static_cast<Role>(static_cast<int>(*asked->role)) : own;
+  Role own = request.principal->roles.highest();
+  Role role = own;
+  std::optional<std::int64_t> only;
+  if (asked->project) {
+    if (auto seen = check_seen(context, request, *asked->project, "project"); !seen)
+      return tl::unexpected(seen.error());
+    auto project = context.store.project(*asked->project);
+    if (!project) {
+      project.error().field = "project";
+      return tl::unexpected(project.error());
+    }
+    only = project->id;
+    own = request.principal->roles.in(*only);
+    role = std::min(own, Role::curator);
+  }
+  if (asked->role) role = static_cast<Role>(static_cast<int>(*asked->role));
   if (role > own)
     return fail(403, "Not allowed",
-                "Your highest role is " + std::string(name(own)) + ": a token of yours can do no more.", "role");
+                "Your highest role " + std::string(only ? "there " : "") + "is " + std::string(name(own)) +
+                    ": a token of yours can do no more.",
+                "role");
   const auto made = context.store.create_token(TokenKind::script, request.user(), role,
-                                               std::chrono::hours(24 * asked->days), asked->name);
+                                               std::chrono::hours(24 * asked->days), asked->name, {}, only);
   if (!made) return tl::unexpected(made.error());
   return json_response({{"secret", made->secret}, {"token", token_json(made->token)}}, 201)
       .with("Cache-Control", "no-store");

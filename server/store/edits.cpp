@@ -117,8 +117,9 @@ Result<void> rename_in_journal(PgConnection& connection, const std::string& name
         // Decisions on what waited for review tell whose edits were meant, and a reason in words.
         "UPDATE edits SET record = jsonb_set(record, '{user}', to_jsonb($2::text)) WHERE record ->> 'user' = $1",
         "UPDATE edits SET record = jsonb_set(record, '{reason}', "
-        "to_jsonb(" STRATA_CALL_RENAMED("record ->> 'reason'", "1000") ")) "
-        "WHERE " STRATA_CALLS_THEM("record ->> 'reason'")})
+        "to_jsonb(" STRATA_CALL_RENAMED("record ->> 'reason'",
+                                        "1000") ")) "
+                                                "WHERE " STRATA_CALLS_THEM("record ->> 'reason'")})
     if (auto done = connection.query(sql, Params().text(name).text(former)); !done) return tl::unexpected(done.error());
   return {};
 }

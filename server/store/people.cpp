@@ -84,16 +84,20 @@ Token read_token(const PgResult& rows, TokenKind kind, int i) {
               parse_role(rows.text(i, 2)).value_or(Role::viewer),
               rows.time(i, 3),
               {},
+              {},
               {}};
   if (!rows.null(i, 4)) token.expires = rows.time(i, 4);
   if (!rows.null(i, 5)) token.last_used = rows.time(i, 5);
+  if (!rows.null(i, 6)) token.project = rows.text(i, 6);
   return token;
 }
-#define STRATA_TOKEN_COLUMNS "id, label, role, created, expires, last_used"
+#define STRATA_TOKEN_COLUMNS \
+  "id, label, role, created, expires, last_used, (SELECT slug FROM projects p WHERE p.id = tokens.project_id)"
 
 // Of somebody who is locked.
 Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const std::string& user, Role role,
-                              std::optional<std::chrono::seconds> lifetime, const std::string& label) {
+                              std::optional<std::chrono::seconds> lifetime, const std::string& label,
+                              std::optional<std::int64_t> project = {}) {
   auto cleared = run(
       connection, "DELETE FROM tokens WHERE user_name = $1 AND coalesce(revoked, expires) < now() - interval '30 days'",
       Params().text(user));
@@ -103,7 +107,7 @@ Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const st
   std::optional<Time> expires;
   if (lifetime) expires = std::chrono::system_clock::now() + *lifetime;
   auto row = connection.query(
-      "INSERT INTO tokens (hash, kind, user_name, role, expires, label) VALUES ($1, $2, $3, $4, $5, $6) "
+      "INSERT INTO tokens (hash, kind, user_name, role, expires, label, project_id) VALUES ($1, $2, $3, $4, $5, $6, $7) "
       "RETURNING " STRATA_TOKEN_COLUMNS,
       Params()
           .bytes(sha256(made.secret))
@@ -111,7 +115,8 @@ Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const st
           .text(user)
           .text(strata::name(role))
           .time(expires)
-          .text(label));
+          .text(label)
+          .optional_integer(project));
   if (!row) return tl::unexpected(row.error());
   made.token = read_token(*row, kind, 0);
   return made;
@@ -135,7 +140,8 @@ struct Found {
 };
 Result<std::optional<Found>> find(PgConnection& connection, const std::string& secret) {
   auto row = connection.query(
-      "SELECT u.name, u.role, t.role, t.kind, t.id, u.id, coalesce(t.last_used > now() - interval '5 minutes', false) "
+      "SELECT u.name, u.role, t.role, t.kind, t.id, u.id, coalesce(t.last_used > now() - interval '5 minutes', false), "
+      "t.project_id "
       "FROM (SELECT * FROM tokens WHERE hash = $1 AND " STRATA_GOOD_TOKEN
       ") t JOIN users u ON u.name = t.user_name "
       "WHERE u.disabled IS NULL AND u.deleted IS NULL",
@@ -155,6 +161,12 @@ Result<std::optional<Found>> find(PgConnection& connection, const std::string& s
       there = std::max(there, *role);
     }
   if (*kind == TokenKind::script) roles = roles.at_most(*own);
+  if (!row->null(0, 7)) {
+    const std::int64_t project = row->integer(0, 7);
+    const Role there = std::min(roles.in(project), Role::curator);
+    roles = {};
+    if (there > Role::guest) roles.in_projects[project] = there;
+  }
   return std::optional<Found>({{row->text(0, 0), std::move(roles), *kind, row->integer(0, 4)}, row->boolean(0, 6)});
 }
 
@@ -363,7 +375,7 @@ Result<void> Store::set_password(const std::string& name, const std::string& has
 
 Result<NewToken> Store::create_token(TokenKind kind, const std::string& user, Role role,
                                      std::optional<std::chrono::seconds> lifetime, const std::string& label,
-                                     const std::optional<std::string>& hash) {
+                                     const std::optional<std::string>& hash, std::optional<std::int64_t> project) {
   if (auto good = check_texts({{&label, "name"}}); !good) return tl::unexpected(good.error());
   return impl_->pool.write([&](PgConnection& connection) -> Result<NewToken> {
     auto person = lock_person(connection, user);
@@ -380,7 +392,11 @@ Result<NewToken> Store::create_token(TokenKind kind, const std::string& user, Ro
     if (!good) return tl::unexpected(good.error());
     if (kind == TokenKind::script && *good >= static_cast<std::int64_t>(kMostTokens))
       return fail(409, "Too many tokens", "There are " + std::to_string(kMostTokens) + " tokens. Revoke some first.");
-    return insert_token(connection, kind, person->name, role, lifetime, label);
+    if (project) {
+      if (auto good = check_project_role(role); !good) return tl::unexpected(good.error());
+      if (auto there = lock_project(connection, *project); !there) return tl::unexpected(there.error());
+    }
+    return insert_token(connection, kind, person->name, role, lifetime, label, project);
   });
 }
 

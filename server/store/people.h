@@ -35,7 +35,7 @@ struct PersonChange {
 
 enum class TokenKind {
   session,     // of a browser; does what its person may do
-  script,      // the same, but no more than its own role
+  script,      // the same, but no more than its own role, and, where it has a project, nothing elsewhere
   owner_link,  // is traded for sessions until it expires
   invitation,  // is traded for a password and a session, once
 };
@@ -48,6 +48,7 @@ struct Token {
   Role role = Role::viewer;
   std::chrono::system_clock::time_point created;
   std::optional<std::chrono::system_clock::time_point> expires, last_used;
+  std::optional<std::string> project;  // slug of the only one that it is good in
 };
 
 struct NewToken {

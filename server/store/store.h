@@ -343,10 +343,11 @@ class Store {
   Result<void> set_password(const std::string& name, const std::string& hash, std::optional<std::int64_t> kept);
 
   // A new one of somebody who may sign in (404: there is no such person). The oldest session gives way where there are too many;
-  // tokens for scripts are refused then (409). With `hash`: only while that is the person's password (401).
+  // tokens for scripts are refused then (409). With `hash`: only while that is the person's password (401). With `project`, for
+  // scripts: good in that one alone (404: it is not there), as viewer, annotator or curator (422).
   Result<NewToken> create_token(TokenKind kind, const std::string& user, Role role,
                                 std::optional<std::chrono::seconds> lifetime, const std::string& label = {},
-                                const std::optional<std::string>& hash = {});
+                                const std::optional<std::string>& hash = {}, std::optional<std::int64_t> project = {});
   // The only good link of the kind that the person has: earlier ones become worthless.
   Result<NewToken> create_link(TokenKind kind, const std::string& user, std::chrono::seconds lifetime);
   // Nothing: unknown, expired or revoked, or of somebody who may not sign in.

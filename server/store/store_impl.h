@@ -25,8 +25,9 @@ Result<void> rename_in_activity(PgConnection& connection, const std::string& nam
 Result<void> rename_in_journal(PgConnection& connection, const std::string& name, const std::string& former);
 // Texts that may call them with @: in any case, as names are, and where no longer name and no address of a mail begins or ends there.
 #define STRATA_CALLS_THEM(text) "position('@' || lower($1) IN lower(" text ")) > 0"
-#define STRATA_CALL_RENAMED(text, longest)                                                             \
-  "left(regexp_replace(" text ", '(^|[^A-Za-z0-9._@-])@' || replace($1, '.', '\\.') || "               \
+#define STRATA_CALL_RENAMED(text, longest)                   \
+  "left(regexp_replace(" text                                \
+  ", '(^|[^A-Za-z0-9._@-])@' || replace($1, '.', '\\.') || " \
   "'(?![A-Za-z0-9_@-]|\\.[A-Za-z0-9])', '\\1@' || $2, 'gi'), " longest ")"
 
 // In the transaction at hand: what is said of them holds until it is written.

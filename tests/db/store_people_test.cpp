@@ -210,6 +210,38 @@ TEST(People, in_a_project_somebody_may_do_more) {
   EXPECT_TRUE(store->members(other).value().empty());
 }
 
+TEST(Tokens, of_one_project_are_good_there_alone_and_go_with_it) {
+  auto store = test::fresh_store();
+  Project villa;
+  villa.name = "Villa";
+  const auto project = store->create_project(villa).value().id;
+  for (const auto& [name, role] :
+       {std::pair("root", Role::administrator), {"Ada", Role::annotator}, {"Gus", Role::guest}})
+    ASSERT_TRUE(store->create_person(name, "", role));
+  const auto token_of = [&](const char* name, Role role) {
+    return store->create_token(TokenKind::script, name, role, {}, "", {}, project);
+  };
+  const auto roles_of = [&](const std::string& secret) { return store->find_token(secret).value()->roles; };
+  const auto roots = token_of("root", Role::curator).value().secret,
+             adas = token_of("Ada", Role::curator).value().secret;
+  const auto weak = token_of("root", Role::viewer).value().secret,
+             of_guest = token_of("Gus", Role::viewer).value().secret;
+  EXPECT_EQ(roles_of(roots), (Roles{Role::guest, {{project, Role::curator}}}));
+  EXPECT_EQ(roles_of(adas), (Roles{Role::guest, {{project, Role::annotator}}})) << "no more than its person";
+  EXPECT_EQ(roles_of(weak), (Roles{Role::guest, {{project, Role::viewer}}}));
+  EXPECT_EQ(roles_of(of_guest), Roles{}) << "who has no role there gives none";
+  ASSERT_TRUE(store->put_member(project, "Gus", Role::curator));
+  EXPECT_EQ(roles_of(of_guest), (Roles{Role::guest, {{project, Role::viewer}}}));
+  EXPECT_EQ(store->tokens("Ada", TokenKind::script)->at(0).project, "villa");
+  for (const Role role : {Role::guest, Role::administrator, Role::owner})
+    EXPECT_EQ(token_of("root", role).error().status, 422);
+  EXPECT_EQ(store->create_token(TokenKind::script, "Ada", Role::viewer, {}, "", {}, project + 1).error().status, 404);
+  const auto everywhere = store->create_token(TokenKind::script, "Ada", Role::viewer, {}).value().secret;
+  ASSERT_TRUE(store->delete_project(project));
+  for (const auto& secret : {roots, adas, weak, of_guest}) EXPECT_FALSE(store->find_token(secret).value());
+  EXPECT_TRUE(store->find_token(everywhere).value());
+}
+
 TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
   const auto dsn = test::fresh_database();
   auto store = test::open_store(dsn);
@@ -239,7 +271,8 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
   JournalWriter writer(*store, {});
   ASSERT_TRUE(test::save(writer, painter.entry(1, "stroke", "Ada.Lovelace")));
   auto decision = painter.entry(2, "reject", "Ben");
-  decision.record = {{"op", "reject"}, {"user", "Ada.Lovelace"}, {"reason", "@ada.lovelace: too far, b@ada.lovelacex.org"}};
+  decision.record = {
+      {"op", "reject"}, {"user", "Ada.Lovelace"}, {"reason", "@ada.lovelace: too far, b@ada.lovelacex.org"}};
   decision.reviewed = {{1}, Review::rejected};
   decision.disable = {1};
   ASSERT_TRUE(test::save(writer, decision));
@@ -262,8 +295,8 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
     ASSERT_TRUE(found) << found.error().detail;
     EXPECT_EQ(found->integer(0, 0), 0) << tables->text(i, 0);
   }
-  const auto history = connection->query("SELECT count(*) FROM table_edits WHERE user_name = $1",
-                                         Params().text(former));
+  const auto history =
+      connection->query("SELECT count(*) FROM table_edits WHERE user_name = $1", Params().text(former));
   EXPECT_EQ(history->integer(0, 0), 1);
   for (const char* taken : {"former-7", "Former-8"})
     EXPECT_EQ(store->create_person(taken, "", Role::viewer).error().status, 409);

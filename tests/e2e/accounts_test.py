@@ -10,7 +10,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.browsers import PASSWORD, Browser, join, secret_of
 from support.live_client import LiveClient, Refused
 from support.meshes import folded_grid
-from support.strata_server import LONG_S, StrataServer
+from support.strata_server import LONG_S, StrataServer, wait_for
 
 M, L = "/models/sheet", "/models/sheet/layers/marks"
 OTHER = "no herons any more, a pity"
@@ -18,7 +18,7 @@ FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
 
 
 def owner_link(server):
-    """Each start prints one link until the owner has a password; what was printed before is worthless then."""
+    """Each start prints a link until the owner has a password; it is the only one, and good until then."""
     earlier = server.link
     assert server.stop() == 0
     server.start()
@@ -32,13 +32,13 @@ def owner_link(server):
     browser, answer = opened(later)
     assert answer.status == 303 and answer.headers["Location"] == "/", answer
     assert browser.ok("GET", "/me").json() == {"user": "owner", "full_name": "", "role": "owner", "has_password": False}
-    assert opened(later + "x")[1].status == 401
-    other, answer = opened(earlier)
+    for link in (earlier, later + "x"):
+        assert opened(link)[1].status == 401, link
+    other, answer = opened(later)
     assert answer.status == 303, "a link is good for a day"
     browser.ok("POST", "/me/password", {"password": PASSWORD})
     assert other.request("GET", "/me").status == 401, "the password ends other sessions"
-    for link in (earlier, later):
-        assert opened(link)[1].status == 401, link
+    assert opened(later)[1].status == 401
     assert server.stop() == 0
     server.start()
     assert server.link == server.url + "/", server.link
@@ -194,6 +194,25 @@ def tokens(server, ada, anne):
     listed = ada.ok("GET", "/me/tokens").json()
     assert [each["name"] for each in listed["tokens"]] == ["painter", "nightly"] and all("last_used" in each for each in listed["tokens"]), listed
     assert secret not in str(listed)
+    # One for a project alone, as curator at most, whoever makes it.
+    server.ok("POST", "/projects", {"name": "Tower"})
+    refused = ada.request("POST", "/me/tokens", {"name": "t", "project": "nowhere"})
+    assert refused.status == 404 and refused.json()["field"] == "project", refused
+    for who, role, status in ((ada, "curator", 403), (anne, "administrator", 422), (anne, "guest", 422)):
+        refused = who.request("POST", "/me/tokens", {"name": "t", "project": "tower", "role": role})
+        assert refused.status == status and refused.json()["field"] == "role", refused
+    tower = anne.ok("POST", "/me/tokens", {"name": "of the tower", "project": "tower"}).json()
+    only, default = tower["secret"], anne.ok("POST", "/me/tokens", {"name": "of the first", "project": "default", "role": "annotator"}).json()["secret"]
+    assert tower["token"]["role"] == "curator" and tower["token"]["project"] == "tower", tower
+    assert [project["slug"] for project in server.get("/projects", token=only).json()["projects"]] == ["tower"]
+    assert server.get(M, token=only).status == 404 and server.get("/users", token=only).status == 403
+    table = server.post("/projects/tower/tables", {"name": "Finds", "columns": [{"name": "Code"}]}, token=only)
+    assert table.status == 201 and server.request("DELETE", f"/tables/{table.json()['slug']}", token=only).status == 204, table
+    assert server.post(L + "/edits", FILL, token=default).status == 200 and server.get("/projects/tower", token=default).status == 404
+    server.ok("DELETE", "/projects/tower")
+    assert [each["name"] for each in anne.ok("GET", "/me/tokens").json()["tokens"]] == ["of the first"]
+    wait_for(lambda: server.get("/me", token=only).status == 401, "the token to be gone with its project")  # remembered for some seconds
+    anne.ok("DELETE", f"/me/tokens/{anne.ok('GET', '/me/tokens').json()['tokens'][0]['id']}")
     managing = anne.ok("POST", "/me/tokens", {"name": "manager"}).json()["secret"]
     assert server.get("/users", token=managing).status == 200 and server.post("/users/ada/invite", token=managing).status == 403
     assert anne.request("DELETE", f"/me/tokens/{made['token']['id']}").status == 404, "somebody else's"
@@ -259,6 +278,9 @@ def commands(server):
     assert re.search(r"Max +curator +active", listed) and "owner" in listed, listed
     secret = strata("token", "add", "report", "--user", "max", "--role", "viewer").strip()
     assert server.get("/me", token=secret).json()["role"] == "viewer"
+    assert re.search(r"curator +until .*nightly \(only default\)", strata("token", "add", "nightly", "--user", "max", "--project", "default") and strata("token", "list", "--user", "max"))
+    for words in (("--project", "nowhere"), ("--project", "default", "--role", "administrator")):
+        assert "strata: " in strata("token", "add", "x", "--user", "max", *words, code=1), words
     number = re.search(r"(\d+) +viewer .*report", strata("token", "list", "--user", "max"))[1]
     strata("token", "revoke", number, "--user", "max")
     assert "report" not in strata("token", "list", "--user", "max")

@@ -5,7 +5,7 @@ import { route_of } from "../src/app/routes";
 import { texts } from "../src/app/texts";
 import { told_date, told_time } from "../src/app/times";
 import { Api, ApiError } from "../src/core/api";
-import { browser_of, called, find_people, initials, is_user_name, may_change, password_mistake, role_by_groups, roles_of_tokens, roles_to_give } from "../src/core/people";
+import { browser_of, called, find_people, initials, is_user_name, may_change, password_mistake, role_by_groups, roles_of_tokens, roles_of_tokens_in, roles_to_give } from "../src/core/people";
 import type { Person } from "../src/core/protocol.gen";
 import { may_administer } from "../src/core/types";
 
@@ -93,6 +93,8 @@ describe("roles", () => {
   it("a token may have what its person has", () => {
     expect(roles_of_tokens("viewer")).toEqual(["viewer"]);
     expect(roles_of_tokens("owner").at(-1)).toBe("owner");
+    expect(roles_of_tokens_in("owner")).toEqual(["viewer", "annotator", "curator"]);
+    expect(roles_of_tokens_in("annotator")).toEqual(["viewer", "annotator"]);
   });
   it("administrators and the owner look after people", () => {
     expect((["viewer", "annotator", "curator", "administrator", "owner"] as const).filter(may_administer)).toEqual(["administrator", "owner"]);

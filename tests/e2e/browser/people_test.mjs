@@ -253,8 +253,14 @@ try {
   await owner.page.getByRole("button", { name: "Make token" }).click();
   await alert_of(owner, "Say what it is for");
   await owner.page.getByLabel("What it is for").fill("Nightly report");
-  await owner.page.getByRole("combobox", { name: "Role", exact: true }).selectOption("viewer");
+  const role_of_token = owner.page.getByRole("combobox", { name: "Role", exact: true });
+  await role_of_token.selectOption("owner");
+  await owner.page.getByRole("combobox", { name: "Good in" }).selectOption("Demo");
+  assert.equal(await role_of_token.inputValue(), "curator", "a token of one project is curator at most");
+  await role_of_token.selectOption("viewer");
+  await shot(owner, "token_form");
   await owner.page.getByRole("button", { name: "Make token" }).click();
+  await owner.page.getByText("Viewer · only in Demo").waitFor();
   const token = await owner.page.getByLabel(/Copy it now/).inputValue();
   await owner.page.getByText(`Authorization: Bearer ${token}`).waitFor();
   assert.equal(await call(token, "/models"), 200);

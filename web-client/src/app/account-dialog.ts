@@ -5,7 +5,7 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../core/api";
 import { format_list } from "../core/locale";
-import { browser_of, kLeastPasswordLength, password_mistake, roles_of_tokens } from "../core/people";
+import { browser_of, kLeastPasswordLength, password_mistake, roles_of_tokens, roles_of_tokens_in } from "../core/people";
 import type { Project, ScriptToken, ScriptTokenMade, SignInSession } from "../core/protocol.gen";
 import { kRoles, type Me, type Role } from "../core/types";
 import "./copy-field";
@@ -27,12 +27,13 @@ type Section = "name" | "password" | "sessions" | "tokens";
 export class StrataAccountDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) me!: Me;
-  @state() private projects_: Project[] = []; // in which they may do more than everywhere
+  @state() private projects_: Project[] = []; // that they see
   @state() private sessions_: SignInSession[] = [];
   @state() private tokens_: ScriptToken[] | null = null;
   @state() private made_: ScriptTokenMade | null = null;
   @state() private adding_ = false;
   @state() private role_: Role = "viewer"; // of the token that is added
+  @state() private only_ = ""; // slug of the project that it is for; empty: all
   @state() private field_problems_: Partial<Record<Field, string>> = {};
   @state() private note_: { section: Section; kind: "error" | "done"; text: string } | null = null;
   @state() private busy_ = false;
@@ -133,8 +134,7 @@ export class StrataAccountDialog extends LitElement {
   }
 
   private async read_projects(): Promise<void> {
-    const rank = (role: Role | undefined): number => kRoles.indexOf(role ?? "guest");
-    this.projects_ = (await this.api.projects()).filter(({ role }) => rank(role) > rank(this.me.role));
+    this.projects_ = await this.api.projects();
   }
   private async read_sessions(): Promise<void> {
     this.sessions_ = await this.api.sign_in_sessions();
@@ -145,13 +145,15 @@ export class StrataAccountDialog extends LitElement {
 
   override render(): TemplateResult {
     const { me } = this;
+    const rank = (role: Role | undefined): number => kRoles.indexOf(role ?? "guest");
+    const with_more = this.projects_.filter(({ role }) => rank(role) > rank(me.role)); // than everywhere
     return html`<strata-dialog wide heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <section>
         <p class="hint">${words.about(me.user, texts.roles[me.role])}</p>
-        ${this.projects_.length > 0
+        ${with_more.length > 0
           ? html`<p class="caption" id="in_projects">${words.in_projects}</p>
               <ul aria-labelledby="in_projects">
-              ${this.projects_.map((project) => this.project_row(project))}
+              ${with_more.map((project) => this.project_row(project))}
             </ul>`
           : nothing}
         ${this.name_form(me)} ${this.note("name")}
@@ -187,7 +189,7 @@ export class StrataAccountDialog extends LitElement {
           )}
         </ul>
         ${this.adding_
-          ? this.token_form(me.role)
+          ? this.token_form()
           : html`<button class="end" @click=${this.begin_to_add}>${icon("plus")}${words.token_new}</button>`}
         ${this.note("tokens")}
       </section>
@@ -257,8 +259,9 @@ export class StrataAccountDialog extends LitElement {
     const expired = token.expires !== undefined && new Date(token.expires) < new Date();
     const until = token.expires === undefined ? "" : (expired ? words.token_expired : words.token_until)(told_date(token.expires));
     const used = token.last_used === undefined ? words.token_unused : words.token_used(told_time(token.last_used));
+    const where = token.project === undefined ? "" : words.token_only(this.projects_.find(({ slug }) => slug === token.project)?.name ?? token.project);
     return html`<li>
-      <div class="grow"><b>${token.name}</b> <span class="hint">${words.token_line(texts.roles[token.role], until, used)}</span></div>
+      <div class="grow"><b>${token.name}</b> <span class="hint">${words.token_line(texts.roles[token.role], where, until, used)}</span></div>
       <button ?disabled=${this.busy_} aria-label=${words.token_revoke(token.name)} @click=${() => void this.revoke(token)}>${words.revoke}</button>
     </li>`;
   }
@@ -272,7 +275,19 @@ export class StrataAccountDialog extends LitElement {
     </div>`;
   }
 
-  private token_form(own: Role): TemplateResult {
+  private roles_of_token(): Role[] {
+    const only = this.projects_.find(({ slug }) => slug === this.only_);
+    return only ? roles_of_tokens_in(only.role ?? "guest") : roles_of_tokens(this.me.role);
+  }
+
+  private choose_project(slug: string): void {
+    this.only_ = slug;
+    const roles = this.roles_of_token();
+    if (!roles.includes(this.role_)) this.role_ = roles.at(-1) ?? "viewer";
+  }
+
+  private token_form(): TemplateResult {
+    const roles = this.roles_of_token();
     return html`<form @submit=${this.on_token} novalidate>
       <label class="field">
         <span>${words.token_name}</span>
@@ -287,11 +302,18 @@ export class StrataAccountDialog extends LitElement {
       </label>
       ${this.mistake("name")}
       <div class="choices">
+        <label class="field">
+          <span>${words.token_where}</span>
+          <select name="project" @change=${(event: Event) => this.choose_project((event.target as HTMLSelectElement).value)}>
+            <option value="" ?selected=${this.only_ === ""}>${words.token_everywhere}</option>
+            ${this.projects_.map(({ slug, name }) => html`<option value=${slug} ?selected=${slug === this.only_}>${name}</option>`)}
+          </select>
+        </label>
         <div>
           <label class="field">
             <span>${words.token_role}</span>
             <select name="role" aria-describedby="role_hint" @change=${(event: Event) => (this.role_ = (event.target as HTMLSelectElement).value as Role)}>
-              ${roles_of_tokens(own).map((role) => html`<option value=${role} ?selected=${role === this.role_}>${texts.roles[role]}</option>`)}
+              ${roles.map((role) => html`<option value=${role} ?selected=${role === this.role_}>${texts.roles[role]}</option>`)}
             </select>
           </label>
           <small class="hint" id="role_hint">${texts.role_hints[this.role_]}</small>
@@ -357,6 +379,7 @@ export class StrataAccountDialog extends LitElement {
   private begin_to_add(): void {
     this.adding_ = true;
     this.role_ = "viewer";
+    this.only_ = "";
     this.made_ = null;
     void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLInputElement>("input[name=name]")?.focus());
   }
@@ -364,13 +387,13 @@ export class StrataAccountDialog extends LitElement {
   private on_token(event: Event): void {
     event.preventDefault();
     const name = text_of(event, "name").trim();
-    const [role, days] = [this.role_, Number(text_of(event, "days"))];
+    const [role, only, days] = [this.role_, this.only_, Number(text_of(event, "days"))];
     if (name === "") {
       this.refuse("name", words.token_name_missing);
       return;
     }
     void this.attempt("tokens", async () => {
-      this.made_ = await this.api.create_token({ name, role, days });
+      this.made_ = await this.api.create_token({ name, role, days, ...(only ? { project: only } : {}) });
       this.adding_ = false;
       await this.read_tokens();
     });

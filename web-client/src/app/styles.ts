@@ -338,6 +338,7 @@ export const choices_styles = css`
     display: grid;
     grid-template-columns: 1fr 1fr;
     gap: 0.75rem;
+    align-items: start;
   }
   .choices .full {
     grid-column: 1 / -1;

@@ -20,6 +20,8 @@ export const called = ({ user, full_name }: Pick<Me, "user" | "full_name">): str
 export const roles_to_give = (own: Role): Role[] => kRoles.slice(0, Math.min(kRoles.indexOf(own), kRoles.indexOf("administrator")) + 1);
 /** Those that a token of somebody may have, the least first. What a guest may do in projects the server knows. */
 export const roles_of_tokens = (own: Role): Role[] => (own === "guest" ? [...kProjectRoles] : kRoles.slice(1, kRoles.indexOf(own) + 1));
+/** The same of one that is good in a project alone, where they have this role. */
+export const roles_of_tokens_in = (own: Role): Role[] => kProjectRoles.filter((role) => kRoles.indexOf(role) <= kRoles.indexOf(own));
 
 export type PasswordMistake = { field: "password" | "repeat"; kind: "too_short" | "is_the_name" | "differs" };
 

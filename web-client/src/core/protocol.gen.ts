@@ -1051,6 +1051,8 @@ export interface ScriptToken {
   expires?: string;
   /** To some minutes. */
   last_used?: string;
+  /** Slug of the only project that it is good in. */
+  project?: string;
 }
 
 /** Tokens. */
@@ -1066,6 +1068,8 @@ export interface ScriptTokenCreate {
   role?: Role;
   /** Until it expires. Default: 365. */
   days?: number;
+  /** Slug or id of the only project that it is good in, as viewer, annotator or curator; absent: wherever its person is. */
+  project?: string;
 }
 
 /** The token, told this once. */

@@ -1757,6 +1757,7 @@ void read(const nlohmann::json& json, ScriptTokenCreate& value) {
   read_member(json, "name", value.name);
   read_optional_member(json, "role", value.role);
   read_optional_member(json, "days", value.days);
+  read_optional_member(json, "project", value.project);
 }
 
 nlohmann::json to_json(const ScriptTokenCreate& value) {
@@ -1764,6 +1765,7 @@ nlohmann::json to_json(const ScriptTokenCreate& value) {
   write_member(json, "name", value.name);
   write_optional_member(json, "role", value.role);
   write_member(json, "days", value.days);
+  write_optional_member(json, "project", value.project);
   return json;
 }
 

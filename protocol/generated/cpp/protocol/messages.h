@@ -1241,6 +1241,7 @@ struct ScriptTokenCreate {
   std::string name;  // What it is for.
   std::optional<Role> role;
   int days = 365;  // Until it expires.
+  std::optional<std::string> project;  // Slug or id of the only project that it is good in, as viewer, annotator or curator; absent: wherever its person is.
   bool operator==(const ScriptTokenCreate&) const = default;
 };
 void read(const nlohmann::json& json, ScriptTokenCreate& value);

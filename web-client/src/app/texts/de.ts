@@ -140,6 +140,9 @@ export const texts = {
     token_name_hint: "Nächtlicher Bericht",
     token_name_missing: "Bitte angeben, wofür es ist, damit später klar ist, welches zu widerrufen ist.",
     token_role: "Rolle",
+    token_where: "Gilt in",
+    token_everywhere: "Allen meinen Projekten",
+    token_only: (project) => `nur in ${project}`,
     token_days: "Gültig für",
     token_day_choices: [
       [7, "eine Woche"],
@@ -150,7 +153,7 @@ export const texts = {
     token_make: "Token anlegen",
     token_made: (name) => `Das Token „${name}“. Bitte jetzt kopieren: es wird nicht noch einmal angezeigt.`,
     token_example: "Zum Beispiel",
-    token_line: (role, until, used) => [role, until, used].filter(Boolean).join(" · "),
+    token_line: (role, where, until, used) => [role, where, until, used].filter(Boolean).join(" · "),
     token_until: (when) => `bis ${when}`,
     token_expired: (when) => `abgelaufen ${when}`,
     token_used: (when) => `benutzt ${when}`,

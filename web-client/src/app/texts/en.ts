@@ -127,6 +127,9 @@ export const texts = {
     token_name_hint: "Nightly report",
     token_name_missing: "Say what it is for, so that you know later which one to revoke.",
     token_role: "Role",
+    token_where: "Good in",
+    token_everywhere: "All my projects",
+    token_only: (project: string) => `only in ${project}`,
     token_days: "Good for",
     token_day_choices: [
       [7, "a week"],
@@ -137,7 +140,7 @@ export const texts = {
     token_make: "Make token",
     token_made: (name: string) => `The token “${name}”. Copy it now: it is not shown again.`,
     token_example: "For example",
-    token_line: (role: string, until: string, used: string) => [role, until, used].filter(Boolean).join(" · "),
+    token_line: (role: string, where: string, until: string, used: string) => [role, where, until, used].filter(Boolean).join(" · "),
     token_until: (when: string) => `until ${when}`,
     token_expired: (when: string) => `expired ${when}`,
     token_used: (when: string) => `used ${when}`,

@@ -146,6 +146,9 @@ export const texts = {
     token_name_hint: "Informe nocturno",
     token_name_missing: "Diga para qué es, para saber después cuál revocar.",
     token_role: "Papel",
+    token_where: "Vale en",
+    token_everywhere: "Todos mis proyectos",
+    token_only: (project) => `solo en ${project}`,
     token_days: "Válido durante",
     token_day_choices: [
       [7, "una semana"],
@@ -156,7 +159,7 @@ export const texts = {
     token_make: "Crear token",
     token_made: (name) => `El token «${name}». Cópielo ahora: no se mostrará otra vez.`,
     token_example: "Por ejemplo",
-    token_line: (role, until, used) => [role, until, used].filter(Boolean).join(" · "),
+    token_line: (role, where, until, used) => [role, where, until, used].filter(Boolean).join(" · "),
     token_until: (when) => `hasta ${when}`,
     token_expired: (when) => `caducó ${when}`,
     token_used: (when) => `usado ${when}`,
