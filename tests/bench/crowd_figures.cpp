@@ -25,6 +25,13 @@ void add_camera_times(const LiveClient& client, double begin_ms, double end_ms, 
   }
 }
 
+// From the camera at which somebody let go of the model to the last byte of its picture of full quality.
+void add_refined_times(const LiveClient& client, Samples& times) {
+  const auto refined = std::ranges::find_if(
+      client.frames(), [&](const auto& frame) { return frame.still && frame.camera_seq == client.newest_camera(); });
+  if (refined != client.frames().end()) times.add(refined->at_ms - client.camera_sent_ms(client.newest_camera()));
+}
+
 // From a batch to the last byte of the first picture of `viewer` that shows it; edits of a picture only ever come to more.
 void add_batch_times(const LiveClient& painter, const LiveClient& viewer, double begin_ms, double end_ms,
                      Samples& times) {
@@ -55,7 +62,7 @@ nlohmann::json crowd_figures(const CrowdCase& asked, const Viewers& active, cons
                              const CrowdMoment& begin, const CrowdMoment& end) {
   const double seconds = (end.at_ms - begin.at_ms) / 1e3;
   std::vector<double> turning_rates, painting_rates, active_bytes, idle_rates;
-  Samples camera, own, turning, still, at_rest;
+  Samples camera, refined, own, turning, still, at_rest;
   std::uint64_t batches = 0, unchanged = 0, refused = 0, unanswered = 0;
   for (std::size_t i = 0; i < active.size(); ++i) {
     const LiveClient& client = *active[i];
@@ -65,6 +72,7 @@ nlohmann::json crowd_figures(const CrowdCase& asked, const Viewers& active, cons
     active_bytes.push_back(double(end.active[i].bytes - begin.active[i].bytes) / seconds);
     if (!paints) {
       add_camera_times(client, begin.at_ms, end.at_ms, camera);
+      if (asked.hands != Hands::rest) add_refined_times(client, refined);
       continue;
     }
     refused += std::uint64_t(client.refused());
@@ -104,7 +112,8 @@ nlohmann::json crowd_figures(const CrowdCase& asked, const Viewers& active, cons
         {"all_active", rate(begin.active, end.active, &Counts::bytes)},
         {"all_idle", rate(begin.idle, end.idle, &Counts::bytes)},
         {"all_idle_on_the_wire", rate(begin.idle, end.idle, &Counts::wire_bytes)}}},
-      {"camera_to_last_byte", of_times(camera)}};
+      {"camera_to_last_byte", of_times(camera)},
+      {"last_camera_to_full_quality", of_times(refined)}};
   if (batches > 0)
     json["strokes"] = {{"batches_per_s", double(batches) / seconds},
                        {"unchanged", unchanged},

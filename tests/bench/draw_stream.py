@@ -166,11 +166,11 @@ def active_table(data):
     for row in rows_of(data, "active"):
         server = middle(row, "cores", "server")
         out.append([row["link"], str(row["active"]), row["hands"], cell(middle(row, "frames_per_s", "turning", "min"), "{:.1f}"), with_spread(row, "frames_per_s", "turning", "median"),
-                    with_spread(row, "frames_per_s", "painting", "median"), times(row, "camera_to_last_byte"), times(row, "strokes", "to_own_pixels"),
+                    with_spread(row, "frames_per_s", "painting", "median"), times(row, "camera_to_last_byte"), times(row, "last_camera_to_full_quality"), times(row, "strokes", "to_own_pixels"),
                     times(row, "strokes", "to_others_pixels", "still"), times(row, "strokes", "to_others_pixels", "turning"), cell(middle(row, "strokes", "batches_per_s")),
                     cell(middle(row, "bytes_per_s", "an_active_viewer", "median") / 1000), with_spread(row, "frames_per_cpu_s"), cell(server / row["active"], "{:.2f}"),
                     cell(middle(row, "cores", "postgresql"), "{:.2f}"), cell(middle(row, "server_mib", "peak"))])
-    return table("Active viewers", ["link", "active", "hands", "turning, frames/s: slowest viewer", "median viewer", "painting, frames/s", "camera → last byte, p50 / p95 ms", "stroke → own pixels",
+    return table("Active viewers", ["link", "active", "hands", "turning, frames/s: slowest viewer", "median viewer", "painting, frames/s", "camera → last byte, p50 / p95 ms", "last camera → full quality", "stroke → own pixels",
                                     "→ others', still", "→ others', turning", "batches/s", "KB/s a viewer", "frames a CPU second", "cores a viewer", "PostgreSQL cores", "MiB"], out)
 
 

@@ -72,7 +72,7 @@ void LiveClient::look(const Camera& camera, bool moving) {
 }
 
 asio::awaitable<void> LiveClient::newest_camera_shown() {
-  while (!is_lost_ && (frames_.empty() || frames_.back().camera_seq < camera_sent_ms_.size()))
+  while (!is_lost_ && (frames_.empty() || frames_.back().camera_seq < newest_camera()))
     co_await has_news_.async_wait(kUseResult);
 }
 
@@ -174,7 +174,7 @@ void LiveClient::on_frame(asio::const_buffer message) {
   const auto header = protocol::decode_frame_header({static_cast<const std::uint8_t*>(message.data()), message.size()});
   if (!header) return lose("a frame is not one: " + header.error().detail);
   if (!header->last) return;
-  frames_.push_back({now_ms(), header->camera_seq, header->scene_sequence});
+  frames_.push_back({now_ms(), header->camera_seq, header->scene_sequence, header->still});
   has_picture_ = has_picture_ || header->still;
   protocol::Ack ack;
   ack.view_id = int(header->view_id);

@@ -43,6 +43,7 @@ class LiveClient {
   struct Frame {  // whole
     double at_ms;
     std::uint64_t camera_seq, scene_sequence;
+    bool still;  // of full quality
   };
   struct Batch {  // of a stroke
     Uuid id, stroke;
@@ -78,6 +79,7 @@ class LiveClient {
   Counts counts() const { return {frames_.size(), bytes_, stream().rate_policy().bytes_read()}; }
   const std::vector<Frame>& frames() const { return frames_; }
   const std::vector<Batch>& batches() const { return batches_; }
+  std::uint64_t newest_camera() const { return camera_sent_ms_.size(); }
   // When the camera of this number was given to `look`.
   double camera_sent_ms(std::uint64_t camera_seq) const { return camera_sent_ms_.at(camera_seq - 1); }
 

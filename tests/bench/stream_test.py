@@ -26,6 +26,9 @@ def check_run(row, run):
         check_times(run["camera_to_last_byte"], "camera_to_last_byte")
         # A camera goes there and its picture comes back.
         assert run["camera_to_last_byte"]["ms_min"] >= 20, run["camera_to_last_byte"]
+        refined = run["last_camera_to_full_quality"]
+        check_times(refined, "last_camera_to_full_quality")
+        assert refined["runs"] == rates["turning"]["viewers"], "whoever lets go of the model sees it in full quality"
     if paints:
         strokes = run["strokes"]
         assert strokes["batches_per_s"] > 0 and strokes["refused"] == 0 and strokes["unanswered"] == 0, strokes
