@@ -21,7 +21,10 @@ function open(): Promise<IDBDatabase> {
   if (database) return database;
   const request = indexedDB.open(kDatabase, 1);
   request.onupgradeneeded = () => void request.result.createObjectStore(kStore);
-  database = result_of(request);
+  database = result_of(request).then((opened) => {
+    opened.onclose = () => (database = null); // by the browser: its data were cleared, or the disk failed
+    return opened;
+  });
   database.catch(() => (database = null));
   return database;
 }
