@@ -133,8 +133,23 @@ try {
   await page.keyboard.type("one");
   await page.keyboard.press("Enter");
   await stored(2, "note", "bone");
+  await cell(2, "Note").getByText("bone").waitFor();
   await page.keyboard.press("ArrowUp");
   await page.keyboard.press("Delete");
+  await stored(2, "note", null);
+
+  say("what is emptied while it is still being saved is empty in the end");
+  const version = async () => (await server.json("GET", `${T}/records/2`)).version;
+  const before = await version();
+  let let_go;
+  const held = new Promise((done) => (let_go = done));
+  await page.route("**/records/2", (route) => held.then(() => route.continue()), { times: 1 });
+  await page.keyboard.type("horn");
+  await page.keyboard.press("Enter");
+  await page.keyboard.press("ArrowUp");
+  await page.keyboard.press("Delete");
+  let_go();
+  await wait_for(async () => (await version()) === before + 2, "both changes of the note to be stored");
   await stored(2, "note", null);
 
   say("what is no value is said at the cell, by the page or by the server");

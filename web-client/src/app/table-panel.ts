@@ -606,10 +606,16 @@ export class StrataTablePanel extends LitElement {
     return this.session.editors.other(this.view.table_id, key) !== null;
   }
 
-  private clear_cell({ key, values }: TableRecord, { slug }: Column): void {
-    const clear = (): void => void this.view.write(key, slug, null, values[slug] ?? null);
-    if (this.is_held(key)) void this.take_over(key, clear);
+  private clear_cell(record: TableRecord, { slug }: Column): void {
+    const clear = (): void => void this.view.write(record.key, slug, null, this.base_of(record, slug));
+    if (this.is_held(record.key)) void this.take_over(record.key, clear);
     else clear();
+  }
+
+  /** What a cell holds, for who writes into it: what is on its way to the server, too. */
+  private base_of({ key, values }: TableRecord, slug: string): CellValue {
+    const edit = this.view.edits.of(key, slug);
+    return edit?.state === "saving" ? edit.value : (values[slug] ?? null);
   }
 
   private edit_now(row: number, at: number, typed: string | null): void {
@@ -618,9 +624,8 @@ export class StrataTablePanel extends LitElement {
     if (!record || !column) return;
     this.activate(row, at);
     this.scroll_to_active(this.view.table!);
-    const edit = this.view.edits.of(record.key, column.slug);
-    const now = record.values[column.slug] ?? null;
-    this.editing_ = { key: record.key, row, column, value: edit?.value ?? now, base: edit?.state === "saving" ? edit.value : now, typed };
+    const base = this.base_of(record, column.slug);
+    this.editing_ = { key: record.key, row, column, value: this.view.edits.of(record.key, column.slug)?.value ?? base, base, typed };
     this.editor_problem_ = "";
     void this.updateComplete.then(async () => {
       const input = this.input_;
