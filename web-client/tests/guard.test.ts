@@ -1,10 +1,13 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { keep_on_page, stay_awake } from "../src/kiosk/guard";
+import { fill_screen, keep_on_page, stay_awake } from "../src/kiosk/guard";
 
 /** As browsers have it: on the document, who listens to wheels and fingers can refuse them only after having said so. */
 class FakeDocument extends EventTarget {
   visibilityState = "visible";
+  fullscreenEnabled = true;
+  fullscreenElement: object | null = null;
+  documentElement = { requestFullscreen: vi.fn(() => Promise.reject(new Error("not granted"))) };
   override addEventListener(name: string, listener: (event: Event) => void, { passive }: { passive?: boolean } = {}): void {
     if (["wheel", "touchmove"].includes(name) && passive !== false) return;
     super.addEventListener(name, listener);
@@ -90,5 +93,25 @@ describe("a screen that stays on", () => {
     await expect(stay_awake()).resolves.toBeUndefined();
     vi.stubGlobal("navigator", {});
     await expect(stay_awake()).resolves.toBeUndefined();
+  });
+});
+
+describe("the whole screen", () => {
+  const fills = (width: number, height: number): boolean => {
+    vi.stubGlobal("screen", { width: 1080, height: 1920 });
+    vi.stubGlobal("innerWidth", width);
+    vi.stubGlobal("innerHeight", height);
+    fill_screen();
+    return page.documentElement.requestFullscreen.mock.calls.length > 0;
+  };
+  it("is asked for where bars of the browser are left", () => expect(fills(1080, 1800)).toBe(true));
+  it("is not where the browser's kiosk mode has given it", () => expect(fills(1080, 1920)).toBe(false));
+  it("is not where a browser has no such thing", () => {
+    page.fullscreenEnabled = false;
+    expect(fills(1080, 1800)).toBe(false);
+  });
+  it("is not asked for twice", () => {
+    page.fullscreenElement = {};
+    expect(fills(1080, 1800)).toBe(false);
   });
 });

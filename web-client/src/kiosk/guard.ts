@@ -16,6 +16,12 @@ export function keep_on_page(): void {
   addEventListener("popstate", () => history.pushState(null, "", location.href));
 }
 
+/** The whole screen, where the browser's own kiosk mode has not given it: browsers grant that to a touch only, and visitors' browsers not at all or for as long as they want. */
+export function fill_screen(): void {
+  const has_it = document.fullscreenElement !== null || (innerWidth >= screen.width && innerHeight >= screen.height);
+  if (document.fullscreenEnabled && !has_it) document.documentElement.requestFullscreen({ navigationUI: "hide" }).catch(() => {});
+}
+
 /** The screen stays on, where the browser grants that. */
 export async function stay_awake(): Promise<void> {
   try {

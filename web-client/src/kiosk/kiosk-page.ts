@@ -4,6 +4,7 @@ import { html, LitElement, nothing, svg, type PropertyValues, type TemplateResul
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { name_of_language } from "../core/languages";
+import { fill_screen } from "./guard";
 import { direction_of_language } from "./languages";
 import { kiosk_styles } from "./kiosk-styles";
 import type { KioskSession } from "./kiosk-session";
@@ -193,7 +194,11 @@ export class StrataKiosk extends LitElement {
     const { session } = this;
     const { languages } = session;
     const [first, ...others] = [...new Set(languages.map((tag) => texts_in(tag, languages).begin))].slice(0, kMostInvitations);
-    return html`<button class="begin" @click=${() => session.touched()}>
+    const begin = (): void => {
+      fill_screen();
+      session.touched();
+    };
+    return html`<button class="begin" @click=${begin}>
       <b>${first}</b>
       ${others.length > 0 ? html`<span>${others.join(" · ")}</span>` : nothing}
     </button>`;
