@@ -110,11 +110,12 @@ void LiveSession::on(const protocol::Hello& message) {
       std::none_of(message.accept->begin(), message.accept->end(), [](const auto& codec) { return codec == "jpeg"; }))
     return refuse({406, "No common picture format", "Pictures are sent as jpeg.", "accept"}, std::string());
 
-  std::shared_ptr<room::Member> joined =
-      room_->join(author(), full_name_, this, [socket = socket_, metrics = shared_->metrics](stream::FrameBytes frame) {
+  std::shared_ptr<room::Member> joined = room_->join(
+      author(), full_name_, this, [socket = socket_, metrics = shared_->metrics](const stream::FrameMessages& frame) {
         ++metrics->frames_sent;
-        metrics->frame_bytes_sent += frame->size();
-        if (auto open = socket.lock()) open->send_frame(std::move(frame));
+        for (const stream::FrameBytes& part : frame) metrics->frame_bytes_sent += part->size();
+        if (auto open = socket.lock())
+          for (const stream::FrameBytes& part : frame) open->send_frame(part);
       });
   protocol::Welcome welcome;
   welcome.session = joined->session();

@@ -32,7 +32,7 @@ constexpr seconds kRecheck{30};  // whether the person is still signed in
 constexpr std::size_t kMaxMessage = 4u << 20;
 constexpr std::size_t kMaxQueuedTexts = 4096;
 constexpr std::size_t kMaxQueuedBytes = 16u << 20;
-constexpr std::size_t kMaxQueuedFrames = 64;  // credit allows a few frames of a few rectangles a view
+constexpr std::size_t kMaxQueuedFrames = 256;  // credit allows 3 frames of 16 rectangles for each of 4 views
 
 class WebSocketSession final : public LiveSocket, public std::enable_shared_from_this<WebSocketSession> {
  public:

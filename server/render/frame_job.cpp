@@ -15,6 +15,9 @@ constexpr std::size_t kBytesCollectedPerStep = std::size_t{16} << 20;  // a few 
 // The surface between the places of a line may bulge, and that of a coarser copy lies where it likes.
 constexpr double kMarkLift_px = 3, kMarkLiftOfCopies_px = 10;
 
+std::size_t row_bytes(const PixelRect& rect) { return std::size_t{4} * static_cast<std::size_t>(rect.width); }
+std::size_t bytes_of(const PixelRect& rect) { return row_bytes(rect) * static_cast<std::size_t>(rect.height); }
+
 double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
@@ -70,7 +73,7 @@ Step FrameJob::step(GpuScene& scene) {
       }
       case Stage::area:
         if (auto chosen = choose_area(scene, **view); !chosen) return tl::unexpected(chosen.error());
-        stage_ = frame_.rect.width > 0 ? Stage::shade : Stage::readback;
+        stage_ = frame_.rects.empty() ? Stage::readback : Stage::shade;
         return Step::more;
       case Stage::shade: {
         auto complete = shade_band(scene, **view);
@@ -202,19 +205,20 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
       request.camera.projection * request.camera.view * glm::translate(glm::dmat4(1.0), geometry.origin);
   frame_.width = request.width;
   frame_.height = request.height;
-  frame_.rect = {0, 0, request.width, request.height};
   if (request.changed && view.shows(request)) {
-    frame_.rect = screen_rect(*request.changed, clip, request.width, request.height, request.align_to_16);
-    if (frame_.rect.width == 0) return {};
+    frame_.rects = screen_rects(*request.changed, clip, request.width, request.height, request.align_to_16);
+    if (frame_.rects.empty()) return {};
   } else {
+    frame_.rects = {{0, 0, request.width, request.height}};
     view.mark_segments.clear();
     if (request.marks)
       view.mark_segments = project_marks(*request.marks, request.camera, request.width, request.height,
                                          view.key.level == 0 ? kMarkLift_px : kMarkLiftOfCopies_px);
   }
-  const FrameRequest::Box box{geometry.box_min, geometry.box_max};
-  surface_ = intersection(frame_.rect, screen_rect({&box, 1}, clip, request.width, request.height, false));
-  auto pixels = scene.readback().begin(row_bytes() * static_cast<std::size_t>(frame_.rect.height));
+  surface_ = screen_rect({geometry.box_min, geometry.box_max}, clip, request.width, request.height, false);
+  std::size_t bytes = 0;
+  for (const PixelRect& rect : frame_.rects) bytes += bytes_of(rect);
+  auto pixels = scene.readback().begin(bytes);
   if (!pixels) return tl::unexpected(pixels.error());
   pixels_ = std::move(*pixels);
   return {};
@@ -224,9 +228,9 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   const FrameRequest& request = task_.request;
   auto model = scene.model(view.model);
   if (!model) return tl::unexpected(model.error());
-  const PixelRect& rect = frame_.rect;
+  const PixelRect& rect = frame_.rects[shaded_.rect];
   const int rows = std::max(1, scene.pixels_per_band() / (rect.width * (1 + static_cast<int>(request.layers.size()))));
-  const PixelRect band{rect.x, rect.y + shaded_rows_, rect.width, std::min(rows, rect.height - shaded_rows_)};
+  const PixelRect band{rect.x, rect.y + shaded_.done, rect.width, std::min(rows, rect.height - shaded_.done)};
   ShadeInput input{view.uv,
                    view.light,
                    view.shading,
@@ -244,16 +248,16 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   if (auto shaded = scene.shade_pass().shade(input, scene.tables()); !shaded) return tl::unexpected(shaded.error());
   auto marked = scene.mark_pass().draw(view.mark_segments, view.shading, request.width, request.height, band);
   if (!marked) return tl::unexpected(marked.error());
-  shaded_rows_ += band.height;
 
-  const std::size_t offset = row_bytes() * static_cast<std::size_t>(rect.height - shaded_rows_);
+  const int rows_below = rect.height - shaded_.done - band.height;
+  const std::size_t offset = shaded_.before + row_bytes(rect) * static_cast<std::size_t>(rows_below);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, pixels_.buffer().id());
   glGetTextureSubImage(view.picture.id(), 0, band.x, request.height - band.y - band.height, 0, band.width, band.height,
-                       1, GL_RGBA, GL_UNSIGNED_BYTE,
-                       static_cast<GLsizei>(row_bytes() * static_cast<std::size_t>(band.height)),
+                       1, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(bytes_of(band)),
                        reinterpret_cast<void*>(offset));
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-  if (shaded_rows_ < rect.height) return false;
+  advance(shaded_, band.height);
+  if (!complete(shaded_)) return false;
   pixels_.submit();
   view.picture_complete = true;
   view.layers = request.layers;
@@ -268,13 +272,23 @@ bool FrameJob::collect_rows() {
   if (!pixels_) return true;
   const auto data = pixels_.data();
   frame_.pixels.reserve(data.size());
-  const std::size_t until = std::min(frame_.pixels.size() + kBytesCollectedPerStep, data.size());
-  while (frame_.pixels.size() < until) {
+  const std::size_t until = frame_.pixels.size() + kBytesCollectedPerStep;
+  while (!complete(collected_) && frame_.pixels.size() < until) {
+    const PixelRect& rect = frame_.rects[collected_.rect];
+    const std::size_t rows_below = static_cast<std::size_t>(rect.height - collected_.done - 1);
     const auto* row =
-        reinterpret_cast<const std::uint8_t*>(data.data() + data.size() - frame_.pixels.size() - row_bytes());
-    frame_.pixels.insert(frame_.pixels.end(), row, row + row_bytes());
+        reinterpret_cast<const std::uint8_t*>(data.data()) + collected_.before + row_bytes(rect) * rows_below;
+    frame_.pixels.insert(frame_.pixels.end(), row, row + row_bytes(rect));
+    advance(collected_, 1);
   }
-  return frame_.pixels.size() == data.size();
+  return complete(collected_);
+}
+
+void FrameJob::advance(Rows& rows, int by) const {
+  const PixelRect& rect = frame_.rects[rows.rect];
+  rows.done += by;
+  if (rows.done < rect.height) return;
+  rows = {rows.rect + 1, rows.before + bytes_of(rect), 0};
 }
 
 }  // namespace strata::render

@@ -34,8 +34,16 @@ class FrameJob {
   Result<bool> draw_slice(GpuScene& scene, View& view);  // true when complete
   Result<void> choose_area(GpuScene& scene, View& view);
   Result<bool> shade_band(GpuScene& scene, View& view);  // true when complete
-  std::size_t row_bytes() const { return std::size_t{4} * static_cast<std::size_t>(frame_.rect.width); }
-  bool collect_rows();  // true when complete
+  bool collect_rows();                                   // true when complete
+
+  // How far one walk over the rows of all rectangles has come, each from its top.
+  struct Rows {
+    std::size_t rect = 0;    // of `frame_.rects`
+    std::size_t before = 0;  // bytes of the rectangles before it
+    int done = 0;            // of its rows
+  };
+  void advance(Rows& rows, int by) const;
+  bool complete(const Rows& rows) const { return rows.rect == frame_.rects.size(); }
 
   FrameTask task_;
   Stage stage_ = Stage::prepare;
@@ -43,9 +51,9 @@ class FrameJob {
   MeshProgress progress_;
   std::chrono::steady_clock::time_point mesh_begin_;  // when its first slice was drawn
   Frame frame_;
-  PixelRect surface_;    // of `frame_.rect`: may show surface
-  int shaded_rows_ = 0;  // of `frame_.rect`, from its top
-  gl::Readback pixels_;  // lowest row first
+  PixelRect surface_;  // of the picture: may show surface
+  Rows shaded_, collected_;
+  gl::Readback pixels_;  // of one rectangle after the other, lowest row first
   double busy_ms_ = 0;
 };
 

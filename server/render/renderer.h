@@ -114,19 +114,19 @@ struct FrameRequest {
   Light light;
   double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
   // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's last frame: the
-  // rectangle they cover is shaded and returned. A changed camera, size or style shades everything anyway.
+  // rectangles they cover are shaded and returned. A changed camera, size or style shades everything anyway.
   struct Box {
     glm::vec3 min, max;
     bool operator==(const Box&) const = default;
   };
   std::optional<std::vector<Box>> changed;
   Background background;
-  bool align_to_16 = true;  // grow the rectangle to multiples of 16 for JPEG parts
+  bool align_to_16 = true;  // grow the rectangles to multiples of 16 for JPEG parts
 };
 struct Frame {
-  PixelRect rect;                    // what `pixels` covers; empty when nothing changed
+  std::vector<PixelRect> rects;      // what `pixels` covers: all of it, or what changed; none: nothing did
   int width = 0, height = 0;         // of the whole picture
-  std::vector<std::uint8_t> pixels;  // RGBA8, rect.width × rect.height, top row first
+  std::vector<std::uint8_t> pixels;  // RGBA8 of one rectangle after the other, top row first
   double render_ms = 0;
   int level = 0;  // of the model that is shown: 0 is the full mesh, 1 the finest coarser copy
 };

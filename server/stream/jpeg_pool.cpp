@@ -7,6 +7,7 @@
 #include <exception>
 #include <list>
 #include <mutex>
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -21,7 +22,7 @@ struct Work {
   JpegSettings settings;
   std::vector<JpegPool::Done> wanted;
   bool encoded = false;
-  Jpeg jpeg;
+  Jpegs jpegs;
   double took_ms = 0;
 
   bool is_of(const render::SharedFrame& other, JpegSettings wished) const {
@@ -34,10 +35,18 @@ struct Job {
   render::SharedFrame frame;
 };
 
-Jpeg jpeg_of(const render::Frame& frame, JpegSettings settings) {
+Jpegs jpegs_of(const render::Frame& frame, JpegSettings settings) {
   try {
-    return std::make_shared<const std::vector<std::uint8_t>>(
-        encode_jpeg(frame.pixels, frame.rect.width, frame.rect.height, settings));
+    std::vector<std::vector<std::uint8_t>> jpegs;
+    std::span<const std::uint8_t> left = frame.pixels;
+    for (const render::PixelRect& rect : frame.rects) {
+      const std::size_t bytes =
+          std::size_t{4} * static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
+      const auto pixels = left.first(std::min(bytes, left.size()));
+      left = left.subspan(pixels.size());
+      jpegs.push_back(encode_jpeg(pixels, rect.width, rect.height, settings));
+    }
+    return std::make_shared<const std::vector<std::vector<std::uint8_t>>>(std::move(jpegs));
   } catch (const std::exception& error) {
     log::error(error.what());
     return nullptr;
@@ -66,17 +75,17 @@ struct JpegPool::Impl {
       if (!work.encoded) {
         lock.unlock();
         const auto start = std::chrono::steady_clock::now();
-        Jpeg jpeg = jpeg_of(*job.frame, work.settings);
+        Jpegs jpegs = jpegs_of(*job.frame, work.settings);
         const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
         lock.lock();
         work.encoded = true;
-        work.jpeg = std::move(jpeg);
+        work.jpegs = std::move(jpegs);
         work.took_ms = elapsed.count();
         ++encoded;
       }
       const auto wanted = std::exchange(work.wanted, {});
       lock.unlock();
-      for (const Done& done : wanted) done(work.jpeg, work.took_ms);
+      for (const Done& done : wanted) done(work.jpegs, work.took_ms);
     }
   }
 };

@@ -10,13 +10,14 @@
 
 namespace strata::stream {
 
-using Jpeg = std::shared_ptr<const std::vector<std::uint8_t>>;
+// One for each rectangle of a frame, in order.
+using Jpegs = std::shared_ptr<const std::vector<std::vector<std::uint8_t>>>;
 
 // A few threads that encode pictures, each once, however many viewers it is for. The queue is bounded by the viewers' credit (one
 // picture in work per viewer).
 class JpegPool {
  public:
-  using Done = std::function<void(const Jpeg&, double)>;
+  using Done = std::function<void(const Jpegs&, double)>;
   explicit JpegPool(int threads);
   ~JpegPool();
   // `done` runs on a pool thread with the bytes and the milliseconds it took; null where encoding failed (logged).

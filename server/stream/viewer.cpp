@@ -89,29 +89,35 @@ std::pair<int, int> picture_size(const Camera& camera, const Viewer::Options& op
 
 std::uint32_t microseconds(double ms) { return static_cast<std::uint32_t>(std::clamp(ms * 1000.0, 0.0, 4e9)); }
 
-FrameBytes frame_message(const FlowControl::Draw& draw, const FlowControl::Numbered& number, const render::Frame& frame,
-                         std::uint32_t view_id, const std::vector<std::uint8_t>& jpeg, double encode_ms) {
+FrameMessages frame_messages(const FlowControl::Draw& draw, const FlowControl::Numbered& number,
+                             const render::Frame& frame, std::uint32_t view_id,
+                             const std::vector<std::vector<std::uint8_t>>& jpegs, double encode_ms) {
   protocol::FrameHeader header;
-  header.keyframe = frame.rect == render::PixelRect{0, 0, frame.width, frame.height};
   header.still = number.still;
-  header.last = true;  // one rectangle a frame
   header.view_id = view_id;
   header.frame = static_cast<std::uint32_t>(number.frame);
   header.camera_seq = draw.camera_seq;
   header.scene_sequence = static_cast<std::uint64_t>(draw.sequence);
-  header.x = static_cast<std::uint32_t>(frame.rect.x);
-  header.y = static_cast<std::uint32_t>(frame.rect.y);
-  header.width = static_cast<std::uint32_t>(frame.rect.width);
-  header.height = static_cast<std::uint32_t>(frame.rect.height);
   header.full_width = static_cast<std::uint32_t>(frame.width);
   header.full_height = static_cast<std::uint32_t>(frame.height);
   header.render_us = microseconds(frame.render_ms);
   header.encode_us = microseconds(encode_ms);
-  header.payload_bytes = static_cast<std::uint32_t>(jpeg.size());
-  const auto head = protocol::encode_frame_header(header);
-  auto message = std::make_shared<std::vector<std::uint8_t>>(head.size() + jpeg.size());
-  std::copy(jpeg.begin(), jpeg.end(), std::copy(head.begin(), head.end(), message->begin()));
-  return message;
+  FrameMessages messages;
+  for (std::size_t i = 0; i < jpegs.size(); ++i) {
+    const render::PixelRect& rect = frame.rects[i];
+    header.keyframe = rect == render::PixelRect{0, 0, frame.width, frame.height};
+    header.last = i + 1 == jpegs.size();
+    header.x = static_cast<std::uint32_t>(rect.x);
+    header.y = static_cast<std::uint32_t>(rect.y);
+    header.width = static_cast<std::uint32_t>(rect.width);
+    header.height = static_cast<std::uint32_t>(rect.height);
+    header.payload_bytes = static_cast<std::uint32_t>(jpegs[i].size());
+    const auto head = protocol::encode_frame_header(header);
+    auto message = std::make_shared<std::vector<std::uint8_t>>(head.size() + jpegs[i].size());
+    std::copy(jpegs[i].begin(), jpegs[i].end(), std::copy(head.begin(), head.end(), message->begin()));
+    messages.push_back(std::move(message));
+  }
+  return messages;
 }
 
 }  // namespace
@@ -330,7 +336,7 @@ void Viewer::on_drawn(const FlowControl::Draw& draw, JpegSettings jpeg, render::
   {
     std::lock_guard lock(impl_->mutex);
     if (impl_->closed) return;
-    const bool sent = frame->rect.width > 0 && frame->rect.height > 0;
+    const bool sent = !frame->rects.empty();
     impl_->retry_in = kFirstRetry;
     impl_->stats.last_render_ms = frame->render_ms;
     if (const auto number = impl_->flow.on_drawn(draw.ticket, sent))
@@ -376,34 +382,37 @@ void Viewer::encode_next() {
     settings = impl_->drawn.front().jpeg;
   }
   impl_->context.encoder->encode(std::move(frame), settings,
-                                 [self = weak_from_this()](const Jpeg& jpeg, double encode_ms) {
-                                   if (auto viewer = self.lock()) viewer->on_encoded(jpeg, encode_ms);
+                                 [self = weak_from_this()](const Jpegs& jpegs, double encode_ms) {
+                                   if (auto viewer = self.lock()) viewer->on_encoded(jpegs, encode_ms);
                                  });
 }
 
-void Viewer::on_encoded(const Jpeg& jpeg, double encode_ms) {
+void Viewer::on_encoded(const Jpegs& jpegs, double encode_ms) {
   {
     std::lock_guard sending(impl_->send_mutex);
-    FrameBytes message;
+    FrameMessages messages;
     {
       std::lock_guard lock(impl_->mutex);
       impl_->encoding = false;
       if (impl_->closed) return;
       const Impl::Picture picture = std::move(impl_->drawn.front());
       impl_->drawn.pop_front();
-      if (!jpeg) {
+      if (!jpegs) {
         impl_->flow.on_ack(picture.number.frame);  // it never leaves, so no client can give its credit back
       } else {
-        message = frame_message(picture.draw, picture.number, *picture.frame, impl_->options.view_id, *jpeg, encode_ms);
-        impl_->link.on_sent(picture.number.frame, message->size(), picture.draw.quality == FlowControl::Quality::moving,
+        messages =
+            frame_messages(picture.draw, picture.number, *picture.frame, impl_->options.view_id, *jpegs, encode_ms);
+        std::size_t bytes = 0;
+        for (const FrameBytes& message : messages) bytes += message->size();
+        impl_->link.on_sent(picture.number.frame, bytes, picture.draw.quality == FlowControl::Quality::moving,
                             Clock::now());
         ++impl_->stats.frames;
-        impl_->stats.bytes += message->size();
+        impl_->stats.bytes += bytes;
         impl_->stats.last_encode_ms = encode_ms;
       }
     }
     impl_->told.clear();
-    if (message) impl_->send(std::move(message));
+    if (!messages.empty()) impl_->send(std::move(messages));
   }
   encode_next();
   step();

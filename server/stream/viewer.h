@@ -20,6 +20,7 @@ struct StreamContext {
 
 // An encoded message as it goes to the socket: frame header (protocol/frame_header.h) and payload in one buffer.
 using FrameBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
+using FrameMessages = std::vector<FrameBytes>;  // of one frame, a message for each rectangle, in order
 
 // One view of one client: from camera and changes to encoded frames, by the flow rules of ARCHITECTURE.md:
 // the newest camera wins; frames echo the camera's number; at most `window` frames are sent but not acknowledged; when there is
@@ -35,7 +36,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     int max_width = 3840, max_height = 2160;
     std::int64_t sequence = 0;  // of the scene at the start
   };
-  using Send = std::function<void(FrameBytes)>;
+  using Send = std::function<void(FrameMessages)>;
   // Why nothing can be drawn as asked for (422). Told once; the next camera, layers or edit are tried again.
   using Refused = std::function<void(const Problem&)>;
 
@@ -70,7 +71,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   void on_failed(std::uint64_t ticket, const Problem& problem);
   void tell(const Problem& why);
   void encode_next();
-  void on_encoded(const Jpeg& jpeg, double encode_ms);
+  void on_encoded(const Jpegs& jpegs, double encode_ms);
   void wait_for_quiet();
   void retry_later(std::function<void(Viewer&)> action);
 

@@ -100,7 +100,7 @@ class Queries {
     make_parts();
     FrameClient viewer;
     auto member = room_->join({"bench", Role::owner}, "", nullptr,
-                              [&](stream::FrameBytes frame) { viewer.receive(std::move(frame)); });
+                              [&](const stream::FrameMessages& frame) { viewer.receive(frame); });
     const auto show = [&](const char* filter) {
       room::LayerView parts{layers_.at("parts").id, true, {}, {}, {}};
       if (filter)

@@ -41,7 +41,7 @@ class OneViewer {
     room_ = must(site_.rooms->open(model_.slug, Role::owner));
     for (int i = 0; i < options.layers; ++i) add_filled_layer(i);
     member_ = room_->join({"bench", Role::owner}, "", nullptr,
-                          [&](stream::FrameBytes frame) { client_.receive(std::move(frame)); });
+                          [&](const stream::FrameMessages& frame) { client_.receive(frame); });
     member_->camera(0, ++camera_number_, still_, false);
     client_.wait_for(*member_,
                      [&](const auto& a) { return a.header.still && a.header.camera_seq == camera_number_.load(); });

@@ -23,13 +23,15 @@ class FrameClient {
     std::size_t bytes;
     std::size_t content;  // a hash of the header's payload
   };
-  void receive(stream::FrameBytes frame) {
+  void receive(const stream::FrameMessages& frame) {
     const double at = now_ms();
-    auto header = must(protocol::decode_frame_header(*frame));
     std::lock_guard lock(mutex_);
-    const std::string_view payload(reinterpret_cast<const char*>(frame->data()), frame->size());
-    const std::size_t content = std::hash<std::string_view>()(payload.substr(payload.size() - header.payload_bytes));
-    arrivals_.push_back({at, header, frame->size(), content});
+    for (const stream::FrameBytes& message : frame) {
+      auto header = must(protocol::decode_frame_header(*message));
+      const std::string_view payload(reinterpret_cast<const char*>(message->data()), message->size());
+      const std::size_t content = std::hash<std::string_view>()(payload.substr(payload.size() - header.payload_bytes));
+      arrivals_.push_back({at, header, message->size(), content});
+    }
     changed_.notify_all();
   }
   template <class Wanted>

@@ -124,17 +124,17 @@ TEST_F(Marks, a_part_of_a_picture_that_is_drawn_anew_has_them_too) {
   const auto whole = renderer_.draw(request);
   request.changed = std::vector<render::FrameRequest::Box>{{{-0.1f, -0.1f, 0}, {0.1f, 0.1f, 0}}};
   const auto part = renderer_.draw(request);
-  ASSERT_LT(part.rect.width, kSize);
-  ASSERT_GT(part.rect.width, 0);
-  for (int y = 0; y < part.rect.height; ++y)
-    for (int x = 0; x < part.rect.width; ++x) {
-      const auto* p = &part.pixels[4 * (static_cast<std::size_t>(y) * part.rect.width + x)];
-      ASSERT_EQ((std::array<int, 3>{p[0], p[1], p[2]}), pixel(whole, part.rect.x + x, part.rect.y + y));
+  ASSERT_LT(part.rects.at(0).width, kSize);
+  ASSERT_GT(part.rects.at(0).width, 0);
+  for (int y = 0; y < part.rects.at(0).height; ++y)
+    for (int x = 0; x < part.rects.at(0).width; ++x) {
+      const auto* p = &part.pixels[4 * (static_cast<std::size_t>(y) * part.rects.at(0).width + x)];
+      ASSERT_EQ((std::array<int, 3>{p[0], p[1], p[2]}), pixel(whole, part.rects.at(0).x + x, part.rects.at(0).y + y));
     }
   // Other marks: all of the picture, though nothing of the surface changed.
   request.marks = nullptr;
   request.changed = std::vector<render::FrameRequest::Box>{};
-  EXPECT_EQ(renderer_.draw(request).rect.width, kSize);
+  EXPECT_EQ(renderer_.draw(request).rects.at(0).width, kSize);
   renderer_->remove_view(request.view);
 }
 

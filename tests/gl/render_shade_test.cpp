@@ -32,8 +32,7 @@ class Shade : public testing::Test {
     return layer;
   }
   static std::array<double, 3> pixel(const render::Frame& frame, int x, int y) {
-    const auto* p =
-        &frame.pixels[4 * static_cast<std::size_t>((y - frame.rect.y) * frame.rect.width + x - frame.rect.x)];
+    const auto* p = &frame.pixels[4 * static_cast<std::size_t>(y * frame.width + x)];
     return {double(p[0]), double(p[1]), double(p[2])};
   }
   // Light on the square, from a layer that is plain white.
@@ -284,13 +283,13 @@ TEST_F(Shade, a_large_picture_is_shaded_in_bands_without_a_seam) {
     auto part_request = request;
     part_request.changed = {{{-0.3, y - 0.1, 0.5}, {0.3, y + 0.1, 1}}};
     const auto part = renderer_.draw(part_request);
-    ASSERT_GT(part.rect.height, 50);
-    ASSERT_LT(part.rect.width * part.rect.height * 4, 1 << 22);
-    for (int row = 0; row < part.rect.height; ++row) {
-      const auto* whole = &picture.pixels[4 * (static_cast<std::size_t>(part.rect.y + row) * 2048 +
-                                               static_cast<std::size_t>(part.rect.x))];
-      ASSERT_TRUE(std::equal(whole, whole + 4 * part.rect.width,
-                             &part.pixels[static_cast<std::size_t>(4 * row * part.rect.width)]));
+    ASSERT_GT(part.rects.at(0).height, 50);
+    ASSERT_LT(part.rects.at(0).width * part.rects.at(0).height * 4, 1 << 22);
+    for (int row = 0; row < part.rects.at(0).height; ++row) {
+      const auto* whole = &picture.pixels[4 * (static_cast<std::size_t>(part.rects.at(0).y + row) * 2048 +
+                                               static_cast<std::size_t>(part.rects.at(0).x))];
+      ASSERT_TRUE(std::equal(whole, whole + 4 * part.rects.at(0).width,
+                             &part.pixels[static_cast<std::size_t>(4 * row * part.rects.at(0).width)]));
     }
   }
 }
@@ -316,35 +315,57 @@ TEST_F(Shade, a_reshaded_rectangle_equals_a_full_redraw) {
   auto [layer, palette, request] = add_sphere(640, 480);
   request.layers = {{layer, palette, 0.8f}};
   auto picture = renderer_.draw(request);
-  ASSERT_EQ(picture.rect, (render::PixelRect{0, 0, 640, 480}));
+  ASSERT_EQ(picture.rects.at(0), (render::PixelRect{0, 0, 640, 480}));
   for (int i = 0; i < 5; ++i) {
     const auto outcome =
         renderer_.paint(layer, dab(request.camera, 250 + 40 * i, 200 + 30 * i, 20, 20u * static_cast<unsigned>(i)));
     auto partial_request = request;
     partial_request.changed = {{outcome.written_min, outcome.written_max}};
     const auto part = renderer_.draw(partial_request);
-    ASSERT_LT(part.rect.width * part.rect.height, 640 * 480 / 8);
-    EXPECT_EQ(part.rect.x % 16, 0);
-    EXPECT_EQ(part.rect.width % 16, 0);
-    for (int y = 0; y < part.rect.height; ++y) {
-      std::copy_n(&part.pixels[static_cast<std::size_t>(4 * y * part.rect.width)], 4 * part.rect.width,
-                  &picture.pixels[static_cast<std::size_t>(4 * ((part.rect.y + y) * 640 + part.rect.x))]);
+    ASSERT_LT(part.rects.at(0).width * part.rects.at(0).height, 640 * 480 / 8);
+    EXPECT_EQ(part.rects.at(0).x % 16, 0);
+    EXPECT_EQ(part.rects.at(0).width % 16, 0);
+    for (int y = 0; y < part.rects.at(0).height; ++y) {
+      std::copy_n(&part.pixels[static_cast<std::size_t>(4 * y * part.rects.at(0).width)], 4 * part.rects.at(0).width,
+                  &picture.pixels[static_cast<std::size_t>(4 * ((part.rects.at(0).y + y) * 640 + part.rects.at(0).x))]);
     }
   }
   EXPECT_EQ(picture.pixels, renderer_.draw(request).pixels);
   // Nothing changed: nothing is sent. Another style: everything is.
   auto nothing = request;
   nothing.changed.emplace();
-  EXPECT_EQ(renderer_.draw(nothing).rect.width, 0);
+  EXPECT_TRUE(renderer_.draw(nothing).rects.empty());
   nothing.layers[0].opacity = 0.5f;
-  EXPECT_EQ(renderer_.draw(nothing).rect.width, 640);
+  EXPECT_EQ(renderer_.draw(nothing).rects.at(0).width, 640);
+}
+
+TEST_F(Shade, rectangles_far_apart_equal_a_full_redraw_and_nothing_between_is_shaded) {
+  auto [layer, palette, request] = add_sphere(640, 480);
+  request.layers = {{layer, palette, 0.8f}};
+  auto picture = renderer_.draw(request);
+  auto partial_request = request;
+  partial_request.changed.emplace();
+  for (const glm::dvec2 at : {glm::dvec2(200, 150), {420, 160}, {320, 380}}) {
+    const auto outcome = renderer_.paint(layer, dab(request.camera, at.x, at.y, 8, 70));
+    partial_request.changed->push_back({outcome.written_min, outcome.written_max});
+  }
+  const auto part = renderer_.draw(partial_request);
+  ASSERT_EQ(part.rects.size(), 3u);
+  const std::uint8_t* from = part.pixels.data();
+  for (const auto& rect : part.rects) {
+    EXPECT_LT(rect.width * rect.height, 640 * 480 / 20);
+    for (int y = 0; y < rect.height; ++y, from += 4 * rect.width)
+      std::copy_n(from, 4 * rect.width, &picture.pixels[static_cast<std::size_t>(4 * ((rect.y + y) * 640 + rect.x))]);
+  }
+  EXPECT_EQ(from, part.pixels.data() + part.pixels.size());
+  EXPECT_EQ(picture.pixels, renderer_.draw(request).pixels);
 }
 
 TEST_F(Shade, a_picture_may_have_another_size_than_the_cameras_window) {
   request_.width = 96, request_.height = 64;
   const auto frame = renderer_.draw(request_);
   EXPECT_EQ(frame.pixels.size(), 4u * 96 * 64);
-  EXPECT_EQ(frame.rect, (render::PixelRect{0, 0, 96, 64}));
+  EXPECT_EQ(frame.rects.at(0), (render::PixelRect{0, 0, 96, 64}));
 }
 
 TEST_F(Shade, views_give_their_buffers_up_when_memory_runs_out_and_draw_again) {
@@ -358,7 +379,7 @@ TEST_F(Shade, views_give_their_buffers_up_when_memory_runs_out_and_draw_again) {
   for (int round = 0; round < 2; ++round) {
     for (const auto view : views) {
       request_.view = view;
-      EXPECT_EQ(renderer.draw(request_).rect.width, 512);
+      EXPECT_EQ(renderer.draw(request_).rects.at(0).width, 512);
       EXPECT_LE(renderer->gpu_bytes_used(), options.gpu_memory_bytes);
     }
   }
@@ -381,7 +402,7 @@ TEST_F(Shade, requests_that_cannot_be_drawn_are_refused_with_a_reason) {
   refused(request, 404);
   request.layers = {{filled_layer(ValueType::u8, 1), nullptr, 1}};
   refused(request, 422);
-  EXPECT_EQ(renderer_.draw(request_).rect.width, kSize) << "a refused request leaves the view usable";
+  EXPECT_EQ(renderer_.draw(request_).rects.at(0).width, kSize) << "a refused request leaves the view usable";
 }
 
 }  // namespace

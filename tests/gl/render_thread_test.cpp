@@ -337,7 +337,7 @@ TEST(LostContext, pending_work_is_answered_and_the_renderer_works_again_with_new
   const auto new_layer = renderer.add_layer(new_model, ValueType::u8, 256);
   EXPECT_FALSE(renderer.paint(new_layer, dab(camera, 100, 100, 20)).tiles.empty());
   request.view = renderer.add_view(new_model);
-  EXPECT_EQ(renderer.draw(request).rect.width, 200);
+  EXPECT_EQ(renderer.draw(request).rects.at(0).width, 200);
 }
 
 TEST(Order, strokes_are_answered_in_the_order_they_were_given) {

@@ -35,14 +35,18 @@ std::vector<std::uint8_t> decode_jpeg(std::span<const std::uint8_t> jpeg, int& w
 class Client {
  public:
   Viewer::Send send() {
-    return [this](FrameBytes message) {
+    return [this](const FrameMessages& messages) {
       std::lock_guard lock(mutex_);
-      const auto header = protocol::decode_frame_header(*message);
-      ASSERT_TRUE(header) << header.error().detail;
-      draw(*header, std::span(*message).subspan(protocol::kFrameHeaderBytes));
-      frames_.push_back(*header);
+      for (const FrameBytes& message : messages) {
+        const auto header = protocol::decode_frame_header(*message);
+        ASSERT_TRUE(header) << header.error().detail;
+        EXPECT_EQ(header->last, message == messages.back());
+        draw(*header, std::span(*message).subspan(protocol::kFrameHeaderBytes));
+        rectangles_.push_back(*header);
+      }
+      frames_.push_back(rectangles_.back());
       changed_.notify_all();
-      if (viewer_ && acks_) viewer_->ack(header->frame);
+      if (viewer_ && acks_) viewer_->ack(frames_.back().frame);
     };
   }
   void attach(std::shared_ptr<Viewer> viewer, bool acks) {
@@ -69,6 +73,13 @@ class Client {
     std::lock_guard lock(mutex_);
     return frames_;
   }
+  std::vector<FrameHeader> rectangles_of(std::uint32_t frame) {
+    std::lock_guard lock(mutex_);
+    std::vector<FrameHeader> found;
+    std::copy_if(rectangles_.begin(), rectangles_.end(), std::back_inserter(found),
+                 [&](const FrameHeader& header) { return header.frame == frame; });
+    return found;
+  }
   std::vector<std::uint8_t> picture() {
     std::lock_guard lock(mutex_);
     return picture_;
@@ -90,7 +101,8 @@ class Client {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<FrameHeader> frames_;
+  std::vector<FrameHeader> rectangles_;
+  std::vector<FrameHeader> frames_;  // the last rectangle of each
   std::vector<std::uint8_t> picture_;
   std::shared_ptr<Viewer> viewer_;
   bool acks_ = false;
@@ -238,6 +250,26 @@ TEST_F(StreamViewer, an_edit_sends_only_its_rectangle_and_the_picture_is_whole_a
   EXPECT_EQ(part.x % 16, 0u);
   EXPECT_EQ(part.y % 16, 0u);
   EXPECT_LT(mean_difference(client.picture(), fresh_picture(camera(0))), 1.5);
+}
+
+TEST_F(StreamViewer, edits_far_apart_are_one_frame_of_small_rectangles_that_is_acknowledged_once) {
+  Client& client = new_client();
+  auto view = viewer(client);
+  const Camera large = test::perspective_camera({0, 0.5, 3}, {0, 0, 0}, 3 * kWidth, 3 * kHeight);
+  view->set_camera(1, large, false);
+  const auto first = client.wait_for([](const FrameHeader& h) { return h.still; });
+  std::vector<render::StrokeOutcome> outcomes;
+  for (const double x : {315.0, 645.0}) outcomes.push_back(renderer_.paint(layer_, test::dab(large, x, 360, 12, 2)));
+  // While the GPU is busy with something else: the first is asked for at once, the others together after it.
+  renderer_->run_on_gpu_thread_for_test([&] {
+    view->changed({outcomes[0].written_min, outcomes[0].written_max}, 41);
+    for (const auto& outcome : outcomes) view->changed({outcome.written_min, outcome.written_max}, 42);
+  });
+  const auto last = client.wait_for([](const FrameHeader& h) { return h.scene_sequence == 42; }, first.frame);
+  const auto rectangles = client.rectangles_of(last.frame);
+  ASSERT_EQ(rectangles.size(), 2u);
+  for (const auto& rectangle : rectangles) EXPECT_LT(rectangle.width, std::uint32_t(kWidth));
+  EXPECT_LT(mean_difference(client.picture(), fresh_picture(large)), 1.5);
 }
 
 TEST_F(StreamViewer, a_client_that_does_not_acknowledge_gets_no_more_than_its_window_and_misses_nothing_in_the_end) {

@@ -705,13 +705,15 @@ TEST_F(Live, a_client_that_draws_no_jpeg_is_told) {
 
 TEST_F(Live, frames_are_counted_and_stop_with_the_socket) {
   hello();
-  room->sends.at(0)(std::make_shared<const std::vector<std::uint8_t>>(100));
-  EXPECT_EQ(socket->frames.size(), 1u);
-  EXPECT_EQ(shared->metrics->frame_bytes_sent, 100u);
+  const auto message = std::make_shared<const std::vector<std::uint8_t>>(100);
+  room->sends.at(0)({message, message});  // two rectangles
+  EXPECT_EQ(socket->frames.size(), 2u);
+  EXPECT_EQ(shared->metrics->frames_sent, 1u);
+  EXPECT_EQ(shared->metrics->frame_bytes_sent, 200u);
   session->on_closed();
   session.reset();
   socket.reset();
-  room->sends.at(0)(std::make_shared<const std::vector<std::uint8_t>>(100));  // an encoder that was late
+  room->sends.at(0)({message});  // an encoder that was late
 }
 
 TEST_F(Live, after_a_restart_the_batch_before_is_looked_up_off_the_socket_thread) {

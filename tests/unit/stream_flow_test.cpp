@@ -196,7 +196,7 @@ TEST(StreamFlow, edits_that_come_while_there_is_no_credit_are_drawn_together_onc
   EXPECT_EQ(draw->sequence, 109);
 }
 
-TEST(StreamFlow, very_many_boxes_become_one_that_covers_them_all) {
+TEST(StreamFlow, very_many_boxes_become_few_that_cover_them_all) {
   FlowControl flow = ready(1);
   flow.on_camera(1, camera_at(1), false);
   settle(flow);

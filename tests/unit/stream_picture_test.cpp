@@ -35,7 +35,7 @@ Decoded decode(const std::vector<std::uint8_t>& jpeg) {
 
 render::SharedFrame frame_of(std::vector<std::uint8_t> pixels, int width, int height) {
   render::Frame frame;
-  frame.rect = {0, 0, width, height};
+  frame.rects = {{0, 0, width, height}};
   frame.width = width;
   frame.height = height;
   frame.pixels = std::move(pixels);
@@ -48,9 +48,9 @@ TEST(StreamPicture, the_pool_encodes_every_picture_it_is_given) {
   std::multiset<int> widths;
   JpegPool pool(3);
   for (int i = 1; i <= 40; ++i)
-    pool.encode(frame_of(gradient(i * 8, 16), i * 8, 16), {}, [&](const Jpeg& jpeg, double elapsed_ms) {
+    pool.encode(frame_of(gradient(i * 8, 16), i * 8, 16), {}, [&](const Jpegs& jpegs, double elapsed_ms) {
       EXPECT_GE(elapsed_ms, 0);
-      const int width = decode(*jpeg).width;
+      const int width = decode(jpegs->at(0)).width;
       std::lock_guard lock(mutex);
       widths.insert(width);
       changed.notify_all();
@@ -65,9 +65,9 @@ TEST(StreamPicture, a_picture_that_cannot_be_encoded_is_answered_without_bytes) 
   std::condition_variable changed;
   bool answered = false;
   JpegPool pool(1);
-  pool.encode(frame_of(std::vector<std::uint8_t>(4), 100, 100), {}, [&](const Jpeg& jpeg, double) {
+  pool.encode(frame_of(std::vector<std::uint8_t>(4), 100, 100), {}, [&](const Jpegs& jpegs, double) {
     std::lock_guard lock(mutex);
-    EXPECT_FALSE(jpeg);
+    EXPECT_FALSE(jpegs);
     answered = true;
     changed.notify_all();
   });
@@ -78,13 +78,13 @@ TEST(StreamPicture, a_picture_that_cannot_be_encoded_is_answered_without_bytes) 
 TEST(StreamPicture, a_picture_for_many_is_encoded_once_for_each_setting) {
   std::mutex mutex;
   std::condition_variable changed;
-  std::vector<Jpeg> few, more;
+  std::vector<Jpegs> few, more;
   JpegPool pool(2);
   const auto frame = frame_of(gradient(64, 64), 64, 64);
-  const auto into = [&](std::vector<Jpeg>& list) {
-    return [&](const Jpeg& jpeg, double) {
+  const auto into = [&](std::vector<Jpegs>& list) {
+    return [&](const Jpegs& jpegs, double) {
       std::lock_guard lock(mutex);
-      list.push_back(jpeg);
+      list.push_back(jpegs);
       changed.notify_all();
     };
   };
@@ -100,8 +100,8 @@ TEST(StreamPicture, a_picture_for_many_is_encoded_once_for_each_setting) {
   pool.encode(frame, {20, false}, into(few));  // long after it was encoded
   wait_for(41);
   EXPECT_EQ(pool.encoded(), 2u);
-  for (const Jpeg& jpeg : few) EXPECT_EQ(jpeg, few[0]) << "one object for all";
-  EXPECT_LT(few[0]->size(), more[0]->size());
+  for (const Jpegs& jpegs : few) EXPECT_EQ(jpegs, few[0]) << "one object for all";
+  EXPECT_LT(few[0]->at(0).size(), more[0]->at(0).size());
   // Another frame with the same pixels is another picture.
   pool.encode(frame_of(gradient(64, 64), 64, 64), {20, false}, into(few));
   wait_for(42);
