@@ -139,19 +139,39 @@ Result<void> remove_person(store::Store& store, const PeopleOptions&, const stor
   return store.delete_person(person.name);
 }
 
+// What somebody may do in a project: by their own role, by one there, and by those of their groups.
+Result<Role> role_there(store::Store& store, const store::Person& person, std::int64_t project) {
+  Role role = person.role;
+  const auto members = store.members(project);
+  if (!members) return tl::unexpected(members.error());
+  for (const store::Membership& member : *members)
+    if (member.person.name == person.name) role = std::max(role, member.role);
+  const auto given = store.groups().roles_of(person.name);
+  if (!given) return tl::unexpected(given.error());
+  for (const store::GivenRole& one : *given)
+    if (one.project_id == project) role = std::max(role, one.role);
+  return role;
+}
+
 Result<void> add_token_of(store::Store& store, const PeopleOptions& options) {
   const auto person = store.person(options.user);
   if (!person) return tl::unexpected(person.error());
+  Role own = person->role, usual = own;
   std::optional<std::int64_t> only;
   if (!options.project.empty()) {
     const auto project = store.project(options.project);
     if (!project) return tl::unexpected(project.error());
-    only = project->id;  // what its person may do there holds, whatever it is by then
+    only = project->id;
+    const auto there = role_there(store, *person, project->id);
+    if (!there) return tl::unexpected(there.error());
+    own = *there;
+    usual = std::min(own, Role::curator);
   }
-  const Role role = parse_role(options.role).value_or(only ? Role::curator : person->role);
-  if (!only && role > person->role)
+  const Role role = parse_role(options.role).value_or(usual);
+  if (role > own)
     return fail(400, "Role above the person's",
-                person->name + " is " + std::string(name(person->role)) + ": a token can do no more.", "--role");
+                person->name + " is " + std::string(name(own)) + (only ? " there" : "") + ": a token can do no more.",
+                "--role");
   const auto made = store.create_token(TokenKind::script, person->name, role, std::chrono::hours(24 * options.days),
                                        options.name, {}, only);
   if (!made) return tl::unexpected(made.error());
@@ -204,8 +224,11 @@ Command add_user(CLI::App& app) {
   add_password(*add_named("password", "A new link to choose a password, or a new password", changing(renew)), options);
   add_named("disable", "Signs somebody out everywhere, and lets them in no more", disabling(true));
   add_named("enable", "Lets somebody in again", disabling(false));
-  add_named("remove", "Deletes somebody; what they did stays, under a name that tells nothing",
-            changing(remove_person));
+  add_named(
+      "remove",
+      "Deletes somebody; what they did stays, under a name that tells nothing. Beside a running server: disable them a minute before, "
+      "or delete them on the page",
+      changing(remove_person));
   return choosing<PeopleOptions>(parent, options, std::move(works));
 }
 

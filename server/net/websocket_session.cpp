@@ -32,7 +32,9 @@ constexpr seconds kRecheck{30};  // whether the person is still signed in
 constexpr std::size_t kMaxMessage = 4u << 20;
 constexpr std::size_t kMaxQueuedTexts = 4096;
 constexpr std::size_t kMaxQueuedBytes = 16u << 20;
-constexpr std::size_t kMaxQueuedFrames = 256;  // credit allows 3 frames of 16 rectangles for each of 4 views
+// Of pictures, as credit allows them: 3 frames of 16 rectangles for each of 4 views, or whole ones of the largest size.
+constexpr std::size_t kMaxQueuedFrames = 256;
+constexpr std::size_t kMaxQueuedFrameBytes = 64u << 20;
 
 class WebSocketSession final : public LiveSocket, public std::enable_shared_from_this<WebSocketSession> {
  public:
@@ -149,8 +151,10 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
 
   void queue_frame(stream::FrameBytes frame) {
     if (closing_ || over_) return;
+    queued_frame_bytes_ += frame->size();
     frames_.push_back(std::move(frame));
-    if (frames_.size() > kMaxQueuedFrames) return start_close(kCloseTryAgain, "reading too slowly");
+    if (frames_.size() > kMaxQueuedFrames || queued_frame_bytes_ > kMaxQueuedFrameBytes)
+      return start_close(kCloseTryAgain, "reading too slowly");
     write_next();
   }
 
@@ -167,6 +171,7 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
     } else if (!frames_.empty()) {
       frame_ = std::move(frames_.front());
       frames_.pop_front();
+      queued_frame_bytes_ -= frame_->size();
       ws_.binary(true);
       write(asio::buffer(*frame_));
     }
@@ -216,7 +221,7 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
   asio::steady_timer stall_timer_, close_timer_, recheck_timer_;
   std::deque<std::string> texts_;
   std::deque<stream::FrameBytes> frames_;
-  std::size_t queued_bytes_ = 0;
+  std::size_t queued_bytes_ = 0, queued_frame_bytes_ = 0;
   std::string text_;          // being sent
   stream::FrameBytes frame_;  // being sent
   bool writing_ = false, closing_ = false, close_sent_ = false, over_ = false;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <glm/gtx/component_wise.hpp>
 #include <limits>
 
@@ -14,10 +13,6 @@ namespace {
 // A texel's colour reaches the pixels around it, and so does its outline.
 constexpr double kPadding_px = 1.5 + shader::kOutlinePixels;
 constexpr int kAlign = 16;
-// What one more rectangle costs (a draw, a transfer, a JPEG's tables, a decoding), in pixels of a larger one. Drawing alone, with
-// llvmpipe and three layers: 0.2 ms a rectangle and 30 ns a pixel.
-constexpr std::int64_t kRectCost_px = 96 * 96;
-
 std::int64_t area(const PixelRect& rect) { return std::int64_t{rect.width} * rect.height; }
 
 PixelRect around(const PixelRect& a, const PixelRect& b) {
@@ -28,14 +23,30 @@ PixelRect around(const PixelRect& a, const PixelRect& b) {
 // Pixels that one rectangle around both has more than they have. Below zero where they overlap.
 std::int64_t growth(const PixelRect& a, const PixelRect& b) { return area(around(a, b)) - area(a) - area(b); }
 
-// The two that grow least become one.
-void join_nearest(std::vector<PixelRect>& rects) {
+// One more of `rects`, together with those that are cheaper to draw with it than apart.
+void add_rect(std::vector<PixelRect>& rects, PixelRect rect, std::int64_t rect_cost_px) {
+  for (std::size_t i = 0; i < rects.size();) {
+    if (growth(rects[i], rect) > rect_cost_px) {
+      ++i;
+      continue;
+    }
+    rect = around(rects[i], rect);
+    rects.erase(rects.begin() + static_cast<std::ptrdiff_t>(i));
+    i = 0;  // it may be near others now
+  }
+  rects.push_back(rect);
+}
+
+// The two that grow least, taken out as one.
+PixelRect take_nearest(std::vector<PixelRect>& rects) {
   std::size_t first = 0, second = 1;
   for (std::size_t i = 0; i < rects.size(); ++i)
     for (std::size_t k = i + 1; k < rects.size(); ++k)
       if (growth(rects[i], rects[k]) < growth(rects[first], rects[second])) first = i, second = k;
-  rects[first] = around(rects[first], rects[second]);
+  const PixelRect joined = around(rects[first], rects[second]);
   rects.erase(rects.begin() + static_cast<std::ptrdiff_t>(second));
+  rects.erase(rects.begin() + static_cast<std::ptrdiff_t>(first));
+  return joined;
 }
 
 }  // namespace
@@ -72,24 +83,23 @@ PixelRect screen_rect(const FrameRequest::Box& box, const glm::dmat4& clip_from_
 }
 
 std::vector<PixelRect> screen_rects(std::span<const FrameRequest::Box> boxes, const glm::dmat4& clip_from_model,
-                                    int width, int height, bool align_to_16) {
+                                    int width, int height, bool align_to_16, std::int64_t rect_cost_px) {
   std::vector<PixelRect> rects;
   for (const auto& box : boxes) {
-    PixelRect rect = screen_rect(box, clip_from_model, width, height, align_to_16);
+    const PixelRect rect = screen_rect(box, clip_from_model, width, height, align_to_16);
     if (rect.width == 0) continue;
-    for (std::size_t i = 0; i < rects.size();) {
-      if (growth(rects[i], rect) > kRectCost_px) {
-        ++i;
-        continue;
-      }
-      rect = around(rects[i], rect);
-      rects.erase(rects.begin() + static_cast<std::ptrdiff_t>(i));
-      i = 0;  // it may be near others now
-    }
-    rects.push_back(rect);
-    if (rects.size() > kMaxScreenRects) join_nearest(rects);
+    add_rect(rects, rect, rect_cost_px);
+    if (rects.size() > kMaxScreenRects) add_rect(rects, take_nearest(rects), rect_cost_px);
   }
-  return rects;
+  if (rects.size() < 2) return rects;
+  // No two may be worth joining where all are: four that lie along the sides of a picture.
+  PixelRect all = rects.front();
+  std::int64_t apart = -rect_cost_px;
+  for (const PixelRect& rect : rects) {
+    all = around(all, rect);
+    apart += area(rect) + rect_cost_px;
+  }
+  return apart < area(all) ? rects : std::vector{all};
 }
 
 void add_box(std::vector<FrameRequest::Box>& boxes, const FrameRequest::Box& box, std::size_t most) {

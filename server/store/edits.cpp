@@ -112,14 +112,17 @@ Result<std::int64_t> Store::last_sequence(std::int64_t model_id) {
 }
 
 Result<void> rename_in_journal(PgConnection& connection, const std::string& name, const std::string& former) {
-  for (const char* sql :
-       {"UPDATE edits SET user_name = $2 WHERE user_name = $1",
-        // Decisions on what waited for review tell whose edits were meant, and a reason in words.
-        "UPDATE edits SET record = jsonb_set(record, '{user}', to_jsonb($2::text)) WHERE record ->> 'user' = $1",
-        "UPDATE edits SET record = jsonb_set(record, '{reason}', "
-        "to_jsonb(" STRATA_CALL_RENAMED("record ->> 'reason'",
-                                        "1000") ")) "
-                                                "WHERE " STRATA_CALLS_THEM("record ->> 'reason'")})
+  for (
+      const char* sql :
+      {"UPDATE edits SET user_name = $2 WHERE user_name = $1",
+       // Decisions on what waited for review tell whose edits were meant, and a reason in words. Other records may be large.
+       "UPDATE edits SET record = jsonb_set(record, '{user}', to_jsonb($2::text)) "
+       "WHERE op IN ('accept', 'reject', 'reopen') AND record ->> 'user' = $1",
+       "UPDATE edits SET record = jsonb_set(record, '{reason}', "
+       "to_jsonb(" STRATA_CALL_RENAMED(
+           "record ->> 'reason'",
+           "1000") ")) "
+                   "WHERE op IN ('accept', 'reject', 'reopen') AND " STRATA_CALLS_THEM("record ->> 'reason'")})
     if (auto done = connection.query(sql, Params().text(name).text(former)); !done) return tl::unexpected(done.error());
   return {};
 }

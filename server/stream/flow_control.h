@@ -24,7 +24,7 @@ namespace strata::stream {
 class FlowControl {
  public:
   using Box = render::FrameRequest::Box;
-  static constexpr std::size_t kMaxBoxes = 64;  // more are joined into one
+  static constexpr std::size_t kMaxBoxes = 64;  // they grow around what more there is
 
   explicit FlowControl(int window, std::int64_t sequence = 0) : window_(window < 1 ? 1 : window), sequence_(sequence) {}
 

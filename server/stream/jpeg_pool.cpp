@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/log.h"
+#include "render/screen_rect.h"
 
 namespace strata::stream {
 namespace {
@@ -40,9 +41,7 @@ Jpegs jpegs_of(const render::Frame& frame, JpegSettings settings) {
     std::vector<std::vector<std::uint8_t>> jpegs;
     std::span<const std::uint8_t> left = frame.pixels;
     for (const render::PixelRect& rect : frame.rects) {
-      const std::size_t bytes =
-          std::size_t{4} * static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
-      const auto pixels = left.first(std::min(bytes, left.size()));
+      const auto pixels = left.first(std::min(render::rgba_bytes(rect), left.size()));
       left = left.subspan(pixels.size());
       jpegs.push_back(encode_jpeg(pixels, rect.width, rect.height, settings));
     }

@@ -25,7 +25,7 @@ void add_camera_times(const LiveClient& client, double begin_ms, double end_ms, 
   }
 }
 
-// From the camera at which somebody let go of the model to the last byte of its picture of full quality.
+// From the last camera of somebody who then holds still to the last byte of its picture of full quality.
 void add_refined_times(const LiveClient& client, Samples& times) {
   const auto refined = std::ranges::find_if(
       client.frames(), [&](const auto& frame) { return frame.still && frame.camera_seq == client.newest_camera(); });

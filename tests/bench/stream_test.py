@@ -28,7 +28,7 @@ def check_run(row, run):
         assert run["camera_to_last_byte"]["ms_min"] >= 20, run["camera_to_last_byte"]
         refined = run["last_camera_to_full_quality"]
         check_times(refined, "last_camera_to_full_quality")
-        assert refined["runs"] == rates["turning"]["viewers"], "whoever lets go of the model sees it in full quality"
+        assert refined["runs"] == rates["turning"]["viewers"], "whoever holds still sees the model in full quality"
     if paints:
         strokes = run["strokes"]
         assert strokes["batches_per_s"] > 0 and strokes["refused"] == 0 and strokes["unanswered"] == 0, strokes

@@ -279,7 +279,11 @@ def commands(server):
     secret = strata("token", "add", "report", "--user", "max", "--role", "viewer").strip()
     assert server.get("/me", token=secret).json()["role"] == "viewer"
     assert re.search(r"curator +until .*nightly \(only default\)", strata("token", "add", "nightly", "--user", "max", "--project", "default") and strata("token", "list", "--user", "max"))
-    for words in (("--project", "nowhere"), ("--project", "default", "--role", "administrator")):
+    strata("user", "role", "max", "viewer")
+    assert re.search(r"viewer +until .*watch \(only default\)", strata("token", "add", "watch", "--user", "max", "--project", "default") and strata("token", "list", "--user", "max"))
+    strata("user", "role", "max", "annotator", "--project", "default")
+    assert re.search(r"annotator +until .*brush \(only default\)", strata("token", "add", "brush", "--user", "max", "--project", "default") and strata("token", "list", "--user", "max"))
+    for words in (("--project", "nowhere"), ("--project", "default", "--role", "administrator"), ("--project", "default", "--role", "curator")):
         assert "strata: " in strata("token", "add", "x", "--user", "max", *words, code=1), words
     number = re.search(r"(\d+) +viewer .*report", strata("token", "list", "--user", "max"))[1]
     strata("token", "revoke", number, "--user", "max")

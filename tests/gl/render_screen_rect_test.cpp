@@ -93,6 +93,21 @@ TEST(ScreenRect, the_rectangles_of_many_boxes_cover_each_of_them_and_are_few) {
   }
 }
 
+TEST(ScreenRect, one_around_all_is_taken_where_the_parts_would_be_more) {
+  const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 1920, 1080, 1);
+  const auto rects = [&](float share, std::int64_t cost_px = render::kRectCost_px) {
+    const float x = 1920.0f / 1080, w = 2 * x * share, h = 2 * share;
+    const std::vector<render::FrameRequest::Box> sides{{{-x, -1, 0}, {-x + w, 1, 0}},
+                                                       {{x - w, -1, 0}, {x, 1, 0}},
+                                                       {{-x, -1, 0}, {x, -1 + h, 0}},
+                                                       {{-x, 1 - h, 0}, {x, 1, 0}}};
+    return render::screen_rects(sides, clip_of(camera), 1920, 1080, true, cost_px);
+  };
+  EXPECT_EQ(rects(0.48f), (std::vector<PixelRect>{{0, 0, 1920, 1080}}));
+  EXPECT_EQ(rects(0.05f).size(), 4u);
+  EXPECT_EQ(rects(0.05f, 1 << 21).size(), 1u) << "what is drawn for each rectangle may be much";
+}
+
 TEST(ScreenRect, boxes_beyond_the_limit_grow_around_what_is_near) {
   std::vector<render::FrameRequest::Box> boxes;
   const auto at = [](float x) { return render::FrameRequest::Box{{x, 0, 0}, {x + 1, 1, 1}}; };

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 #include <turbojpeg.h>
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
+#include <future>
 #include <mutex>
 #include <set>
 
@@ -73,6 +75,33 @@ TEST(StreamPicture, a_picture_that_cannot_be_encoded_is_answered_without_bytes) 
   });
   std::unique_lock lock(mutex);
   EXPECT_TRUE(changed.wait_for(lock, std::chrono::seconds(60), [&] { return answered; }));
+}
+
+TEST(StreamPicture, each_rectangle_of_a_frame_is_a_jpeg_of_its_own_pixels) {
+  render::Frame frame;
+  frame.width = frame.height = 128;
+  frame.rects = {{0, 0, 32, 16}, {64, 48, 16, 48}};
+  const std::array<std::array<int, 3>, 2> colors{{{200, 40, 40}, {40, 40, 200}}};
+  for (std::size_t i = 0; i < 2; ++i)
+    for (int pixel = 0; pixel < frame.rects[i].width * frame.rects[i].height; ++pixel) {
+      for (const int channel : colors[i]) frame.pixels.push_back(static_cast<std::uint8_t>(channel));
+      frame.pixels.push_back(255);
+    }
+  std::promise<Jpegs> encoded;
+  JpegPool pool(1);
+  pool.encode(std::make_shared<const render::Frame>(frame), {90, true},
+              [&](const Jpegs& jpegs, double) { encoded.set_value(jpegs); });
+  const Jpegs jpegs = encoded.get_future().get();
+  ASSERT_TRUE(jpegs && jpegs->size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto picture = decode((*jpegs)[i]);
+    ASSERT_EQ(picture.width, frame.rects[i].width);
+    ASSERT_EQ(picture.height, frame.rects[i].height);
+    for (std::size_t at = 0; at < picture.rgba.size(); ++at)
+      if (at % 4 < 3) {
+        ASSERT_NEAR(picture.rgba[at], colors[i][at % 4], 4);
+      }
+  }
 }
 
 TEST(StreamPicture, a_picture_for_many_is_encoded_once_for_each_setting) {

@@ -104,10 +104,14 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     await open(button(w.layers.new));
     await page.getByRole("radio", { name: new RegExp(`^${name}`) }).click();
   };
-  const stage_centre = async () => {
+  /** Once its picture has the stage's shape: after the window's size has changed, what is touched is what is seen there then. */
+  const at_stage = async (x, y) => {
+    const fits = (canvas) => Math.abs(canvas.width / canvas.height - canvas.clientWidth / canvas.clientHeight) < 0.02;
+    await wait_for(() => page.locator("strata-stage canvas").first().evaluate(fits), "the picture in the stage's shape");
     const box = await page.locator("strata-stage").boundingBox();
-    return [box.x + box.width / 2, box.y + box.height / 2];
+    return [box.x + x * box.width, box.y + y * box.height];
   };
+  const stage_centre = () => at_stage(0.5, 0.5);
   const row = (key) => page.getByRole("grid").getByRole("rowheader", { name: new RegExp(`^${key}\\b`) });
   const people = page.locator("strata-people-menu");
   const choose_of_people = async (name) => {
@@ -247,12 +251,9 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     { name: "fill connected", start: () => tool("g") },
     { name: "line", start: () => tool("d") },
     { name: "measure", start: async () => {
-      const box = await page.locator("strata-stage").boundingBox();
       const panel = page.locator("strata-measure-panel");
       await tool("m");
-      for (const [x, y] of [[0.4, 0.5], [0.6, 0.5], [0.5, 0.6]]) { // prettier-ignore
-        await page.mouse.click(box.x + x * box.width, box.y + y * box.height);
-      }
+      for (const place of [[0.4, 0.5], [0.6, 0.5], [0.5, 0.6]]) await page.mouse.click(...(await at_stage(...place))); // prettier-ignore
       await panel.locator('[data-figure="area"]').waitFor();
       await panel.getByRole("button", exact(w.measure.end)).click();
       await panel.locator("strata-profile-plot path.curve").first().waitFor();
@@ -260,8 +261,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     { name: "value under the pointer", start: async () => {
       await tool("v");
       await choose_layer("Finds");
-      const box = await page.locator("strata-stage").boundingBox();
-      await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+      await page.mouse.move(...(await stage_centre()));
       await page.locator("strata-value-readout .card").waitFor();
     }, end: () => page.mouse.move(2, 2) },
     { name: "menu of a layer", start: () => button(w.layers.options("Finds")).click(), end: escape },

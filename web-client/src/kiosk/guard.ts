@@ -1,5 +1,5 @@
-// Keeps visitors on the page: no menu, no selection, no dragging out, no zoom of the whole page, no printing, no way back. What the browser itself offers (its bars,
-// its keys) only its own kiosk mode takes away.
+// Keeps visitors on the page: no menu, no selection, no dragging out, no zoom of the whole page, no printing, no way back. The browser's bars
+// go with the whole screen, where a touch may ask for it; its keys only its own kiosk mode takes away.
 
 const refuse = (event: Event): void => event.preventDefault();
 
