@@ -12,6 +12,7 @@
 #include "net/as_of.h"
 #include "net/at_field.h"
 #include "net/view_wire.h"
+#include "room/provisional.h"
 #include "store/named_parts.h"
 
 namespace strata::net {
@@ -119,11 +120,16 @@ std::vector<figure::Legend> legends_of(const RouteContext& context, const Figure
     room::Selection whole;
     whole.at = wish.shown.at;
     const auto painted = wish.room->statistics(layer->slug, whole);
-    if (painted && painted->texels == 0) continue;
+    const bool waits = wish.shown.provisional.contains(layer->id);
+    if (painted && painted->texels == 0 && !waits) continue;
     std::set<double> there;
     if (painted)
       for (const auto& [value, area] : painted->keys) there.insert(value);
     legends.push_back(figure::legend_of(*layer, palette, there.empty() ? nullptr : &there));
+    if (waits) {
+      const Palette::Point& mark = room::provisional_palette()->points.front();
+      legends.back().entries.push_back({wish.provisional, mark.color, mark.pattern, mark.angle});
+    }
     if (palette.column.empty() || !layer->table) continue;
     const auto table = context.store.table(std::to_string(*layer->table), wish.role);
     const Column* column = table ? find_column(table->columns, palette.column) : nullptr;
@@ -314,7 +320,13 @@ Result<FigureWish> figure_wish(const RouteContext& context, const Request& reque
   if (auto read = read_direction(*asked, *camera, wish); !read) return tl::unexpected(read.error());
   const auto at = find_sequence(context, *wish.room, asked->at);
   if (!at) return tl::unexpected(at.error());
-  wish.shown.at = at->value_or(wish.room->durable_sequence());
+  if (*at) {
+    wish.shown.at = *at;
+  } else {
+    room::Room::DurableState newest = wish.room->durable_state();
+    wish.shown.at = newest.sequence;
+    wish.shown.provisional = std::move(newest.provisional);
+  }
   wish.shown.shown.background = {kPaper, kPaper};
   if (auto lit = validate(wish.shown.shown.light); !lit) return tl::unexpected(lit.error());
   for (Layer& layer : wish.room->layers())
@@ -331,6 +343,7 @@ Result<FigureWish> figure_wish(const RouteContext& context, const Request& reque
   wish.captions = {asked->title.value_or(model.name), asked->caption.value_or(""),
                    asked->credit.value_or(model.credit)};
   wish.legend = asked->legend;
+  wish.provisional = asked->provisional;
   return wish;
 }
 

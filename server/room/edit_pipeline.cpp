@@ -456,6 +456,15 @@ void EditPipeline::put_provisional(LayerState& layer, const TileMap& tiles, std:
   parts_.renderer.write_tiles(layer.handles.provisional, std::move(uploads), then(failed));
 }
 
+TileMap EditPipeline::durable_provisional(const LayerState& layer) const {
+  TileMap tiles = layer.provisional->snapshot().tiles;
+  for (auto pending = pending_.rbegin(); pending != pending_.rend(); ++pending)
+    if (pending->event.layer_id == layer.layer.id)
+      for (const auto& [address, before] : pending->provisional) tiles[address] = before;
+  std::erase_if(tiles, [](const auto& entry) { return !entry.second; });
+  return tiles;
+}
+
 void EditPipeline::on_saved(std::int64_t sequence, const Result<void>& result) {
   auto found = std::find_if(pending_.begin(), pending_.end(),
                             [&](const Pending& pending) { return pending.event.sequence == sequence; });

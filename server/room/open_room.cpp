@@ -161,6 +161,15 @@ render::ModelHandle OpenRoom::model_handle() const {
 
 std::int64_t OpenRoom::sequence() const { return sequence_; }
 std::int64_t OpenRoom::durable_sequence() const { return durable_; }
+Room::DurableState OpenRoom::durable_state() const {
+  return on_strand([&] {
+    DurableState state{durable_, {}};
+    for (const auto& [id, layer] : layers_)
+      if (TileMap waiting = pipeline_->durable_provisional(layer); !waiting.empty())
+        state.provisional.emplace(id, std::move(waiting));
+    return state;
+  });
+}
 
 template <class T>
 Result<T> OpenRoom::exclusively(std::function<Result<T>()> work) {

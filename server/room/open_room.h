@@ -45,6 +45,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   Result<Layer> layer(const std::string& ref) const override;
   std::int64_t sequence() const override;
   std::int64_t durable_sequence() const override;
+  DurableState durable_state() const override;
   void edit(EditRequest request, Applied applied, Saved saved) override;
   std::unique_ptr<Member> join(Author who, std::string full_name, Listener* listener,
                                stream::Viewer::Send send) override;

@@ -57,17 +57,30 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
   const auto model = model_handle();
   render::FrameRequest request;
   std::vector<LayerMarks> marked;
+  const auto borrow = [&](ValueType type, int resolution, TileMap tiles) -> Result<render::LayerHandle> {
+    auto mirror = std::make_shared<TileMirror>(type, resolution);
+    mirror->assign(std::move(tiles), *asked.at);
+    auto copy = add_layer(parts_.renderer, model, std::move(mirror));
+    if (!copy) return tl::unexpected(gpu_problem(copy.error()));
+    borrowed.layers.push_back(*copy);
+    return *copy;
+  };
   for (const auto& item : shown) {
     render::LayerStyle style{item.handles.content, item.palette, static_cast<float>(item.layer.opacity)};
+    std::optional<render::LayerHandle> waiting;
+    if (!item.provisional->empty()) waiting = item.handles.provisional;
     if (asked.at) {
       auto past = parts_.store.load_tiles(item.layer, asked.at);
       if (!past) return tl::unexpected(past.error());
-      auto mirror = std::make_shared<TileMirror>(item.layer.type, item.layer.resolution);
-      mirror->assign(std::move(past->tiles), *asked.at);
-      auto copy = add_layer(parts_.renderer, model, std::move(mirror));
-      if (!copy) return tl::unexpected(gpu_problem(copy.error()));
-      style.layer = *copy;
-      borrowed.layers.push_back(*copy);
+      auto content = borrow(item.layer.type, item.layer.resolution, std::move(past->tiles));
+      if (!content) return tl::unexpected(content.error());
+      style.layer = *content;
+      waiting.reset();
+      if (const auto then = asked.provisional.find(item.layer.id); then != asked.provisional.end()) {
+        auto marks = borrow(ValueType::u8, item.layer.resolution, then->second);
+        if (!marks) return tl::unexpected(marks.error());
+        waiting = *marks;
+      }
     }
     const LayerView& mine = asked.shown.of(item.layer.id);
     if (mine.palette) style.palette = std::make_shared<const Palette>(*mine.palette);
@@ -78,10 +91,8 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
       style.palette = std::move(*made);
     }
     if (mine.opacity) style.opacity = static_cast<float>(*mine.opacity);
-    if (asked.at)
-      request.layers.push_back(style);  // the past had other things waiting
-    else
-      add_styles(item, style, request.layers);
+    request.layers.push_back(style);
+    if (waiting) request.layers.push_back({*waiting, provisional_palette(), style.opacity});
     if (!item.layer.table) continue;
     auto marks = asked.at ? record_marks_->when(*item.layer.table, sight, *asked.at)
                           : record_marks_->newest(*item.layer.table, sight);

@@ -36,15 +36,14 @@ std::shared_ptr<const TileData> with_provisional(const std::shared_ptr<const Til
   return after;
 }
 
-void add_styles(const LayerState& layer, render::LayerStyle style, std::vector<render::LayerStyle>& styles) {
+std::shared_ptr<const Palette> provisional_palette() {
   // Dark lines that stay apart in greyscale and on colours of any palette, and let what is below be read.
   static const auto kHatch = std::make_shared<const Palette>(Palette{
       .mode = PaletteMode::categorical,
       .points =
           {{.at = 1, .color = {24, 24, 24, 230}, .label = {}, .value = {}, .pattern = Pattern::hatch, .angle = 135}},
       .column = {}});
-  styles.push_back(std::move(style));
-  if (!layer.provisional->empty()) styles.push_back({layer.handles.provisional, kHatch, styles.back().opacity});
+  return kHatch;
 }
 
 }  // namespace strata::room

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "room/layer_state.h"
+#include "core/palette.h"
 #include "room/tile_changes.h"
 #include "store/store.h"
 
@@ -18,7 +18,7 @@ Result<TileMap> read_provisional(store::Store& store, const Layer& layer);
 std::shared_ptr<const TileData> with_provisional(const std::shared_ptr<const TileData>& before,
                                                  const TileChange& change);
 
-// A layer's own style, and over it that of what waits for review, where there is any.
-void add_styles(const LayerState& layer, render::LayerStyle style, std::vector<render::LayerStyle>& styles);
+// How it is marked: a palette for over that of its layer, whose texels are 1 where something waits.
+std::shared_ptr<const Palette> provisional_palette();
 
 }  // namespace strata::room

@@ -165,7 +165,9 @@ struct PictureRequest {
   std::optional<std::vector<std::string>> layers{};  // exactly these, by slug; nothing: those that are visible
   ViewSettings shown{};
   std::optional<std::int64_t> at{};  // layers as they were after that sequence
-  Role seen_by = Role::owner;        // columns that it does not see neither draw nor colour
+  // With `at`, by layer: what waited for review then, and is hatched. Without, what waits now is.
+  std::map<std::int64_t, TileMap> provisional{};
+  Role seen_by = Role::owner;  // columns that it does not see neither draw nor colour
 };
 
 // A camera with a picture of its own, which has so many pixels to one of its window's.
@@ -185,6 +187,12 @@ class Room {
   virtual Result<Layer> layer(const std::string& ref) const = 0;  // id or slug
   virtual std::int64_t sequence() const = 0;
   virtual std::int64_t durable_sequence() const = 0;
+  // The newest state that a picture can show `at`, and by layer what of it waits for review, where anything does (room/provisional.h).
+  struct DurableState {
+    std::int64_t sequence = 0;
+    std::map<std::int64_t, TileMap> provisional;
+  };
+  virtual DurableState durable_state() const = 0;
 
   // `applied` when it is visible (may be empty), `saved` when it is durable or has failed: exactly one call of `saved`. What is
   // refused for the number of edits is so at once, on the calling thread.

@@ -95,6 +95,11 @@ class SeenRoom final : public Room {
     if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
     return room_->seen_keys(layer, camera, columns, rows, at);
   }
+  DurableState durable_state() const override {
+    DurableState state = room_->durable_state();
+    std::erase_if(state.provisional, [&](const auto& entry) { return !layer(std::to_string(entry.first)); });
+    return state;
+  }
 
   // Nothing of layers is asked or told.
   Model model() const override { return room_->model(); }

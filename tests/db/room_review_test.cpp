@@ -3,6 +3,7 @@
 #include <libpq-fe.h>
 
 #include <algorithm>
+#include <future>
 #include <map>
 #include <random>
 #include <set>
@@ -254,6 +255,55 @@ TEST_F(Reviews, marks_are_taken_back_with_edits_that_cannot_be_saved_and_come_ba
   expect_picture_of_journal();
 }
 
+TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_is) {
+  const auto picture_at = [&](const room::Room::DurableState& state, bool hatched = true) {
+    room::PictureRequest asked;
+    asked.at = state.sequence;
+    if (hatched) asked.provisional = state.provisional;
+    return room()->picture(asked, camera({0.3, -1, 0.4}))->pixels;
+  };
+  ASSERT_TRUE(send(dab(1, 300)));
+  const auto one = picture();
+  const auto saved = room()->durable_state();
+  EXPECT_EQ(saved.sequence, 1);
+  EXPECT_EQ(picture_at(saved), one);
+  EXPECT_NE(picture_at(saved, false), one);
+
+  // What is on its way to the journal neither shows nor marks.
+  std::unique_ptr<PGconn, decltype(&PQfinish)> other(PQconnectdb(dsn_.c_str()), &PQfinish);
+  const auto execute = [&](const char* sql) {
+    std::unique_ptr<PGresult, decltype(&PQclear)> result(PQexec(other.get(), sql), &PQclear);
+    ASSERT_EQ(PQresultStatus(result.get()), PGRES_COMMAND_OK) << PQerrorMessage(other.get());
+  };
+  execute("begin");
+  execute("lock table edits in share row exclusive mode");  // may be read, and not written
+  std::promise<void> applied, answered;
+  std::vector<std::future<Result<room::EditAnswer>>> under_way;
+  for (const double x : {310, 360}) under_way.push_back(start(dab(2, x, "ben")));
+  room()->edit(
+      as_curator(dab(3, 300, "cleo")), [&](const auto&) { applied.set_value(); },
+      [&](const auto& answer) {
+        EXPECT_TRUE(answer);
+        answered.set_value();
+      });
+  applied.get_future().wait();
+  EXPECT_NE(picture(), one);
+  const auto still = room()->durable_state();
+  EXPECT_EQ(still.sequence, 1);
+  EXPECT_TRUE(test::equal(still.provisional.at(layer_.id), saved.provisional.at(layer_.id)));
+  EXPECT_EQ(picture_at(still), one);
+  execute("commit");
+  answered.get_future().wait();
+  const auto all = room()->durable_state();
+  EXPECT_EQ(all.sequence, 4);
+  EXPECT_EQ(picture_at(all), picture());
+
+  Layer hidden = *room()->layer(layer_.slug);
+  hidden.visibility = Visibility::curators;
+  ASSERT_TRUE(room()->update_layer(hidden));
+  EXPECT_THAT((*rooms_->open(model_.slug, Role::viewer))->durable_state().provisional, IsEmpty());
+}
+
 // What the layer shows and what of it waits, by the journal's own words: the newest edit in force decides. The edits' state is kept by
 // a model of its own.
 TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
@@ -332,6 +382,7 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
     drop_empty(marks);
     EXPECT_TRUE(test::equal(tiles(), content)) << "seed " << seed;
     EXPECT_TRUE(test::equal(room::read_provisional(*store_, layer_).value(), marks)) << "seed " << seed;
+    EXPECT_TRUE(test::equal(room()->durable_state().provisional[layer_.id], marks)) << "seed " << seed;
     expect_picture_of_journal();  // the marks that the room kept up to date are those of the journal
     expect_room_equals_journal(layer_);
   }

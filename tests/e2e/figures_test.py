@@ -293,6 +293,40 @@ def states_and_jobs(server, labels):
     assert figure(server, expect=422, token=viewer, **labels).json()["field"] == "labels.column"
 
 
+def reviews(server):
+    """What waits for review is hatched, and told in the legend, until it is accepted."""
+    ada, vera = server.add_person("rita", "annotator"), server.add_person("vito", "viewer")
+    server.ok("POST", M + "/layers", {"name": "Finds", "type": "u8", "resolution": 2048, "review": True, "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000"}]}})
+    edits = M + "/layers/finds/edits"
+    wish = {"direction": "top", "scale": 1, "dpi": 100, "layers": [{"layer": "marks", "visible": False}], **BARE}
+    fill(server, "x > 10 and x < 90 and y > 10 and y < 40", layer="finds")
+    plain = drawn(server, **wish)
+    painted = server.request("POST", edits, {"op": "fill", "mode": "where", "where": "x > 10 and x < 90 and y > 60 and y < 90", "value": 1}, token=ada)
+    assert painted.status == 200 and painted.json()["provisional"], painted
+    (left, top), (right, bottom) = spots(plain).min(axis=0).astype(int) + 4, spots(plain).max(axis=0).astype(int) - 4
+    up = round(50 / 25.4 * 100)  # from what is accepted to what waits
+
+    def inks(rows, above):
+        part = rows[top - above:bottom - above, left:right].astype(int)
+        return [(abs(part - color).max(axis=2) < 60).mean() for color in (RED, (24, 24, 24))]
+    rows = drawn(server, token=vera, **wish)
+    assert inks(rows, 0) == [1, 0], inks(rows, 0)
+    red, dark = inks(rows, up)
+    assert 0.3 < red < 0.8 and 0.1 < dark < 0.5, (red, dark)
+    words = lambda **more: group_of(figure(server, format="svg", **{**wish, "legend": True, **more}).body, "legend")[1]
+    assert words().count("Provisional") == 1 and words(provisional="Vorläufig").count("Vorläufig") == 1, words()
+    assert "Provisional" not in words(layers=[{"layer": "finds", "visible": False}])
+    sequence = painted.json()["sequence"]  # as a moment of the past it is what was in force
+    assert "Provisional" not in words(at=sequence) and inks(drawn(server, at=sequence, **wish), up) == [1, 0]
+    server.ok("PATCH", M + "/layers/finds", {"visibility": "private"})
+    assert b"Provisional" not in figure(server, token=vera, format="svg", **{**wish, "legend": True}).body
+    server.ok("POST", M + "/layers/finds/review", {"decision": "accept", "all": True})
+    assert "Provisional" not in words() and (drawn(server, **wish) == drawn(server, at=sequence, **wish)).all()
+    for wrong in ("", "x" * 101, 3):
+        assert figure(server, expect=422, provisional=wrong).json()["field"] == "provisional"
+    server.ok("DELETE", M + "/layers/finds")
+
+
 def views(server):
     """A figure of a named view shows what the view does, from where it looks."""
     camera = {**camera_from(server.get(M).json(), (0, -1, 0.0)), "section": [[0, 1, 0, -50]]}
@@ -336,6 +370,7 @@ def main():
         kinds(server, folder)
         labels = names(server)
         views(server)
+        reviews(server)
         states_and_jobs(server, labels)
         refusals(server)
         server.assert_clean_log()

@@ -85,6 +85,7 @@ class FakeRoom final : public room::Room {
   }
   std::int64_t sequence() const override { return 0; }
   std::int64_t durable_sequence() const override { return 0; }
+  DurableState durable_state() const override { return {}; }
   void edit(room::EditRequest request, Applied applied, Saved saved) override {
     edits.push_back({std::move(request), std::move(applied), std::move(saved)});
   }

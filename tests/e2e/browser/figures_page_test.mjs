@@ -111,7 +111,7 @@ try {
   assert.deepEqual(first.corners, Array(4).fill([255, 255, 255]));
   assert.ok(first.drawn > 0.03 && first.drawn < 0.7, `the model covers ${first.drawn} of the sheet`);
   const { preview } = asked.get(ada);
-  assert.deepEqual([preview.format, preview.paper, preview.light.mode, preview.camera.section.length, "scale" in preview], ["png", "a4", "raking", 1, false]);
+  assert.deepEqual([preview.format, preview.paper, preview.light.mode, preview.camera.section.length, "scale" in preview, preview.provisional], ["png", "a4", "raking", 1, false, "Provisional"]);
   assert.equal(preview.layers.find(({ layer }) => layer === hidden).visible, false);
   assert.match(await dialog(ada).locator("figure img").getAttribute("alt"), /A4, seen from: As I see it, scale: As fits/);
   await shot(ada, "first");
@@ -275,7 +275,7 @@ try {
   say("of a kept view, by its menu: what it shows, not what is seen");
   const list = ada.page.locator("strata-view-list");
   const as_ada = { Authorization: `Bearer ${ada_person.token}`, "Content-Type": "application/json", "Idempotency-Key": "west" };
-  const { scale: _s, dpi: _d, format: _f, paper: _p, legend: _l, direction: _r, ...kept } = preview;
+  const { scale: _s, dpi: _d, format: _f, paper: _p, legend: _l, provisional: _v, direction: _r, ...kept } = preview;
   const made = await fetch(`${server.url}/api/v1${kBase}/views`, { method: "POST", headers: as_ada, body: JSON.stringify({ name: "West wall", text: "", ...kept }) });
   assert.equal(made.status, 201, await made.clone().text());
   await list.getByRole("button", { name: "Options for West wall" }).click();

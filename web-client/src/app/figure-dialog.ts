@@ -105,7 +105,8 @@ export class StrataFigureDialog extends LitElement {
     const { session, view } = this;
     const { words: written, face } = session.figures.draft;
     const shown = view ? { view: String(view.id) } : { ...session.views.content(), ...(this.camera_ ? { camera: this.camera_ } : {}) };
-    return figure_request(shown, this.choices_, written, face, this.labels_now);
+    const request = figure_request(shown, this.choices_, written, face, this.labels_now);
+    return request && { ...request, provisional: texts.figures.provisional };
   }
 
   /** Null: none, or none yet. */

@@ -2691,6 +2691,8 @@ export interface FigureRequest {
   credit?: string;
   /** Of the layers that are seen. Default: true. */
   legend?: boolean;
+  /** What the legend calls what waits for review, which is hatched. Default: "Provisional". */
+  provisional?: string;
   labels?: FigureLabels;
 }
 

@@ -3217,6 +3217,7 @@ void read(const nlohmann::json& json, FigureRequest& value) {
   read_optional_member(json, "caption", value.caption);
   read_optional_member(json, "credit", value.credit);
   read_optional_member(json, "legend", value.legend);
+  read_optional_member(json, "provisional", value.provisional);
   read_optional_member(json, "labels", value.labels);
 }
 
@@ -3240,6 +3241,7 @@ nlohmann::json to_json(const FigureRequest& value) {
   write_optional_member(json, "caption", value.caption);
   write_optional_member(json, "credit", value.credit);
   write_member(json, "legend", value.legend);
+  write_member(json, "provisional", value.provisional);
   write_optional_member(json, "labels", value.labels);
   return json;
 }

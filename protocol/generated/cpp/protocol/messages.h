@@ -2459,6 +2459,7 @@ struct FigureRequest {
   std::optional<std::string> caption;
   std::optional<std::string> credit;  // Absent: the model's.
   bool legend = true;  // Of the layers that are seen.
+  std::string provisional = "Provisional";  // What the legend calls what waits for review, which is hatched.
   std::optional<FigureLabels> labels;
   bool operator==(const FigureRequest&) const = default;
 };

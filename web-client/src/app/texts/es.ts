@@ -1559,6 +1559,7 @@ export const texts = {
     caption_hint: "Muro oeste, estado en primavera",
     credit_hint: "Quién la hizo, a quién pertenece, con qué licencia",
     legend: "Leyenda de las capas que se ven",
+    provisional: "Provisional",
     labels: "Rótulos de registros",
     no_labels: "Ninguno",
     column: "Qué dicen",
