@@ -1,8 +1,27 @@
 #include "figure/files.h"
 
+#include <boost/algorithm/string/erase.hpp>
+
 #include "figure/writers.h"
 
 namespace strata::figure {
+namespace {
+
+// Without what XML has no way to write, and cairo refuses: control characters, and the last two places of the first plane.
+std::string printable(std::string text) {
+  std::erase_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n'; });
+  for (const char* no_character : {"\uFFFE", "\uFFFF"}) boost::algorithm::erase_all(text, no_character);
+  return text;
+}
+
+Sheet printable(Sheet sheet) {
+  for (Group& group : sheet.groups)
+    for (Item& item : group.items)
+      if (auto* words = std::get_if<Words>(&item)) words->text = printable(std::move(words->text));
+  return sheet;
+}
+
+}  // namespace
 
 std::string_view media_type(Format format) {
   switch (format) {
@@ -34,8 +53,10 @@ tl::unexpected<Problem> unwritable() {
               "The server's disk does not take the file. Free some of it, or ask for fewer dpi.");
 }
 
-Result<void> write_figure(const Sheet& sheet, const Picture& drawing, int dpi, Format format, const Document& document,
+Result<void> write_figure(const Sheet& asked, const Picture& drawing, int dpi, Format format, const Document& about,
                           const std::filesystem::path& file, Progress& progress) {
+  const Sheet sheet = printable(asked);
+  const Document document{printable(about.title), printable(about.author)};
   switch (format) {
     case Format::png: return write_png(sheet, drawing, dpi, document, file, progress);
     case Format::tiff: return write_tiff(sheet, drawing, dpi, document, file, progress);

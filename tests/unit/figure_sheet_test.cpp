@@ -229,6 +229,20 @@ TEST_F(Files, SvgHasWordsAndNamedGroups) {
   EXPECT_EQ(text.find("<rim>"), std::string::npos);
 }
 
+TEST_F(Files, CharactersThatFilesDoNotHaveAreLeftOut) {
+  const std::string odd = "W\x01st \uFFFEwall\uFFFF";
+  const SheetLayout layout(paper_mm(Paper::a5, true), {odd, odd, odd}, {}, 100);
+  for (const Format format : {Format::png, Format::tiff, Format::svg, Format::pdf}) {
+    const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format, {odd, odd},
+                                      folder_ / extension(format), progress_);
+    EXPECT_TRUE(written) << extension(format) << ": " << written.error().detail;
+  }
+  const std::string svg = text_of(folder_ / ".svg");
+  EXPECT_NE(svg.find("<title>Wst wall</title>"), std::string::npos);
+  EXPECT_NE(svg.find(">Wst wall</text>"), std::string::npos);
+  EXPECT_EQ(svg.find('\x01'), std::string::npos);
+}
+
 TEST_F(Files, PdfIsOnePageOfThePapersSizeWithTheJpegInIt) {
   const std::string text = text_of(write(Format::pdf, 100));
   EXPECT_TRUE(text.starts_with("%PDF-"));
