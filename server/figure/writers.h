@@ -4,7 +4,7 @@
 
 namespace strata::figure {
 
-// One for each kind of file, as write_figure.
+// One for each kind of file, as write_figure, which has left out of all words what files do not have.
 Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi, const Document& document,
                        const std::filesystem::path& path, Progress& progress);
 Result<void> write_tiff(const Sheet& sheet, const Picture& drawing, int dpi, const Document& document,

@@ -112,7 +112,7 @@ const Palette& palette_of(const FigureWish& wish, const Layer& layer) {
   return own ? *own : layer.palette;
 }
 
-std::vector<figure::Legend> legends_of(const RouteContext& context, const FigureWish& wish) {
+Result<std::vector<figure::Legend>> legends_of(const RouteContext& context, const FigureWish& wish) {
   std::vector<figure::Legend> legends;
   if (!wish.legend) return legends;
   for (auto layer = wish.layers.rbegin(); layer != wish.layers.rend(); ++layer) {  // as they lie over each other
@@ -120,15 +120,16 @@ std::vector<figure::Legend> legends_of(const RouteContext& context, const Figure
     room::Selection whole;
     whole.at = wish.shown.at;
     const auto painted = wish.room->statistics(layer->slug, whole);
-    const bool waits = wish.shown.provisional.contains(layer->id);
-    if (painted && painted->texels == 0 && !waits) continue;
+    if (!painted) return tl::unexpected(painted.error());
+    const bool is_bare = painted->texels == 0;
+    const bool waits = wish.shown.provisional.contains(layer->id);  // also where it was erased
+    if (is_bare && !waits) continue;
     std::set<double> there;
-    if (painted)
-      for (const auto& [value, area] : painted->keys) there.insert(value);
-    legends.push_back(figure::legend_of(*layer, palette, there.empty() ? nullptr : &there));
+    for (const auto& [value, area] : painted->keys) there.insert(value);
+    legends.push_back(figure::legend_of(*layer, palette, there.empty() && !is_bare ? nullptr : &there));
     if (waits) {
       const Palette::Point& mark = room::provisional_palette()->points.front();
-      legends.back().entries.push_back({wish.provisional, mark.color, mark.pattern, mark.angle});
+      legends.back().entries.push_back({wish.waiting_label, mark.color, mark.pattern, mark.angle});
     }
     if (palette.column.empty() || !layer->table) continue;
     const auto table = context.store.table(std::to_string(*layer->table), wish.role);
@@ -320,6 +321,12 @@ Result<FigureWish> figure_wish(const RouteContext& context, const Request& reque
   if (auto read = read_direction(*asked, *camera, wish); !read) return tl::unexpected(read.error());
   const auto at = find_sequence(context, *wish.room, asked->at);
   if (!at) return tl::unexpected(at.error());
+  // Which layers it shows is settled before what of them waits: one that others see only later is not on it, unmarked.
+  for (Layer& layer : wish.room->layers())
+    if (wish.shown.shown.of(layer.id).visible.value_or(layer.visible)) wish.layers.push_back(layer);
+  std::ranges::stable_sort(wish.layers, {}, &Layer::order);
+  wish.shown.layers.emplace();
+  for (const Layer& layer : wish.layers) wish.shown.layers->push_back(std::to_string(layer.id));
   if (*at) {
     wish.shown.at = *at;
   } else {
@@ -329,9 +336,6 @@ Result<FigureWish> figure_wish(const RouteContext& context, const Request& reque
   }
   wish.shown.shown.background = {kPaper, kPaper};
   if (auto lit = validate(wish.shown.shown.light); !lit) return tl::unexpected(lit.error());
-  for (Layer& layer : wish.room->layers())
-    if (wish.shown.shown.of(layer.id).visible.value_or(layer.visible)) wish.layers.push_back(layer);
-  std::ranges::stable_sort(wish.layers, {}, &Layer::order);
   if (asked->labels)
     if (auto read = read_labels(context, *asked->labels, wish); !read) return tl::unexpected(read.error());
   wish.scale = asked->scale;
@@ -343,7 +347,7 @@ Result<FigureWish> figure_wish(const RouteContext& context, const Request& reque
   wish.captions = {asked->title.value_or(model.name), asked->caption.value_or(""),
                    asked->credit.value_or(model.credit)};
   wish.legend = asked->legend;
-  wish.provisional = asked->provisional;
+  wish.waiting_label = asked->provisional;
   return wish;
 }
 
@@ -356,10 +360,11 @@ Result<std::shared_ptr<const jobs::JobFile>> make_figure(const RouteContext& con
   const auto extent = figure::extent_of(geometry->positions, wish.plane, wish.section);
   if (!extent) return fail(422, "Nothing to draw", "The section cuts everything away.", "camera.section");
   const auto legends = legends_of(context, wish);
+  if (!legends) return tl::unexpected(legends.error());
   const glm::dvec2 size = wish.center ? 2.0 * glm::max(glm::abs(glm::dvec2(extent->max - wish.plane.of(*wish.center))),
                                                        glm::abs(glm::dvec2(wish.plane.of(*wish.center) - extent->min)))
                                       : glm::dvec2(extent->max - extent->min);
-  const Composed composed = compose(wish, legends, size, model.metres());
+  const Composed composed = compose(wish, *legends, size, model.metres());
   const figure::SheetLayout& layout = composed.layout;
   figure::Drawing drawing;
   drawing.plane = wish.plane;

@@ -26,7 +26,7 @@ struct FigureWish {
   figure::Format format = figure::Format::pdf;
   figure::Captions captions;
   bool legend = true;
-  std::string provisional;  // what the legend calls what waits for review
+  std::string waiting_label;  // what the legend calls what waits for review
   struct Labels {
     Layer layer;
     Column column;

@@ -78,7 +78,7 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void when_idle(Work work);
 
   std::int64_t sequence() const { return sequence_; }
-  // What waits for review on a layer (room/provisional.h) in the state that the journal has, without what is on its way there.
+  // What waits for review on a layer (room/provisional.h) after the last edit that is known to be in the journal.
   TileMap durable_provisional(const LayerState& layer) const;
 
   // Starts nothing more, and tells the host as soon as nothing is under way: then the layers' handles and mirrors may be

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/layer.h"
 #include "core/tile_mirror.h"
@@ -19,7 +20,10 @@ struct LayerState {
   LayerHandles handles;
   std::shared_ptr<TileMirror> mirror;
   std::shared_ptr<TileMirror> provisional;  // what of it waits for review (room/provisional.h), shown over it
-  std::shared_ptr<const Palette> palette;   // of `layer`, shared with the frames that use it
+  std::optional<render::LayerHandle> waiting() const {  // the mark of that, where anything does
+    return provisional->empty() ? std::nullopt : std::optional(handles.provisional);
+  }
+  std::shared_ptr<const Palette> palette;  // of `layer`, shared with the frames that use it
   std::shared_ptr<query::TileSumsCache> sums = std::make_shared<query::TileSumsCache>();
 };
 

@@ -50,9 +50,7 @@ render::ViewStyle RoomMember::style(std::uint32_t view_id, View& view) const {
     if (!mine.visible.value_or(state.layer.visible)) continue;
     const render::LayerStyle shown{state.handles.content, palette(view_id, view, state),
                                    static_cast<float>(mine.opacity.value_or(state.layer.opacity))};
-    style.layers.push_back(shown);
-    if (!state.provisional->empty())
-      style.layers.push_back({state.handles.provisional, provisional_palette(), shown.opacity});
+    add_styles(shown, state.waiting(), style.layers);
     if (!state.layer.table) continue;
     if (auto marks = room_->record_marks().find(*state.layer.table, sight_of(role())))
       marked.push_back({std::move(marks), shown.palette, shown.opacity});

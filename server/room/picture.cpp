@@ -67,8 +67,7 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
   };
   for (const auto& item : shown) {
     render::LayerStyle style{item.handles.content, item.palette, static_cast<float>(item.layer.opacity)};
-    std::optional<render::LayerHandle> waiting;
-    if (!item.provisional->empty()) waiting = item.handles.provisional;
+    std::optional<render::LayerHandle> waiting = item.waiting();
     if (asked.at) {
       auto past = parts_.store.load_tiles(item.layer, asked.at);
       if (!past) return tl::unexpected(past.error());
@@ -91,8 +90,7 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
       style.palette = std::move(*made);
     }
     if (mine.opacity) style.opacity = static_cast<float>(*mine.opacity);
-    request.layers.push_back(style);
-    if (waiting) request.layers.push_back({*waiting, provisional_palette(), style.opacity});
+    add_styles(style, waiting, request.layers);
     if (!item.layer.table) continue;
     auto marks = asked.at ? record_marks_->when(*item.layer.table, sight, *asked.at)
                           : record_marks_->newest(*item.layer.table, sight);

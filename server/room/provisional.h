@@ -1,8 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "core/palette.h"
+#include "render/renderer.h"
 #include "room/tile_changes.h"
 #include "store/store.h"
 
@@ -18,7 +21,10 @@ Result<TileMap> read_provisional(store::Store& store, const Layer& layer);
 std::shared_ptr<const TileData> with_provisional(const std::shared_ptr<const TileData>& before,
                                                  const TileChange& change);
 
-// How it is marked: a palette for over that of its layer, whose texels are 1 where something waits.
+// What marks them: the palette of such a layer of u8, for over the layer itself.
 std::shared_ptr<const Palette> provisional_palette();
+// A layer's own style, and over it the mark of what waits.
+void add_styles(const render::LayerStyle& style, std::optional<render::LayerHandle> waiting,
+                std::vector<render::LayerStyle>& styles);
 
 }  // namespace strata::room

@@ -3,6 +3,7 @@
 #include <libpq-fe.h>
 
 #include <algorithm>
+#include <chrono>
 #include <future>
 #include <map>
 #include <random>
@@ -262,46 +263,60 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
     if (hatched) asked.provisional = state.provisional;
     return room()->picture(asked, camera({0.3, -1, 0.4}))->pixels;
   };
-  ASSERT_TRUE(send(dab(1, 300)));
+  std::unique_ptr<PGconn, decltype(&PQfinish)> other(PQconnectdb(dsn_.c_str()), &PQfinish);
+  const auto execute = [&](const char* sql) {
+    std::unique_ptr<PGresult, decltype(&PQclear)> result(PQexec(other.get(), sql), &PQclear);
+    ASSERT_EQ(PQresultStatus(result.get()), PGRES_COMMAND_OK) << PQerrorMessage(other.get());
+  };
+  // Sends edits whose last is seen before any is durable, and looks at the newest durable state then.
+  const auto while_unsaved = [&](std::vector<room::EditRequest> edits, const auto& look) {
+    execute("begin");
+    execute("lock table edits in share row exclusive mode");  // may be read, and not written
+    const auto seen = std::make_shared<std::promise<void>>();
+    std::vector<std::future<Result<room::EditAnswer>>> answers;
+    for (std::size_t i = 0; i + 1 < edits.size(); ++i) answers.push_back(start(edits[i]));
+    const auto answer = std::make_shared<std::promise<Result<room::EditAnswer>>>();
+    answers.push_back(answer->get_future());
+    room()->edit(
+        edits.back(), [seen](const auto&) { seen->set_value(); }, [answer](auto result) { answer->set_value(result); });
+    const bool is_seen = seen->get_future().wait_for(std::chrono::minutes(2)) == std::future_status::ready;
+    EXPECT_TRUE(is_seen);
+    if (is_seen) look(room()->durable_state());
+    execute("commit");
+    for (auto& saved : answers) EXPECT_TRUE(saved.get());
+  };
+
+  const auto bare = picture();
+  while_unsaved({dab(1, 300)}, [&](const room::Room::DurableState& before) {
+    EXPECT_EQ(before.sequence, 0);
+    EXPECT_THAT(before.provisional, IsEmpty());
+    EXPECT_NE(picture(), bare);
+    EXPECT_EQ(picture_at(before), bare);
+  });
   const auto one = picture();
   const auto saved = room()->durable_state();
   EXPECT_EQ(saved.sequence, 1);
   EXPECT_EQ(picture_at(saved), one);
   EXPECT_NE(picture_at(saved, false), one);
 
-  // What is on its way to the journal neither shows nor marks.
-  std::unique_ptr<PGconn, decltype(&PQfinish)> other(PQconnectdb(dsn_.c_str()), &PQfinish);
-  const auto execute = [&](const char* sql) {
-    std::unique_ptr<PGresult, decltype(&PQclear)> result(PQexec(other.get(), sql), &PQclear);
-    ASSERT_EQ(PQresultStatus(result.get()), PGRES_COMMAND_OK) << PQerrorMessage(other.get());
-  };
-  execute("begin");
-  execute("lock table edits in share row exclusive mode");  // may be read, and not written
-  std::promise<void> applied, answered;
-  std::vector<std::future<Result<room::EditAnswer>>> under_way;
-  for (const double x : {310, 360}) under_way.push_back(start(dab(2, x, "ben")));
-  room()->edit(
-      as_curator(dab(3, 300, "cleo")), [&](const auto&) { applied.set_value(); },
-      [&](const auto& answer) {
-        EXPECT_TRUE(answer);
-        answered.set_value();
-      });
-  applied.get_future().wait();
-  EXPECT_NE(picture(), one);
-  const auto still = room()->durable_state();
-  EXPECT_EQ(still.sequence, 1);
-  EXPECT_TRUE(test::equal(still.provisional.at(layer_.id), saved.provisional.at(layer_.id)));
-  EXPECT_EQ(picture_at(still), one);
-  execute("commit");
-  answered.get_future().wait();
+  while_unsaved({dab(2, 310, "ben"), dab(2, 360, "ben"), as_curator(dab(3, 300, "cleo"))},
+                [&](const room::Room::DurableState& still) {
+                  EXPECT_EQ(still.sequence, 1);
+                  ASSERT_EQ(still.provisional.size(), 1u);
+                  EXPECT_TRUE(test::equal(still.provisional.begin()->second, saved.provisional.begin()->second));
+                  EXPECT_NE(picture(), one);
+                  EXPECT_EQ(picture_at(still), one);
+                });
   const auto all = room()->durable_state();
   EXPECT_EQ(all.sequence, 4);
   EXPECT_EQ(picture_at(all), picture());
 
+  const auto seen_by_viewers = [&] { return (*rooms_->open(model_.slug, Role::viewer))->durable_state().provisional; };
+  EXPECT_TRUE(seen_by_viewers().contains(layer_.id));
   Layer hidden = *room()->layer(layer_.slug);
   hidden.visibility = Visibility::curators;
   ASSERT_TRUE(room()->update_layer(hidden));
-  EXPECT_THAT((*rooms_->open(model_.slug, Role::viewer))->durable_state().provisional, IsEmpty());
+  EXPECT_THAT(seen_by_viewers(), IsEmpty());
 }
 
 // What the layer shows and what of it waits, by the journal's own words: the newest edit in force decides. The edits' state is kept by

@@ -295,13 +295,13 @@ def states_and_jobs(server, labels):
 
 def reviews(server):
     """What waits for review is hatched, and told in the legend, until it is accepted."""
-    ada, vera = server.add_person("rita", "annotator"), server.add_person("vito", "viewer")
+    rita, vito = server.add_person("rita", "annotator"), server.add_person("vito", "viewer")
     server.ok("POST", M + "/layers", {"name": "Finds", "type": "u8", "resolution": 2048, "review": True, "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000"}]}})
     edits = M + "/layers/finds/edits"
     wish = {"direction": "top", "scale": 1, "dpi": 100, "layers": [{"layer": "marks", "visible": False}], **BARE}
     fill(server, "x > 10 and x < 90 and y > 10 and y < 40", layer="finds")
     plain = drawn(server, **wish)
-    painted = server.request("POST", edits, {"op": "fill", "mode": "where", "where": "x > 10 and x < 90 and y > 60 and y < 90", "value": 1}, token=ada)
+    painted = server.request("POST", edits, {"op": "fill", "mode": "where", "where": "x > 10 and x < 90 and y > 60 and y < 90", "value": 1}, token=rita)
     assert painted.status == 200 and painted.json()["provisional"], painted
     (left, top), (right, bottom) = spots(plain).min(axis=0).astype(int) + 4, spots(plain).max(axis=0).astype(int) - 4
     up = round(50 / 25.4 * 100)  # from what is accepted to what waits
@@ -309,7 +309,7 @@ def reviews(server):
     def inks(rows, above):
         part = rows[top - above:bottom - above, left:right].astype(int)
         return [(abs(part - color).max(axis=2) < 60).mean() for color in (RED, (24, 24, 24))]
-    rows = drawn(server, token=vera, **wish)
+    rows = drawn(server, token=vito, **wish)
     assert inks(rows, 0) == [1, 0], inks(rows, 0)
     red, dark = inks(rows, up)
     assert 0.3 < red < 0.8 and 0.1 < dark < 0.5, (red, dark)
@@ -319,9 +319,13 @@ def reviews(server):
     sequence = painted.json()["sequence"]  # as a moment of the past it is what was in force
     assert "Provisional" not in words(at=sequence) and inks(drawn(server, at=sequence, **wish), up) == [1, 0]
     server.ok("PATCH", M + "/layers/finds", {"visibility": "private"})
-    assert b"Provisional" not in figure(server, token=vera, format="svg", **{**wish, "legend": True}).body
+    assert b"Provisional" not in figure(server, token=vito, format="svg", **{**wish, "legend": True}).body
     server.ok("POST", M + "/layers/finds/review", {"decision": "accept", "all": True})
     assert "Provisional" not in words() and (drawn(server, **wish) == drawn(server, at=sequence, **wish)).all()
+    # Where all of a layer was erased, no class of it is left, but that waits.
+    server.ok("PATCH", M + "/layers/finds", {"visibility": "public"})
+    erased = server.request("POST", edits, {"op": "fill", "mode": "where", "where": "true", "erase": True}, token=rita)
+    assert erased.status == 200 and words()[:2] == ["Finds", "Provisional"], (erased, words())
     for wrong in ("", "x" * 101, 3):
         assert figure(server, expect=422, provisional=wrong).json()["field"] == "provisional"
     server.ok("DELETE", M + "/layers/finds")
