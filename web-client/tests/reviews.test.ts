@@ -34,12 +34,15 @@ function make(role: "annotator" | "curator") {
     [2, queue_of([])],
   ]);
   const asked: number[] = [];
+  const delays: Promise<void>[] = []; // of the next answers
   const sent: Review[] = [];
   let refusal: ApiError | null = null;
   const api = {
-    review_queue: (_: string, layer: number, __: number, user: string | null) => {
+    review_queue: async (_: string, layer: number, __: number, user: string | null) => {
       asked.push(layer);
-      return Promise.resolve(queue_of(queues.get(layer)!.strokes.filter((each) => user === null || each.user === user)));
+      const queue = queue_of(queues.get(layer)!.strokes.filter((each) => user === null || each.user === user));
+      await delays.shift();
+      return queue;
     },
     review: (_: string, layer: number, decision: Review) => {
       if (refusal) return Promise.reject(refusal);
@@ -57,7 +60,7 @@ function make(role: "annotator" | "curator") {
     can_curate: () => role === "curator",
     changed: () => {},
   });
-  return { reviews, asked, sent, queues, layers, refuse: (problem: ApiError) => (refusal = problem) };
+  return { reviews, asked, delays, sent, queues, layers, refuse: (problem: ApiError) => (refusal = problem) };
 }
 
 let told: readonly Notice[] = [];
@@ -87,6 +90,18 @@ describe("what waits for review", () => {
     await vi.runAllTimersAsync();
     vi.useRealTimers();
     expect(asked).toEqual([1, 1]);
+  });
+
+  it("is what the newest question was told, however late an older answer comes", async () => {
+    const { reviews, queues, delays } = make("curator");
+    let answer = (): void => {};
+    delays.push(new Promise((resolve) => (answer = resolve)), Promise.resolve());
+    const late = reviews.load_all();
+    queues.set(1, queue_of([stroke(4, "ada")]));
+    await reviews.load_all();
+    answer();
+    await late;
+    expect(reviews.count).toBe(1);
   });
 
   it("tells its authors what became of it, and nobody else", () => {

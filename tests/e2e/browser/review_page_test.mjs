@@ -71,7 +71,7 @@ try {
   await wait_for(async () => (await listed(cleo).count()) === 2, "both strokes in the curator's list");
   await cleo.page.locator("strata-layer-panel").getByText("2 strokes wait for review.").waitFor();
   await panel(ada).getByRole("button", { name: "Review" }).click();
-  assert.equal(await listed(ada).count(), 2);
+  await wait_for(async () => (await listed(ada).count()) === 2, "both strokes in her own list");
   assert.equal(await panel(ada).getByRole("button", { name: /Accept/ }).count(), 0, "an annotator is offered to decide");
   await shoot(ada, "annotator");
   await shoot(cleo, "curator");

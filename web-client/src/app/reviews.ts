@@ -33,6 +33,7 @@ export class Reviews {
   private readonly told_ = new Set<number>(); // layers on which something waited, or was decided, since the page is open
   private readonly queues_ = new Map<number, ReviewQueue>(); // by layer
   private readonly outdated_ = new Set<number>();
+  private readonly asked_ = new Map<number, number>(); // the newest question by layer; answers of older ones come too late
   private readonly again_ = new ReadAgain((last) => void this.load(last));
 
   constructor(
@@ -110,12 +111,17 @@ export class Reviews {
   }
 
   private async read(layer: number): Promise<void> {
+    const question = (this.asked_.get(layer) ?? 0) + 1;
+    this.asked_.set(layer, question);
     try {
       const whose = this.host_.can_curate() ? null : this.host_.me();
-      this.queues_.set(layer, await this.api_.review_queue(this.model_id_, layer, kAtOnce, whose));
+      const queue = await this.api_.review_queue(this.model_id_, layer, kAtOnce, whose);
+      if (this.asked_.get(layer) !== question) return;
+      this.queues_.set(layer, queue);
       this.failed_.delete(layer);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
+      if (this.asked_.get(layer) !== question) return;
       this.failed_.delete(layer);
       if (error.status === 404) this.queues_.delete(layer);
       else this.failed_.add(layer);
