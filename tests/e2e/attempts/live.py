@@ -1,12 +1,15 @@
 """The live connection: messages too large, too many, of no form or in another's name, and connections that outlive their right."""
 import itertools
 import json
+import os
 import struct
 import time
 import uuid
 
+from support.cameras import camera_from
 from support.live_client import LiveClient
 from support.process_memory import PeakGrowth
+from support.strata_server import LONG_S
 
 from attempts.tools import L, M, close_code, person
 
@@ -103,6 +106,32 @@ def floods(server, section):
     section.tried("6000 questions of somebody who reads no answer", "ended or waiting, others are served", "ended or waiting, others are served", "4096 answers or 16 MiB wait at most, then it ends with 1013; a message that does not leave within 60 s ends it, too", growth.checked(64))
 
 
+def unread_pictures(server, section):
+    """Somebody who says to have every picture and reads none: each is of noise, and large."""
+    slug = server.ok("POST", M + "/layers", {"name": "Noise", "type": "u8"}).json()["slug"]
+    raster = server.get(f"{M}/layers/{slug}/texels.npy").body
+    head = 10 + struct.unpack("<H", raster[8:10])[0]
+    texels = bytearray(len(raster) - head)
+    texels[0::2], texels[1::2] = os.urandom(len(texels) // 2), b"\1" * (len(texels) // 2)
+    server.ok("PUT", f"{M}/layers/{slug}/texels.npy", raster[:head] + texels, headers={"Content-Type": "application/x-npy"})
+    camera = camera_from(server.get(M).json(), [0, 0, 1], 4096, 2160, up=(0, 1, 0))
+    with welcomed(server, receive_buffer=4096) as lazy, PeakGrowth(server) as growth:
+        end = time.monotonic() + LONG_S
+        try:
+            for seq in itertools.count(1):
+                camera["view"][12] += 1e-3
+                lazy.send({"op": "camera", "seq": seq, **camera})
+                lazy.send({"op": "ack", "frame": seq})
+                assert time.monotonic() < end, "still open"
+                time.sleep(0.02)
+        except OSError:
+            pass
+        code = close_code(lazy)
+    assert code in (1013, "cut off"), code
+    section.tried("Pictures of noise, of 4096 x 2160 pixels, that are acknowledged and not read", "ended", "ended", "64 MiB or 256 pictures wait at most, then it ends with 1013", growth.checked(768))
+    server.ok("DELETE", f"{M}/layers/{slug}")
+
+
 def in_others_names(server, section):
     """Orders that say they are somebody else's."""
     mia = server.add_person("mia", "annotator")
@@ -156,6 +185,6 @@ def attempts(server, table):
     section = table.section("Live connections")
     camera = {"view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1], "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -20.2, 0], "width": 640, "height": 480}
     server.ok("POST", M + "/views", {"name": "Front", "camera": camera})
-    for attempt in (messages, frames, floods, in_others_names, outlived):
+    for attempt in (messages, frames, floods, unread_pictures, in_others_names, outlived):
         attempt(server, section)
     assert json.loads(server.get(L).body)["slug"] == "marks"
