@@ -1,7 +1,8 @@
 // A kiosk in a real browser: by its link alone, with fingers, left alone and come back to, without its server and with it again, loaded anew from afar and
 // revoked. The page's clock is the test's. STRATA_KIOSK_ROUNDS: how often it is visited and left while its memory is looked at; STRATA_KIOSK_ALONE_MIN: minutes of that
-// clock for which its tour plays alone after each; STRATA_KIOSK_STEP_S: how much of it passes at once then, with one stop of the tour each time.
-// 205, 50 and 75 are a week, in an hour.
+// clock for which its tour plays alone after each; STRATA_KIOSK_STEP_S: how much of it passes at once then, with one stop of the tour each time;
+// STRATA_KIOSK_TOURS: how often the tour is seen through before, with each way to a stop in its own time. 205, 50, 75 and 0 are a week, in an hour; 24, 1, 5 and 10
+// are 480 ways, in 40 minutes.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -13,6 +14,7 @@ import { StrataServer, wait_for } from "../support/strata-server.mjs";
 const kRounds = Number(process.env.STRATA_KIOSK_ROUNDS ?? 4);
 const kAlone_min = Number(process.env.STRATA_KIOSK_ALONE_MIN ?? 1);
 const kStep_s = Number(process.env.STRATA_KIOSK_STEP_S ?? 5);
+const kTours = Number(process.env.STRATA_KIOSK_TOURS ?? 1);
 const kUpright = { width: 1080, height: 1920 };
 const kScreens = [{ width: 1920, height: 1080 }, { width: 768, height: 1024 }, kUpright]; // the last one is the test's own
 const kTarget_px = 57; // 15 mm
@@ -42,10 +44,12 @@ const pass = async (seconds, step_s = 5) => {
   }
 };
 const sent = { camera: null, layers: null };
+let cameras = 0;
 page.on("websocket", (socket) =>
   socket.on("framesent", ({ payload }) => {
     const message = JSON.parse(String(payload));
     sent[message.op] = message;
+    if (message.op === "camera") ++cameras;
   }),
 );
 const eye = ({ view }) => [0, 1, 2].map((c) => -[0, 1, 2].reduce((sum, row) => sum + view[4 * c + row] * view[12 + row], 0));
@@ -342,7 +346,8 @@ try {
   };
   const told = ({ heap_mb, nodes, listeners, server_mb: rss }) => `page ${heap_mb.toFixed(2)} MB, ${nodes} nodes, ${listeners} listeners; server ${rss.toFixed(0)} MB`;
   await cdp.send("Performance.enable");
-  const visit = async () => {
+  const kStops = [["The vessel from the well", 2], ["Fourteen sherds", 2], ["The rim", 1]]; // and how many cameras the way there has at least
+  const visit = async (tours) => {
     await begin.tap();
     await button("Deutsch").tap();
     await button("Weiter").tap();
@@ -350,21 +355,32 @@ try {
     await card.getByRole("heading", { name: "Sherd 3" }).waitFor();
     await wait_for(async () => (await pass(15), await begin.count()), "the visitor to be gone", 20);
     for (const title of ["Fourteen sherds", "The rim"]) await wait_for(async () => (await pass(3), await heading(title).count()), title, 20);
+    await page.emulateMedia({ reducedMotion: tours > 0 ? "no-preference" : "reduce" });
+    for (let tour = 0; tour < tours; ++tour)
+      for (const [title, fewest] of kStops) {
+        const before = cameras;
+        await pass(9, 3);
+        await wait_for(async () => (await pass(1), await heading(title).count()), title, 20);
+        await wait_for(() => cameras >= before + fewest && !sent.camera.moving, `the end of the way to ${title}`);
+        await live();
+      }
+    await page.emulateMedia({ reducedMotion: "reduce" });
     await pass(kAlone_min * 60, kStep_s);
   };
-  for (let round = 0; round < 8; ++round) await visit(); // until all is loaded and compiled
+  for (let round = 0; round < 8; ++round) await visit(round === 0 ? kTours : 0); // until all is loaded and compiled
   const first = await used();
   let settled = first; // of many visitors, after half of them: allocators go on taking their fill for a while, and what leaks does not end
   const clock = () => page.evaluate(() => performance.now());
   const from_ms = await clock();
+  const cameras_before = cameras;
   for (let round = 1; round <= kRounds; ++round) {
-    await visit();
+    await visit(kTours);
     if (kRounds > 20 && round === Math.floor(kRounds / 2)) settled = await used();
     if (round % 10 === 0) console.log(`  after ${round} visitors: ${told(await used())}`);
   }
   const after = await used();
   const hours = ((await clock()) - from_ms) / 3600_000;
-  console.log(`  before: ${told(first)}\n  after ${kRounds} visitors in ${hours.toFixed(1)} h of the page's clock: ${told(after)}`);
+  console.log(`  before: ${told(first)}\n  after ${kRounds} visitors in ${hours.toFixed(1)} h of the page's clock, with ${kRounds * kTours * 2} ways of ${cameras - cameras_before} cameras: ${told(after)}`);
   assert.ok(after.heap_mb - settled.heap_mb < kMostHeapGrowth, "the page's memory grows");
   assert.ok(after.nodes - settled.nodes < kMostNodeGrowth && after.listeners - settled.listeners < kMostNodeGrowth, "the page holds on to what is gone");
   assert.ok(after.server_mb - settled.server_mb < kMostServerGrowth, "the server's memory grows");
