@@ -98,12 +98,23 @@ describe("measuring", () => {
     let go = (): void => {};
     hold = new Promise((done) => (go = done));
     measuring.set_at(at_mm(0, 0));
+    expect(measuring.begun).toBe(true); // Escape takes away what is on its way, too
     await comes(() => expect(asked).toHaveLength(1));
     measuring.clear();
+    expect(measuring.begun).toBe(false);
     go();
     hold = null;
     measuring.set_at(at_mm(20, 0));
     await comes(() => expect(measuring.positions.map((place) => place.map(Math.round))).toEqual([[20, 0, 0]])); // prettier-ignore
+  });
+
+  it("has not begun where its only place is taken back, or was missed", async () => {
+    measuring.set_at(at_mm(0, 0));
+    measuring.take_back();
+    await comes(() => expect(measuring.begun).toBe(false));
+    measuring.set_at(at_mm(70, 0));
+    expect(measuring.begun).toBe(true);
+    await comes(() => expect(measuring.begun).toBe(false));
   });
 
   it("says where there is no surface, and sets nothing", async () => {

@@ -67,6 +67,7 @@ export class Measuring {
   private pointer_: PointerSample | null = null;
   private seen_by_: CameraMessage | null = null; // where the pointer was
   private work_: Promise<void> = Promise.resolve(); // taps, one after the other
+  private waiting_ = 0; // of them, for an answer or for their turn
   private count_ = 0; // of measurements: what is answered to one that was cleared comes too late
   private asked_ = 0; // for a profile: the newest counts
   private readonly so_far_: LineMeasure;
@@ -102,6 +103,10 @@ export class Measuring {
   /** Where a line leads from the last place to the pointer, window pixels. */
   get tip(): Point | null {
     return this.open && this.pointer_ ? [this.pointer_.x, this.pointer_.y] : null;
+  }
+  /** There are places, or one is on its way. */
+  get begun(): boolean {
+    return this.places.length > 0 || this.waiting_ > 0;
   }
   /** More places may follow. */
   get open(): boolean {
@@ -167,6 +172,7 @@ export class Measuring {
 
   clear(): void {
     this.count_ += 1;
+    this.waiting_ = 0;
     this.begin_anew();
     this.follow_pointer();
     this.host_.changed();
@@ -256,7 +262,11 @@ export class Measuring {
   private queue(work: (is_current: () => boolean) => Promise<void>): void {
     const count = this.count_;
     const is_current = (): boolean => count === this.count_;
-    this.work_ = this.work_.then(() => (is_current() ? work(is_current) : undefined)).catch((error: unknown) => notices.error(error));
+    this.waiting_ += 1;
+    this.work_ = this.work_
+      .then(() => (is_current() ? work(is_current) : undefined))
+      .catch((error: unknown) => notices.error(error))
+      .finally(() => void (this.waiting_ -= is_current() ? 1 : 0));
   }
 
   /** What is known of the same places stays until then. */

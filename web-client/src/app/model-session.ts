@@ -342,7 +342,7 @@ export class ModelSession {
       end: () => measuring.end(),
       take_back: () => measuring.take_back(),
       clear: () => measuring.clear(),
-      begun: () => measuring.places.length > 0,
+      begun: () => measuring.begun,
     };
     const face_host = {
       ...navigator,

@@ -11,7 +11,7 @@ export interface MeasureHost extends Navigator {
   end(): void;
   take_back(): void;
   clear(): void;
-  /** There are places. */
+  /** There are places, or one is on its way. */
   begun(): boolean;
 }
 
