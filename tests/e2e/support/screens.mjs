@@ -104,8 +104,9 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     await open(button(w.layers.new));
     await page.getByRole("radio", { name: new RegExp(`^${name}`) }).click();
   };
-  /** Once its picture has the stage's shape: after the window's size has changed, what is touched is what is seen there then. */
+  /** Once the stage and its picture have the window's shape: after that has changed, what is touched is what is seen there then. */
   const at_stage = async (x, y) => {
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))); // until the page has heard of it
     const fits = (canvas) => Math.abs(canvas.width / canvas.height - canvas.clientWidth / canvas.clientHeight) < 0.02;
     await wait_for(() => page.locator("strata-stage canvas").first().evaluate(fits), "the picture in the stage's shape");
     const box = await page.locator("strata-stage").boundingBox();
