@@ -141,15 +141,25 @@ try {
   say("what is emptied while it is still being saved is empty in the end");
   const version = async () => (await server.json("GET", `${T}/records/2`)).version;
   const before = await version();
+  await wait_for(async () => !(await cell(2, "Note").getAttribute("class")).includes("saving"), "the page to know that it is stored");
   let let_go;
+  let on_its_way = false;
   const held = new Promise((done) => (let_go = done));
-  await page.route("**/records/2", (route) => held.then(() => route.continue()), { times: 1 });
+  await page.route("**/records/2", async (route) => {
+    if (route.request().method() === "PATCH" && !on_its_way) {
+      on_its_way = true;
+      await held;
+    }
+    await route.continue();
+  });
   await page.keyboard.type("horn");
   await page.keyboard.press("Enter");
+  await wait_for(() => on_its_way, "the note on its way");
   await page.keyboard.press("ArrowUp");
   await page.keyboard.press("Delete");
   let_go();
   await wait_for(async () => (await version()) === before + 2, "both changes of the note to be stored");
+  await page.unroute("**/records/2");
   await stored(2, "note", null);
 
   say("what is no value is said at the cell, by the page or by the server");
