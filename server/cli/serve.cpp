@@ -59,12 +59,9 @@ Result<Address> parse_listen(const std::string& text) { return parse_address(tex
 // A server that others can reach is protected by its accounts alone.
 Result<void> check_reach(store::Store& store, const Address& address, bool has_tls) {
   if (is_loopback(address.host)) return {};
-  const auto people = store.people();
-  if (!people) return tl::unexpected(people.error());
-  const bool has_account = std::ranges::any_of(*people, [](const store::Person& person) {
-    return person.has_password && !person.disabled && person.role >= Role::administrator;
-  });
-  if (has_account) {
+  const auto has_account = store.administrator_has_password();
+  if (!has_account) return tl::unexpected(has_account.error());
+  if (*has_account) {
     if (!has_tls)
       log::warning(
           "listening on " + address.host +

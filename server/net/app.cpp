@@ -56,6 +56,10 @@ const Headers& security_headers() {
       {"Referrer-Policy", "no-referrer"},
       {"Cross-Origin-Opener-Policy", "same-origin"},
       {"Cross-Origin-Resource-Policy", "same-origin"},
+      // What the pages do not use, nothing in them can.
+      {"Permissions-Policy",
+       "accelerometer=(), camera=(), display-capture=(), geolocation=(), gyroscope=(), magnetometer=(), "
+       "microphone=(), midi=(), payment=(), serial=(), usb=(), xr-spatial-tracking=()"},
   };
   return headers;
 }
@@ -63,6 +67,7 @@ const Headers& security_headers() {
 App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
          render::Renderer& renderer, TemplateShelf templates)
     : options_(std::move(options)),
+      own_names_(own_names(options_.host, options_.allowed_origins)),
       store_(store),
       rooms_(rooms),
       auth_(store, options_.owner_token),
@@ -130,6 +135,10 @@ void App::stop_workers() {
 }
 
 const Route* App::find_route(Request& request, Response& refusal) const {
+  if (auto own = check_host(request, own_names_); !own) {
+    refusal = problem_response(own.error());
+    return nullptr;
+  }
   const bool is_api = !request.segments.empty() && request.segments.front() == "api";
   if (request.method == Method::unknown) {
     refusal = problem_response({405, "Unknown method", "Use GET, HEAD, POST, PUT, PATCH, DELETE or OPTIONS.", {}});
@@ -235,6 +244,7 @@ bool App::is_live_address(const Request& request) {
 
 Result<App::LiveEntry> App::admit_live(Request& request) {
   request.params["model"] = request.segments[3];
+  if (auto own = check_host(request, own_names_); !own) return tl::unexpected(own.error());
   if (auto known = identify(request, live_); !known) return tl::unexpected(known.error());
   if (auto own = check_upgrade_origin(request, options_.allowed_origins); !own) return tl::unexpected(own.error());
   auto room = rooms_.open(request.segments[3], request.role());

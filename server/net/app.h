@@ -63,6 +63,7 @@ class App {
   Result<void> identify(Request& request, const Route& route);
 
   const ServerOptions options_;
+  const std::vector<std::string> own_names_;
   store::Store& store_;
   room::Rooms& rooms_;
   Authenticator auth_;

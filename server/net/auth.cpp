@@ -18,7 +18,7 @@ tl::unexpected<Problem> unknown_secret() {
               "This token or session is unknown, expired or revoked. Sign in again, or make a new token.");
 }
 
-constexpr std::string_view kKioskPrefix = "kiosk ";
+constexpr std::string_view kKioskPrefix = "kiosk ", kHostPrefix = "__Host-";
 
 Principal principal_of(const store::Kiosk& kiosk) {
   Principal principal{kiosk_name(kiosk.id), Role::guest};
@@ -28,7 +28,7 @@ Principal principal_of(const store::Kiosk& kiosk) {
 }
 
 std::string cookie_of(std::string_view name, const std::string& value, std::chrono::seconds lifetime, bool secure) {
-  return std::string(name) + "=" + value +
+  return std::string(secure ? kHostPrefix : "") + std::string(name) + "=" + value +
          "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(lifetime.count()) +
          (secure ? "; Secure" : "");
 }
@@ -43,8 +43,7 @@ Authenticator::Authenticator(store::Store& store, std::string owner_token)
 
 Result<std::optional<Principal>> Authenticator::identify_token(const std::string& token) {
   if (token.empty() || token.size() > kMaxTokenLength) return std::nullopt;
-  if (!owner_token_.empty() && equal_in_constant_time(token, owner_token_))
-    return Principal{.user = "owner", .role = Role::owner, .roles = {Role::owner, {}}};
+  if (!owner_token_.empty() && equal_in_constant_time(token, owner_token_)) return owner_by_token();
   const auto now = std::chrono::steady_clock::now();
   const std::string key = sha256_hex(token);
   std::uint64_t changes = 0;
@@ -79,10 +78,35 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
   return principal;
 }
 
+// Once somebody can sign in who may do everything, the token has done its work: whoever reads the environment must not own the site for ever.
+Result<Principal> Authenticator::owner_by_token() {
+  const auto principal = [](bool is_script) {
+    const Role role = is_script ? Role::administrator : Role::owner;
+    return Principal{.user = "owner", .role = role, .is_script = is_script, .roles = {role, {}}};
+  };
+  const auto now = std::chrono::steady_clock::now();
+  std::uint64_t changes = 0;
+  {
+    std::lock_guard lock(mutex_);
+    changes = changes_;
+    if (owner_token_now_.until > now) return principal(owner_token_now_.is_script);
+  }
+  const auto has_password = store_.administrator_has_password();
+  if (!has_password) return tl::unexpected(has_password.error());
+  std::lock_guard lock(mutex_);
+  if (changes == changes_) owner_token_now_ = {*has_password, now + kRememberFor};
+  return principal(*has_password);
+}
+
 std::string Authenticator::secret_of(const Request& request) {
   const std::string authorization(request.header("authorization"));
-  if (authorization.empty())
-    return cookie_value(request.header("cookie"), request.as_kiosk ? kKioskCookie : kSessionCookie);
+  if (authorization.empty()) {
+    const std::string cookie(request.as_kiosk ? kKioskCookie : kSessionCookie);
+    std::string secret = cookie_value(request.header("cookie"), std::string(kHostPrefix) + cookie);
+    // By https the plain name counts for nothing: a neighbouring host may have set it.
+    if (secret.empty() && !came_by_https(request)) secret = cookie_value(request.header("cookie"), cookie);
+    return secret;
+  }
   return to_lower(authorization.substr(0, kScheme.size())) == kScheme ? authorization.substr(kScheme.size())
                                                                       : std::string();
 }
@@ -98,6 +122,9 @@ Result<std::optional<Principal>> Authenticator::identify(const Request& request)
   // A cookie tells only what it is for: whoever can set one makes no kiosk of a person's page by it, and the other way round.
   const bool is_kiosk = (*principal)->kiosk.has_value();
   if (request.as_kiosk ? !is_kiosk : by_cookie && is_kiosk) return unknown_secret();
+  // What scripts are given is no session: it does not end with the browser's, and no page shows it among the sessions.
+  const bool is_session = (*principal)->secret != 0 && !(*principal)->is_script;
+  if (by_cookie && !is_kiosk && !is_session) return unknown_secret();
   (*principal)->by_cookie = by_cookie;
   return principal;
 }
@@ -125,7 +152,7 @@ Result<std::string> Authenticator::session_for_token(const std::string& token, c
   if (!principal) return tl::unexpected(principal.error());
   if (!*principal) return unknown_secret();
   // Another session of a session, or of a token, would outlive what it was made of.
-  if ((*principal)->secret != 0 || (*principal)->kiosk)
+  if ((*principal)->secret != 0 || (*principal)->is_script || (*principal)->kiosk)
     return fail(
         403, "Not for signing in",
         "This token is for scripts, as `Authorization: Bearer TOKEN`. In a browser sign in with name and password.",
@@ -149,6 +176,7 @@ void Authenticator::forget() {
   std::lock_guard lock(mutex_);
   ++changes_;
   remembered_.clear();
+  owner_token_now_ = {};
 }
 
 Result<void> Authenticator::end_session(const std::string& session_token) {

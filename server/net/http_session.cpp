@@ -17,6 +17,7 @@
 #include "core/uuid.h"
 #include "net/connection_stream.h"
 #include "net/on_worker.h"
+#include "net/origin.h"
 #include "net/token_bucket.h"
 #include "net/websocket_session.h"
 
@@ -198,6 +199,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const auto request = std::make_shared<Request>(std::move(*parsed));
     request->peer = peer_;
     request->by_tls = stream_.has_tls();
+    by_https_ = came_by_https(*request);
     Response response;
     if (!bucket_.take()) {
       response = problem_response({429, "Too many requests", "This connection asks too fast; wait a second.", {}});
@@ -365,6 +367,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     message.set(http::field::server, "strata");
     for (const auto& [key, value] : security_headers())
       if (response.header(key).empty()) message.insert(key, value);
+    // From then on browsers ask by https alone (RFC 6797), whatever a link says.
+    if (by_https_) message.set(http::field::strict_transport_security, "max-age=31536000");
     if (response.header("Cache-Control").empty())
       message.set(http::field::cache_control, response.header("ETag").empty() ? "no-store" : "private, no-cache");
     for (const auto& [key, value] : response.headers) message.insert(key, value);
@@ -591,6 +595,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   TokenBucket bucket_;
   std::string peer_;            // address at the other end
   unsigned http_version_ = 11;  // of the request: 10 or 11
+  bool by_https_ = false;       // the request came so, to here or to a proxy
   bool handed_over_ = false;
 };
 

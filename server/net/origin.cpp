@@ -1,5 +1,8 @@
 #include "net/origin.h"
 
+#include <arpa/inet.h>
+#include <unistd.h>
+
 #include <algorithm>
 
 namespace strata::net {
@@ -28,12 +31,50 @@ bool is_own_origin(std::string_view origin, std::string_view host, const std::ve
     while (known.ends_with('/')) known.pop_back();
     if (asked == known) return true;
   }
-  for (std::string_view scheme : {"http://", "https://"})
-    if (asked.starts_with(scheme)) {
-      const bool is_safe = scheme == "https://" || !by_https;
-      return is_safe && !host.empty() && asked.substr(scheme.size()) == to_lower(host);
-    }
-  return false;
+  const std::string_view scheme = by_https ? "https://" : "http://";
+  return asked.starts_with(scheme) && !host.empty() && asked.substr(scheme.size()) == to_lower(host);
+}
+
+namespace {
+
+// `museum.example` of `museum.example:8080`; an IPv6 address keeps its brackets.
+std::string_view without_port(std::string_view host) {
+  if (host.starts_with('[')) return host.substr(0, host.find(']') + 1);
+  return host.substr(0, host.find(':'));
+}
+
+bool is_address(std::string_view host) {
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
+  const std::string text(host);
+  in6_addr address{};
+  return inet_pton(AF_INET, text.c_str(), &address) == 1 || inet_pton(AF_INET6, text.c_str(), &address) == 1;
+}
+
+}  // namespace
+
+std::vector<std::string> own_names(const std::string& listen_host, const std::vector<std::string>& allowed_origins) {
+  std::vector<std::string> names = {"localhost", to_lower(listen_host)};
+  char machine[256] = {};
+  if (gethostname(machine, sizeof machine - 1) == 0 && machine[0] != 0) names.push_back(to_lower(machine));
+  for (const std::string& origin : allowed_origins) {
+    const auto scheme = origin.find("://");
+    std::string host = to_lower(scheme == std::string::npos ? origin : origin.substr(scheme + 3));
+    host.resize(std::min(host.find('/'), host.size()));
+    names.emplace_back(without_port(host));
+  }
+  return names;
+}
+
+Result<void> check_host(const Request& request, const std::vector<std::string>& own_names) {
+  const std::string_view sent = request.header("host");
+  if (sent.empty() || !request.header("authorization").empty()) return {};
+  std::string host = to_lower(without_port(sent));
+  if (host.ends_with('.')) host.pop_back();
+  if (is_address(host) || std::ranges::find(own_names, host) != own_names.end()) return {};
+  return fail(421, "Unknown host name",
+              "This server does not know the name by which it was asked. Whoever runs it adds the name with --origin "
+              "(STRATA_ORIGIN), for example --origin https://museum.example.",
+              "Host");
 }
 
 namespace {
@@ -74,9 +115,10 @@ Result<void> check_upgrade_origin(const Request& request, const std::vector<std:
               "Live connections are taken from this server's own pages only. Add the origin with --origin.", "Origin");
 }
 
-bool came_by_https(const Request& request) {
-  return request.by_tls || request.header("x-forwarded-proto") == "https" ||
-         request.header("origin").starts_with("https://");
+bool came_by_https(const Request& request) { return request.by_tls || request.header("x-forwarded-proto") == "https"; }
+
+bool needs_secure_cookie(const Request& request) {
+  return came_by_https(request) || request.header("origin").starts_with("https://");
 }
 
 }  // namespace strata::net

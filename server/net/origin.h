@@ -11,8 +11,16 @@ namespace strata::net {
 // Value of a cookie in a Cookie header; empty when it is not there. Quotes around it are dropped.
 std::string cookie_value(std::string_view header, std::string_view name);
 
-// Whether an Origin header names this server (the host and port of the Host header) or one of the allowed origins. A server that is asked by https is
-// not itself in the clear, where a page may be anybody's.
+// The names under which browsers reach this server, in lower case: `localhost`, the name that it listens on, the machine's own name, and
+// those of the allowed origins. Addresses (192.0.2.7, [2001:db8::1]) are no names and need not be listed.
+std::vector<std::string> own_names(const std::string& listen_host, const std::vector<std::string>& allowed_origins);
+
+// A page whose name was made to lead to this server's address (DNS rebinding) sends its own name as Host: 421. Addresses pass, because no name
+// leads there, and so do requests with an Authorization header, which no browser sends by itself.
+Result<void> check_host(const Request& request, const std::vector<std::string>& own_names);
+
+// Whether an Origin header names this server (the host and port of the Host header, with the scheme by which the request came) or one of the
+// allowed origins.
 bool is_own_origin(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed,
                    bool by_https);
 
@@ -23,7 +31,9 @@ Result<void> check_same_origin(const Request& request, const std::vector<std::st
 // At the WebSocket's upgrade: browsers always send Origin; scripts may leave it out when they bring a bearer token.
 Result<void> check_upgrade_origin(const Request& request, const std::vector<std::string>& allowed);
 
-// To this server or to a proxy before it: then cookies must not travel without it.
+// By TLS to this server, or to a proxy before it that says so by X-Forwarded-Proto.
 bool came_by_https(const Request& request);
+// The same, or the page says so by its (allowed) origin, where a proxy says nothing: then cookies must not travel without https.
+bool needs_secure_cookie(const Request& request);
 
 }  // namespace strata::net

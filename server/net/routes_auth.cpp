@@ -26,7 +26,7 @@ Result<Response> signed_in(const RouteContext& context, const Request& request, 
   if (!principal) return tl::unexpected(principal.error());
   if (!*principal) return fail(401, "Not signed in", "This account was closed meanwhile.");
   auto response = who_is_signed_in(context, (*principal)->user, (*principal)->role);
-  if (response) response->with("Set-Cookie", Authenticator::set_cookie(session, came_by_https(request)));
+  if (response) response->with("Set-Cookie", Authenticator::set_cookie(session, needs_secure_cookie(request)));
   return response;
 }
 
@@ -68,7 +68,7 @@ Result<Response> sign_out(const RouteContext& context, const Request& request) {
     if (!ended) return tl::unexpected(ended.error());
     context.live_sockets.close_those_of(session, kClosePolicy, "signed out");
   }
-  return empty_response(204).with("Set-Cookie", Authenticator::clear_cookie(came_by_https(request)));
+  return empty_response(204).with("Set-Cookie", Authenticator::clear_cookie(needs_secure_cookie(request)));
 }
 
 Result<Response> change_me(const RouteContext& context, const Request& request) {
@@ -216,7 +216,7 @@ void add_auth_routes(Router& router, const RouteContext& context) {
                 gate->was_right(address_of(request), {});
                 return empty_response(303)
                     .with("Location", "/")
-                    .with("Set-Cookie", Authenticator::set_cookie(*session, came_by_https(request)))
+                    .with("Set-Cookie", Authenticator::set_cookie(*session, needs_secure_cookie(request)))
                     .with("Cache-Control", "no-store");
               }),
               .role = std::nullopt,

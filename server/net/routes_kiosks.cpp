@@ -113,7 +113,8 @@ Result<Response> sign_in(const RouteContext& context, SignInGate& gate, const Re
   gate.was_right(address, {});
   if (auto seen = context.store.kiosks().seen((*kiosk)->id, true); !seen) return tl::unexpected(seen.error());
   auto response = self(context, **kiosk, false);
-  if (response) response->with("Set-Cookie", Authenticator::set_kiosk_cookie(asked->link, came_by_https(request)));
+  if (response)
+    response->with("Set-Cookie", Authenticator::set_kiosk_cookie(asked->link, needs_secure_cookie(request)));
   return response;
 }
 

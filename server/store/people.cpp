@@ -353,6 +353,15 @@ Result<void> Store::remove_member(std::int64_t project_id, const std::string& us
   });
 }
 
+Result<bool> Store::administrator_has_password() {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<bool> {
+    auto rows = connection.query(
+        "SELECT 1 FROM users WHERE password IS NOT NULL AND disabled IS NULL AND deleted IS NULL AND role IN ('administrator', 'owner') LIMIT 1");
+    if (!rows) return tl::unexpected(rows.error());
+    return rows->rows() > 0;
+  });
+}
+
 Result<std::string> Store::password_of(const std::string& name) {
   if (!is_ascii(name) || !check_text(name, "user")) return std::string();
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::string> {

@@ -318,7 +318,8 @@ class Store {
   Result<std::optional<nlohmann::json>> find_answer(const std::string& key);
 
   // --- people: accounts, sessions and tokens
-  Result<std::vector<Person>> people();  // by name
+  Result<std::vector<Person>> people();       // by name
+  Result<bool> administrator_has_password();  // so that somebody can sign in who may let in others
   Result<Person> person(const std::string& name);
   // 422: no name for signing in: 1 to 64 of letters, digits and `._@-`, a letter or digit first. 409: it is taken, in whatever case, or
   // of the form that is kept for who is deleted (`former-7`). They are in these groups at once (422: there is no such group; 409: it is

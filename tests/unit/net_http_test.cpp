@@ -152,12 +152,54 @@ Request from(const std::string& origin, bool by_cookie) {
 
 TEST(Origin, a_change_signed_by_cookie_comes_from_our_own_pages) {
   EXPECT_TRUE(check_same_origin(from("http://strata.local:8080", true), {}));
-  EXPECT_TRUE(check_same_origin(from("https://STRATA.local:8080", true), {}));
+  EXPECT_TRUE(check_same_origin(from("http://STRATA.local:8080", true), {}));
   EXPECT_FALSE(check_same_origin(from("http://strata.local", true), {}));
   EXPECT_FALSE(check_same_origin(from("http://evil.example", true), {}));
   EXPECT_FALSE(check_same_origin(from("http://strata.local:8080.evil.example", true), {}));
   EXPECT_FALSE(check_same_origin(from("null", true), {}));
   EXPECT_TRUE(check_same_origin(from("https://museum.example", true), {"https://museum.example/"}));
+}
+
+TEST(Origin, its_scheme_is_that_by_which_the_request_came) {
+  Request request = from("https://strata.local:8080", true);
+  EXPECT_FALSE(check_same_origin(request, {}));
+  EXPECT_FALSE(check_upgrade_origin(request, {}));
+  EXPECT_TRUE(check_same_origin(request, {"https://strata.local:8080"}));
+  request.headers.emplace_back("x-forwarded-proto", "https");
+  EXPECT_TRUE(check_same_origin(request, {}));
+  request = from("http://strata.local:8080", true);
+  request.by_tls = true;
+  EXPECT_FALSE(check_same_origin(request, {}));
+}
+
+Request asking(const std::string& host) {
+  Request request;
+  request.headers = {{"host", host}};
+  return request;
+}
+
+TEST(Host, is_an_address_or_one_of_the_servers_names) {
+  const auto names =
+      own_names("Strata.Local", {"https://museum.example", "http://Find.example:8080/", "https://[2001:db8::7]"});
+  for (const char* host :
+       {"localhost", "localhost:8080", "LOCALHOST:1", "strata.local:8080", "museum.example", "museum.example.",
+        "find.example:99", "127.0.0.1", "192.0.2.7:8080", "[::1]:8080", "[2001:db8::1]"})
+    EXPECT_TRUE(check_host(asking(host), names)) << host;
+  for (const char* host :
+       {"evil.example", "evil.example:8080", "museum.example.evil.example", "xmuseum.example", "127.0.0.1.evil.example",
+        "1.2.3", "[::1].evil.example", "[evil.example]", "localhost.evil.example", ":8080", " "}) {
+    const auto checked = check_host(asking(host), names);
+    ASSERT_FALSE(checked) << host;
+    EXPECT_EQ(checked.error().status, 421);
+    EXPECT_EQ(checked.error().field, "Host");
+  }
+}
+
+TEST(Host, of_scripts_with_a_token_may_be_any) {
+  Request request = asking("strata:8080");
+  EXPECT_FALSE(check_host(request, own_names("0.0.0.0", {})));
+  request.headers.emplace_back("authorization", "Bearer x");
+  EXPECT_TRUE(check_host(request, own_names("0.0.0.0", {})));
 }
 
 TEST(Origin, without_an_origin_the_browser_must_say_same_origin) {

@@ -89,6 +89,8 @@ def script_tokens(server, section):
     section.tried("A script's token, its person's and the owner's, used on accounts, tokens, roles and passwords", statuses(server.request(method, path, body, token=secret) for secret in (strong, root) for method, path, body in accounts),
                   403, "tokens for scripts change no accounts, whatever their role")
     section.tried("A script's token traded for a session in a browser", Browser(server).request("POST", "/login", {"token": strong}).status, 403, "it opens none: a session would outlive it")
+    as_cookie = [server.get(M, token=False, headers={"Cookie": "strata_session=" + secret}) for secret in (strong, root)]
+    section.tried("A script's token as the cookie of a session", statuses(as_cookie), 401, "only the secret of a session counts as cookie")
     section.tried("A token stronger than its person", ida.request("POST", "/me/tokens", {"name": "t", "role": "administrator"}).status, 403, "roles are compared when it is made and at each use")
     server.ok("PATCH", "/users/ida", {"role": "viewer"})
     section.tried("A token made before its person lost their role", statuses(server.request(method, path, body, token=strong) for method, path, body in writes), 403, "roles are compared when it is made and at each use")

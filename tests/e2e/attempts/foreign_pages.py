@@ -19,7 +19,7 @@ def changing(server, section, cookie):
         there = [answer for answer in answers if answer.status != 404]
         assert len(there) > 60 and all(answer.json()["field"] == "Origin" for answer in there), (len(there), there)
         section.tried(f"Every changing call of the contract with the owner's cookie and {what}", statuses(there), 403, "Origin must be the server's own where a cookie signs", f"{len(there)} calls; {len(answers) - len(there)} of things that are not there: 404")
-    lookalikes = [server.url + ".example", server.url + "0", server.url.replace("127.0.0.1", "127.0.0.2"), server.url.replace("http:", "ftp:"), "http://localhost:" + str(server.port), server.url + "/", "http://a@" + server.url[7:], server.url + "#", " "]
+    lookalikes = [server.url + ".example", server.url + "0", server.url.replace("127.0.0.1", "127.0.0.2"), server.url.replace("http:", "ftp:"), server.url.replace("http:", "https:"), "http://localhost:" + str(server.port), server.url + "/", "http://a@" + server.url[7:], server.url + "#", " "]
     section.tried("Origins that look like the server's own", statuses(ask("POST", L + "/undo", Origin=origin) for origin in lookalikes), 403, "compared as a whole", f"{len(lookalikes)} of them")
     # What a form sends without asking first.
     body = json.dumps({"name": "Taken over"}).encode()
@@ -33,8 +33,8 @@ def changing(server, section, cookie):
 
 def listening(server, section, cookie):
     """What a foreign page gets to read."""
-    origins = {upgraded(server, token="", cookie=cookie, origin=origin) for origin in (FOREIGN, "null", server.url + ".example", None)}
-    section.tried("A live connection with the visitor's cookie, Origin foreign, `null`, like ours or absent", origins, 403, "compared before the upgrade; tokens without Origin are for scripts")
+    origins = {upgraded(server, token="", cookie=cookie, origin=origin) for origin in (FOREIGN, "null", server.url + ".example", server.url.replace("http:", "https:"), None)}
+    section.tried("A live connection with the visitor's cookie, Origin foreign, `null`, like ours, ours by https or absent", origins, 403, "compared before the upgrade; tokens without Origin are for scripts")
     preflight = raw_request(server, f"OPTIONS /api/v1{M} HTTP/1.1\r\nHost: {server.host}:{server.port}\r\nOrigin: {FOREIGN}\r\nAccess-Control-Request-Method: PATCH\r\nConnection: close\r\n\r\n".encode())
     read = server.get(M, token=False, headers={"Cookie": cookie, "Origin": FOREIGN})
     grants = (preflight.decode() + str(read.headers)).lower().count("access-control-")
@@ -54,8 +54,8 @@ def hosts(server, section, cookie):
     """A name of theirs that leads to our address (DNS rebinding), and other tricks with Host."""
     rebound = {"Host": "evil.example:8080", "Origin": "http://evil.example:8080"}
     answers = [server.get(M, token=False, headers=rebound), server.request("PATCH", M, {"credit": "x"}, token=False, headers=rebound)]
-    section.tried("A foreign name that was made to lead to our address, as Host and Origin", statuses(answers), 401, "browsers keep cookies by name: that one has none")
-    section.tried("Our cookie with a foreign Host", server.post(L + "/undo", token=False, headers={"Cookie": cookie, "Origin": server.url, "Host": "evil.example"}).status, 403, "Origin is compared with Host")
+    section.tried("A foreign name that was made to lead to our address, as Host and Origin", statuses(answers), 421, "names are held against those of --origin and the machine's own")
+    section.tried("Our cookie with a foreign Host", server.post(L + "/undo", token=False, headers={"Cookie": cookie, "Origin": server.url, "Host": "evil.example"}).status, 421, "the same, before anything else")
     evil = "http://evil.example"
     answers = [server.get(path, token=False, headers={"Host": "evil.example", "X-Forwarded-Host": "evil.example"}) for path in ("//", "//livez", "/openapi.json")]
     answers += [server.post("/users", {"user": "linked"}, headers={"Host": "evil.example", "X-Forwarded-Host": "evil.example"})]

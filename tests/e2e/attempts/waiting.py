@@ -222,13 +222,28 @@ def tls(table):
             except (ssl.SSLError, OSError):
                 spoken = "refused"
             section.tried("TLS 1.0 and 1.1", spoken, "refused", "1.2 and 1.3 alone")
+            offered = set()
+            for weak in ("AES128-SHA", "AES256-SHA", "AES128-GCM-SHA256", "ECDHE-ECDSA-AES128-SHA", "ECDHE-RSA-AES128-SHA", "ECDHE-ECDSA-AES256-SHA384", "ECDHE-RSA-AES256-SHA384"):
+                old.minimum_version = old.maximum_version = ssl.TLSVersion.TLSv1_2
+                old.set_ciphers(weak + ":@SECLEVEL=0")
+                try:
+                    with old.wrap_socket(connected(server), server_hostname=server.host):
+                        offered.add(weak)
+                except (ssl.SSLError, OSError):
+                    pass
+            section.tried("TLS 1.2 without forward secrecy, or with a cipher that authenticates separately", sorted(offered) or "refused", "refused", "ECDHE with AES-GCM or ChaCha20-Poly1305 alone")
             link = connected(server, f"GET /x HTTP/1.1\r\nHost: {server.host}:{server.port}\r\nCookie: strata_session=x\r\n\r\n".encode())
             head = link.recv(65536).decode()
             section.tried("Plain http at the same port", int(head.split()[1]), 308, "sent on to https; nothing is served openly")
-            assert f"Location: {server.url}/x\r\n" in head, head
+            assert head.startswith("HTTP/1.1 308 Permanent Redirect\r\n") and f"Location: {server.url}/x\r\n" in head, head
             whole = server.post("/login", {"token": server.token}, token=False).headers["Set-Cookie"]
             cookie = whole.split(";")[0]
             forged = server.request("PATCH", "/me", {"full_name": "x"}, token=False, headers={"Cookie": cookie, "Origin": f"http://{server.host}:{server.port}"})
             section.tried("A change from a page of the same name that came by http", forged.status, 403, "by https the server's own pages are those by https")
+            assert whole.startswith("__Host-strata_session=") and "; Path=/;" in whole and "Domain" not in whole, whole
+            plain = cookie.removeprefix("__Host-")
+            section.tried("A cookie that a neighbouring host of the same domain has set", server.get("/me", token=False, headers={"Cookie": plain}).status, 401, "by https its name is `__Host-…`, which browsers take from this host alone")
+            lasts = server.get("//", token=False).headers["Strict-Transport-Security"]
+            section.tried("A later visit by http", lasts, "max-age=31536000", "Strict-Transport-Security: browsers ask by https for a year")
             section.tried("The cookie on its way by http", "Secure" if "; Secure" in whole else whole, "Secure", "browsers send it by https alone")
             server.assert_clean_log()
