@@ -21,6 +21,20 @@ def point_to_components(node):
     return [point_to_components(value) for value in node] if isinstance(node, list) else node
 
 
+# What any call may be answered with, whatever it asks: the description of openapi.yaml says why.
+OF_ANY_CALL = {"421": "UnknownHost", "429": "TooFast", "431": "HeaderTooLarge", "503": "Unavailable"}
+
+
+def add_common_answers(document) -> None:
+    for path, item in document["paths"].items():
+        for method, operation in item.items():
+            if method == "parameters" or path.endswith("/live"):
+                continue
+            for status, name in OF_ANY_CALL.items():
+                operation["responses"].setdefault(status, {"$ref": "#/components/responses/" + name})
+            operation["responses"] = dict(sorted(operation["responses"].items()))
+
+
 def references(node) -> set[str]:
     if isinstance(node, dict):
         found = {node["$ref"]} if isinstance(node.get("$ref"), str) else set()
@@ -30,6 +44,7 @@ def references(node) -> set[str]:
 
 def write(protocol: Protocol, source: pathlib.Path) -> str:
     document = point_to_components(yaml.safe_load(source.read_text()))
+    add_common_answers(document)
     schemas = document.setdefault("components", {}).setdefault("schemas", {})
     prefix = "#/components/schemas/"
     wanted = [ref for ref in references(document) if ref.startswith(prefix)]

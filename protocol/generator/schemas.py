@@ -201,11 +201,21 @@ def strip(schema, drop):
     return result
 
 
+def as_draft_07(schema):
+    """The sources say `dependentRequired`, the word of JSON Schema 2020-12 and so of OpenAPI 3.1; validators of draft-07 know it as `dependencies`."""
+    if isinstance(schema, list):
+        return [as_draft_07(v) for v in schema]
+    if not isinstance(schema, dict):
+        return schema
+    renamed = {"dependentRequired": "dependencies"} if "properties" in schema else {}
+    return {renamed.get(key, key): as_draft_07(value) for key, value in schema.items()}
+
+
 def bundle(protocol: Protocol) -> dict:
     """One draft-07 document for test tools such as ajv: our own keywords and formats are left out."""
     drop = lambda key: key.startswith("x-") or key == "format"
     return {"$schema": "http://json-schema.org/draft-07/schema#",
-            "definitions": {name: strip(schema, drop) for name, schema in protocol.schemas.items()}}
+            "definitions": {name: as_draft_07(strip(schema, drop)) for name, schema in protocol.schemas.items()}}
 
 
 def bundle_for_validation(protocol: Protocol) -> dict:
@@ -214,7 +224,7 @@ def bundle_for_validation(protocol: Protocol) -> dict:
     drop = lambda key: key.startswith("x-") or key in ("format", "title", "description", "default", "$schema")
     definitions = {}
     for name, definition in protocol.definitions.items():
-        schema = strip(copy.deepcopy(definition.schema), drop)
+        schema = as_draft_07(strip(copy.deepcopy(definition.schema), drop))
         if definition.type.kind == "union":
             ops = [protocol.definitions[choice].op for choice in definition.type.values]
             schema = {

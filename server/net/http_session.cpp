@@ -76,6 +76,12 @@ Result<void> check_framing(const Request& request, unsigned version) {
   return {};
 }
 
+std::string rate_policy(const ServerOptions& options) {
+  const auto window_s = static_cast<int>(std::ceil(options.request_burst / options.requests_per_second));
+  return "\"connection\";q=" + std::to_string(static_cast<int>(options.request_burst)) +
+         ";w=" + std::to_string(window_s);
+}
+
 // How long a body may take: a minute, and a second more for each kilobyte that came.
 class BodyClock {
  public:
@@ -108,7 +114,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         tls_(std::move(tls)),
         connections_(std::move(connections)),
         app_(connections_->app),
-        bucket_(app_.options().requests_per_second, app_.options().request_burst) {
+        bucket_(app_.options().requests_per_second, app_.options().request_burst),
+        policy_(rate_policy(app_.options())) {
     ++app_.metrics().open_connections;
     beast::error_code gone;
     peer_ = connection().socket().remote_endpoint(gone).address().to_string();
@@ -369,6 +376,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       if (response.header(key).empty()) message.insert(key, value);
     // From then on browsers ask by https alone (RFC 6797), whatever a link says.
     if (by_https_) message.set(http::field::strict_transport_security, "max-age=31536000");
+    const auto now = TokenBucket::Clock::now();
+    message.insert("RateLimit-Policy", policy_);
+    message.insert("RateLimit", "\"connection\";r=" + std::to_string(bucket_.left(now)) +
+                                    ";t=" + std::to_string(bucket_.full_in_s(now)));
     if (response.header("Cache-Control").empty())
       message.set(http::field::cache_control, response.header("ETag").empty() ? "no-store" : "private, no-cache");
     for (const auto& [key, value] : response.headers) message.insert(key, value);
@@ -593,6 +604,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   App& app_;
   beast::flat_buffer buffer_;
   TokenBucket bucket_;
+  const std::string policy_;  // what `bucket_` is called in RateLimit-Policy
   std::string peer_;            // address at the other end
   unsigned http_version_ = 11;  // of the request: 10 or 11
   bool by_https_ = false;       // the request came so, to here or to a proxy

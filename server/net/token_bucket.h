@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace strata::net {
 
@@ -27,6 +28,16 @@ class TokenBucket {
   bool is_full(Clock::time_point now) {
     fill(now);
     return tokens_ >= burst_;
+  }
+
+  // How many would pass now, and after how many whole seconds all of them would again.
+  int left(Clock::time_point now) {
+    fill(now);
+    return static_cast<int>(tokens_);
+  }
+  int full_in_s(Clock::time_point now) {
+    fill(now);
+    return static_cast<int>(std::ceil((burst_ - tokens_) / per_second_));
   }
 
   // What was taken last cost nothing.

@@ -264,6 +264,17 @@ TEST(TokenBucket, lets_a_burst_pass_and_then_the_rate) {
   EXPECT_FALSE(bucket.take(later)) << "an idle hour earns one burst, not 36 000";
 }
 
+TEST(TokenBucket, tells_what_is_left_and_when_it_is_full) {
+  const auto start = TokenBucket::Clock::now();
+  TokenBucket bucket(10, 30, start);
+  EXPECT_EQ(bucket.left(start), 30);
+  EXPECT_EQ(bucket.full_in_s(start), 0);
+  for (int i = 0; i < 15; ++i) bucket.take(start);
+  EXPECT_EQ(bucket.left(start), 15);
+  EXPECT_EQ(bucket.full_in_s(start), 2);
+  EXPECT_EQ(bucket.left(start + std::chrono::milliseconds(1050)), 25);
+}
+
 TEST(TokenBucket, a_clock_that_steps_back_earns_nothing) {
   const auto start = TokenBucket::Clock::now();
   TokenBucket bucket(10, 1, start);
