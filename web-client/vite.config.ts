@@ -1,12 +1,16 @@
 import { defineConfig } from "vitest/config";
+import { compressed_beside } from "./compress";
 
 // The server's address while developing the page with `npm run dev`.
 const server = process.env["STRATA_SERVER"] ?? "http://127.0.0.1:8080";
 
 export default defineConfig({
+  plugins: [compressed_beside()],
   build: {
     outDir: "dist",
     target: "es2022",
+    sourcemap: true,
+    manifest: true, // what is loaded with what, for the test of the page's weight
     // The server's content security policy allows only files of its own: nothing is inlined into the page.
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },

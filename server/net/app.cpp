@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "core/log.h"
+#include "net/compression.h"
 #include "net/kiosk_gate.h"
 #include "net/origin.h"
 #include "net/project_gate.h"
@@ -139,6 +140,7 @@ const Route* App::find_route(Request& request, Response& refusal) const {
     refusal = problem_response(own.error());
     return nullptr;
   }
+  forget_codings(request);
   const bool is_api = !request.segments.empty() && request.segments.front() == "api";
   if (request.method == Method::unknown) {
     refusal = problem_response({405, "Unknown method", "Use GET, HEAD, POST, PUT, PATCH, DELETE or OPTIONS.", {}});
@@ -209,7 +211,11 @@ std::optional<Response> App::admit_again(Request& request, const Route& route) {
   return std::nullopt;
 }
 
-void App::handle(const Request& request, const Route& route, const Respond& respond) {
+void App::handle(const Request& request, const Route& route, const Respond& send) {
+  const Respond respond([send, accepted = std::string(request.header("accept-encoding"))](Response response) {
+    compress(response, accepted);
+    send(std::move(response));
+  });
   const bool remembered = route.keeps_answer && !request.header("idempotency-key").empty();
   if (remembered) {
     auto kept = answers_.begin(request);

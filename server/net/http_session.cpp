@@ -604,7 +604,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   App& app_;
   beast::flat_buffer buffer_;
   TokenBucket bucket_;
-  const std::string policy_;  // what `bucket_` is called in RateLimit-Policy
+  const std::string policy_;    // what `bucket_` is called in RateLimit-Policy
   std::string peer_;            // address at the other end
   unsigned http_version_ = 11;  // of the request: 10 or 11
   bool by_https_ = false;       // the request came so, to here or to a proxy

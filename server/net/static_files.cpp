@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "net/compression.h"
+
 namespace strata::net {
 namespace {
 
@@ -31,6 +33,8 @@ std::string etag_of(const fs::path& file) {
   const auto time = fs::last_write_time(file, error).time_since_epoch().count();
   return "\"" + std::to_string(size) + "-" + std::to_string(time) + "\"";
 }
+
+fs::path coded(const fs::path& file, Coding coding) { return file.string() + (coding == Coding::gzip ? ".gz" : ".br"); }
 
 }  // namespace
 
@@ -85,15 +89,25 @@ Response StaticFiles::serve(const Request& request) const {
   file = fs::canonical(file, error);
   if (error || !is_inside(file, folder_)) return problem_response(missing);
 
-  const std::string etag = etag_of(file);
+  // The build leaves files beside those that are worth it: `main-….js.br`, `main-….js.gz`.
+  fs::path sent = file;
+  const auto coding = accepted_coding(request.header("accept-encoding"));
+  const bool has_codings = fs::is_regular_file(coded(file, Coding::gzip), error);
+  if (coding && fs::is_regular_file(coded(file, *coding), error)) sent = coded(file, *coding);
+  std::string etag = etag_of(file);
   const bool unchanging = request.segments.size() > 1 && request.segments.front() == "assets";
   Response response;
   if (request.header("if-none-match") == etag) {
     response = empty_response(304);
   } else {
     response.with("Content-Type", std::string(media_type(file)));
-    response.file = file;
+    response.file = sent;
+    if (sent != file) {
+      response.with("Content-Encoding", std::string(name(*coding)));
+      etag.insert(etag.size() - 1, "-" + std::string(name(*coding)));
+    }
   }
+  if (has_codings) response.with("Vary", "Accept-Encoding");
   response.with("ETag", etag);
   response.with("Cache-Control", unchanging ? "public, max-age=31536000, immutable" : "no-cache");
   return response;

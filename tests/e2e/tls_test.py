@@ -48,6 +48,7 @@ def check_everything(server):
     points = [[x % 100, x // 1000, 0.5] for x in range(100_000)]
     answer = server.ok("POST", "/models/sheet/positions", {"points": points, "layers": []}, headers={"Accept": "text/csv"})
     assert answer.body.count(b"\r\n") == 100_001
+    assert server.get("/openapi.json", headers={"Accept-Encoding": "gzip"}).headers["Content-Encoding"] == "gzip"
     for origin, secret in ((server.url, {"token": "", "cookie": cookie}), (None, {})):
         with LiveClient(server, "sheet", origin=origin, **secret) as live:
             welcome = live.hello()

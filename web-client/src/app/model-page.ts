@@ -13,63 +13,44 @@ import "./account-menu";
 import "./blank";
 import type { WhereRequest } from "./brush-panel";
 import "./brush-panel";
-import "./color-dialog";
-import "./column-dialog";
 import "./comment-card";
 import "./comment-panel";
 import "./comment-pins";
 import "./activity-panel";
 import "./review-panel";
-import "./csv-dialog";
-import "./delete-record-dialog";
 import { ask, modal_is_open } from "./dialog";
 import { icon, logo } from "./icons";
 import { handle_key, is_for_field } from "./keyboard";
-import "./figure-dialog";
 import { growing, growth } from "./growth";
 import "./hover-card";
-import "./kiosks-dialog";
-import "./layer-dialog";
 import type { LayerPanelRequest } from "./layer-panel";
 import "./layer-panel";
-import "./map-dialog";
-import "./orthophoto-dialog";
 import { model_styles } from "./model-styles";
 import "./measure-panel";
 import { ModelSession } from "./model-session";
 import { notices } from "./notices";
+import { load_part, load_part_later } from "./page-parts";
 import "./record-card";
 import "./people-menu";
-import "./photos-dialog";
 import { is_one_of_several, sees_to_kiosks } from "./project-list";
-import "./record-dialog";
 import { comment_of, follow, hash_of_comment, hash_of_view, path_of_project, put_hash, view_of } from "./routes";
-import "./scale-dialog";
-import "./sheets";
 import "./stage";
 import type { StrataStage } from "./stage";
-import "./statistics-dialog";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
 import type { TablePanelRequest } from "./table-panel";
 import "./table-panel";
 import type { TableView } from "./table-view";
-import "./template-dialog";
-import "./terms-dialog";
 import { texts } from "./texts";
 import "./together-bar";
 import "./tool-rail";
 import "./tour";
 import type { StrataTour } from "./tour";
-import "./tour-dialog";
 import type { TourRequest } from "./tour-list";
-import "./transfer-dialog";
 import "./value-readout";
 import { wants_less_motion } from "./view-control";
-import "./view-dialog";
 import type { ViewRequest } from "./view-list";
 import "./view-panel";
-import "./where-dialog";
 
 type OpenDialog = LayerPanelRequest | TablePanelRequest | ViewRequest | WhereRequest | Extract<TourRequest, { dialog: "kiosks" }> | { dialog: "scale" | "help" | "about" | "orthophoto" } | null;
 
@@ -108,6 +89,7 @@ export class StrataModelPage extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
+    load_part_later("model_dialogs");
     addEventListener("keydown", this.on_key_down);
     addEventListener("keyup", this.on_key_up);
     addEventListener("blur", this.on_blur);
@@ -274,8 +256,10 @@ export class StrataModelPage extends LitElement {
   }
 
   private on_view_request(request: ViewRequest | TourRequest): void {
-    if (request.dialog === "tour") this.tour_editor_ ??= { tour: request.tour };
-    else this.dialog_ = request;
+    if (request.dialog === "tour") {
+      load_part("model_dialogs");
+      this.tour_editor_ ??= { tour: request.tour };
+    } else this.dialog_ = request;
   }
 
   private header(session: ModelSession): TemplateResult {
@@ -423,6 +407,7 @@ export class StrataModelPage extends LitElement {
       this.dialog_ = null;
     };
     const dialog = this.dialog_;
+    if (dialog) load_part("model_dialogs");
     switch (dialog?.dialog) {
       case undefined:
         return html``;

@@ -7,26 +7,20 @@ import { keyed } from "lit/directives/keyed.js";
 import { Api, ApiError, name_of_file } from "../core/api";
 import type { Project } from "../core/protocol.gen";
 import type { Me } from "../core/types";
-import "./account-dialog";
 import type { AccountRequest } from "./account-menu";
+import "./blank";
 import { ask } from "./dialog";
 import { invitation_of } from "./entry";
-import "./home-page";
 import { icon } from "./icons";
 import { dropped_files, has_files, without_folders, type DroppedFile } from "./drop";
 import { choose_scans, Imports, type Scan } from "./imports";
-import "./join-page";
-import "./kiosks-dialog";
-import "./model-page";
 import { notices } from "./notices";
 import "./notices-view";
-import "./people-dialog";
-import "./preferences-fields";
+import { load_part, load_part_later } from "./page-parts";
 import { curates, kDefaultProject } from "./project-list";
 import { may_leave_page, navigate, on_navigate, path_now, path_of_model, replace_address, route_of, type Route } from "./routes";
 import { check_connections, discard_unsaved, unsaved_changes } from "./sessions";
 import { shared_styles } from "./styles";
-import "./sign-in";
 import { texts } from "./texts";
 
 @customElement("strata-app")
@@ -181,8 +175,12 @@ export class StrataApp extends LitElement {
     if (session === "unreachable") return html`<strata-blank heading=${texts.connection.lost} lead=${this.problem_}></strata-blank>`;
     if (this.route_.page === "join") return this.join_page(session === "signed-in" ? me : null);
     if (session === "signed-out" || !me) {
+      load_part("sign_in");
       return html`<strata-sign-in .api=${this.api_} @signed-in=${() => void this.check_session()}></strata-sign-in>`;
     }
+    const is_model = this.route_.page === "model";
+    load_part(is_model ? "model" : "home");
+    if (!is_model) load_part_later("model"); // most people open one
     return this.route_.page === "model"
       ? keyed(
           this.route_.model, // everything of a model page belongs to its one model
@@ -214,6 +212,7 @@ export class StrataApp extends LitElement {
   }
 
   private join_page(me: Me | null): unknown {
+    load_part("join");
     const invitation = invitation_of(location.hash);
     return keyed(
       invitation,
@@ -234,6 +233,7 @@ export class StrataApp extends LitElement {
     const closed = (): void => {
       this.dialog_ = null;
     };
+    if (this.dialog_) load_part(this.dialog_);
     if (this.dialog_ === "account") {
       return html`<strata-account-dialog
         .api=${this.api_}

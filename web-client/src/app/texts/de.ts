@@ -449,6 +449,9 @@ export const texts = {
   },
 
   connection: {
+    part_missing: "Ein Teil der Seite konnte nicht geladen werden",
+    part_missing_hint: "Vielleicht wurde der Server aktualisiert, oder die Verbindung ging verloren. Laden Sie die Seite neu; Ungespeichertes bleibt erhalten.",
+    reload: "Neu laden",
     lost: "Verbindung verloren. Neuer Versuch …",
     kept: (n) => `${changes(n)} ${plural(n, "bleibt hier und wird", "bleiben hier und werden")} gesendet.`,
     retry: "Jetzt versuchen",

@@ -435,6 +435,9 @@ export const texts = {
   },
 
   connection: {
+    part_missing: "A part of the page could not be loaded",
+    part_missing_hint: "The server may have been updated, or the connection was lost. Reload the page; what is not saved is kept.",
+    reload: "Reload",
     lost: "Connection lost. Trying again…",
     kept: (n: number) => `${count(n, "change is", "changes are")} kept here and will be sent.`,
     retry: "Try now",

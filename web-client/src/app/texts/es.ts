@@ -455,6 +455,9 @@ export const texts = {
   },
 
   connection: {
+    part_missing: "No se pudo cargar una parte de la página",
+    part_missing_hint: "Quizá se actualizó el servidor o se perdió la conexión. Vuelva a cargar la página; lo que no está guardado se conserva.",
+    reload: "Recargar",
     lost: "Se perdió la conexión. Intentando de nuevo…",
     kept: (n) => `${changes(n)} ${plural(n, "se conserva aquí y se enviará", "se conservan aquí y se enviarán")}.`,
     retry: "Intentar ahora",

@@ -1,0 +1,53 @@
+// What a browser loads before it shows a page for the first time, in the coding that is larger (gzip, which browsers take by plain http, too).
+import assert from "node:assert/strict";
+import { existsSync, readFileSync, statSync } from "node:fs";
+import { join } from "node:path";
+import { kRoot, missing } from "./support/modules.mjs";
+
+const kMost = 200_000;
+const dist = join(kRoot, "web-client", "dist");
+const list = join(dist, ".vite", "manifest.json");
+if (!existsSync(list)) missing("the page is not built");
+const manifest = JSON.parse(readFileSync(list, "utf8"));
+
+/** An entry with all that it cannot do without. */
+function with_imports(key, found = new Set()) {
+  if (found.has(key)) return found;
+  assert.ok(manifest[key], `${key} is no piece of the page: ${Object.keys(manifest)}`);
+  found.add(key);
+  for (const next of manifest[key].imports ?? []) with_imports(next, found);
+  return found;
+}
+
+function weight(...keys) {
+  const pieces = new Set(keys.flatMap((key) => [...with_imports(key)]));
+  const files = new Set([...pieces].flatMap((key) => [manifest[key].file, ...(manifest[key].css ?? [])]));
+  const bytes = [...files].map((file) => statSync(existsSync(join(dist, `${file}.gz`)) ? join(dist, `${file}.gz`) : join(dist, file)).size);
+  return bytes.reduce((sum, each) => sum + each, statSync(join(dist, "index.html")).size);
+}
+
+const kShell = ["index.html", Object.keys(manifest).find((key) => manifest[key].name === "strata-app")]; // others take from it, so it has no name of a source
+const kFirst = {
+  "signing in": ["src/app/sign-in.ts"],
+  "the gallery": ["src/app/home-page.ts"],
+  "a model": ["src/app/model-page.ts"],
+};
+for (const language of ["en", "de", "es"])
+  for (const [what, keys] of Object.entries(kFirst)) {
+    const bytes = weight(...kShell, `src/app/texts/${language}.ts`, ...keys);
+    console.log(`${language}, ${what}: ${bytes} bytes`);
+    assert.ok(bytes <= kMost, `${what} (${language}) takes ${bytes} bytes before it is shown`);
+  }
+const kiosk = weight("index.html", "src/kiosk/main.ts");
+console.log(`a kiosk: ${kiosk} bytes`);
+assert.ok(kiosk <= kMost);
+
+// The coded files hold what the plain ones do, and every script has a source map.
+const { brotliDecompressSync, gunzipSync } = await import("node:zlib");
+for (const { file } of Object.values(manifest)) {
+  const at = join(dist, file);
+  if (!file.endsWith(".js") || statSync(at).size < 1024) continue;
+  assert.deepEqual(gunzipSync(readFileSync(`${at}.gz`)), readFileSync(at));
+  assert.deepEqual(brotliDecompressSync(readFileSync(`${at}.br`)), readFileSync(at));
+  assert.ok(existsSync(`${at}.map`), `${file} has no source map`);
+}

@@ -1,0 +1,34 @@
+// Leaves `FILE.br` and `FILE.gz` beside each text of the build, for the server to send as they are.
+import { readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { brotliCompressSync, constants, gzipSync } from "node:zlib";
+import type { Plugin } from "vite";
+
+const kTexts = /\.(js|css|html|svg|webmanifest)$/;
+const kMinBytes = 1024; // below, a packet is a packet
+
+function compress(folder: string): void {
+  for (const entry of readdirSync(folder, { withFileTypes: true })) {
+    const file = join(folder, entry.name);
+    if (entry.isDirectory()) compress(file);
+    else if (kTexts.test(entry.name)) {
+      const bytes = readFileSync(file);
+      if (bytes.length < kMinBytes) continue;
+      const mode = { [constants.BROTLI_PARAM_MODE]: constants.BROTLI_MODE_TEXT, [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length };
+      writeFileSync(`${file}.br`, brotliCompressSync(bytes, { params: mode }));
+      writeFileSync(`${file}.gz`, gzipSync(bytes, { level: 9 }));
+    }
+  }
+}
+
+export function compressed_beside(): Plugin {
+  let folder = "";
+  return {
+    name: "compressed-beside",
+    apply: "build",
+    configResolved: (config) => {
+      folder = config.build.outDir;
+    },
+    closeBundle: () => compress(folder),
+  };
+}
