@@ -4,7 +4,7 @@ import { join } from "node:path";
 import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 import type { Plugin } from "vite";
 
-const kTexts = /\.(js|css|html|svg|webmanifest)$/;
+const kTexts = /\.(js|css|html|svg|webmanifest|txt)$/;
 const kMinBytes = 1024; // below, a packet is a packet
 
 function compress(folder: string): void {

@@ -1,11 +1,12 @@
 import { defineConfig } from "vitest/config";
 import { compressed_beside } from "./compress";
+import { third_party_notices } from "./notices";
 
 // The server's address while developing the page with `npm run dev`.
 const server = process.env["STRATA_SERVER"] ?? "http://127.0.0.1:8080";
 
 export default defineConfig({
-  plugins: [compressed_beside()],
+  plugins: [third_party_notices(), compressed_beside()],
   build: {
     outDir: "dist",
     target: "es2022",

@@ -1,0 +1,32 @@
+// Leaves `third-party-notices.txt` in the build: the licences of the npm packages whose code is in it.
+import { existsSync, readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import type { Plugin } from "vite";
+
+const kFolder = /^(.*\/node_modules\/((?:@[^/]+\/)?[^/]+))\//;
+
+function notice_of(folder: string): string {
+  const file = readdirSync(folder).find((name) => /^licen[cs]e/i.test(name));
+  if (!file || !existsSync(join(folder, file))) throw new Error(`${folder} has no licence file: its code cannot be shipped`);
+  return readFileSync(join(folder, file), "utf8").trim();
+}
+
+export function third_party_notices(): Plugin {
+  return {
+    name: "third-party-notices",
+    apply: "build",
+    generateBundle(_, bundle) {
+      const packages = new Map<string, string>();
+      for (const chunk of Object.values(bundle))
+        for (const id of chunk.type === "chunk" ? Object.keys(chunk.modules) : []) {
+          const found = kFolder.exec(id.replaceAll("\\", "/"));
+          if (found) packages.set(found[2]!, found[1]!);
+        }
+      const notices = [...packages].sort().map(([name, folder]) => {
+        const { version } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8")) as { version: string };
+        return `${name} ${version}\n\n${notice_of(folder)}\n`;
+      });
+      this.emitFile({ type: "asset", fileName: "third-party-notices.txt", source: notices.join(`\n${"=".repeat(80)}\n\n`) });
+    },
+  };
+}
