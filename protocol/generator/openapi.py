@@ -21,7 +21,8 @@ def point_to_components(node):
     return [point_to_components(value) for value in node] if isinstance(node, list) else node
 
 
-# What any call may be answered with, whatever it asks: the description of openapi.yaml says why.
+# What any call may be answered with, whatever it asks: the description of openapi.yaml says why. Beside these 415 where JSON is taken, and 406 where
+# something is read.
 OF_ANY_CALL = {"421": "UnknownHost", "429": "TooFast", "431": "HeaderTooLarge", "503": "Unavailable"}
 
 
@@ -30,7 +31,12 @@ def add_common_answers(document) -> None:
         for method, operation in item.items():
             if method == "parameters" or path.endswith("/live"):
                 continue
-            for status, name in OF_ANY_CALL.items():
+            answers = dict(OF_ANY_CALL)
+            if "application/json" in operation.get("requestBody", {}).get("content", {}):
+                answers["415"] = "UnknownFormat"
+            if method == "get":
+                answers["406"] = "NotAcceptable"
+            for status, name in answers.items():
                 operation["responses"].setdefault(status, {"$ref": "#/components/responses/" + name})
             operation["responses"] = dict(sorted(operation["responses"].items()))
 

@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "core/log.h"
+#include "net/accept.h"
 #include "net/compression.h"
 #include "net/kiosk_gate.h"
 #include "net/origin.h"
@@ -212,8 +213,16 @@ std::optional<Response> App::admit_again(Request& request, const Route& route) {
 }
 
 void App::handle(const Request& request, const Route& route, const Respond& send) {
-  const Respond respond([send, accepted = std::string(request.header("accept-encoding"))](Response response) {
-    compress(response, accepted);
+  const bool reads = request.method == Method::get || request.method == Method::head;
+  const Respond respond([send, coding = std::string(request.header("accept-encoding")),
+                         accept = reads ? std::string(request.header("accept")) : std::string()](Response response) {
+    // What was changed is told in any case; what was only read can be asked for in another way.
+    if (response.status == 200 && !response.events && !accepts_type(accept, response.header("Content-Type")))
+      response = problem_response({406, "Not acceptable",
+                                   "This address answers with " + std::string(response.header("Content-Type")) +
+                                       ", which `Accept` does not take.",
+                                   "Accept"});
+    compress(response, coding);
     send(std::move(response));
   });
   const bool remembered = route.keeps_answer && !request.header("idempotency-key").empty();

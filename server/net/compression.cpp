@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <new>
 #include <stdexcept>
 #include <variant>
+
+#include "net/accept.h"
 
 namespace strata::net {
 namespace {
@@ -17,28 +18,8 @@ constexpr std::size_t kMinBytes = 1024;  // below, a packet is a packet
 constexpr int kGzipLevel = 5;            // 60 MB/s of JSON on a slow core, a tenth of its size
 constexpr int kBrotliQuality = 4;        // as quick, a tenth smaller
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
-// `q=0.5` among the parameters of a coding; 1 without it, 0 when it is malformed.
-double quality_of(std::string_view parameters) {
-  while (!parameters.empty()) {
-    const auto end = std::min(parameters.find(';'), parameters.size());
-    const std::string_view parameter = trimmed(parameters.substr(0, end));
-    parameters.remove_prefix(std::min(end + 1, parameters.size()));
-    if (!parameter.starts_with("q=") && !parameter.starts_with("Q=")) continue;
-    double quality = 0;
-    const auto read = std::from_chars(parameter.data() + 2, parameter.data() + parameter.size(), quality);
-    return read.ec == std::errc() && read.ptr == parameter.data() + parameter.size() ? quality : 0;
-  }
-  return 1;
-}
-
 bool is_text(std::string_view content_type) {
-  const std::string type = to_lower(trimmed(content_type.substr(0, content_type.find(';'))));
+  const std::string type = to_lower(trim_blanks(content_type.substr(0, content_type.find(';'))));
   return type.starts_with("text/") || type == "application/json" || type.ends_with("+json") || type.ends_with("+xml") ||
          type == "application/xml" || type == "application/javascript";
 }
@@ -131,13 +112,7 @@ std::string_view name(Coding coding) { return coding == Coding::gzip ? "gzip" : 
 
 std::optional<Coding> accepted_coding(std::string_view accept_encoding) {
   std::optional<double> gzip, brotli, any;
-  while (!accept_encoding.empty()) {
-    const auto end = std::min(accept_encoding.find(','), accept_encoding.size());
-    const std::string_view entry = accept_encoding.substr(0, end);
-    accept_encoding.remove_prefix(std::min(end + 1, accept_encoding.size()));
-    const auto semicolon = std::min(entry.find(';'), entry.size());
-    const std::string coding = to_lower(trimmed(entry.substr(0, semicolon)));
-    const double quality = quality_of(entry.substr(std::min(semicolon + 1, entry.size())));
+  for (const auto& [coding, quality] : accepted_values(accept_encoding)) {
     if (coding == "gzip" || coding == "x-gzip") gzip = quality;
     if (coding == "br") brotli = quality;
     if (coding == "*") any = quality;

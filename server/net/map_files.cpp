@@ -55,7 +55,11 @@ std::optional<MapKind> kind_of(const mesh::InputFiles::Entry& file, bool is_alon
   if (ending == "shp") return MapKind::shapefile;
   if (ending == "geojson" || ending == "json") return MapKind::geojson;
   const bool is_part = ending == "dbf" || ending == "prj" || ending == "cpg" || ending == "shx";
-  return is_alone && !is_part ? std::optional(MapKind::geojson) : std::nullopt;
+  // What has no name that says it: JSON begins with an object, after blanks and a byte order mark.
+  const std::string_view text = as_text(file.bytes);
+  const auto begin = text.find_first_not_of("\xef\xbb\xbf \t\r\n");
+  const bool may_be_json = begin == std::string_view::npos || text[begin] == '{' || text[begin] == '[';
+  return is_alone && !is_part && may_be_json ? std::optional(MapKind::geojson) : std::nullopt;
 }
 
 bool is_zip(std::span<const std::uint8_t> bytes) { return as_text(bytes).starts_with("PK\x03\x04"); }
@@ -105,7 +109,7 @@ Result<void> MapFiles::choose_main() {
                     ? "The zip holds no map: no .shp, .geojson, .tif, .png or .jpg."
                     : std::string(last_part(files_.front().name)).substr(0, 100) +
                           " is no map by itself. Send it with its .shp or picture; maps are GeoJSON, shapefiles, "
-                          "TIFF, PNG and JPEG.",
+                          "TIFF, PNG and JPEG. Convert a GeoPackage or KML to GeoJSON first (QGIS, ogr2ogr).",
                 "body");
   if (maps.size() > 1) {
     std::string named;

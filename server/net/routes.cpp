@@ -26,6 +26,16 @@ Handler answering(std::function<Result<Response>(const Request&)> answer) {
   };
 }
 
+Result<void> check_json_type(const Request& request) {
+  const auto sent = request.header("content-type");
+  std::string type = to_lower(sent.substr(0, sent.find(';')));
+  while (!type.empty() && type.back() == ' ') type.pop_back();
+  if (type.empty() || type == "application/json" || (type.starts_with("application/") && type.ends_with("+json")))
+    return {};
+  return fail(415, "Not JSON", "This address takes JSON: send it with `Content-Type: application/json`.",
+              "Content-Type");
+}
+
 std::string etag_of(std::int64_t version) { return "\"v" + std::to_string(version) + "\""; }
 
 Response with_etag(Response response, const Request& request, std::int64_t version) {

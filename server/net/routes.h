@@ -80,8 +80,12 @@ void add_orthophoto_routes(Router& router, const RouteContext& context);
 // A handler that answers at once.
 Handler answering(std::function<Result<Response>(const Request&)> answer);
 
+// 415: the body says that it is something else than JSON. Without a Content-Type it is taken for what the address takes.
+Result<void> check_json_type(const Request& request);
+
 template <class T>
 Result<T> body_of(const Request& request, std::uint64_t max_bytes = 1u << 20) {
+  if (auto json = check_json_type(request); !json) return tl::unexpected(json.error());
   return protocol::parse<T>(request.body, {static_cast<std::size_t>(max_bytes), 32});
 }
 

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/uuid.h"
+#include "net/accept.h"
 #include "net/byte_budget.h"
 #include "net/digest.h"
 #include "net/docs_page.h"
@@ -225,6 +226,24 @@ TEST(Origin, an_upgrade_by_cookie_needs_an_origin_and_by_token_does_not) {
   EXPECT_TRUE(check_upgrade_origin(from("", false), {}));
   EXPECT_FALSE(check_upgrade_origin(from("http://evil.example", false), {}));
   EXPECT_TRUE(check_upgrade_origin(from("http://strata.local:8080", true), {}));
+}
+
+// --- what a client takes
+
+TEST(Accept, takes_a_type_by_its_closest_range) {
+  EXPECT_TRUE(accepts_type("", "application/json"));
+  EXPECT_TRUE(accepts_type("*/*", "image/png"));
+  EXPECT_TRUE(accepts_type("text/html, */*;q=0.1", "application/json"));
+  EXPECT_TRUE(accepts_type("application/json", "application/json"));
+  EXPECT_TRUE(accepts_type("APPLICATION/JSON; q=0.5", "application/json; charset=utf-8"));
+  EXPECT_TRUE(accepts_type("application/json", "application/prs.coverage+json"));
+  EXPECT_TRUE(accepts_type("image/*", "image/png"));
+  EXPECT_FALSE(accepts_type("application/xml", "application/json"));
+  EXPECT_FALSE(accepts_type("application/json;q=0", "application/json"));
+  EXPECT_FALSE(accepts_type("*/*, application/json;q=0", "application/json"));
+  EXPECT_FALSE(accepts_type("image/*", "text/csv"));
+  EXPECT_FALSE(accepts_type("application/json", "application/xml"));
+  EXPECT_FALSE(accepts_type(",;q=x", "application/json"));
 }
 
 // --- points
