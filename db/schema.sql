@@ -936,6 +936,21 @@ ALTER TABLE public.groups ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     CACHE 1
 );
 
+CREATE TABLE public.jobs (
+    id bigint NOT NULL,
+    project_id bigint NOT NULL,
+    user_name text NOT NULL,
+    kind text NOT NULL,
+    state text DEFAULT 'begun'::text NOT NULL,
+    problem jsonb,
+    result jsonb,
+    begun timestamp with time zone DEFAULT now() NOT NULL,
+    ended timestamp with time zone,
+    CONSTRAINT jobs_check CHECK (((ended IS NULL) = (state = 'begun'::text))),
+    CONSTRAINT jobs_kind_check CHECK ((kind = ANY (ARRAY['import'::text, 'layers'::text, 'look'::text, 'figure'::text]))),
+    CONSTRAINT jobs_state_check CHECK ((state = ANY (ARRAY['begun'::text, 'done'::text, 'failed'::text, 'cancelled'::text, 'lost'::text])))
+);
+
 CREATE TABLE public.kiosks (
     id bigint NOT NULL,
     tour_id bigint NOT NULL,
@@ -1256,6 +1271,9 @@ ALTER TABLE ONLY public.group_people
 ALTER TABLE ONLY public.groups
     ADD CONSTRAINT groups_pkey PRIMARY KEY (id);
 
+ALTER TABLE ONLY public.jobs
+    ADD CONSTRAINT jobs_pkey PRIMARY KEY (id);
+
 ALTER TABLE ONLY public.kiosks
     ADD CONSTRAINT kiosks_hash_key UNIQUE (hash);
 
@@ -1392,6 +1410,10 @@ CREATE INDEX edits_undone ON public.edits USING btree (layer_id, user_name, undo
 CREATE INDEX group_people_user ON public.group_people USING btree (user_id);
 
 CREATE UNIQUE INDEX groups_name_in_any_case ON public.groups USING btree (lower(name));
+
+CREATE INDEX jobs_begun ON public.jobs USING btree (state) WHERE (state = 'begun'::text);
+
+CREATE INDEX jobs_project ON public.jobs USING btree (project_id);
 
 CREATE INDEX kiosks_by_tour ON public.kiosks USING btree (tour_id);
 
@@ -1536,6 +1558,9 @@ ALTER TABLE ONLY public.group_people
 
 ALTER TABLE ONLY public.group_people
     ADD CONSTRAINT group_people_user_id_fkey FOREIGN KEY (user_id) REFERENCES public.users(id);
+
+ALTER TABLE ONLY public.jobs
+    ADD CONSTRAINT jobs_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id) ON DELETE CASCADE;
 
 ALTER TABLE ONLY public.kiosks
     ADD CONSTRAINT kiosks_tour_id_fkey FOREIGN KEY (tour_id) REFERENCES public.tours(id) ON DELETE CASCADE;

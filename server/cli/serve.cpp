@@ -166,7 +166,7 @@ int run(ServeOptions options) {
   room::RoomOptions room_options;
   room_options.memory_bytes = options.memory;
   room::Rooms rooms(store, **renderer, {renderer->get(), &encoder}, room_options);
-  jobs::JobQueue jobs;
+  jobs::JobQueue jobs(&store.jobs());
 
   net::ServerOptions server_options;
   server_options.host = address->host;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <mutex>
 #include <string>
 
@@ -31,6 +32,10 @@ class Progress {
     std::lock_guard lock(mutex_);
     return message_;
   }
+  // Of the job that reports here, for what is kept of it; 0: no job.
+  std::int64_t job() const { return job_; }
+  void set_job(std::int64_t job) { job_ = job; }  // before the work begins
+
   void cancel() { cancelled_ = true; }
   bool cancelled() const { return cancelled_; }
 
@@ -40,6 +45,7 @@ class Progress {
   double fraction_ = 0;
   std::string message_;
   std::atomic<bool> cancelled_{false};
+  std::int64_t job_ = 0;
 };
 
 inline tl::unexpected<Problem> cancelled_problem() { return fail(499, "Cancelled", "The work was cancelled."); }

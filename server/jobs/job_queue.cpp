@@ -12,12 +12,84 @@
 
 #include "core/give_back_memory.h"
 #include "core/log.h"
+#include "store/jobs.h"
 
 namespace strata::jobs {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 64;
 constexpr std::size_t kMaxRemembered = 1000;
+
+constexpr std::string_view kKinds[] = {"import", "layers", "look", "figure"};
+
+// What a restart of the server left of a job.
+Problem lost_problem(JobKind kind) {
+  constexpr const char* kTitle = "Server was restarted";
+  switch (kind) {
+    case JobKind::import:
+      return {503,
+              kTitle,
+              "The server was restarted before this import was finished; nothing of it was kept. Start it again.",
+              {}};
+    case JobKind::layers:
+      return {
+          503,
+          kTitle,
+          "The server was restarted before this was finished. Layers that it had begun are on the model, hidden and incomplete: delete "
+          "them and start it again.",
+          {}};
+    case JobKind::look:
+      return {503,
+              kTitle,
+              "The server was restarted before this picture was finished; nothing of it was kept. Start it again.",
+              {}};
+    case JobKind::figure: break;
+  }
+  return {503, kTitle, "The server was restarted before this figure was finished. Start it again.", {}};
+}
+
+JobStatus status_of(const store::StoredJob& stored) {
+  JobStatus status;
+  status.id = stored.id;
+  status.project = stored.project_id;
+  status.user = stored.user;
+  const auto* kind = std::ranges::find(kKinds, stored.kind);
+  status.kind = static_cast<JobKind>(kind - std::begin(kKinds));
+  status.state = stored.state == "done"        ? JobState::done
+                 : stored.state == "cancelled" ? JobState::cancelled
+                                               : JobState::failed;
+  if (stored.state == "lost") status.problem = lost_problem(status.kind);
+  if (stored.problem.is_object())
+    status.problem =
+        Problem{stored.problem.value("status", 500), stored.problem.value("title", std::string("Job failed")),
+                stored.problem.value("detail", std::string()), stored.problem.value("field", std::string())};
+  status.message = status.problem ? status.problem->title : "Done";
+  if (status.state == JobState::done) status.progress = 1;
+  if (stored.result.is_object()) {
+    status.result.emplace(stored.result.value("model", std::int64_t{0}));
+    status.result->layers = stored.result.value("layers", std::vector<std::int64_t>());
+    if (stored.result.contains("look")) status.result->look = stored.result["look"].get<std::int64_t>();
+    status.result->report = stored.result.value("report", nlohmann::json());
+  }
+  return status;
+}
+
+store::StoredJob stored_of(const JobStatus& status) {
+  store::StoredJob stored{
+      status.id, status.project, status.user, std::string(kKinds[static_cast<int>(status.kind)]), {}, {}, {}};
+  stored.state = status.state == JobState::done ? "done" : status.state == JobState::cancelled ? "cancelled" : "failed";
+  if (status.problem)
+    stored.problem = {{"status", status.problem->status},
+                      {"title", status.problem->title},
+                      {"detail", status.problem->detail},
+                      {"field", status.problem->field}};
+  if (!status.result) return stored;
+  stored.result = {{"model", status.result->model}};
+  if (!status.result->layers.empty()) stored.result["layers"] = status.result->layers;
+  if (status.result->look) stored.result["look"] = *status.result->look;
+  if (!status.result->report.is_null()) stored.result["report"] = status.result->report;
+  return stored;
+}
 
 bool is_over(JobState state) { return state != JobState::queued && state != JobState::running; }
 
@@ -58,26 +130,57 @@ struct JobQueue::Impl {
   std::condition_variable changed;
   std::map<std::int64_t, Job> jobs;  // by id: in order of asking
   std::deque<std::int64_t> waiting;
+  std::size_t coming = 0;  // those that are being kept, before they wait
   // In milliseconds: nobody asks for a thousand jobs a second, second after second.
   std::int64_t last_id =
       std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
           .count();
   bool stopping = false;
+  store::Jobs* store = nullptr;
   std::thread thread;
 
-  void end(Job& job, Result<JobResult> result) {
-    job.work = nullptr;
-    if (result) {
-      job.status.state = JobState::done;
-      job.status.progress = 1;
-      job.status.message = "Done";
-      job.status.result = std::move(*result);
+  void take_over() {
+    if (!store) return;
+    auto earlier = store->take_over(kMaxRemembered);
+    if (!earlier) {
+      log::warning("earlier jobs could not be read: " + earlier.error().detail);
       return;
     }
-    job.status.progress = job.progress->fraction();
-    job.status.state = result.error().status == 499 ? JobState::cancelled : JobState::failed;
-    job.status.message = result.error().title;
-    job.status.problem = std::move(result.error());
+    for (const store::StoredJob& stored : *earlier) {
+      jobs[stored.id].status = status_of(stored);
+      last_id = std::max(last_id, stored.id);
+    }
+  }
+
+  // What the end of the server cuts short is left as it is: the next one finds it.
+  void keep_end(const JobStatus& status, bool cut_short) const {
+    if (!store || cut_short) return;
+    if (auto kept = store->end(stored_of(status)); !kept)
+      log::warning("the end of a job could not be kept: " + kept.error().detail);
+  }
+
+  Result<void> may_add() const {
+    if (stopping) return fail(503, "Server stops", "The server is stopping and takes no new work.");
+    if (waiting.size() + coming >= kMaxWaiting)
+      return fail(503, "Too much waiting work",
+                  std::to_string(kMaxWaiting) + " jobs wait already. Try again when some are done.");
+    return {};
+  }
+
+  // How it ended, into `status`.
+  static void end(Job& job, Result<JobResult> result, JobStatus& status) {
+    job.work = nullptr;
+    if (result) {
+      status.state = JobState::done;
+      status.progress = 1;
+      status.message = "Done";
+      status.result = std::move(*result);
+      return;
+    }
+    status.progress = job.progress->fraction();
+    status.state = result.error().status == 499 ? JobState::cancelled : JobState::failed;
+    status.message = result.error().title;
+    status.problem = std::move(result.error());
   }
 
   void forget_old() {
@@ -102,7 +205,14 @@ struct JobQueue::Impl {
       auto result = run(work, *progress);
       work = nullptr;
       lock.lock();
-      end(job, std::move(result));
+      const bool cut_short = stopping && !result && result.error().status == 499;
+      JobStatus ended = job.status;
+      end(job, std::move(result), ended);
+      lock.unlock();
+      // Who reads that it ended reads the same after a restart.
+      keep_end(ended, cut_short);
+      lock.lock();
+      job.status = std::move(ended);
       forget_old();
       lock.unlock();
       give_back_memory();
@@ -111,7 +221,9 @@ struct JobQueue::Impl {
   }
 };
 
-JobQueue::JobQueue() : impl_(std::make_unique<Impl>()) {
+JobQueue::JobQueue(store::Jobs* store) : impl_(std::make_unique<Impl>()) {
+  impl_->store = store;
+  impl_->take_over();
   impl_->thread = std::thread([impl = impl_.get()] { impl->work_on_jobs(); });
 }
 
@@ -125,19 +237,28 @@ JobQueue::~JobQueue() {
   impl_->thread.join();
 }
 
-Result<std::int64_t> JobQueue::add(std::int64_t project, Work work, std::string user) {
+Result<std::int64_t> JobQueue::add(std::int64_t project, Work work, std::string user, JobKind kind) {
+  JobStatus status;
+  {
+    std::lock_guard lock(impl_->mutex);
+    if (auto may = impl_->may_add(); !may) return tl::unexpected(may.error());
+    status.id = ++impl_->last_id;
+    ++impl_->coming;
+  }
+  status.project = project;
+  status.user = std::move(user);
+  status.kind = kind;
+  status.message = "Waiting";
+  auto kept = impl_->store ? impl_->store->begin(stored_of(status)) : Result<void>();
   std::lock_guard lock(impl_->mutex);
+  --impl_->coming;
+  if (!kept) return tl::unexpected(kept.error());
   if (impl_->stopping) return fail(503, "Server stops", "The server is stopping and takes no new work.");
-  if (impl_->waiting.size() >= kMaxWaiting)
-    return fail(503, "Too much waiting work",
-                std::to_string(kMaxWaiting) + " jobs wait already. Try again when some are done.");
-  const std::int64_t id = ++impl_->last_id;
+  const std::int64_t id = status.id;
   Job& job = impl_->jobs[id];
   job.work = std::move(work);
-  job.status.id = id;
-  job.status.project = project;
-  job.status.user = std::move(user);
-  job.status.message = "Waiting";
+  job.progress->set_job(impl_->store ? id : 0);
+  job.status = std::move(status);
   impl_->waiting.push_back(id);
   impl_->changed.notify_all();
   return id;
@@ -158,14 +279,17 @@ std::vector<JobStatus> JobQueue::all() const {
 }
 
 bool JobQueue::cancel(std::int64_t id) {
-  std::lock_guard lock(impl_->mutex);
+  std::unique_lock lock(impl_->mutex);
   const auto found = impl_->jobs.find(id);
   if (found == impl_->jobs.end() || is_over(found->second.status.state)) return false;
   Job& job = found->second;
   job.progress->cancel();
   if (job.status.state == JobState::queued) {
     std::erase(impl_->waiting, id);
-    impl_->end(job, cancelled_problem());
+    Impl::end(job, cancelled_problem(), job.status);
+    const JobStatus ended = job.status;
+    lock.unlock();
+    impl_->keep_end(ended, false);
   }
   return true;
 }

@@ -10,8 +10,14 @@
 
 #include "core/progress.h"
 
+namespace strata::store {
+class Jobs;
+}
+
 namespace strata::jobs {
 
+// What a job makes.
+enum class JobKind { import, layers, look, figure };
 enum class JobState { queued, running, done, failed, cancelled };
 
 // A file that a job made, for who started it; goes with this.
@@ -41,6 +47,7 @@ struct JobStatus {
   std::int64_t id = 0;
   std::int64_t project = 0;  // whose members may know of it
   std::string user;          // who started it; empty: the server itself
+  JobKind kind = JobKind::import;
   JobState state = JobState::queued;
   double progress = 0;
   std::string message;
@@ -48,15 +55,18 @@ struct JobStatus {
   std::optional<JobResult> result;
 };
 
-// Long work, one at a time on a thread of its own, in order of asking. Finished jobs are remembered (the newest 1000; their files, of the newest
-// kFilesKept that made one) until the queue goes; ids are higher than those of every queue before, so that an id of then is never another job now.
+// Long work, one at a time on a thread of its own, in order of asking. Finished jobs are remembered: the newest 1000; their files, of the newest
+// kFilesKept that made one, until the queue goes. Ids are higher than those of every queue before, so that an id of then is never another job now.
 class JobQueue {
  public:
   static constexpr int kFilesKept = 16;
-  JobQueue();
+  // With `store` jobs outlive the queue for store::Jobs::kDaysKept days, without their files: what a queue before did not finish has failed.
+  // `store` outlives the queue. Blocks.
+  explicit JobQueue(store::Jobs* store = nullptr);
   ~JobQueue();  // cancels what runs, joins
   using Work = std::function<Result<JobResult>(Progress&)>;
-  Result<std::int64_t> add(std::int64_t project, Work work, std::string user = {});  // refused (503) when 64 wait
+  // Refused (503) when 64 wait, or as the store refuses. Blocks while the store is written.
+  Result<std::int64_t> add(std::int64_t project, Work work, std::string user = {}, JobKind kind = JobKind::import);
   std::optional<JobStatus> status(std::int64_t id) const;
   std::vector<JobStatus> all() const;  // newest first
   bool cancel(std::int64_t id);

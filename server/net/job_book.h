@@ -8,8 +8,8 @@
 
 namespace strata::net {
 
-// Which job a call's Idempotency-Key started. The server forgets its jobs when it stops; the key of a job that succeeded is in the
-// database with what it made, and gets a job that is done. Thread-safe.
+// Which job a call's Idempotency-Key started. The server forgets when it stops; the key of a job that succeeded is in the database
+// with what it made, and gets a job that is done. The key of one that a restart ended starts it again. Thread-safe.
 class JobBook {
  public:
   explicit JobBook(jobs::JobQueue& jobs) : jobs_(jobs) {}

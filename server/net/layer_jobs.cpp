@@ -21,7 +21,8 @@ Result<jobs::JobResult> run(room::Room& room, NewLayers& layers, const MakeLayer
         return nlohmann::json{
             {"request", print}, {"model", result.model}, {"layers", result.layers}, {"report", result.report}};
       },
-      {}};
+      {},
+      progress.job()};
   if (auto shown = layers.show(answer); !shown) return tl::unexpected(shown.error());
   return result;
 }
@@ -41,7 +42,8 @@ Result<Response> start_layer_job(const RouteContext& context, JobBook& book, con
         auto done = run(*room, layers, make, key, print, progress);
         if (!done) layers.take_back();
         return done;
-      });
+      },
+      {}, jobs::JobKind::layers);
   if (!job) return tl::unexpected(job.error());
   book.started(request, *job);
   return job_response(context, *job);

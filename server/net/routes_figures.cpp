@@ -33,7 +33,7 @@ Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteB
           result.file = std::move(*file);
           return result;
         },
-        request.user());
+        request.user(), jobs::JobKind::figure);
     if (!job) return tl::unexpected(job.error());
     return std::move(job_response(context, *job).with("Preference-Applied", "respond-async"));
   }

@@ -117,7 +117,9 @@ Result<Response> start_import(const RouteContext& context, JobBook& book, const 
   auto job = context.jobs.add(project->id,
                               [&store = context.store, asked = *asked, kept = std::move(kept),
                                answer](Progress& progress) -> Result<jobs::JobResult> {
-                                auto model = jobs::import_model(store, asked, progress, answer);
+                                store::FirstAnswer<Model> kept_answer = answer;
+                                kept_answer.job = progress.job();
+                                auto model = jobs::import_model(store, asked, progress, kept_answer);
                                 if (!model) return tl::unexpected(model.error());
                                 return model->id;
                               });

@@ -106,12 +106,15 @@ Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, By
       model.project_id,
       [room = *room, wish = std::move(*wish), answer,
        map = std::make_shared<const MapPicture>(std::move(*map))](Progress& progress) -> Result<jobs::JobResult> {
-        auto look = bake(*room, wish, *map, answer, progress);
+        store::FirstAnswer<Look> kept = answer;
+        kept.job = progress.job();
+        auto look = bake(*room, wish, *map, kept, progress);
         if (!look) return tl::unexpected(look.error());
         jobs::JobResult result(look->model_id);
         result.look = look->id;
         return result;
-      });
+      },
+      {}, jobs::JobKind::look);
   if (!job) return tl::unexpected(job.error());
   book.started(request, *job);
   return job_response(context, *job);

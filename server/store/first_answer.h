@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -15,6 +16,8 @@ struct FirstAnswer {
   // Who asked, for the project's activity; empty: nobody, so that what is changed is not told there, and what is made or deleted is by no
   // name. (Entries of journals have names of their own.)
   std::string user{};
+  // The job that does it, of the jobs that are kept: in the same transaction it is done, and `make` says what it made. 0: no job.
+  std::int64_t job = 0;
 };
 
 }  // namespace strata::store

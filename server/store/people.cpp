@@ -281,7 +281,8 @@ Result<void> Store::delete_person(const std::string& name) {
           "UPDATE all_models SET binned_by = $2 WHERE binned_by = $1",
           "UPDATE all_layers SET binned_by = $2 WHERE binned_by = $1",
           "UPDATE tours SET user_name = $2 WHERE user_name = $1",
-          "UPDATE kiosks SET user_name = $2 WHERE user_name = $1"})
+          "UPDATE kiosks SET user_name = $2 WHERE user_name = $1",
+          "UPDATE jobs SET user_name = $2 WHERE user_name = $1"})
       if (auto done = run(connection, sql, Params().text(person->name).text(former)); !done) return done;
     if (auto done = rename_in_journal(connection, person->name, former); !done) return done;
     if (auto done = rename_in_comments(connection, person->name, former); !done) return done;

@@ -31,6 +31,7 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options, const std::file
 Comments& Store::comments() { return impl_->comments; }
 NamedParts& Store::views() { return impl_->views; }
 NamedParts& Store::tours() { return impl_->tours; }
+Jobs& Store::jobs() { return impl_->jobs; }
 Kiosks& Store::kiosks() { return impl_->kiosks; }
 Groups& Store::groups() { return impl_->groups; }
 Bin& Store::bin() { return impl_->bin; }

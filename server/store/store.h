@@ -34,6 +34,7 @@ namespace strata::store {
 class Bin;
 class Comments;
 class Groups;
+class Jobs;
 class Kiosks;
 class NamedParts;
 
@@ -118,6 +119,7 @@ class Store {
   Comments& comments();  // threads on models (store/comments.h); lives as long as this
   NamedParts& views();   // of models (store/named_parts.h); the same
   NamedParts& tours();   // the same
+  Jobs& jobs();          // what is known of long work after a restart (store/jobs.h); the same
   Kiosks& kiosks();      // screens that show tours (store/kiosks.h); the same
   Groups& groups();      // of people (store/groups.h); the same
   Bin& bin();            // what was deleted and can be restored (store/bin.h); the same

@@ -7,6 +7,7 @@
 #include "store/bin.h"
 #include "store/comments.h"
 #include "store/groups.h"
+#include "store/jobs.h"
 #include "store/kiosks.h"
 #include "store/named_parts.h"
 #include "store/pool.h"
@@ -16,6 +17,9 @@ namespace strata::store {
 
 // In the transaction at hand; 409 where a call with this key was answered already.
 Result<void> insert_answer(PgConnection& connection, const std::string& key, const nlohmann::json& answer);
+
+// In the transaction at hand: the job ended well, with that as its result.
+Result<void> finish_job(PgConnection& connection, std::int64_t job, nlohmann::json result);
 
 // In the transaction at hand: what it changes is told as this person's doing (db/migrations/000018_activity.sql). Empty: as nobody's.
 Result<void> act_as(PgConnection& connection, const std::string& user);
@@ -39,6 +43,8 @@ Result<void> check_project_role(Role role);  // 422: not one that is given in pr
 
 template <class T>
 Result<void> keep(PgConnection& connection, const FirstAnswer<T>& answer, const Result<T>& effect) {
+  if (answer.job != 0)
+    if (auto done = finish_job(connection, answer.job, answer.make(*effect)); !done) return done;
   return answer.key.empty() ? Result<void>{} : insert_answer(connection, answer.key, answer.make(*effect));
 }
 inline Result<void> keep(PgConnection& connection, const FirstAnswer<>& answer, const Result<void>&) {
@@ -67,6 +73,7 @@ struct Store::Impl {
   Comments comments{pool};
   NamedParts views{pool, NamedParts::kViews}, tours{pool, NamedParts::kTours};
   Kiosks kiosks{pool};
+  Jobs jobs{pool};
   Groups groups{pool};
   Bin bin{pool};
   std::int64_t schema_version = 0;
