@@ -56,10 +56,11 @@ std::filesystem::path scratch_beside(const std::filesystem::path& file) {
   return ::access(folder.c_str(), W_OK) == 0 ? folder : std::filesystem::temp_directory_path();
 }
 
+// With their folders: scans often have the same name in folders of their own.
 std::string listed(std::span<const std::string> filenames, std::span<const std::size_t> which) {
   std::string list;
   for (const std::size_t i : which.first(std::min<std::size_t>(which.size(), 5)))
-    list += (list.empty() ? "" : ", ") + std::string(last_part(filenames[i]));
+    list += (list.empty() ? "" : ", ") + mended_utf8(filenames[i]);
   return which.size() > 5 ? list + ", …" : list;
 }
 

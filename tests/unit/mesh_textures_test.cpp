@@ -139,7 +139,8 @@ TEST(Archive, what_is_no_single_scan_is_refused) {
   const std::string obj = kVertices + "f 1 2 3\n";
   const std::string zip = test::zip_of({{"a.obj", obj}});
   const std::pair<std::string, std::string> bad[] = {
-      {test::zip_of({{"a.obj", obj}, {"b/c.ply", "ply"}}), "a.obj, c.ply"},
+      {test::zip_of({{"a.obj", obj}, {"b/c.ply", "ply"}}), "a.obj, b/c.ply"},
+      {test::zip_of({{"a/mesh.obj", obj}, {"b/mesh.obj", obj}}), "a/mesh.obj, b/mesh.obj"},
       {test::zip_of({{"a.jpg", kRed}}), "In the zip: "},
       {test::zip_of({{"readme.txt", "text"}}), "There is no file to import"},
       {test::zip_of({{"inner.zip", zip}}), "another zip"},
