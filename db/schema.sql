@@ -491,6 +491,7 @@ CREATE TABLE public.all_models (
     binned_by text,
     binned_bytes bigint,
     erasing boolean DEFAULT false NOT NULL,
+    proposal jsonb,
     CONSTRAINT all_models_check CHECK ((((binned IS NULL) = (binned_by IS NULL)) AND ((binned IS NULL) = (binned_bytes IS NULL)) AND ((binned IS NOT NULL) OR (NOT erasing)))),
     CONSTRAINT models_bounds_max_check CHECK ((cardinality(bounds_max) = 3)),
     CONSTRAINT models_bounds_min_check CHECK ((cardinality(bounds_min) = 3)),
@@ -498,7 +499,7 @@ CREATE TABLE public.all_models (
     CONSTRAINT models_origin_check CHECK ((cardinality(origin) = 3)),
     CONSTRAINT models_source_download_check CHECK ((source_download = ANY (ARRAY['viewer'::text, 'annotator'::text, 'curator'::text]))),
     CONSTRAINT models_unit_check CHECK ((unit = ANY (ARRAY['mm'::text, 'cm'::text, 'm'::text]))),
-    CONSTRAINT models_up_check CHECK ((up = ANY (ARRAY['x'::text, 'y'::text, 'z'::text])))
+    CONSTRAINT models_up_check CHECK ((up = ANY (ARRAY['x'::text, 'y'::text, 'z'::text, '-x'::text, '-y'::text, '-z'::text])))
 );
 
 CREATE VIEW public.layers AS
@@ -562,7 +563,8 @@ CREATE VIEW public.models AS
     all_models.geometry,
     all_models.sequence,
     all_models.version,
-    all_models.source_download
+    all_models.source_download,
+    all_models.proposal
    FROM public.all_models
   WHERE (all_models.binned IS NULL);
 

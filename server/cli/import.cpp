@@ -98,7 +98,8 @@ Command add_import(CLI::App& app) {
   command->add_option("--name", options->request.name, "Name of the model (default: the file's name)");
   command->add_option("--project", options->request.project, "Project it belongs to")->capture_default_str();
   command->add_option("--unit", options->unit, "Unit of the coordinates")->check(CLI::IsMember({"mm", "cm", "m"}));
-  command->add_option("--up", options->request.up, "Axis that points up")->check(CLI::IsMember({"x", "y", "z"}));
+  command->add_option("--up", options->request.up, "Axis that points up, or its opposite: --up=-y")
+      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}));
   command->add_option("--crs", options->request.crs, "Coordinate system, EPSG:n");
   command->add_option("--resolution", options->request.resolution, "Default resolution of new layers")
       ->check(CLI::IsMember({2048, 4096, 8192, 16384}));

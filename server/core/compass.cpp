@@ -3,11 +3,14 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/up.h"
+
 namespace strata {
 
 Compass::Compass(const Model& model) : is_known(!model.crs.empty()) {
-  if (model.up == "x") east = {0, 1, 0};
-  north = model.up == "x" ? glm::dvec3(0, 0, 1) : model.up == "y" ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0);
+  const UpFrame frame = up_frame(model.up);
+  east = frame.right;
+  north = frame.into;
   char* end = nullptr;
   const double degrees = std::strtod(model.north.c_str(), &end);
   if (model.north.empty() || *end != '\0' || !std::isfinite(degrees)) return;

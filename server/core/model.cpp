@@ -1,5 +1,7 @@
 #include "core/model.h"
 
+#include "core/up.h"
+
 namespace strata {
 namespace {
 
@@ -27,6 +29,46 @@ std::optional<Unit> parse_unit(std::string_view text) {
   for (Unit unit : {Unit::mm, Unit::cm, Unit::m})
     if (name(unit) == text) return unit;
   return std::nullopt;
+}
+
+std::string_view name(ScaleReason reason) {
+  switch (reason) {
+    case ScaleReason::given: return "given";
+    case ScaleReason::format: return "format";
+    case ScaleReason::comment: return "comment";
+    case ScaleReason::coordinates: return "coordinates";
+    case ScaleReason::size: return "size";
+    default: return "shape";
+  }
+}
+
+std::optional<ScaleReason> parse_scale_reason(std::string_view text) {
+  for (ScaleReason reason : {ScaleReason::given, ScaleReason::format, ScaleReason::comment, ScaleReason::coordinates,
+                             ScaleReason::size, ScaleReason::shape})
+    if (name(reason) == text) return reason;
+  return std::nullopt;
+}
+
+nlohmann::json to_json(const ScaleProposal& proposal) {
+  nlohmann::json json{{"unit", name(proposal.unit)},
+                      {"unit_reason", name(proposal.unit_reason)},
+                      {"unit_confidence", proposal.unit_confidence},
+                      {"up", proposal.up},
+                      {"up_reason", name(proposal.up_reason)},
+                      {"up_confidence", proposal.up_confidence}};
+  if (!proposal.unit_comment.empty()) json["unit_comment"] = proposal.unit_comment;
+  if (!proposal.up_comment.empty()) json["up_comment"] = proposal.up_comment;
+  return json;
+}
+
+std::optional<ScaleProposal> scale_proposal_from_json(const nlohmann::json& json) {
+  if (!json.is_object()) return std::nullopt;
+  const auto text = [&](const char* member) { return json.value(member, std::string()); };
+  const auto unit = parse_unit(text("unit"));
+  const auto unit_reason = parse_scale_reason(text("unit_reason")), up_reason = parse_scale_reason(text("up_reason"));
+  if (!unit || !unit_reason || !up_reason || !is_up(text("up"))) return std::nullopt;
+  return ScaleProposal{*unit,      *unit_reason, json.value("unit_confidence", 1.0), text("unit_comment"),
+                       text("up"), *up_reason,   json.value("up_confidence", 1.0),   text("up_comment")};
 }
 
 nlohmann::json to_json(const Project& project) {
@@ -73,36 +115,38 @@ nlohmann::json to_json(const Model& model, const std::string& project_slug) {
   nlohmann::json files = nlohmann::json::array();
   for (const auto& file : model.source_files)
     files.push_back({{"name", file.name}, {"sha256", file.sha256}, {"bytes", file.bytes}});
-  return {{"id", model.id},
-          {"name", model.name},
-          {"slug", model.slug},
-          {"project", project_slug},
-          {"unit", name(model.unit)},
-          {"unit_assumed", model.unit_assumed},
-          {"scale_verified", model.scale_verified},
-          {"up", model.up},
-          {"north", model.north},
-          {"crs", model.crs},
-          {"origin", vec3(model.origin)},
-          {"triangles", model.triangles},
-          {"vertices", model.vertices},
-          {"bounds", {{"min", vec3(model.bounds_min)}, {"max", vec3(model.bounds_max)}}},
-          {"area_m2", model.area_m2()},
-          {"atlas", to_json(model.atlas, model.metres())},
-          {"repairs", repairs},
-          {"source_files", files},
-          {"default_resolution", model.default_resolution},
-          {"inventory_number", model.inventory_number},
-          {"owner", model.owner},
-          {"creator", model.creator},
-          {"captured", model.captured},
-          {"method", model.method},
-          {"accuracy", model.accuracy},
-          {"processing", model.processing},
-          {"rights_uri", model.rights_uri},
-          {"credit", model.credit},
-          {"source_download", name(model.source_download)},
-          {"sequence", model.sequence}};
+  nlohmann::json json = {{"id", model.id},
+                         {"name", model.name},
+                         {"slug", model.slug},
+                         {"project", project_slug},
+                         {"unit", name(model.unit)},
+                         {"unit_assumed", model.unit_assumed},
+                         {"scale_verified", model.scale_verified},
+                         {"up", model.up},
+                         {"north", model.north},
+                         {"crs", model.crs},
+                         {"origin", vec3(model.origin)},
+                         {"triangles", model.triangles},
+                         {"vertices", model.vertices},
+                         {"bounds", {{"min", vec3(model.bounds_min)}, {"max", vec3(model.bounds_max)}}},
+                         {"area_m2", model.area_m2()},
+                         {"atlas", to_json(model.atlas, model.metres())},
+                         {"repairs", repairs},
+                         {"source_files", files},
+                         {"default_resolution", model.default_resolution},
+                         {"inventory_number", model.inventory_number},
+                         {"owner", model.owner},
+                         {"creator", model.creator},
+                         {"captured", model.captured},
+                         {"method", model.method},
+                         {"accuracy", model.accuracy},
+                         {"processing", model.processing},
+                         {"rights_uri", model.rights_uri},
+                         {"credit", model.credit},
+                         {"source_download", name(model.source_download)},
+                         {"sequence", model.sequence}};
+  if (model.proposal) json["proposal"] = to_json(*model.proposal);
+  return json;
 }
 
 }  // namespace strata

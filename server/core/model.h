@@ -43,6 +43,25 @@ struct AtlasReport {
   std::vector<TexelSize> texel_sizes;  // from lowest_resolution up; empty in models of before it was measured
 };
 
+// Why a unit or an up direction is proposed.
+enum class ScaleReason { given, format, comment, coordinates, size, shape };
+std::string_view name(ScaleReason reason);
+std::optional<ScaleReason> parse_scale_reason(std::string_view name);
+
+// Which unit and up direction the file states or lets one guess (mesh/scale_proposal.h).
+struct ScaleProposal {
+  Unit unit = Unit::m;
+  ScaleReason unit_reason = ScaleReason::size;
+  double unit_confidence = 1;  // 0…1
+  std::string unit_comment;    // that names it
+  std::string up = "z";        // of kUpDirections
+  ScaleReason up_reason = ScaleReason::shape;
+  double up_confidence = 1;
+  std::string up_comment;
+};
+nlohmann::json to_json(const ScaleProposal& proposal);
+std::optional<ScaleProposal> scale_proposal_from_json(const nlohmann::json& json);  // of our own stored form
+
 struct Repair {
   std::string what;  // "dropped degenerate faces"
   std::uint64_t count = 0;
@@ -62,10 +81,11 @@ struct Model {
   Unit unit = Unit::m;
   bool unit_assumed = true;
   bool scale_verified = false;
-  std::string up = "z";  // "x", "y" or "z"
-  std::string north;     // free: degrees from +y, or empty
-  std::string crs;       // "EPSG:n" or empty
-  glm::dvec3 origin{0};  // model space is world minus origin
+  std::string up = "z";                   // of kUpDirections (core/up.h)
+  std::optional<ScaleProposal> proposal;  // none for models that were imported before there were any
+  std::string north;                      // free: degrees from +y, or empty
+  std::string crs;                        // "EPSG:n" or empty
+  glm::dvec3 origin{0};                   // model space is world minus origin
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;
   glm::dvec3 bounds_min{0};  // world

@@ -5,16 +5,16 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 
+#include "core/up.h"
 #include "figure/paper.h"
 
 namespace strata::figure {
 namespace {
 
 // The axes of the front view, as the page has them.
-Plane front_of(char up_axis) {
-  if (up_axis == 'x') return {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}};
-  if (up_axis == 'y') return {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
-  return {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}};
+Plane front_of(std::string_view up) {
+  const UpFrame frame = up_frame(up);
+  return {frame.right, frame.up, frame.into};
 }
 
 // A window in millimetres from the drawing's top left, for a camera of so many pixels.
@@ -40,8 +40,8 @@ Camera camera_over(const Drawing& drawing, const glm::dvec2& corner_mm, const gl
 
 }  // namespace
 
-Plane plane_from(Direction direction, char up_axis) {
-  const Plane front = front_of(up_axis);
+Plane plane_from(Direction direction, std::string_view up) {
+  const Plane front = front_of(up);
   switch (direction) {
     case Direction::front: return front;
     case Direction::back: return {-front.right, front.up, -front.into};
@@ -53,8 +53,8 @@ Plane plane_from(Direction direction, char up_axis) {
   return front;
 }
 
-Plane plane_square_to(const glm::dvec3& normal, char up_axis) {
-  const Plane front = front_of(up_axis);
+Plane plane_square_to(const glm::dvec3& normal, std::string_view up) {
+  const Plane front = front_of(up);
   const glm::dvec3 into = -glm::normalize(normal);
   const double along = glm::dot(into, front.up);
   // Surface that lies has no up of its own.

@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/camera.h"
@@ -22,10 +23,10 @@ struct Plane {
   }
   glm::dvec3 in_world(const glm::dvec3& drawn) const { return drawn.x * right + drawn.y * up + drawn.z * into; }
 };
-// `up_axis`: 'x', 'y' or 'z'. The front of a model with z up is seen along +y.
-Plane plane_from(Direction direction, char up_axis);
+// `up`: of kUpDirections. The front of a model with z up is seen along +y.
+Plane plane_from(Direction direction, std::string_view up);
 // Of surface with this normal (not zero), seen square; what is up in the model is up in the drawing, and lying surface is drawn as the plan.
-Plane plane_square_to(const glm::dvec3& normal, char up_axis);
+Plane plane_square_to(const glm::dvec3& normal, std::string_view up);
 Plane plane_of(const Camera& camera);
 
 // Least and greatest coordinates along the axes.

@@ -9,10 +9,12 @@
 #include "core/filename.h"
 #include "core/picture.h"
 #include "core/slug.h"
+#include "core/up.h"
 #include "jobs/model_geometry.h"
 #include "mesh/base_color.h"
 #include "mesh/geometry.h"
 #include "mesh/load.h"
+#include "mesh/scale_proposal.h"
 
 namespace strata::jobs {
 namespace {
@@ -83,8 +85,8 @@ Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair
 
 Result<void> check(const ImportRequest& request) {
   if (request.name.size() > kLongestName) return fail(422, "Name too long", "A name has at most 200 bytes.", "name");
-  if (!request.up.empty() && request.up != "x" && request.up != "y" && request.up != "z")
-    return fail(422, "Unknown direction", "`up` is x, y or z.", "up");
+  if (!request.up.empty() && !is_up(request.up))
+    return fail(422, "Unknown direction", "`up` is one of x, y, z, -x, -y and -z.", "up");
   if (!request.crs.empty() && !is_crs(request.crs))
     return fail(422, "Unknown coordinate system", "A coordinate system is given as EPSG:n, for example EPSG:25830.",
                 "crs");
@@ -112,6 +114,19 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   if (request.strict)
     if (auto good = refuse_faults(loaded->repairs); !good) return tl::unexpected(good.error());
 
+  ScaleProposal proposal = mesh::propose_scale(*loaded, request.crs);
+  if (request.unit) {
+    proposal.unit = *request.unit;
+    proposal.unit_reason = ScaleReason::given;
+    proposal.unit_confidence = 1;
+  }
+  if (!request.up.empty()) {
+    proposal.up = request.up;
+    proposal.up_reason = ScaleReason::given;
+    proposal.up_confidence = 1;
+  }
+  if (progress.cancelled()) return cancelled_problem();
+
   progress.begin_stage(kRead, kUnfolded);
   auto atlas = atlas_for(loaded->mesh, loaded->repairs, progress);
   if (!atlas) return tl::unexpected(atlas.error());
@@ -136,10 +151,14 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   model.name = request.name.empty() ? stem(scan.filename) : request.name;
   model.slug = make_slug(model.name);
   const auto unit = request.unit ? request.unit : loaded->unit;
-  model.unit = unit.value_or(Unit::m);
+  model.unit = unit.value_or(request.unit_proposed ? proposal.unit : Unit::m);
   model.unit_assumed = !unit;
   const std::string& up = request.up.empty() ? loaded->up : request.up;
-  if (!up.empty()) model.up = up;
+  if (!up.empty())
+    model.up = up;
+  else if (request.up_proposed)
+    model.up = proposal.up;
+  model.proposal = proposal;
   model.crs = request.crs;
   model.default_resolution = request.resolution == 0 ? kLowestResolution : request.resolution;
   model.atlas = atlas->report;

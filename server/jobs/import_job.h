@@ -18,8 +18,10 @@ struct ImportRequest {
   std::vector<ImportFile> files;
   std::string name;  // of the model; empty: from the name of the mesh
   std::string project = "default";
-  std::optional<Unit> unit;  // empty: metres, `unit_assumed`
-  std::string up;            // "", "x", "y", "z"
+  std::optional<Unit> unit;    // empty: as the file says, or else metres, `unit_assumed`
+  bool unit_proposed = false;  // what the file does not say is as proposed (mesh/scale_proposal.h), `unit_assumed`
+  std::string up;              // "" (as the file says, or else z) or of kUpDirections
+  bool up_proposed = false;
   std::string crs;
   int resolution = 0;        // default of new layers; 0: 2048
   double weld_distance = 0;  // vertices that lie nearer than this are joined; in the file's units

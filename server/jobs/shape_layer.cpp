@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "core/compass.h"
+#include "core/up.h"
 #include "mesh/boundary.h"
 #include "mesh/curvature.h"
 #include "mesh/model_distance.h"
@@ -27,8 +28,6 @@ constexpr double kMeasured = 0.7;
 constexpr double kPrepared = 0.15;  // where samples or rays are made first
 // A surface that is flatter than this faces no way in particular.
 constexpr float kFlat = 0.02f;
-
-int axis_of(const Model& model) { return model.up == "x" ? 0 : model.up == "y" ? 1 : 2; }
 
 // Clockwise from north as seen from above, 0…360 degrees.
 float azimuth(const Compass& compass, const glm::vec3& normal) {
@@ -100,17 +99,19 @@ class Measure {
   }
 
   Result<SurfaceValue> height() {
-    const int up = axis_of(model_);
-    const double zero = recipe_.absolute ? 0 : model_.bounds_min[up];
+    const glm::dvec3 up = up_frame(model_.up).up;
+    // `up` has one component: the lowest corner of the box is as high as the lowest point.
+    const double zero =
+        recipe_.absolute ? 0 : std::min(glm::dot(up, model_.bounds_min), glm::dot(up, model_.bounds_max));
     return SurfaceValue(
-        [this, up, zero](std::uint32_t t, const glm::vec3& w) { return static_cast<float>(world(t, w)[up] - zero); });
+        [this, up, zero](std::uint32_t t, const glm::vec3& w) { return glm::dot(world(t, w), up) - zero; });
   }
 
   Result<SurfaceValue> slope() {
     auto normals = std::make_shared<const mesh::SurfaceNormals>(geometry_);
-    const int up = axis_of(model_);
+    const glm::vec3 up(up_frame(model_.up).up);
     return SurfaceValue([normals, up](std::uint32_t t, const glm::vec3& w) {
-      return glm::degrees(std::acos(std::clamp(normals->at(t, w)[up], -1.0f, 1.0f)));
+      return glm::degrees(std::acos(std::clamp(glm::dot(normals->at(t, w), up), -1.0f, 1.0f)));
     });
   }
 

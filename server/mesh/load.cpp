@@ -1,5 +1,6 @@
 #include "mesh/load.h"
 
+#include "mesh/file_comments.h"
 #include "mesh/load_formats.h"
 #include "mesh/texture_shelf.h"
 
@@ -18,6 +19,9 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
     }
   }();
   if (!loaded) return loaded;
+  loaded->comments = file_comments(files);
+  if (const auto unit = stated_unit(loaded->comments); unit && !loaded->unit) loaded->unit = unit->value;
+  if (const auto up = stated_up(loaded->comments); up && loaded->up.empty()) loaded->up = up->value;
   adopt_lone_picture(files, loaded->mesh, loaded->repairs);
   if (loaded->mesh.triangles.empty()) {
     return refuse_file(

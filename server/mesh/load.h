@@ -16,9 +16,10 @@ constexpr std::size_t kMaxTriangles = 50'000'000;
 
 struct LoadedMesh {
   TriangleMesh mesh;
-  std::vector<Repair> repairs;    // what was dropped or joined on the way, with counts; never silent
-  std::optional<Unit> unit = {};  // where the format says it: glTF is in metres
-  std::string up = {};            // "y" for glTF; empty: the format does not say
+  std::vector<Repair> repairs;             // what was dropped or joined on the way, with counts; never silent
+  std::optional<Unit> unit = {};           // where the format or a comment says it: glTF is in metres
+  std::string up = {};                     // "y" for glTF, or as a comment says; empty: nothing does
+  std::vector<std::string> comments = {};  // of the file, see file_comments
 };
 
 struct LoadOptions {

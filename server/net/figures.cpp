@@ -23,8 +23,6 @@ constexpr glm::dvec2 kLabelCell_mm{1.5, 1.5};
 constexpr std::size_t kMostPlaces = 64;  // that are tried for a label
 constexpr std::size_t kMostLabels = 2000;
 
-char up_of(const Model& model) { return model.up.empty() ? 'z' : model.up[0]; }
-
 // Directions, papers and formats have the contract's order, so that they are cast.
 static_assert(static_cast<int>(protocol::FigureDirection::right) == static_cast<int>(figure::Direction::right) &&
               static_cast<int>(protocol::FigureRequestPaper::a3) == static_cast<int>(figure::Paper::a3) &&
@@ -72,11 +70,11 @@ Result<void> read_direction(const protocol::FigureRequest& asked, const std::opt
   if (asked.normal) {
     if (!(glm::length(*asked.normal) > 1e-12))
       return fail(422, "No direction", "A normal has a length: [0, 0, 1] is surface that faces along z.", "normal");
-    wish.plane = figure::plane_square_to(*asked.normal, up_of(model));
+    wish.plane = figure::plane_square_to(*asked.normal, model.up);
     wish.from = "face";
   } else if (asked.direction || !camera) {
     const auto direction = asked.direction.value_or(protocol::FigureDirection::top);
-    wish.plane = figure::plane_from(static_cast<figure::Direction>(direction), up_of(model));
+    wish.plane = figure::plane_from(static_cast<figure::Direction>(direction), model.up);
     wish.from = protocol::name(direction);
   } else {
     wish.plane = figure::plane_of(*camera);

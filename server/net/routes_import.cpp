@@ -43,11 +43,20 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
     problem.field = "project";
     return tl::unexpected(std::move(problem));
   }
-  if (auto unit = request.query_or("unit", {}); !unit.empty()) {
+  constexpr const char* kProposed = "proposed";
+  if (auto unit = request.query_or("unit", {}); unit == kProposed) {
+    asked.unit_proposed = true;
+  } else if (!unit.empty()) {
     asked.unit = parse_unit(unit);
-    if (!asked.unit) return fail(422, "Unknown unit", "The unit is mm, cm or m.", "unit");
+    if (!asked.unit)
+      return fail(422, "Unknown unit", "The unit is mm, cm or m, or `proposed` for what the file lets one guess.",
+                  "unit");
   }
   asked.up = request.query_or("up", {});
+  if (asked.up == kProposed) {
+    asked.up_proposed = true;
+    asked.up.clear();
+  }
   asked.crs = request.query_or("crs", {});
   if (auto text = request.query_or("resolution", {}); !text.empty()) {
     auto resolution = parse_integer(text, 1, INT32_MAX, "resolution");

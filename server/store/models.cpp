@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/progress.h"
+#include "core/up.h"
 #include "store/blobs.h"
 #include "store/looks.h"
 #include "store/store_impl.h"
@@ -12,7 +13,7 @@ constexpr const char* kSelectModels =
     "SELECT m.id, m.project_id, m.name, m.slug::text, m.unit, m.unit_assumed, m.scale_verified, m.up, m.north, m.crs, "
     "m.origin, m.bounds_min, m.bounds_max, m.triangles, m.vertices, m.area, m.atlas, m.repairs, m.default_resolution, "
     "m.inventory_number, m.owner, m.creator, m.captured, m.method, m.accuracy, m.processing, m.rights_uri, m.credit, "
-    "m.source_download, m.sequence, m.version, "
+    "m.source_download, m.sequence, m.version, coalesce(m.proposal, 'null'), "
     "(SELECT coalesce(jsonb_agg(jsonb_build_object('name', s.name, 'sha256', encode(s.sha256, 'hex'), 'bytes', b.bytes) "
     "ORDER BY s.position), '[]') FROM model_sources s JOIN blobs b USING (sha256) WHERE s.model_id = m.id) "
     "FROM models m ";
@@ -52,6 +53,7 @@ Model read_model(const PgResult& rows, int i) {
   m.source_download = parse_role(rows.text(i, c++)).value_or(Role::curator);
   m.sequence = rows.integer(i, c++);
   m.version = rows.integer(i, c++);
+  m.proposal = scale_proposal_from_json(rows.json(i, c++));
   for (const auto& file : rows.json(i, c++))
     m.source_files.push_back({file.at("name"), file.at("sha256"), file.at("bytes")});
   return m;
@@ -59,8 +61,7 @@ Model read_model(const PgResult& rows, int i) {
 
 Result<void> check(const Model& m) {
   if (auto good = check_name(m.name); !good) return good;
-  if (m.up != "x" && m.up != "y" && m.up != "z")
-    return fail(400, "Bad direction", "`up` must be \"x\", \"y\" or \"z\".", "up");
+  if (!is_up(m.up)) return fail(400, "Bad direction", "`up` must be one of x, y, z, -x, -y and -z.", "up");
   for (const auto& repair : m.repairs)
     if (auto good = check_text(repair.what, "repairs"); !good) return good;
   return check_texts({{&m.slug, "slug"},
@@ -125,13 +126,14 @@ Result<PgResult> insert_model(PgConnection& connection, const Model& m, const st
       .real(m.area)
       .json(to_json(m.atlas, 1.0))
       .json(repairs)
-      .bytes(geometry);
+      .bytes(geometry)
+      .json(m.proposal ? to_json(*m.proposal) : nlohmann::json());
   return connection.query(
       "INSERT INTO models (name, slug, project_id, unit, unit_assumed, scale_verified, up, north, crs, default_resolution, "
       "inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit, source_download, "
-      "origin, bounds_min, bounds_max, triangles, vertices, area, atlas, repairs, geometry) "
+      "origin, bounds_min, bounds_max, triangles, vertices, area, atlas, repairs, geometry, proposal) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20, $21, $22, $23, $24, "
-      "$25, $26, $27, $28, $29) ON CONFLICT DO NOTHING RETURNING id",
+      "$25, $26, $27, $28, $29, nullif($30, 'null')) ON CONFLICT DO NOTHING RETURNING id",
       params);
 }
 

@@ -48,6 +48,14 @@ def check_kinds(server):
     assert abs(statistics["max"] - high) < 0.2 and abs(statistics["mean"]) < 0.5, statistics
     assert absolute["name"] == "absolute height"
 
+    server.ok("PATCH", BALL, {"up": "-z"})  # on its head: what was lowest is highest
+    _, statistics = compute(server, BALL, "height", absolute=True, name="upside down")
+    assert abs(statistics["max"] + low) < 0.2 and abs(statistics["min"] + high) < 0.2, (statistics, low, high)
+    _, statistics = compute(server, BALL, "height", name="upside down from the ground")
+    assert abs(statistics["min"]) < 0.2 and abs(statistics["max"] - (high - low)) < 0.2, statistics
+    assert server.request("PATCH", BALL, {"up": "-w"}).status == 422
+    server.ok("PATCH", BALL, {"up": "z"})
+
     slope, statistics = compute(server, BALL, "slope")
     assert slope["unit"] == "°" and statistics["min"] < 8 and statistics["max"] > 172 and abs(statistics["mean"] - 90) < 1, statistics
     _, statistics = compute(server, BALL, "azimuth")

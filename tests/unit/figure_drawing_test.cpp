@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "core/up.h"
+
 namespace strata::figure {
 namespace {
 
@@ -37,40 +39,44 @@ glm::dvec2 on_paper(const Drawing& drawing, const glm::dvec3& world) {
 }
 
 TEST(Plane, AxesAreAFrameThatLooksAsItsNameSays) {
-  for (const char up : {'x', 'y', 'z'})
+  for (const std::string_view up : kUpDirections)
     for (const Direction direction :
          {Direction::top, Direction::bottom, Direction::front, Direction::back, Direction::left, Direction::right}) {
       const Plane plane = plane_from(direction, up);
       EXPECT_EQ(glm::cross(plane.right, plane.up), -plane.into);
-      const glm::dvec3 above(up == 'x', up == 'y', up == 'z');
+      const glm::dvec3 above = up_frame(up).up;
       const double along = glm::dot(plane.into, above);
       EXPECT_EQ(along, direction == Direction::top ? -1 : direction == Direction::bottom ? 1 : 0);
       if (along == 0) {
         EXPECT_EQ(plane.up, above);
       }
     }
-  const Plane plan = plane_from(Direction::top, 'z');
+  // Upside down, turned about the drawing's right: the front shows what was the back, on its head.
+  EXPECT_EQ(plane_from(Direction::front, "-z").into, glm::dvec3(0, -1, 0));
+  EXPECT_EQ(plane_from(Direction::front, "-z").right, glm::dvec3(1, 0, 0));
+  EXPECT_EQ(plane_from(Direction::top, "-y").into, glm::dvec3(0, 1, 0));
+  const Plane plan = plane_from(Direction::top, "z");
   EXPECT_EQ(plan.right, glm::dvec3(1, 0, 0));
   EXPECT_EQ(plan.up, glm::dvec3(0, 1, 0));
-  EXPECT_EQ(plane_from(Direction::front, 'z').into, glm::dvec3(0, 1, 0));
-  EXPECT_EQ(plane_from(Direction::right, 'z').into, glm::dvec3(-1, 0, 0));
-  EXPECT_EQ(plane_from(Direction::left, 'z').into, glm::dvec3(1, 0, 0));
+  EXPECT_EQ(plane_from(Direction::front, "z").into, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(plane_from(Direction::right, "z").into, glm::dvec3(-1, 0, 0));
+  EXPECT_EQ(plane_from(Direction::left, "z").into, glm::dvec3(1, 0, 0));
 }
 
 TEST(Plane, OfAFaceSeesItSquareAndUpright) {
   for (const glm::dvec3 normal :
        {glm::dvec3(1, 2, 0.5), glm::dvec3(0, -3, 0), glm::dvec3(0, 0, 7), glm::dvec3(1e-9, 0, -1)}) {
-    const Plane plane = plane_square_to(normal, 'z');
+    const Plane plane = plane_square_to(normal, "z");
     EXPECT_LT(glm::distance(plane.into, -glm::normalize(normal)), 1e-12);
     EXPECT_LT(glm::distance(glm::cross(plane.right, plane.up), -plane.into), 1e-12);
     EXPECT_NEAR(glm::length(plane.up), 1, 1e-12);
   }
-  EXPECT_LT(glm::distance(plane_square_to({0, 0, 2}, 'z').up, glm::dvec3(0, 1, 0)), 1e-12);      // the plan
-  EXPECT_LT(glm::distance(plane_square_to({0, -1, 0}, 'z').right, glm::dvec3(1, 0, 0)), 1e-12);  // the front
+  EXPECT_LT(glm::distance(plane_square_to({0, 0, 2}, "z").up, glm::dvec3(0, 1, 0)), 1e-12);      // the plan
+  EXPECT_LT(glm::distance(plane_square_to({0, -1, 0}, "z").right, glm::dvec3(1, 0, 0)), 1e-12);  // the front
 }
 
 TEST(Plane, OfACameraIsItsOwn) {
-  const Plane front = plane_from(Direction::front, 'y');
+  const Plane front = plane_from(Direction::front, "y");
   const Part part = parts_of(some_drawing(front)).front();
   const Plane again = plane_of(part.camera);
   EXPECT_LT(glm::distance(again.right, front.right) + glm::distance(again.up, front.up) +
@@ -80,7 +86,7 @@ TEST(Plane, OfACameraIsItsOwn) {
 
 TEST(Extent, IsOfWhatTheSectionKeeps) {
   const std::vector<glm::dvec3> points{{0, 0, 0}, {4, 1, 2}, {-1, 5, -3}};
-  const Plane plan = plane_from(Direction::top, 'z');
+  const Plane plan = plane_from(Direction::top, "z");
   const auto all = extent_of(points, plan, {});
   ASSERT_TRUE(all);
   EXPECT_EQ(all->min, glm::dvec3(-1, 0, -2));  // into is downwards
@@ -103,7 +109,7 @@ TEST(Scale, IsTheLargestRoundOneThatFits) {
 
 TEST(Parts, CoverTheDrawingOnceWithOneScale) {
   for (const Direction direction : {Direction::top, Direction::front, Direction::left}) {
-    const Drawing drawing = some_drawing(plane_from(direction, 'z'));
+    const Drawing drawing = some_drawing(plane_from(direction, "z"));
     const auto parts = parts_of(drawing);
     ASSERT_GT(parts.size(), 1u);
     std::vector<int> covered(static_cast<std::size_t>(drawing.width) * drawing.height, 0);
@@ -129,7 +135,7 @@ TEST(Parts, CoverTheDrawingOnceWithOneScale) {
 }
 
 TEST(Parts, OfCoarseDrawingsAreWhole) {
-  Drawing drawing = some_drawing(plane_from(Direction::top, 'z'));
+  Drawing drawing = some_drawing(plane_from(Direction::top, "z"));
   drawing.dpi = 50;
   drawing.width = drawing.height = 500;
   const auto parts = parts_of(drawing);

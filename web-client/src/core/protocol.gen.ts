@@ -474,8 +474,25 @@ export interface Tour {
 /** Unit of length. */
 export type Unit = "mm" | "cm" | "m";
 
-/** Up direction. */
-export type Axis = "x" | "y" | "z";
+/** Why a unit or an up direction is proposed. `given`: who imported it said so. `format`: glTF is in metres with +Y up. `comment`: a comment of the file says so. `coordinates`: they are of a map. `size`: things of this size are what is scanned. `shape`: this is how it would stand. */
+export type ScaleReason = "given" | "format" | "comment" | "coordinates" | "size" | "shape";
+
+/** Up direction. An axis of the model, or its opposite. */
+export type Axis = "x" | "y" | "z" | "-x" | "-y" | "-z";
+
+/** The unit and the up direction that the file states or lets one guess. Made at import; models of before have none. It does not change when `unit` and `up` do. */
+export interface ScaleProposal {
+  unit: Unit;
+  unit_reason: ScaleReason;
+  unit_confidence: number;
+  /** The comment of the file that names the unit. */
+  unit_comment?: string;
+  up: Axis;
+  up_reason: ScaleReason;
+  up_confidence: number;
+  /** The comment of the file that names the up direction. */
+  up_comment?: string;
+}
 
 /** Box. */
 export interface Bounds {
@@ -532,6 +549,7 @@ export interface Model {
   /** A person has said that the size is right. */
   scale_verified: boolean;
   up: Axis;
+  proposal?: ScaleProposal;
   north: string;
   /** EPSG:n, or empty. */
   crs: string;

@@ -151,11 +151,38 @@ void read(const nlohmann::json& json, TourTransition& value) {
 
 nlohmann::json to_json(const TourTransition& value) { return name(value); }
 
+std::string_view name(ScaleReason value) {
+  switch (value) {
+    case ScaleReason::given: return "given";
+    case ScaleReason::format: return "format";
+    case ScaleReason::comment: return "comment";
+    case ScaleReason::coordinates: return "coordinates";
+    case ScaleReason::size: return "size";
+    case ScaleReason::shape: return "shape";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, ScaleReason& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "given") value = ScaleReason::given;
+  if (text == "format") value = ScaleReason::format;
+  if (text == "comment") value = ScaleReason::comment;
+  if (text == "coordinates") value = ScaleReason::coordinates;
+  if (text == "size") value = ScaleReason::size;
+  if (text == "shape") value = ScaleReason::shape;
+}
+
+nlohmann::json to_json(const ScaleReason& value) { return name(value); }
+
 std::string_view name(Axis value) {
   switch (value) {
     case Axis::x: return "x";
     case Axis::y: return "y";
     case Axis::z: return "z";
+    case Axis::_x: return "-x";
+    case Axis::_y: return "-y";
+    case Axis::_z: return "-z";
   }
   return {};
 }
@@ -165,6 +192,9 @@ void read(const nlohmann::json& json, Axis& value) {
   if (text == "x") value = Axis::x;
   if (text == "y") value = Axis::y;
   if (text == "z") value = Axis::z;
+  if (text == "-x") value = Axis::_x;
+  if (text == "-y") value = Axis::_y;
+  if (text == "-z") value = Axis::_z;
 }
 
 nlohmann::json to_json(const Axis& value) { return name(value); }
@@ -973,6 +1003,30 @@ nlohmann::json to_json(const TourRecords& value) {
   write_member(json, "table", value.table);
   write_member(json, "keys", value.keys);
   write_member(json, "columns", value.columns);
+  return json;
+}
+
+void read(const nlohmann::json& json, ScaleProposal& value) {
+  read_member(json, "unit", value.unit);
+  read_member(json, "unit_reason", value.unit_reason);
+  read_member(json, "unit_confidence", value.unit_confidence);
+  read_optional_member(json, "unit_comment", value.unit_comment);
+  read_member(json, "up", value.up);
+  read_member(json, "up_reason", value.up_reason);
+  read_member(json, "up_confidence", value.up_confidence);
+  read_optional_member(json, "up_comment", value.up_comment);
+}
+
+nlohmann::json to_json(const ScaleProposal& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "unit", value.unit);
+  write_member(json, "unit_reason", value.unit_reason);
+  write_member(json, "unit_confidence", value.unit_confidence);
+  write_optional_member(json, "unit_comment", value.unit_comment);
+  write_member(json, "up", value.up);
+  write_member(json, "up_reason", value.up_reason);
+  write_member(json, "up_confidence", value.up_confidence);
+  write_optional_member(json, "up_comment", value.up_comment);
   return json;
 }
 

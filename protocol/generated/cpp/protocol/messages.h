@@ -86,6 +86,8 @@ enum class Schema {
   TourStop,
   Tour,
   Unit,
+  ScaleReason,
+  ScaleProposal,
   Axis,
   Bounds,
   Atlas,
@@ -307,7 +309,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 281;
+constexpr int kSchemaCount = 283;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -562,11 +564,34 @@ inline constexpr Schema kSchemaOf<TourRecords> = Schema::TourRecords;
 
 using Unit = strata::Unit;
 
-// Up direction.
-enum class Axis { x, y, z };
+// Why a unit or an up direction is proposed. `given`: who imported it said so. `format`: glTF is in metres with +Y up. `comment`: a comment of the file says so. `coordinates`: they are of a map. `size`: things of this size are what is scanned. `shape`: this is how it would stand.
+enum class ScaleReason { given, format, comment, coordinates, size, shape };
+std::string_view name(ScaleReason value);
+void read(const nlohmann::json& json, ScaleReason& value);
+nlohmann::json to_json(const ScaleReason& value);
+
+// Up direction. An axis of the model, or its opposite.
+enum class Axis { x, y, z, _x, _y, _z };
 std::string_view name(Axis value);
 void read(const nlohmann::json& json, Axis& value);
 nlohmann::json to_json(const Axis& value);
+
+// The unit and the up direction that the file states or lets one guess. Made at import; models of before have none. It does not change when `unit` and `up` do.
+struct ScaleProposal {
+  strata::Unit unit{};
+  ScaleReason unit_reason{};
+  double unit_confidence = 0;
+  std::optional<std::string> unit_comment;  // The comment of the file that names the unit.
+  Axis up{};
+  ScaleReason up_reason{};
+  double up_confidence = 0;
+  std::optional<std::string> up_comment;  // The comment of the file that names the up direction.
+  bool operator==(const ScaleProposal&) const = default;
+};
+void read(const nlohmann::json& json, ScaleProposal& value);
+nlohmann::json to_json(const ScaleProposal& value);
+template <>
+inline constexpr Schema kSchemaOf<ScaleProposal> = Schema::ScaleProposal;
 
 // Box.
 struct Bounds {
