@@ -110,7 +110,8 @@ describe("addresses", () => {
 describe("dropped files", () => {
   const named = (...paths: string[]): DroppedFile[] =>
     paths.map((path) => ({ path, file: { name: path.split("/").at(-1)! } as File }));
-  const chosen = (...paths: string[]): string[][] => choose_scans(named(...paths)).map((scan) => scan.map(({ path }) => path));
+  const chosen = (...paths: string[]): string[][] => choose_scans(named(...paths)).map((scan) => scan.files.map(({ path }) => path));
+  const names = (...paths: string[]): string[] => choose_scans(named(...paths)).map((scan) => scan.name);
   const told = (): string => {
     let titles = "";
     notices.subscribe((shown) => (titles = shown.map((notice) => notice.title).join()))();
@@ -125,6 +126,12 @@ describe("dropped files", () => {
   it("of several meshes each brings what is called like it", () => {
     expect(chosen("a.obj", "b.obj", "a.mtl", "b_0.png")).toEqual([["a.obj", "a.mtl"], ["b.obj", "b_0.png"]]);
     expect(chosen("x/a.ply", "y/a.ply", "y/a.png")).toEqual([["a.ply"], ["a.ply", "a.png"]]);
+  });
+  it("of meshes that are called the same each is named with the folders that tell them apart", () => {
+    expect(names("a/mesh.obj", "b/mesh.obj", "c/other_pot.ply")).toEqual(["a/mesh", "b/mesh", "other pot"]);
+    expect(names("x/in/mesh.obj", "y/in/mesh.obj")).toEqual(["x/in/mesh", "y/in/mesh"]);
+    expect(names("mesh.obj", "b/mesh.obj")).toEqual(["mesh", "b/mesh"]);
+    expect(names("deep/down/mesh_1.obj")).toEqual(["mesh 1"]);
   });
   it("what is left over is told", () => {
     expect(chosen("a.obj", "readme.txt")).toEqual([["a.obj"]]);

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { OrbitCamera, type StandardView, type UpAxis } from "../src/core/camera";
+import { kUpAxes, OrbitCamera, type StandardView, type UpAxis } from "../src/core/camera";
 import { add, dot, length, scale, subtract, transform, type Vec3, type Vec4 } from "../src/core/vector";
 
 // A building in UTM coordinates: doubles must hold millimetres there.
@@ -29,9 +29,12 @@ describe("standard views", () => {
     z: { eye: [0, -1, 0], right: [1, 0, 0], up: [0, 0, 1] },
     y: { eye: [0, 0, 1], right: [1, 0, 0], up: [0, 1, 0] },
     x: { eye: [0, 0, -1], right: [0, 1, 0], up: [1, 0, 0] },
+    "-z": { eye: [0, 1, 0], right: [1, 0, 0], up: [0, 0, -1] },
+    "-y": { eye: [0, 0, -1], right: [1, 0, 0], up: [0, -1, 0] },
+    "-x": { eye: [0, 0, 1], right: [0, 1, 0], up: [-1, 0, 0] },
   };
 
-  for (const up of ["x", "y", "z"] as const) {
+  for (const up of kUpAxes) {
     const front = fronts[up];
     const expected: Record<StandardView, Vec3> = {
       front: front.eye,

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import { Api, ApiError, name_of_file, new_id, problem_of_text } from "../src/core/api";
-import { detail_choices, format_area, format_length, format_number, format_size, likely_unit, scale_bar, ticks } from "../src/core/measure";
+import { detail_choices, format_area, format_length, format_number, format_size, likely_scale, scale_bar, ticks } from "../src/core/measure";
 import { class_palette, color_of, css_gradient, measurement_palette, presence_palette, purpose_of, same_palette } from "../src/core/palette";
 import { complete_palette } from "../src/core/types";
 
@@ -35,17 +35,14 @@ describe("numbers as people write them", () => {
     expect(ticks(-0.3, 0.9)).toEqual([0, 0.5]);
     expect(ticks(5, 5)).toEqual([5]);
   });
-  it("an object without a unit is likely in millimetres, a site in metres", () => {
-    const model = (size: number, from: number, more = {}) => ({
-      unit: "m" as const, unit_assumed: true, scale_verified: false, crs: "", ...more,
-      bounds: { min: [from, from, 0] as [number, number, number], max: [from + size, from + size / 2, 3] as [number, number, number] },
-    }); // prettier-ignore
-    expect(likely_unit(model(239, -100))).toBe("mm");
-    expect(likely_unit(model(1.2, 0))).toBe("m");
-    expect(likely_unit(model(40, 500_000))).toBe("m");
-    expect(likely_unit(model(40, 0, { crs: "EPSG:25830" }))).toBe("m");
-    expect(likely_unit(model(239, 0, { unit_assumed: false, unit: "cm" }))).toBe("cm");
-    expect(likely_unit(model(239, 0, { scale_verified: true }))).toBe("m");
+  it("a question about the size begins with what is proposed, unless somebody has said otherwise", () => {
+    const proposal = { unit: "mm", unit_reason: "size", unit_confidence: 0.8, up: "y", up_reason: "shape", up_confidence: 0.7 } as const;
+    const model = { unit: "m", unit_assumed: true, scale_verified: false, up: "z", proposal } as const;
+    expect(likely_scale(model)).toEqual({ unit: "mm", up: "y" });
+    expect(likely_scale({ ...model, unit: "cm", unit_assumed: false })).toEqual({ unit: "cm", up: "y" });
+    expect(likely_scale({ ...model, up: "-x" })).toEqual({ unit: "mm", up: "-x" });
+    expect(likely_scale({ ...model, scale_verified: true })).toEqual({ unit: "m", up: "z" });
+    expect(likely_scale({ ...model, proposal: undefined })).toEqual({ unit: "m", up: "z" });
   });
   it("the smallest detail halves with each doubling of the layer", () => {
     const choices = detail_choices({ lowest_resolution: 2048, texel_area_max_m2: 6.4e-7 });

@@ -12,6 +12,11 @@ const open_dialogs = new Set<HTMLDialogElement>();
 /** Keys that reach the page while a dialog is open, because nothing in it has the focus, are not for the page. */
 export const modal_is_open = (): boolean => open_dialogs.size > 0;
 
+const docked_dialogs = new Set<HTMLDialogElement>();
+
+/** A dialog stands beside the picture: the page goes on, but nothing else asks for attention. */
+export const docked_is_open = (): boolean => docked_dialogs.size > 0;
+
 @customElement("strata-dialog")
 export class StrataDialog extends LitElement {
   @property() heading = "";
@@ -28,6 +33,8 @@ export class StrataDialog extends LitElement {
   @property({ type: Boolean, reflect: true }) long = false;
   /** Leaves the picture behind it visible: for questions about what is seen. */
   @property({ type: Boolean, reflect: true }) aside = false;
+  /** Stands beside the picture, which is neither dimmed nor out of reach: for questions that one answers by looking at the model. */
+  @property({ type: Boolean, reflect: true }) docked = false;
   /** Asked before a person closes it by Escape, its cross or beside it; null: it closes. close() does not ask. */
   @property({ attribute: false }) may_close: (() => Promise<boolean>) | null = null;
   @state() private acts_ = false; // has buttons of its own
@@ -80,6 +87,13 @@ export class StrataDialog extends LitElement {
       }
       :host([aside]) dialog::backdrop {
         background: var(--thin-veil);
+      }
+      :host([docked]) dialog {
+        position: fixed;
+        inset: 4.125rem 0.875rem auto auto;
+        max-height: calc(100dvh - 5rem);
+        margin: 0;
+        z-index: 30;
       }
       .head {
         display: flex;
@@ -134,13 +148,22 @@ export class StrataDialog extends LitElement {
         :host([aside]) dialog {
           margin: auto 0 0;
         }
+        :host([docked]) dialog {
+          inset: auto 0 0 0;
+          max-height: 62dvh; /* what it asks about is seen above it */
+        }
       }
     `,
   ];
 
   override firstUpdated(): void {
-    this.dialog_.showModal();
-    open_dialogs.add(this.dialog_);
+    if (this.docked) {
+      this.dialog_.show();
+      docked_dialogs.add(this.dialog_);
+    } else {
+      this.dialog_.showModal();
+      open_dialogs.add(this.dialog_);
+    }
     void this.begin();
   }
 
@@ -161,6 +184,7 @@ export class StrataDialog extends LitElement {
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     open_dialogs.delete(this.dialog_);
+    docked_dialogs.delete(this.dialog_);
   }
 
   /** Closes and tells: the owner removes the element on "closed". */
@@ -182,6 +206,13 @@ export class StrataDialog extends LitElement {
 
   override render(): TemplateResult {
     const used = (): void => void (this.used_ = true);
+    const on_key = (event: KeyboardEvent): void => {
+      used();
+      if (!this.docked || event.key !== "Escape" || event.defaultPrevented) return; // of others the browser takes care
+      event.preventDefault();
+      event.stopPropagation();
+      void this.leave();
+    };
     return html`<dialog
       aria-labelledby="heading"
       tabindex="-1"
@@ -189,7 +220,7 @@ export class StrataDialog extends LitElement {
       @cancel=${this.on_cancel}
       @close=${this.on_close}
       @click=${this.on_click}
-      @keydown=${used}
+      @keydown=${on_key}
       @pointerdown=${used}
       @input=${used}
     >
@@ -232,11 +263,12 @@ export class StrataDialog extends LitElement {
       return;
     }
     open_dialogs.delete(this.dialog_);
+    docked_dialogs.delete(this.dialog_);
     this.dispatchEvent(new CustomEvent("closed"));
   }
 
   private on_click(event: MouseEvent): void {
-    if (event.target === this.dialog_) void this.leave(); // the backdrop
+    if (event.target === this.dialog_ && !this.docked) void this.leave(); // the backdrop
   }
 }
 

@@ -4,7 +4,8 @@ import { ApiError, type Api } from "../core/api";
 import type { Job } from "../core/types";
 
 const kPoll_ms = 400;
-const kMostFailedPolls = 20;
+const kLongestPoll_ms = 5000;
+const kMostFailedPolls = 60; // some minutes: a server that restarts answers what became of the job
 
 export const job_is_over = (job: Job): boolean => job.state !== "queued" && job.state !== "running";
 
@@ -15,7 +16,8 @@ export async function follow_job(api: Api, first: Job, tell: (job: Job) => void)
   for (;;) {
     tell(job);
     if (job_is_over(job)) return job;
-    await new Promise((resolve) => setTimeout(resolve, kPoll_ms));
+    const pause_ms = Math.min(kPoll_ms * 1.5 ** failed_polls, kLongestPoll_ms);
+    await new Promise((resolve) => setTimeout(resolve, pause_ms));
     try {
       job = await api.job(job.id);
       failed_polls = 0;

@@ -325,7 +325,15 @@ export class StrataHomePage extends LitElement {
       </div>
       ${busy
         ? html`<button aria-label=${words.cancel(entry.name)} @click=${() => void this.cancel(entry)}>${texts.cancel}</button>`
-        : html`<button
+        : html`${entry.may_repeat
+              ? html`<button
+                  aria-label=${words.repeat_named(entry.name)}
+                  @click=${() => this.dispatchEvent(new CustomEvent<ImportEntry>("repeat-import", { detail: entry }))}
+                >
+                  ${words.repeat}
+                </button>`
+              : nothing}
+          <button
             class="icon quiet"
             aria-label=${words.dismiss(entry.name)}
             @click=${() => this.imports.dismiss(entry.key)}

@@ -3,6 +3,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
+import { axis_name } from "../core/camera";
 import { flat_polygon, height_of, legs_of, sum } from "../core/measured-line";
 import { kMeasuredDigits, measured_area, measured_length, metres_per } from "../core/measure";
 import type { Model } from "../core/types";
@@ -160,7 +161,7 @@ export class StrataMeasurePanel extends LitElement {
         ${measuring.along === null || !has_way
           ? html`<dd class="wait">${measuring.busy ? words.busy : "–"}</dd>`
           : html`<dd data-figure="along">${told(measuring.along)}</dd>`}
-        <dt>${words.rise(model.up)}</dt>
+        <dt>${words.rise(axis_name(model.up))}</dt>
         <dd data-figure="rise">${rise > 0 ? "+" : ""}${told(rise)}</dd>
         ${polygon
           ? html`<dt>${words.area}</dt>
@@ -189,7 +190,7 @@ export class StrataMeasurePanel extends LitElement {
         <label class="field">
           <span>${words.shows}</span>
           <select @change=${(event: Event) => measuring.choose_layer(Number((event.target as HTMLSelectElement).value) || null)}>
-            <option value="" ?selected=${layer === null}>${words.height(model.up)}</option>
+            <option value="" ?selected=${layer === null}>${words.height(axis_name(model.up))}</option>
             ${layers.map((each) => html`<option value=${each.id} ?selected=${layer?.id === each.id}>${each.name}${each.unit ? ` (${each.unit})` : ""}</option>`)}
           </select>
         </label>

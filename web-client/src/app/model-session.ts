@@ -88,6 +88,7 @@ export class ModelSession {
   private readonly connection_: Connection;
   private readonly listeners_ = new Set<() => void>();
   private etag_ = "";
+  private preview_unit_: Model["unit"] | null = null;
   private was_open_ = false;
   private closed_ = false; // its page is gone
   private told_left_ = false;
@@ -568,8 +569,17 @@ export class ModelSession {
     this.take_model(await this.api.model(this.model_id));
   }
 
-  preview_up(up: Model["up"]): void {
-    if (this.model) this.view.preview_up(this.model, up);
+  /** Shows the model as if it had this unit and up direction, without keeping them; null: as it has them. */
+  preview_scale(scale: Pick<Model, "unit" | "up"> | null): void {
+    if (!this.model) return;
+    this.preview_unit_ = scale?.unit ?? null;
+    this.view.preview_up(this.model, scale?.up ?? this.model.up);
+    this.changed();
+  }
+
+  /** What lengths on the screen are told in. */
+  get shown_unit(): Model["unit"] {
+    return this.preview_unit_ ?? this.model?.unit ?? "m";
   }
 
   private take_model({ value, etag }: Versioned<Model>): void {

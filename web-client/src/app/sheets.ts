@@ -2,6 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
+import { up_name } from "../core/camera";
 import { format_count } from "../core/locale";
 import { detail_choices, format_area, format_bytes, format_length, format_size, metres_per } from "../core/measure";
 import { may_download, type Model, type Role } from "../core/types";
@@ -114,7 +115,7 @@ export class StrataAboutSheet extends LitElement {
       [words.size, format_size(sides)],
       [words.area, format_area(model.area_m2)],
       [words.triangles, format_count(model.triangles)],
-      [words.up, model.up.toUpperCase()],
+      [words.up, up_name(model.up)],
       [words.smallest, detail ? format_length(detail.detail_m) : ""],
       [words.crs, model.crs],
       [words.inventory_number, model.inventory_number],

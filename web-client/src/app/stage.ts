@@ -135,6 +135,10 @@ export class StrataStage extends LitElement {
         border-radius: 5px;
         background: var(--on-stage-ground);
       }
+      .scale small {
+        display: block;
+        font-weight: 400;
+      }
       .scale i {
         display: block;
         height: 6px;
@@ -268,9 +272,9 @@ export class StrataStage extends LitElement {
     const { session } = this;
     if (!session.model || session.view.frames_drawn === 0) return html``;
     const depth = session.pointer.picked?.hit ? session.pointer.surface_depth() : session.view.camera.distance;
-    const metres_per_px = session.view.camera.unit_per_pixel(depth) * session.view.scale * metres_per(session.model.unit);
+    const metres_per_px = session.view.camera.unit_per_pixel(depth) * session.view.scale * metres_per(session.shown_unit);
     const bar = scale_bar(metres_per_px, kScaleBar_px);
     const lowered = session.together.followed || session.together.leading;
-    return html`<div class="scale numeric ${lowered ? "lowered" : ""}"><i ${styled({ width: `${bar.px.toFixed(1)}px` })}></i>${bar.label}</div>`;
+    return html`<div class="scale numeric ${lowered ? "lowered" : ""}"><i ${styled({ width: `${bar.px.toFixed(1)}px` })}></i>${bar.label}${session.model.scale_verified ? nothing : html`<small>${texts.home.scale_open}</small>`}</div>`;
   }
 }

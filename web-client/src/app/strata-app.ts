@@ -4,7 +4,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
 import { keyed } from "lit/directives/keyed.js";
-import { Api, ApiError, name_of_file } from "../core/api";
+import { Api, ApiError } from "../core/api";
 import type { Project } from "../core/protocol.gen";
 import type { Me } from "../core/types";
 import type { AccountRequest } from "./account-menu";
@@ -13,7 +13,7 @@ import { ask } from "./dialog";
 import { invitation_of } from "./entry";
 import { icon } from "./icons";
 import { dropped_files, has_files, without_folders, type DroppedFile } from "./drop";
-import { choose_scans, Imports, type Scan } from "./imports";
+import { choose_scans, Imports, type ImportEntry, type ImportResult, type Scan } from "./imports";
 import { notices } from "./notices";
 import "./notices-view";
 import { load_part, load_part_later } from "./page-parts";
@@ -202,6 +202,7 @@ export class StrataApp extends LitElement {
           .curated=${this.curated}
           .into=${this.into}
           .imports=${this.imports_}
+          @repeat-import=${this.repeat_import}
           .imported=${this.imported_}
           @account=${this.on_account}
           @signed-out=${this.signed_out}
@@ -280,14 +281,21 @@ export class StrataApp extends LitElement {
 
   private async import_scan(scan: Scan, alone: boolean): Promise<void> {
     const { into } = this;
-    if (!into) return;
-    const { model, problem } = await this.imports_.start(scan, into.slug);
+    if (into) await this.take_import(this.imports_.start(scan, into.slug), scan.name, alone);
+  }
+
+  private readonly repeat_import = ({ detail }: CustomEvent<ImportEntry>): void => {
+    void this.take_import(this.imports_.repeat(detail.key), detail.name, this.imports_.entries.length === 1);
+  };
+
+  private async take_import(ending: Promise<ImportResult>, name: string, alone: boolean): Promise<void> {
+    const { model, problem } = await ending;
     this.imported_ += 1;
     if (problem && this.route_.page !== "home") notices.problem(problem); // the home page lists it
     if (model === null) return;
     const opens = alone && this.route_.page === "home"; // a person at work on another model is not carried off
     const link = { href: path_of_model(model), label: texts.import.open };
-    notices.show("success", texts.import.ready(name_of_file(scan[0].file.name)), "", opens ? null : link);
+    notices.show("success", texts.import.ready(name), "", opens ? null : link);
     if (opens) navigate(link.href);
   }
 

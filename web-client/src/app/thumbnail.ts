@@ -12,6 +12,8 @@ import { when_seen } from "./when-seen";
 
 const kWidth = 640;
 const kHeight = 480;
+const kSmallWidth = 240; // on screens with two pixels for one, too
+const kSmallHeight = 180;
 const kViewSide = 256;
 let busy: Promise<void> = Promise.resolve(); // one picture at a time, so that a gallery never crowds out people at work
 
@@ -21,6 +23,8 @@ export class StrataThumbnail extends LitElement {
   @property({ attribute: false }) model!: Model;
   @property({ attribute: false, hasChanged: (now: View | null, before: View | null) => now?.id !== before?.id || now?.version !== before?.version })
   view: View | null = null;
+  /** Small, and with this direction up in place of the model's own. */
+  @property() up: Model["up"] | null = null;
   @state() private state_: "waiting" | "drawn" | "failed" = "waiting";
   @query("canvas") private canvas_!: HTMLCanvasElement;
   private wanted_: AbortController | null = null; // ends the wait for its picture, or the request
@@ -98,8 +102,9 @@ export class StrataThumbnail extends LitElement {
   private picture(signal: AbortSignal): Promise<Blob> {
     if (this.view) return this.api.view_picture(this.model.id, this.view.id, kViewSide, signal);
     const camera = new OrbitCamera();
-    camera.set_model(this.model.bounds, this.model.up);
-    camera.resize(kWidth, kHeight);
+    camera.set_model(this.model.bounds, this.up ?? this.model.up);
+    if (this.up) camera.resize(kSmallWidth, kSmallHeight);
+    else camera.resize(kWidth, kHeight);
     camera.first_view();
     return this.api.frame(this.model.id, camera.message(), signal);
   }

@@ -4,7 +4,7 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { beside_bar, type Box, type Size } from "../core/beside";
-import { modal_is_open } from "./dialog";
+import { docked_is_open, modal_is_open } from "./dialog";
 import { follow_session } from "./follow-session";
 import { has_keyboard } from "./keyboard";
 import type { ModelSession } from "./model-session";
@@ -148,7 +148,7 @@ export class StrataTour extends LitElement {
 
   private may_begin(): boolean {
     const { session } = this;
-    return session.view.frames_drawn > 0 && session.comments.card === null && !this.held && !modal_is_open() && !tour_is_over();
+    return session.view.frames_drawn > 0 && session.comments.card === null && !this.held && !modal_is_open() && !docked_is_open() && !tour_is_over();
   }
 
   private thing(name: StepName): TourThing | null {

@@ -58,7 +58,10 @@ export class ViewControl {
 
   /** Shows the model with another up direction without keeping it. */
   preview_up(model: Model, up: Model["up"]): void {
+    if (this.camera.up === up) return;
+    this.end_flight();
     this.camera.set_model(model.bounds, up);
+    this.camera.fit(); // another side of it lies before the eye
     this.moved(false);
   }
 

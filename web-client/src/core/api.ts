@@ -234,9 +234,10 @@ export class Api {
   }
 
   /** A mesh as the raw body, or with its companions as a form; with progress (0…1 of the bytes sent). `project`: id or slug. */
-  upload_model(files: readonly UploadFile[], project: string, progress: (share: number) => void): Upload<Job> {
+  /** What the file does not say of its unit and up direction is taken as the server proposes it, until somebody confirms it. */
+  upload_model(files: readonly UploadFile[], name: string, project: string, progress: (share: number) => void): Upload<Job> {
     const { file } = files[0]!;
-    const query = new URLSearchParams({ name: name_of_file(file.name), filename: file.name, project });
+    const query = new URLSearchParams({ name, filename: file.name, project, unit: "proposed", up: "proposed" });
     return this.upload("POST", `/models?${query}`, files, progress);
   }
 

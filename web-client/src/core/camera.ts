@@ -4,7 +4,7 @@
 import type { Plane } from "./protocol.gen";
 import { add, cross, dot, length, scale, subtract, transform, type Mat4, type Vec3 } from "./vector";
 
-export type UpAxis = "x" | "y" | "z";
+export type UpAxis = "x" | "y" | "z" | "-x" | "-y" | "-z";
 export type StandardView = "front" | "back" | "left" | "right" | "top" | "bottom";
 
 export interface Bounds {
@@ -33,12 +33,22 @@ interface Frame {
   up: Vec3;
 }
 
-// Right-handed frames of the front view: `right` of the picture, `into` the picture, `up`.
+// Right-handed frames of the front view: `right` of the picture, `into` the picture, `up`. That of an axis' opposite is turned about `right`
+// by half a turn, as the server has it (server/core/up.h).
 export const kFrames: Record<UpAxis, Frame> = {
   z: { right: [1, 0, 0], into: [0, 1, 0], up: [0, 0, 1] },
   y: { right: [1, 0, 0], into: [0, 0, -1], up: [0, 1, 0] },
   x: { right: [0, 1, 0], into: [0, 0, 1], up: [1, 0, 0] },
+  "-z": { right: [1, 0, 0], into: [0, -1, 0], up: [0, 0, -1] },
+  "-y": { right: [1, 0, 0], into: [0, 0, 1], up: [0, -1, 0] },
+  "-x": { right: [0, 1, 0], into: [0, 0, -1], up: [-1, 0, 0] },
 };
+export const kUpAxes: readonly UpAxis[] = ["x", "y", "z", "-x", "-y", "-z"];
+
+/** "z", "−y". */
+export const axis_name = (up: UpAxis): string => up.replace("-", "−");
+/** "+Z", "−Y". */
+export const up_name = (up: UpAxis): string => (up.startsWith("-") ? `−${up.slice(1)}` : `+${up}`).toUpperCase();
 
 export const centre = (bounds: Bounds): Vec3 => scale(add(bounds.min, bounds.max), 0.5);
 export const bounding_radius = (bounds: Bounds): number => Math.max(length(subtract(bounds.max, bounds.min)) / 2, 1e-9);

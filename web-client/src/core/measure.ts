@@ -57,18 +57,16 @@ export function format_size(sides_in_metres: readonly number[]): string {
   return `${sides_in_metres.map(side).join(" × ")} ${unit}`;
 }
 
-/**
- * The likeliest unit of a file that names none, for the question after import: an object "239 units" long is one of
- * millimetres, unless it lies far from zero, as surveyed sites do.
- */
-export function likely_unit(model: Pick<Model, "unit" | "unit_assumed" | "scale_verified" | "crs" | "bounds">): Unit {
-  const { min, max } = model.bounds;
-  const axes = [0, 1, 2];
-  const longest = Math.max(...axes.map((axis) => max[axis]! - min[axis]!));
-  const farthest = Math.max(...axes.map((axis) => Math.max(Math.abs(min[axis]!), Math.abs(max[axis]!))));
-  const surveyed = model.crs !== "" || farthest > Math.max(10_000, 20 * longest);
-  return model.unit_assumed && !model.scale_verified && !surveyed && longest > 20 ? "mm" : model.unit;
+/** What is asked about a model first: while nobody has confirmed it, what the server proposes where nobody has said otherwise. */
+export function likely_scale(model: Pick<Model, "unit" | "unit_assumed" | "scale_verified" | "up" | "proposal">): Pick<Model, "unit" | "up"> {
+  const { proposal } = model;
+  if (model.scale_verified || !proposal) return { unit: model.unit, up: model.up };
+  return {
+    unit: model.unit_assumed ? proposal.unit : model.unit,
+    up: model.up === kUpWithoutProposal ? proposal.up : model.up,
+  };
 }
+const kUpWithoutProposal = "z"; // of models whose importer said nothing and did not ask for the proposal
 
 export function format_bytes(bytes: number): string {
   if (bytes < 1e6) return `${format_number(bytes / 1e3)} kB`;
