@@ -442,6 +442,8 @@ CREATE TABLE public.all_layers (
     binned_by text,
     binned_bytes bigint,
     erasing boolean DEFAULT false NOT NULL,
+    labels jsonb DEFAULT '{}'::jsonb NOT NULL,
+    descriptions jsonb DEFAULT '{}'::jsonb NOT NULL,
     CONSTRAINT all_layers_check CHECK ((((binned IS NULL) = (binned_by IS NULL)) AND ((binned IS NULL) = (binned_bytes IS NULL)) AND ((binned IS NOT NULL) OR (NOT erasing)))),
     CONSTRAINT layers_check CHECK (((kind = 'database'::text) = (table_id IS NOT NULL))),
     CONSTRAINT layers_check1 CHECK (((expression IS NOT NULL) OR (NOT automatic))),
@@ -525,7 +527,9 @@ CREATE VIEW public.layers AS
     all_layers.summed,
     all_layers.locked,
     all_layers.visibility,
-    all_layers.review
+    all_layers.review,
+    all_layers.labels,
+    all_layers.descriptions
    FROM public.all_layers
   WHERE ((all_layers.binned IS NULL) AND (EXISTS ( SELECT 1
            FROM public.all_models m

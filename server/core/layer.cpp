@@ -14,6 +14,8 @@ nlohmann::json to_json(const Layer& layer) {
                       {"resolution", layer.resolution},
                       {"unit", layer.unit},
                       {"description", layer.description},
+                      {"labels", layer.labels},
+                      {"descriptions", layer.descriptions},
                       {"palette", to_json(layer.palette)},
                       {"opacity", layer.opacity},
                       {"visible", layer.visible},

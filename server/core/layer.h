@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/labels.h"
 #include "core/palette.h"
 #include "core/visibility.h"
 
@@ -39,6 +40,8 @@ struct Layer {
   int resolution = 2048;  // texels a side: a power of two, atlas.lowest_resolution…16384
   std::string unit;
   std::string description;
+  Labels labels;        // its name in other languages
+  Labels descriptions;  // its description in other languages
   Palette palette;
   bool palette_of_terms = false;  // it follows the colours of the terms of its table, and is not kept
   double opacity = 1;

@@ -26,12 +26,10 @@ bool is_language_tag(std::string_view tag) {
   });
 }
 
-Result<void> check_short(const std::string& text, const std::string& field) {
-  if (text.size() <= kLongestColumnText && is_utf8(text) && text.find('\0') == std::string::npos) return {};
-  return fail(
-      422, "Bad text",
-      "`" + field + "` must be UTF-8 of at most " + std::to_string(kLongestColumnText) + " bytes, without U+0000.",
-      field);
+Result<void> check_short(const std::string& text, const std::string& field, std::size_t longest = kLongestColumnText) {
+  if (text.size() <= longest && is_utf8(text) && text.find('\0') == std::string::npos) return {};
+  return fail(422, "Bad text",
+              "`" + field + "` must be UTF-8 of at most " + std::to_string(longest) + " bytes, without U+0000.", field);
 }
 
 Result<void> check_choices(const Column& column) {
@@ -94,12 +92,16 @@ std::optional<ColumnKind> parse_column_kind(std::string_view name) {
 }
 
 Result<void> check_labels(const Labels& labels, const std::string& field) {
-  if (labels.size() > 100) return fail(422, "Too many labels", "A thing has at most 100 labels.", field);
-  for (const auto& [tag, label] : labels) {
+  return check_texts_by_language(labels, kLongestColumnText, field);
+}
+
+Result<void> check_texts_by_language(const Labels& texts, std::size_t longest, const std::string& field) {
+  if (texts.size() > 100) return fail(422, "Too many labels", "A thing has at most 100 labels.", field);
+  for (const auto& [tag, text] : texts) {
     if (!is_language_tag(tag))
       return fail(422, "Bad language", "\"" + mended_utf8(tag) + "\" is no language tag such as `es` or `pt-BR`.",
                   field);
-    if (auto good = check_short(label, field + "." + tag); !good) return good;
+    if (auto good = check_short(text, field + "." + tag, longest); !good) return good;
   }
   return {};
 }

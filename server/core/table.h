@@ -7,13 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "core/labels.h"
 #include "core/problem.h"
 #include "core/visibility.h"
 
 namespace strata {
-
-// What people call a thing, by language tag (BCP 47: "es", "pt-BR").
-using Labels = std::map<std::string, std::string>;
 
 enum class ColumnKind {
   text,
@@ -93,6 +91,8 @@ struct Record {
 // Puts the default into its canonical form. The field of a Problem is the column's own ("choices", "default").
 Result<void> check_column(Column& column);
 Result<void> check_labels(const Labels& labels, const std::string& field = "labels");
+// Texts in other languages, each of at most `longest` bytes.
+Result<void> check_texts_by_language(const Labels& texts, std::size_t longest, const std::string& field);
 
 nlohmann::json to_json(const Column& column);
 nlohmann::json to_json(const Table& table);

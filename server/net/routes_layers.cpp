@@ -66,6 +66,8 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
         "resolution");
   layer.unit = asked.unit;
   layer.description = asked.description;
+  layer.labels = asked.labels.value_or(Labels());
+  layer.descriptions = asked.descriptions.value_or(Labels());
   auto palette = palette_of(asked.palette, layer.type, layer.kind == LayerKind::database);
   if (!palette) return tl::unexpected(palette.error());
   layer.palette = std::move(*palette);
@@ -169,6 +171,8 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   if (asked->name) layer->name = *asked->name;
   if (asked->unit) layer->unit = *asked->unit;
   if (asked->description) layer->description = *asked->description;
+  if (asked->labels) layer->labels = *asked->labels;
+  if (asked->descriptions) layer->descriptions = *asked->descriptions;
   if (asked->palette) {
     auto palette = palette_from_json(*asked->palette);
     if (!palette) return tl::unexpected(palette.error());

@@ -47,6 +47,7 @@ Result<std::vector<WishedLayer>> wished_layers(const protocol::Template& of, con
     WishedLayer next;
     next.layer.model_id = model.id;
     next.layer.name = name_in(told.name, told.labels, language);
+    next.layer.labels = labels_with(told.name, told.labels);
     const std::string plain = search_text(next.layer.name);
     for (const Layer& other : others)
       if (search_text(other.name) == plain)

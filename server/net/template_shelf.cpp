@@ -30,13 +30,6 @@ const std::string* label_of(const std::optional<protocol::Labels>& labels, const
   return nullptr;
 }
 
-// All that a thing is called, the English name among them.
-Labels labels_with(const std::string& name, const std::optional<protocol::Labels>& labels) {
-  Labels all = labels.value_or(Labels());
-  all.emplace(kEnglish, name);
-  return all;
-}
-
 Result<TermList> terms_of(const std::vector<protocol::TemplateTerm>& terms,
                           const std::optional<std::string>& language) {
   TermList list;
@@ -139,6 +132,12 @@ std::string name_in(const std::string& name, const std::optional<protocol::Label
                     const std::optional<std::string>& language) {
   const std::string* label = label_of(labels, language);
   return label ? *label : name;
+}
+
+Labels labels_with(const std::string& name, const std::optional<protocol::Labels>& labels) {
+  Labels all = labels.value_or(Labels());
+  all.emplace(kEnglish, name);
+  return all;
 }
 
 Result<std::vector<store::Store::NewTable>> new_tables(const protocol::Template& of, std::int64_t project_id,

@@ -27,6 +27,9 @@ class TemplateShelf {
 std::string name_in(const std::string& name, const std::optional<protocol::Labels>& labels,
                     const std::optional<std::string>& language);
 
+// All that a thing of a template is called, the English name among them.
+Labels labels_with(const std::string& name, const std::optional<protocol::Labels>& labels);
+
 // The template's tables as the store makes them, in a language. Slugs stay what they are in English, so that scripts work in any. Refused:
 // what load() refuses.
 Result<std::vector<store::Store::NewTable>> new_tables(const protocol::Template& of, std::int64_t project_id,

@@ -16,7 +16,7 @@ namespace {
   "(SELECT coalesce(jsonb_agg(jsonb_build_object('slug', i.slug, 'layer', "                                                                               \
   "(SELECT l.id FROM layers l WHERE l.id = i.input_id), 'table', i.table_id) ORDER BY i.slug), '[]') FROM layer_inputs i WHERE i.layer_id = layers.id), " \
   "EXISTS (SELECT 1 FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND "                                      \
-  "t.sequence > i.table_sequence), " STRATA_LAYER_STALE ", locked, visibility, review"
+  "t.sequence > i.table_sequence), " STRATA_LAYER_STALE ", locked, visibility, review, labels, descriptions"
 
 // A palette without points is that of the terms, where the layer's table is a list of such.
 Result<void> take_term_colors(PgConnection& connection, Layer& layer) {
@@ -59,6 +59,8 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.version = rows.integer(i, 15);
   layer.locked = rows.boolean(i, 22);
   layer.review = rows.boolean(i, 24);
+  layer.labels = rows.json(i, 25).get<Labels>();
+  layer.descriptions = rows.json(i, 26).get<Labels>();
   // What cannot be told is not shown.
   layer.visibility = parse_visibility(rows.text(i, 23)).value_or(Visibility::curators);
   if (rows.null(i, 16)) return layer;
@@ -117,11 +119,15 @@ Result<void> set_formula(PgConnection& connection, const Layer& layer) {
   return set ? Result<void>{} : tl::unexpected(set.error());
 }
 
+constexpr std::size_t kLongestDescription = 40000;  // bytes of 10000 characters
+
 Result<void> check(const Layer& layer) {
   if (auto good = check_name(layer.name); !good) return good;
   if (!(layer.opacity >= 0 && layer.opacity <= 1))
     return fail(400, "Bad opacity", "`opacity` must be between 0 and 1.", "opacity");
   if (auto good = check_json(to_json(layer.palette), "palette"); !good) return good;
+  if (auto good = check_labels(layer.labels); !good) return good;
+  if (auto good = check_texts_by_language(layer.descriptions, kLongestDescription, "descriptions"); !good) return good;
   return check_texts({{&layer.slug, "slug"}, {&layer.unit, "unit"}, {&layer.description, "description"}});
 }
 
@@ -204,8 +210,8 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
         layer.slug.empty() ? layer.name : layer.slug, [&](const std::string& slug) {
           return connection.query(
               "INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
-              "draw_order, table_id, locked, visibility, review) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, "
-              "$15, $16) "
+              "draw_order, table_id, locked, visibility, review, labels, descriptions) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, "
+              "$15, $16, $17, $18) "
               "ON CONFLICT DO NOTHING RETURNING " STRATA_LAYER_COLUMNS,
               Params()
                   .integer(layer.model_id)
@@ -223,7 +229,9 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
                   .optional_integer(layer.table)
                   .boolean(layer.locked)
                   .text(name(layer.visibility))
-                  .boolean(layer.review));
+                  .boolean(layer.review)
+                  .json(layer.labels)
+                  .json(layer.descriptions));
         });
     if (!row || !layer.formula) return row ? read_layer(connection, *row, 0) : tl::unexpected(row.error());
     layer.id = row->integer(0, 0);
@@ -237,7 +245,7 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = connection.query(
         "UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
-        "draw_order = $10, locked = $11, visibility = $12, review = $13, version = version + 1 WHERE id = $1 AND version = $2 "
+        "draw_order = $10, locked = $11, visibility = $12, review = $13, labels = $14, descriptions = $15, version = version + 1 WHERE id = $1 AND version = $2 "
         "RETURNING " STRATA_LAYER_COLUMNS,
         Params()
             .integer(layer.id)
@@ -252,7 +260,9 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
             .integer(layer.order)
             .boolean(layer.locked)
             .text(name(layer.visibility))
-            .boolean(layer.review));
+            .boolean(layer.review)
+            .json(layer.labels)
+            .json(layer.descriptions));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) {
       auto now = read_layer(connection, *row, 0);

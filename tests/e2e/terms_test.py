@@ -175,6 +175,17 @@ def templates(server):
     assert [each["name"] for each in made["tables"]] == ["Términos del estado de la piedra", "Observaciones de la piedra"], made
     assert [each["name"] for each in made["layers"]] == ["Estado de la piedra", "Observaciones de la piedra"]
     assert all(each["visible"] for each in made["layers"])
+    assert made["layers"][0]["labels"] == {"en": "Stone condition", "de": "Zustand des Steins", "es": "Estado de la piedra"}, made["layers"][0]
+    layer = "/models/wall/layers/" + made["layers"][0]["slug"]
+    for what, body, field in [
+        ("a language that is none", {"labels": {"es_MX": "Piedra"}}, "labels"),
+        ("a description in none", {"descriptions": {"": "Lo que sufre"}}, "descriptions"),
+    ]:
+        refused = server.request("PATCH", layer, body)
+        assert refused.status == 422 and refused.json()["field"].startswith(field), f"{what}: {refused}"
+    words = {"labels": {"fr": "État"}, "descriptions": {"fr": "Ce que souffre la pierre"}}
+    assert words.items() <= server.ok("PATCH", layer, words).json().items()
+    assert words.items() <= server.ok("GET", layer).json().items()
     again = server.ok("POST", PROJECT + "/templates/stone-condition", use, headers=keyed).json()
     assert [each["id"] for each in again["layers"]] == [each["id"] for each in made["layers"]]
     terms = server.ok("GET", "/tables/stone-condition-terms/terms?q=flaking").json()["terms"]

@@ -13,7 +13,7 @@ import { class_palette, measurement_palette, presence_palette, record_palette } 
 import type { Layer, Palette, ValueType } from "../src/core/types";
 
 const layer = (type: ValueType, palette: Palette, unit = ""): Layer => ({
-  id: 7, model: 1, name: "L", slug: "l", kind: "numeric", type, resolution: 2048, unit, description: "", palette,
+  id: 7, model: 1, name: "L", slug: "l", kind: "numeric", type, resolution: 2048, unit, description: "", labels: {}, descriptions: {}, palette,
   opacity: 1, visible: true, locked: false, review: false, visibility: "public", order: 0, sequence: 0,
 }); // prettier-ignore
 const classes = class_palette([
@@ -77,11 +77,12 @@ describe("records", () => {
 
 describe("a changed layer", () => {
   const old = layer("u8", classes);
-  const same = { name: "L", unit: "", description: "", palette: class_palette(classes.points as never), visibility: "public" as const };
+  const same = { name: "L", unit: "", description: "", labels: {}, descriptions: {}, palette: class_palette(classes.points as never), visibility: "public" as const };
   it("sends only what was changed", () => {
     expect(layer_changes(old, same)).toEqual({});
     expect(layer_changes(old, { ...same, description: "by eye" })).toEqual({ description: "by eye" });
     expect(layer_changes(old, { ...same, visibility: "team" })).toEqual({ visibility: "team" });
+    expect(layer_changes(old, { ...same, labels: { de: "Ebene" }, descriptions: { de: "nach Augenschein" } })).toEqual({ labels: { de: "Ebene" }, descriptions: { de: "nach Augenschein" } });
     const palette = class_palette([{ at: 2, label: "Lime", color: "#ffffffff" }]);
     expect(layer_changes(old, { ...same, name: "M", palette })).toEqual({ name: "M", palette });
   });

@@ -14,7 +14,7 @@ const model = {
   id: 1, name: "Pot", unit: "mm", up: "z", scale_verified: true, bounds: { min: [0, 0, 0], max: [100, 100, 100] },
 } as unknown as Welcome["model"]; // prettier-ignore
 const layer = (id: number, order: number): Layer => ({
-  id, model: 1, name: `L${id}`, slug: `l${id}`, kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "",
+  id, model: 1, name: `L${id}`, slug: `l${id}`, kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "", labels: {}, descriptions: {},
   palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, locked: false, review: false, visibility: "public", order, sequence: 0,
 }); // prettier-ignore
 

@@ -13,7 +13,7 @@ import { FakeSocket, welcome } from "./fake-socket";
 const bounds = { min: [0, 0, 0], max: [100, 100, 100] } as const;
 const model = { id: 1, name: "Pot", unit: "mm", up: "z", scale_verified: true, bounds } as unknown as Welcome["model"];
 const layer = {
-  id: 7, model: 1, name: "L", slug: "l", kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "",
+  id: 7, model: 1, name: "L", slug: "l", kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "", labels: {}, descriptions: {},
   palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, locked: false, visibility: "public", order: 0, sequence: 0,
 } as unknown as Welcome["layers"][number]; // prettier-ignore
 const words = texts.together;

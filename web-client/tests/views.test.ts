@@ -20,7 +20,7 @@ const words = texts.kept_views;
 const bounds = { min: [500_000, 4_100_000, 600] as [number, number, number], max: [500_040, 4_100_020, 612] as [number, number, number] };
 const model = { id: 1, name: "House", unit: "m", up: "z", scale_verified: true, bounds } as unknown as Welcome["model"];
 const layer = (id: number, more: Partial<Layer> = {}): Layer => ({
-  id, model: 1, name: `L${id}`, slug: `l${id}`, kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "",
+  id, model: 1, name: `L${id}`, slug: `l${id}`, kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "", labels: {}, descriptions: {},
   palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, locked: false, review: false, visibility: "public", order: id, sequence: 0, ...more,
 }); // prettier-ignore
 const look = (id: number, more: Partial<Look> = {}): Look =>

@@ -51,7 +51,7 @@ export async function make_site(server, bea) {
   };
   const reply = (thread, text) => as_bea(`/comments/${thread}/replies`, { text });
   const fill_as_bea = (layer) => as_bea(`/models/${model}/layers/${layer}/edits`, { op: "fill", mode: "where", where: "true", value: 1 });
-  return { server, bea, model, invitation: path, terms: made.layers[0].name, reply, fill_as_bea };
+  return { server, bea, model, invitation: path, terms: made.layers[0], reply, fill_as_bea };
 }
 
 export async function bea_at({ server, bea, model }) {
@@ -96,6 +96,11 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
   const of_layer = (layer, name) => from_menu(w.layers.options(layer), name);
   const account = (name) => from_menu(w.account.menu("owner"), name);
   const choose_layer = (name) => button(w.layers.select(name)).click();
+  /** Of a layer that has names in several languages. */
+  const choose_named = ({ name, labels }) => {
+    const names = [...new Set([name, ...Object.values(labels)])].map((each) => w.layers.select(each));
+    return page.locator(names.map((each) => `strata-layer-panel button[aria-label="${each}"]`).join(", ")).first().click();
+  };
   const tool = async (key) => {
     await page.locator("strata-stage .surface").focus();
     await page.keyboard.press(key);
@@ -246,7 +251,7 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     }, keyboard: true },
     { name: "brush: a number", start: () => choose_layer("Moisture") },
     { name: "brush: a record", start: () => choose_layer("Finds") },
-    { name: "brush: a term", start: () => choose_layer(site.terms) },
+    { name: "brush: a term", start: () => choose_named(site.terms) },
     { name: "eraser", start: () => tool("e") },
     { name: "polygon", start: () => tool("a") },
     { name: "fill connected", start: () => tool("g") },

@@ -122,7 +122,7 @@ export class StrataColorDialog extends LitElement {
     const words = texts.colors;
     const { session, layer, palette_: palette, column } = this;
     if (!palette) return html``;
-    return html`<strata-dialog aside heading=${words.title(layer.name)} way_out=${texts.cancel} @closed=${() => this.on_closed()}>
+    return html`<strata-dialog aside heading=${words.title(label_of(layer))} way_out=${texts.cancel} @closed=${() => this.on_closed()}>
       ${layer.table === undefined ? nothing : this.choices(palette, column)}
       ${this.problem_ ? html`<p class="error" role="alert">${this.problem_}</p>` : nothing}
       ${palette.mode === "linear" ? nothing : this.rows(palette, column)} ${this.rest(palette)}

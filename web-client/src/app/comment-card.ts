@@ -3,6 +3,7 @@
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
+import { label_of } from "../core/cells";
 import { ApiError } from "../core/api";
 import { beside } from "../core/beside";
 import { comments_in, type Thread } from "../core/comments";
@@ -354,10 +355,10 @@ export class StrataCommentCard extends LitElement {
   private about({ layer: layer_id, table, record }: Comment): TemplateResult | typeof nothing {
     const { session } = this;
     const layer = session.layers.find(layer_id ?? null);
-    if (table === undefined || record === undefined) return layer ? html`<div class="about">${words.about_is(layer.name)}</div>` : nothing;
+    if (table === undefined || record === undefined) return layer ? html`<div class="about">${words.about_is(label_of(layer))}</div>` : nothing;
     const called = session.tables.label(table, record) ?? texts.tables.record(record);
     if (!layer) return html`<div class="about">${words.about_is(called)}</div>`;
-    const what = words.about_is(words.record_of(called, layer.name));
+    const what = words.about_is(words.record_of(called, label_of(layer)));
     return html`<div class="about"><button class="link" @click=${() => session.tables.show_row(layer, record)}>${what}</button></div>`;
   }
 

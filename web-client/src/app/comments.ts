@@ -1,5 +1,6 @@
 // The comments of the open model: what is known of them, which thread is open, what is written and not sent yet, and what was read.
 
+import { label_of } from "../core/cells";
 import { ApiError, new_id, type Api } from "../core/api";
 import type { CameraMessage } from "../core/camera";
 import type { Point } from "../core/connection";
@@ -334,11 +335,11 @@ export class Comments {
     const { layers, tables } = this.host_;
     const subject_of = (layer: Layer): Subject[] => {
       const here = values?.[layer.slug];
-      const own: Subject = { layer: layer.id, label: layer.name };
+      const own: Subject = { layer: layer.id, label: label_of(layer) };
       if (!here?.valid || here.value === undefined) return layer === layers.selected ? [own] : [];
       if (layer.table === undefined || tables.lacks(layer.table, here.value)) return [own];
       const called = tables.label(layer.table, here.value) ?? texts.tables.record(here.value);
-      return [{ layer: layer.id, record: here.value, label: words.record_of(called, layer.name) }, own];
+      return [{ layer: layer.id, record: here.value, label: words.record_of(called, label_of(layer)) }, own];
     };
     return layers.all.filter((layer) => layers.visible(layer)).reverse().flatMap(subject_of);
   }

@@ -2,7 +2,7 @@
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { kCommonLanguages, labels_of, name_of_language, rows_of, well_written_tag, type LabelRow } from "../core/languages";
+import { descriptions_of, kCommonLanguages, labels_of, name_of_language, rows_of, well_written_tag, type LabelRow } from "../core/languages";
 import { compare_words } from "../core/locale";
 import type { Labels } from "../core/protocol.gen";
 import { icon } from "./icons";
@@ -16,6 +16,8 @@ const offered = kCommonLanguages.map((tag) => ({ tag, name: name_of_language(tag
 export class StrataLabelsField extends LitElement {
   /** As they were; what is written since is kept by the field. */
   @property({ attribute: false }) labels: Labels = {};
+  /** Of things that have a description in each language, too. */
+  @property({ attribute: false }) descriptions: Labels | null = null;
   @state() private rows_: LabelRow[] = [];
   @state() private problem_ = "";
   @state() private wrong_: number[] = []; // rows that the problem is about
@@ -33,6 +35,10 @@ export class StrataLabelsField extends LitElement {
         grid-template-columns: 6.5rem minmax(0, 1fr) auto;
         gap: 0.375rem;
       }
+      textarea {
+        grid-column: 2;
+        min-height: 2.75rem;
+      }
       button.add {
         justify-self: start;
         min-height: 2rem;
@@ -44,7 +50,7 @@ export class StrataLabelsField extends LitElement {
   ];
 
   override willUpdate(changed: PropertyValues<this>): void {
-    if (changed.has("labels")) this.rows_ = rows_of(this.labels);
+    if (changed.has("labels") || changed.has("descriptions")) this.rows_ = rows_of(this.labels, this.descriptions ?? {});
   }
 
   override render(): TemplateResult {
@@ -55,7 +61,7 @@ export class StrataLabelsField extends LitElement {
       <datalist id="languages">${offered.map(({ tag, name }) => html`<option value=${tag} label=${name}></option>`)}</datalist>`;
   }
 
-  private row({ language, label }: LabelRow, index: number): TemplateResult {
+  private row({ language, label, description = "" }: LabelRow, index: number): TemplateResult {
     const name = name_of_language(language);
     const wrong = this.wrong_.includes(index);
     return html`<div>
@@ -87,7 +93,23 @@ export class StrataLabelsField extends LitElement {
       <button type="button" class="icon quiet" aria-label=${words.remove(name || language)} title=${words.remove(name || language)} @click=${() => this.remove_row(index)}>
         ${icon("close")}
       </button>
+      ${this.descriptions === null
+        ? nothing
+        : html`<textarea
+            rows="2"
+            maxlength="10000"
+            lang=${name ? language : nothing}
+            aria-label=${words.description(name || language || words.language(index + 1))}
+            placeholder=${words.description(name || language || words.language(index + 1))}
+            .value=${description}
+            @input=${(event: Event) => this.change(index, { description: (event.target as HTMLTextAreaElement).value })}
+          ></textarea>`}
     </div>`;
+  }
+
+  /** Of what read() takes. */
+  get written_descriptions(): Labels {
+    return descriptions_of(this.rows_);
   }
 
   /** Null: something is wrong with a row, and said there. */

@@ -19,12 +19,14 @@ import {
 import type { Layer, LayerCreate, Palette, Resolution, ValueType } from "../core/types";
 import { ApiError } from "../core/api";
 import { label_of } from "../core/cells";
-import type { Table, Visibility } from "../core/protocol.gen";
+import type { Labels, Table, Visibility } from "../core/protocol.gen";
 import "./dialog";
 import "./expression-field";
 import type { StrataExpressionField } from "./expression-field";
 import type { StrataDialog } from "./dialog";
 import { icon } from "./icons";
+import "./labels-field";
+import type { StrataLabelsField } from "./labels-field";
 import { layer_changes, type LayerWanted } from "./layer-changes";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
@@ -45,6 +47,7 @@ interface ClassRow {
 /** What a new layer is for: something to paint, or values that are computed. */
 type Purpose = LayerPurpose | "shape" | "formula";
 
+const kNoWords: Labels = {};
 const kMostClasses = 255;
 const kTypes: Record<LayerPurpose, ValueType> = { presence: "u8", classes: "u8", measurement: "f32", records: "u32" };
 const words = texts.layer_dialog;
@@ -68,6 +71,7 @@ export class StrataLayerDialog extends LitElement {
   @state() private problem_field_ = "";
   @state() private busy_ = false;
   @query("strata-dialog") private dialog_!: StrataDialog;
+  @query("strata-labels-field") private labels_!: StrataLabelsField;
   @query("form") private form_!: HTMLFormElement;
   @query("strata-shape-fields") private shape_!: StrataShapeFields;
   @query("strata-expression-field") private expression_!: StrataExpressionField;
@@ -224,7 +228,7 @@ export class StrataLayerDialog extends LitElement {
     const { layer } = this;
     return html`<strata-dialog
       wide
-      heading=${layer ? words.edit_title(layer.name) : words.create_title}
+      heading=${layer ? words.edit_title(label_of(layer)) : words.create_title}
       way_out=${texts.cancel}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
@@ -286,6 +290,7 @@ export class StrataLayerDialog extends LitElement {
           <span>${words.description}</span>
           <textarea name="description" maxlength="10000" placeholder=${words.description_hint} .value=${layer?.description ?? ""}></textarea>
         </label>
+        <strata-labels-field .labels=${layer?.labels ?? kNoWords} .descriptions=${layer?.descriptions ?? kNoWords}></strata-labels-field>
         ${visibility_choice(this.visibility_, (visibility) => (this.visibility_ = visibility))}
       </form>`,
     );
@@ -458,17 +463,19 @@ export class StrataLayerDialog extends LitElement {
     const form = new FormData(this.form_);
     const text = (name: string): string => String(form.get(name) ?? "").trim();
     this.problem_ = this.problem_field_ = "";
-    if (this.purpose_ === "shape") return this.compute(text("name") || this.shape_.kind_title, text("description"));
+    const said = this.said();
+    if (!said) return;
+    if (this.purpose_ === "shape") return this.compute(text("name") || this.shape_.kind_title, { description: text("description"), ...said });
     const name = text("name") || (this.named_by_table ? label_of(this.table_!) : "");
     if (!name) return this.refuse("name", words.name_missing);
     const formula = this.expression_ ? this.wanted_formula(form) : {};
     if (!formula) return this.refuse("expression", words.expression_missing);
-    if (!this.layer && formula.expression !== undefined) return this.create_computed({ name, description: text("description"), visibility: this.visibility_, ...formula });
+    if (!this.layer && formula.expression !== undefined) return this.create_computed({ name, description: text("description"), ...said, visibility: this.visibility_, ...formula });
     const palette = this.palette(name, read_number(text("min")), read_number(text("max")));
     if (!palette) return;
     await this.attempt(async () => {
       const unit = this.purpose_ === "measurement" ? text("unit") : (this.base_?.layer.unit ?? "");
-      await this.send({ name, unit, description: text("description"), palette, visibility: this.visibility_, ...formula });
+      await this.send({ name, unit, description: text("description"), ...said, palette, visibility: this.visibility_, ...formula });
     });
   }
 
@@ -493,12 +500,18 @@ export class StrataLayerDialog extends LitElement {
     });
   }
 
-  private async compute(name: string, description: string): Promise<void> {
+  /** In other languages; null: something is wrong with it, and said there. */
+  private said(): { labels: Labels; descriptions: Labels } | null {
+    const labels = this.labels_.read();
+    return labels && { labels, descriptions: this.labels_.written_descriptions };
+  }
+
+  private async compute(name: string, said: Pick<LayerCreate, "description" | "labels" | "descriptions">): Promise<void> {
     const compute = this.shape_.recipe();
     if ("problem" in compute) return this.refuse(compute.field, compute.problem);
     const { session } = this;
     await this.attempt(async () => {
-      const { done } = await session.jobs.compute({ name, description, compute, visibility: this.visibility_, ...this.resolution() });
+      const { done } = await session.jobs.compute({ name, ...said, compute, visibility: this.visibility_, ...this.resolution() });
       void done.then((made) => session.show_made(made));
       notices.show("success", texts.shape.started(name));
     });
@@ -514,6 +527,7 @@ export class StrataLayerDialog extends LitElement {
       if (!(error instanceof ApiError)) throw error;
       this.stale_ = error.status === 412;
       if (error.problem.field === "expression" && this.expression_) this.expression_.refuse(error);
+      else if (/^(labels|descriptions)\b/.test(error.problem.field ?? "")) this.labels_.refuse(error.message);
       else this.refuse(error.problem.field ?? "", this.stale_ ? words.changed : error.message);
     } finally {
       this.busy_ = false;

@@ -90,7 +90,7 @@ export function legend(layer: Layer, palette: Palette, records: LegendNames): Te
     const there = table === undefined ? palette.points : palette.points.filter(({ at }) => !records.lacks(table, at));
     if (there.length === 0) return html`<p class="hint">${layer.kind === "database" ? texts.layers.no_records : texts.layers.no_labels}</p>`;
     const points = in_tree(there, terms);
-    return html`<ul class="legend-classes" aria-label=${layer.name} tabindex=${points.length > kLinesInSight ? 0 : nothing}>
+    return html`<ul class="legend-classes" aria-label=${label_of(layer)} tabindex=${points.length > kLinesInSight ? 0 : nothing}>
       ${points.slice(0, kMostLines).map(({ point, depth }) => line(point, describe_value(layer, point.at, records), depth))}
       ${points.length > kMostLines ? html`<li class="hint">${texts.layers.more_classes(points.length - kMostLines)}</li>` : nothing}
     </ul>`;

@@ -2,6 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
+import { label_of } from "../core/cells";
 import { format_list, read_number } from "../core/locale";
 import { format_area } from "../core/measure";
 import type { EditResult } from "../core/protocol.gen";
@@ -75,7 +76,7 @@ export class StrataMapDialog extends LitElement {
 
   override render(): TemplateResult {
     const ready = this.kind_ !== null && !this.sending_.busy;
-    return html`<strata-dialog heading=${words.title(this.layer.name)} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog heading=${words.title(label_of(this.layer))} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <form id="map" @submit=${(event: Event) => this.on_submit(event)}>
         <p class="hint">${words.lead}</p>
         <div class="part">

@@ -5,6 +5,7 @@
 // curators make of views, `measuring` what is measured, `figures` what is drawn to scale, `face` the one that is asked for. Elements subscribe and draw themselves from their state; they change it
 // only through their methods.
 
+import { label_of } from "../core/cells";
 import { Api, ApiError, type Versioned } from "../core/api";
 import { Connection, type ConnectionState, type Point, type SavingState, type SocketLike } from "../core/connection";
 import type { FrameMessage } from "../core/frame-header";
@@ -720,7 +721,7 @@ export class ModelSession {
 
   /** In the words that the page has for it, whoever noticed: one notice stands for all. */
   private tell_locked(layer: Layer): void {
-    notices.show("problem", texts.layers.locked, texts.layers.locked_detail(layer.name));
+    notices.show("problem", texts.layers.locked, texts.layers.locked_detail(label_of(layer)));
   }
 }
 

@@ -1,5 +1,6 @@
 // What this person paints with, and the edits that come of it.
 
+import { label_of } from "../core/cells";
 import { new_id } from "../core/api";
 import type { Connection, Point, StrokeHandle } from "../core/connection";
 import type { PointerSample } from "../core/input";
@@ -180,9 +181,9 @@ export class Painting {
     const found = message.values?.[layer.slug];
     if (found?.valid && found.value !== undefined) {
       this.brush.set_value(layer, found.value);
-      notices.show("info", texts.value.picked(describe_value(layer, found.value, this.host_.records), layer.name));
+      notices.show("info", texts.value.picked(describe_value(layer, found.value, this.host_.records), label_of(layer)));
     } else {
-      notices.show("info", texts.value.picked_nothing(layer.name));
+      notices.show("info", texts.value.picked_nothing(label_of(layer)));
     }
   }
 
@@ -212,7 +213,7 @@ export class Painting {
 
   private refuses(layer: Layer): boolean {
     const locked = this.host_.is_locked(layer);
-    if (locked) notices.show("problem", texts.layers.locked, texts.layers.locked_detail(layer.name));
+    if (locked) notices.show("problem", texts.layers.locked, texts.layers.locked_detail(label_of(layer)));
     return locked;
   }
 
@@ -230,7 +231,7 @@ export class Painting {
     }
     if (!layers.visible(layer)) {
       layers.set_visible(layer, true);
-      notices.show("info", texts.brush.hidden_layer(layer.name));
+      notices.show("info", texts.brush.hidden_layer(label_of(layer)));
     }
     return layer;
   }

@@ -4,6 +4,7 @@
 import { css, html, LitElement, nothing, render, svg, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { axis_name } from "../core/camera";
+import { label_of } from "../core/cells";
 import { format_fixed, format_place } from "../core/locale";
 import { height_of } from "../core/measured-line";
 import { format_number, kMeasuredDigits, measured_length, metres_per } from "../core/measure";
@@ -138,7 +139,7 @@ export class StrataProfilePlot extends LitElement {
   private draw(plot: Plot, colors: PlotColors, place?: ProfilePlace): TemplateResult {
     const { left, right, top, bottom, width, height } = plot;
     const named = (name: string, unit: string): string => (unit ? `${name}, ${unit}` : name);
-    const y_name = this.layer ? this.layer.name : words.height(axis_name(this.model.up));
+    const y_name = this.layer ? label_of(this.layer) : words.height(axis_name(this.model.up));
     const x = place ? plot.x_at(place.along * this.metres) : 0;
     const y = place && this.y_of_pointed(plot, place);
     return html`<svg viewBox="0 0 ${width} ${height}" width=${width} height=${height} font-family="system-ui, sans-serif" font-size="11" aria-hidden="true">
@@ -176,7 +177,7 @@ export class StrataProfilePlot extends LitElement {
   }
 
   private describe(place: ProfilePlace): string {
-    const name = this.layer ? this.layer.name : words.height(axis_name(this.model.up));
+    const name = this.layer ? label_of(this.layer) : words.height(axis_name(this.model.up));
     return words.sample(measured_length(place.along * this.metres), name, this.value_of(place));
   }
 

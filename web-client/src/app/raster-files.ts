@@ -1,5 +1,6 @@
 // A layer's texels as files: saved from the page, and put back from one.
 
+import { label_of } from "../core/cells";
 import type { Layer } from "../core/types";
 import { format_area } from "../core/measure";
 import { ask } from "./dialog";
@@ -45,7 +46,7 @@ export async function import_raster(session: ModelSession, layer: Layer, file: F
     notices.show("problem", words.unknown(file.name), words.known);
     return;
   }
-  if (!(await ask({ heading: words.title(layer.name), lead: words.lead(file.name), yes: words.replace }))) return;
+  if (!(await ask({ heading: words.title(label_of(layer)), lead: words.lead(file.name), yes: words.replace }))) return;
   try {
     const { texels_changed, area_m2 } = await session.api.put_texels(session.model_id, layer.id, format, file);
     if (texels_changed === 0) notices.show("info", words.same);

@@ -155,7 +155,7 @@ export class StrataRecordDialog extends LitElement {
     return html`<div class="facts hint numeric">
       ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
       <span>${words.key_is(record.key)}</span>
-      <span>${record.area_m2 ? words.area_on(format_area(record.area_m2), this.layer.name) : words.not_painted_on(this.layer.name)}</span>
+      <span>${record.area_m2 ? words.area_on(format_area(record.area_m2), label_of(this.layer)) : words.not_painted_on(label_of(this.layer))}</span>
     </div>`;
   }
 

@@ -3,6 +3,7 @@
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
+import { label_of } from "../core/cells";
 import { format_count } from "../core/locale";
 import { format_area } from "../core/measure";
 import type { Review, WaitingStroke } from "../core/protocol.gen";
@@ -108,7 +109,7 @@ export class StrataReviewPanel extends FoldingPanel {
     const hidden = queue.total - queue.strokes.length;
     const all: Rejecting["what"] = { all: true };
     return html`<div class="layer">
-        <h3>${layer.name}</h3>
+        <h3>${label_of(layer)}</h3>
         ${can_curate
           ? html`<button class="quiet" ?disabled=${this.busy_} @click=${() => void this.decide(layer, { decision: "accept", ...all })}>${words.accept_all}</button>
               <button class="quiet" ?disabled=${this.busy_} @click=${() => this.ask(layer, all)}>${words.reject_all}</button>`
@@ -125,7 +126,7 @@ export class StrataReviewPanel extends FoldingPanel {
             )}
           </div>`
         : nothing}
-      <ul aria-label=${layer.name}>
+      <ul aria-label=${label_of(layer)}>
         ${repeat(
           queue.strokes,
           ({ sequence }) => sequence,

@@ -1,5 +1,6 @@
 // What of the open model's layers waits for review, and what curators decide about it. It is read anew soon after something changed on a layer.
 
+import { label_of } from "../core/cells";
 import { ApiError, type Api } from "../core/api";
 import { place_like } from "../core/look-along";
 import type { LayerEvent, Review, ReviewQueue, WaitingStroke } from "../core/protocol.gen";
@@ -76,7 +77,7 @@ export class Reviews {
     const me = this.host_.me();
     const layer = this.host_.layers.find(layer_id);
     if (!review || !layer || user === undefined || user === me || !review.authors.includes(me)) return;
-    notices.show(review.decision === "reject" ? "problem" : "info", words.told[review.decision](user, layer.name), review.reason ?? "");
+    notices.show(review.decision === "reject" ? "problem" : "info", words.told[review.decision](user, label_of(layer)), review.reason ?? "");
   }
 
   /** This person changed something, somewhere. */
@@ -149,7 +150,7 @@ export class Reviews {
     // What is not listed cannot be named.
     const act = (): void => void this.send(layer, { decision: "reopen", edits });
     const take_back = edits.length === count && count > 0 ? { label: words.take_back, act } : null;
-    notices.show("success", words.done[decision.decision as "accept" | "reject"](count), layer.name, take_back);
+    notices.show("success", words.done[decision.decision as "accept" | "reject"](count), label_of(layer), take_back);
     return true;
   }
 

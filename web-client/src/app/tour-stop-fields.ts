@@ -3,12 +3,15 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
+import { label_of } from "../core/cells";
 import { language_in_words } from "../core/languages";
 import { is_about, kMostLayers, kSeconds, language_of_field, untranslated, type StopDraft } from "../core/tours";
 import type { TourTransition } from "../core/protocol.gen";
+import type { Layer } from "../core/types";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
 import type { ModelSession } from "./model-session";
+import { notices } from "./notices";
 import { number_input } from "./number-input";
 import "./ordered-choice";
 import { radio_group } from "./radio-group";
@@ -102,6 +105,11 @@ export class StrataTourStopFields extends LitElement {
       .lacks {
         color: var(--warn);
       }
+      .layer-names {
+        display: grid;
+        grid-template-columns: repeat(auto-fit, minmax(min(12rem, 100%), 1fr));
+        gap: 0.5rem;
+      }
     `,
   ];
 
@@ -134,12 +142,12 @@ export class StrataTourStopFields extends LitElement {
           label=${words.swipe}
           add_label=${words.layer_add}
           most=${kMostLayers}
-          .things=${[...session.layers.all].reverse().map((layer) => ({ value: layer.slug, name: layer.name, badge: visibility_badge(layer.visibility) }))}
+          .things=${[...session.layers.all].reverse().map((layer) => ({ value: layer.slug, name: label_of(layer), badge: visibility_badge(layer.visibility) }))}
           .chosen=${stop.layers}
           .wrong=${this.is_wrong("layers") ? stop.layers.filter((_, index) => this.wrong === `layers[${index}]`) : []}
           @chosen=${(event: CustomEvent<string[]>) => this.change({ layers: event.detail })}
         ></strata-ordered-choice>
-        ${this.refusal("layers")}
+        ${this.refusal("layers")} ${this.layer_names()}
       </div>
       <div class="part">
         <span class="caption">${words.records}</span>
@@ -154,6 +162,42 @@ export class StrataTourStopFields extends LitElement {
         ></strata-tour-records>
         ${/^records\[/.test(this.wrong) ? nothing : this.refusal("records")}
       </div>`;
+  }
+
+  /** What visitors read on the buttons of the layers. It is the layers' own, and kept with them at once. */
+  private layer_names(): TemplateResult | typeof nothing {
+    const { session, stop } = this;
+    const layers = stop.layers.flatMap((slug) => session.layers.all.find((layer) => layer.slug === slug) ?? []);
+    if (layers.length === 0 || this.languages.length < 2) return nothing;
+    return html`<p class="hint">${words.layer_names}</p>
+      <div class="layer-names">
+        ${layers.map((layer) =>
+          this.written.map(
+            (language) =>
+              html`<label class="field">
+                <span>${words.layer_name(layer.name, language_in_words(language))}</span>
+                <input
+                  type="text"
+                  maxlength="200"
+                  lang=${language}
+                  placeholder=${label_of(layer, [language])}
+                  .value=${layer.labels[language] ?? ""}
+                  @change=${(event: Event) => void this.name_layer(layer, language, (event.target as HTMLInputElement).value)}
+                />
+              </label>`,
+          ),
+        )}
+      </div>`;
+  }
+
+  private async name_layer(layer: Layer, language: string, typed: string): Promise<void> {
+    const { [language]: _, ...others } = layer.labels;
+    const name = typed.trim();
+    try {
+      await this.session.layers.change(layer, { labels: name === "" ? others : { ...others, [language]: name } });
+    } catch (error) {
+      notices.error(error);
+    }
   }
 
   private view(): TemplateResult {

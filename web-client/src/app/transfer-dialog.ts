@@ -2,6 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
+import { label_of } from "../core/cells";
 import { ApiError } from "../core/api";
 import { read_number } from "../core/locale";
 import { format_number, metres_per } from "../core/measure";
@@ -141,7 +142,7 @@ export class StrataTransferDialog extends LitElement {
                   .checked=${this.chosen_.has(layer.id)}
                   @change=${(event: Event) => this.check(layer, (event.target as HTMLInputElement).checked)}
                 />
-                ${layer_chip(layer.palette)}<span class="ellipsis">${layer.name}</span>
+                ${layer_chip(layer.palette)}<span class="ellipsis">${label_of(layer)}</span>
               </label>`,
           )}
         </div>

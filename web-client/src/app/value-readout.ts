@@ -2,6 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
+import { label_of } from "../core/cells";
 import { format_fixed, format_place } from "../core/locale";
 import { color_of, css_color } from "../core/palette";
 import type { Layer } from "../core/types";
@@ -85,7 +86,7 @@ export class StrataValueReadout extends LitElement {
     const color = valid ? color_of(this.session.layers.palette(layer), found.value!) : null;
     return html`<span class="line">
       ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
-      <span class="ellipsis">${layer.name}</span>
+      <span class="ellipsis">${label_of(layer)}</span>
       <b class=${valid ? "numeric" : "none"}>${valid ? describe_value(layer, found.value!, this.session.tables) : texts.value.nothing}</b>
     </span>`;
   }

@@ -2,6 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
+import { label_of } from "../core/cells";
 import { ApiError } from "../core/api";
 import { format_area } from "../core/measure";
 import type { Layer } from "../core/types";
@@ -54,7 +55,7 @@ export class StrataWhereDialog extends LitElement {
   override render(): TemplateResult {
     const words = texts.areas;
     const { session, layer } = this;
-    return html`<strata-dialog heading=${words.where_title(layer.name)} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+    return html`<strata-dialog heading=${words.where_title(label_of(layer))} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <form id="where" @submit=${(event: Event) => this.on_submit(event)}>
         <p class="hint">${words.where_lead}</p>
         <strata-expression-field

@@ -21,6 +21,10 @@ export function label_of(thing: { name: string; labels: Labels }, languages: rea
   return thing.name;
 }
 
+/** The same of what is said of it. */
+export const description_in = (thing: { description: string; descriptions: Labels }, languages?: readonly string[]): string =>
+  label_of({ name: thing.description, labels: thing.descriptions }, languages);
+
 export const is_number = (column: Column): boolean => column.kind === "integer" || column.kind === "numeric";
 export const holds_files = (column: Column): boolean => column.kind === "picture" || column.kind === "document";
 export const names_records = (column: Column): boolean => column.kind === "term" || column.kind === "relation";

@@ -34,24 +34,32 @@ export const language_in_words = (tag: string): string => {
 export interface LabelRow {
   language: string; // as it was written
   label: string;
+  description?: string; // where the field has room for one
 }
 
 export type ReadLabels = { labels: Labels } | { row: number; wrong: "no_language" | "twice" };
 
 /** One row for each language, by tag. */
-export const rows_of = (labels: Labels): LabelRow[] => Object.keys(labels).sort().map((language) => ({ language, label: labels[language]! }));
+export const rows_of = (labels: Labels, descriptions: Labels = {}): LabelRow[] =>
+  [...new Set([...Object.keys(labels), ...Object.keys(descriptions)])]
+    .sort()
+    .map((language) => ({ language, label: labels[language] ?? "", ...(language in descriptions ? { description: descriptions[language]! } : {}) }));
 
 /** What the rows say; those without a label say nothing. Whether a tag is one is for the server to judge. */
 export function labels_of(rows: readonly LabelRow[]): ReadLabels {
   const labels = new Map<string, string>();
   const taken = new Set<string>();
-  for (const [row, { language, label }] of rows.entries()) {
+  for (const [row, { language, label, description = "" }] of rows.entries()) {
     const [tag, text] = [language.trim(), label.trim()];
-    if (text === "") continue;
+    if (text === "" && description.trim() === "") continue;
     if (tag === "") return { row, wrong: "no_language" };
     if (taken.has(tag.toLowerCase())) return { row, wrong: "twice" };
     taken.add(tag.toLowerCase());
-    labels.set(tag, text);
+    if (text !== "") labels.set(tag, text);
   }
   return { labels: Object.fromEntries(labels) };
 }
+
+/** The descriptions of rows in which labels_of() finds nothing wrong. */
+export const descriptions_of = (rows: readonly LabelRow[]): Labels =>
+  Object.fromEntries(rows.map(({ language, description = "" }) => [language.trim(), description.trim()]).filter(([, text]) => text !== ""));

@@ -36,6 +36,9 @@ export type TableRef = number | string;
 /** Names by language. Keys are language tags (BCP 47): es, pt-BR. */
 export type Labels = Record<string, string>;
 
+/** Descriptions by language. Keys are language tags (BCP 47): es, pt-BR. */
+export type Descriptions = Record<string, string>;
+
 /** Kind of column. */
 export type ColumnKind = "text" | "integer" | "numeric" | "boolean" | "date" | "timestamp" | "period" | "enumeration" | "url" | "term" | "relation" | "picture" | "document" | "line" | "point";
 
@@ -309,6 +312,9 @@ export interface Layer {
   resolution: Resolution;
   unit: string;
   description: string;
+  /** Its name in other languages. */
+  labels: Labels;
+  descriptions: Descriptions;
   palette: Palette;
   opacity: number;
   visible: boolean;
@@ -2030,6 +2036,9 @@ export interface LayerCreate {
   unit?: string;
   /** Default: "". */
   description?: string;
+  /** Its name in other languages. */
+  labels?: Labels;
+  descriptions?: Descriptions;
   palette?: Palette;
   /** Default: 1. */
   opacity?: number;
@@ -2320,6 +2329,10 @@ export interface LayerPatch {
   name?: string;
   unit?: string;
   description?: string;
+  /** Its name in other languages, all of them. */
+  labels?: Labels;
+  /** In other languages, all of them. */
+  descriptions?: Descriptions;
   palette?: Palette;
   opacity?: number;
   visible?: boolean;

@@ -2381,6 +2381,8 @@ void read(const nlohmann::json& json, LayerCreate& value) {
   read_optional_member(json, "resolution", value.resolution);
   read_optional_member(json, "unit", value.unit);
   read_optional_member(json, "description", value.description);
+  read_optional_member(json, "labels", value.labels);
+  read_optional_member(json, "descriptions", value.descriptions);
   read_optional_member(json, "palette", value.palette);
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "visible", value.visible);
@@ -2404,6 +2406,8 @@ nlohmann::json to_json(const LayerCreate& value) {
   write_optional_member(json, "resolution", value.resolution);
   write_member(json, "unit", value.unit);
   write_member(json, "description", value.description);
+  write_optional_member(json, "labels", value.labels);
+  write_optional_member(json, "descriptions", value.descriptions);
   write_optional_member(json, "palette", value.palette);
   write_member(json, "opacity", value.opacity);
   write_member(json, "visible", value.visible);
@@ -2645,6 +2649,8 @@ void read(const nlohmann::json& json, LayerPatch& value) {
   read_optional_member(json, "name", value.name);
   read_optional_member(json, "unit", value.unit);
   read_optional_member(json, "description", value.description);
+  read_optional_member(json, "labels", value.labels);
+  read_optional_member(json, "descriptions", value.descriptions);
   read_optional_member(json, "palette", value.palette);
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "visible", value.visible);
@@ -2662,6 +2668,8 @@ nlohmann::json to_json(const LayerPatch& value) {
   write_optional_member(json, "name", value.name);
   write_optional_member(json, "unit", value.unit);
   write_optional_member(json, "description", value.description);
+  write_optional_member(json, "labels", value.labels);
+  write_optional_member(json, "descriptions", value.descriptions);
   write_optional_member(json, "palette", value.palette);
   write_optional_member(json, "opacity", value.opacity);
   write_optional_member(json, "visible", value.visible);

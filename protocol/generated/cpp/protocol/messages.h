@@ -36,6 +36,7 @@ enum class Schema {
   Widths,
   TableRef,
   Labels,
+  Descriptions,
   ColumnKind,
   CellValue,
   Mark,
@@ -309,7 +310,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 283;
+constexpr int kSchemaCount = 284;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -339,6 +340,9 @@ using TableRef = std::variant<std::int64_t, std::string>;
 
 // Names by language. Keys are language tags (BCP 47): es, pt-BR.
 using Labels = std::map<std::string, std::string>;
+
+// Descriptions by language. Keys are language tags (BCP 47): es, pt-BR.
+using Descriptions = std::map<std::string, std::string>;
 
 // Kind of column.
 enum class ColumnKind { text, integer, numeric, boolean, date, timestamp, period, enumeration, url, term, relation, picture, document, line, point };
@@ -1762,6 +1766,8 @@ struct LayerCreate {
   std::optional<int> resolution;  // Absent: the model's default.
   std::string unit;
   std::string description;
+  std::optional<Labels> labels;  // Its name in other languages.
+  std::optional<Descriptions> descriptions;
   std::optional<nlohmann::json> palette;
   double opacity = 1;
   bool visible = true;
@@ -1964,6 +1970,8 @@ struct LayerPatch {
   std::optional<std::string> name;
   std::optional<std::string> unit;
   std::optional<std::string> description;
+  std::optional<Labels> labels;  // Its name in other languages, all of them.
+  std::optional<Descriptions> descriptions;  // In other languages, all of them.
   std::optional<nlohmann::json> palette;
   std::optional<double> opacity;
   std::optional<bool> visible;

@@ -487,6 +487,7 @@ export const texts = {
   },
 
   brush: {
+    change: "Was gemalt wird: alles zeigen, was gewählt werden kann",
     title: "Pinsel",
     eraser_title: "Radierer",
     width: "Breite",
@@ -1186,6 +1187,7 @@ export const texts = {
     changed: {
       name: "Name",
       labels: "Name",
+      descriptions: "Beschreibung",
       slug: "Kurzname",
       description: "Beschreibung",
       text: "Beschreibung",
@@ -1213,6 +1215,7 @@ export const texts = {
   },
 
   tables: {
+    panel: "Tabelle",
     open: "Tabelle der Datensätze",
     close: "Tabelle schließen",
     resize: "Höhe der Tabelle",
@@ -1308,6 +1311,7 @@ export const texts = {
     drop_lead: "Ihre Werte sind nicht mehr zu sehen. Rückgängig bringt sie mit allen Werten zurück.",
     drop: "Entfernen",
     save_csv: "Als CSV sichern",
+    save_xlsx: "Als XLSX sichern (Excel)",
     save_csv_semicolon: "Als CSV mit Semikolons sichern (Dezimalkommas)",
     import_csv: "CSV importieren …",
     csv_title: (file) => `Datensätze aus „${file}“`,
@@ -1406,6 +1410,7 @@ export const texts = {
     language: (row) => `Sprache ${row}`,
     language_example: "es, pt-BR",
     label: (language) => `Name auf ${language}`,
+    description: (language) => `Beschreibung auf ${language}`,
     remove: (language) => `Namen${language ? ` auf ${language}` : ""} entfernen`,
     no_language: "Bitte angeben, in welcher Sprache dieser Name ist.",
     twice: "Diese Sprache hat schon einen Namen.",
@@ -1645,6 +1650,8 @@ export const texts = {
     transition_takes: "Der Flug dauert",
     swipe: "Ebenen zum Überblenden",
     swipe_hint: "Mit dem Finger lässt sich eine über die andere ziehen. Zu sehen sind nur öffentliche Ebenen.",
+    layer_names: "Namen dieser Ebenen, wie Besucher sie lesen. Sie werden sofort mit der Ebene gesichert.",
+    layer_name: (layer, language) => `${layer} auf ${language}`,
     layer_add: "Ebene hinzufügen",
     records: "Datensätze",
     records_hint: "Karten mit Text und Bildern, die sich öffnen lassen.",
@@ -1731,6 +1738,16 @@ export const texts = {
   },
 
   statistics: {
+    copy: "Kopieren",
+    copied: "Kopiert. Es kann in einen Text oder eine Tabellenkalkulation eingefügt werden.",
+    not_copied: "Der Browser ließ das Kopieren nicht zu.",
+    save: { csv: "Als CSV sichern", xlsx: "Als XLSX sichern (Excel)" },
+    class: "Klasse",
+    area: "Fläche",
+    share: "Anteil der Oberfläche",
+    sum: "Alle",
+    from: "Von",
+    to: "Bis",
     title: (name) => `Flächen von „${name}“`,
     of_surface: (share) => `${share} der Oberfläche`,
     nothing: "In dieser Ebene ist noch nichts gemalt.",
@@ -1743,6 +1760,35 @@ export const texts = {
     range_from: "Farben beginnen bei",
     range_to: "Farben enden bei",
     range: (from, to) => `Farben reichen von ${from} bis ${to}, für alle.`,
+  },
+
+  cross_table: {
+    title: "Wo sie auf eine andere Ebene trifft",
+    other: "Andere Ebene",
+    choose: "Ebene wählen",
+    no_other: "Das Modell hat keine andere Ebene mit Klassen oder Datensätzen.",
+    of: (layer, other) => `Gemeinsame Flächen von „${layer}“ und „${other}“`,
+    nothing: (layer) => `nicht in ${layer}`,
+    empty: "In beiden Ebenen ist nichts gemalt.",
+    sum: "Alle",
+    cut: (n) => `Gezeigt werden die ersten ${format_count(n)} Zeilen und Spalten. Kopie und Dateien haben alle.`,
+  },
+
+  column_filter: {
+    title: (column) => `Nach ${column} filtern`,
+    open: (column) => `Nach ${column} filtern`,
+    open_on: (column) => `Nach ${column} filtern (ist an)`,
+    show: "Datensätze zeigen",
+    kinds: { one_of: "mit einem dieser Werte", range: "in einem Bereich", contains: "deren Text enthält", filled: "mit irgendeinem Wert", empty: "ohne Wert" },
+    remove: "Entfernen",
+    apply: "Filtern",
+    search: "Werte suchen",
+    no_value: "ohne Wert",
+    more: (n) => `${format_count(n)} weitere Werte: bitte suchen.`,
+    counted: (n, all) => `Gezählt in den ersten ${format_count(n)} von ${format_count(all)} Datensätzen.`,
+    from: "Von",
+    to: "Bis",
+    contains: "Text",
   },
 
   help: {
@@ -1794,7 +1840,9 @@ export const texts = {
     table: "In der Tabelle der Datensätze",
     table_rows: [
       ["Pfeile · Bild · Pos1 · Ende", "von Zelle zu Zelle; mit Strg: erste, letzte"],
-      ["Enter, F2, ein Buchstabe oder noch ein Klick", "in die Zelle schreiben; auf dem Schlüssel: das Formular des Datensatzes"],
+      ["Enter, F2 oder noch ein Klick", "in die Zelle schreiben; auf dem Schlüssel: das Formular des Datensatzes"],
+      ["Buchstaben und Ziffern", "kommen in Zellen mit Text, Ziffern auch in Zahlen, Daten und Zeiten; überall sonst sind sie die Tasten der Seite, wie T, D und V; nach Escape immer"],
+      ["Trichter einer Spalte", "zeigt nur Datensätze mit bestimmten Werten, in einem Bereich, mit einem Text oder ohne Wert; die Bedingung steht im Filterfeld"],
       ["Enter · Tab · Escape", "beim Schreiben: hinunter · nächste Zelle · wie es war; Umschalt + Enter: neue Zeile"],
       ["Entf", "die Zelle leeren"],
       ["Leertaste, oder Klick auf einen Schlüssel", "die Zeile wählen; mit Strg: weitere, mit Umschalt: alle dazwischen"],

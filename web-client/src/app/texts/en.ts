@@ -473,6 +473,7 @@ export const texts = {
   },
 
   brush: {
+    change: "What is painted: show all that can be chosen",
     title: "Brush",
     eraser_title: "Eraser",
     width: "Width",
@@ -1172,6 +1173,7 @@ export const texts = {
     changed: {
       name: "name",
       labels: "name",
+      descriptions: "description",
       slug: "short name",
       description: "description",
       text: "description",
@@ -1199,6 +1201,7 @@ export const texts = {
   },
 
   tables: {
+    panel: "Table",
     open: "Table of records",
     close: "Close the table",
     resize: "Height of the table",
@@ -1294,6 +1297,7 @@ export const texts = {
     drop_lead: "Its values are no longer shown. Undo brings it back with all of them.",
     drop: "Drop",
     save_csv: "Save as CSV",
+    save_xlsx: "Save as XLSX (Excel)",
     save_csv_semicolon: "Save as CSV with semicolons (decimal commas)",
     import_csv: "Import CSV…",
     csv_title: (file: string) => `Records from “${file}”`,
@@ -1391,6 +1395,7 @@ export const texts = {
     language: (row: number) => `Language ${row}`,
     language_example: "es, pt-BR",
     label: (language: string) => `Name in ${language}`,
+    description: (language: string) => `Description in ${language}`,
     remove: (language: string) => `Remove the name${language ? ` in ${language}` : ""}`,
     no_language: "Say which language this name is in.",
     twice: "This language has a name already.",
@@ -1630,6 +1635,8 @@ export const texts = {
     transition_takes: "The flight takes",
     swipe: "Layers to swipe between",
     swipe_hint: "Visitors draw one over the other with a finger. They see public layers only.",
+    layer_names: "Names of these layers, as visitors read them. They are saved with the layer at once.",
+    layer_name: (layer: string, language: string) => `${layer} in ${language}`,
     layer_add: "Add a layer",
     records: "Records",
     records_hint: "Cards with text and pictures that visitors can open.",
@@ -1716,6 +1723,16 @@ export const texts = {
   },
 
   statistics: {
+    copy: "Copy",
+    copied: "Copied. Paste it into a text or a spreadsheet.",
+    not_copied: "The browser did not let it be copied.",
+    save: { csv: "Save as CSV", xlsx: "Save as XLSX (Excel)" },
+    class: "Class",
+    area: "Area",
+    share: "Share of the surface",
+    sum: "All",
+    from: "From",
+    to: "To",
     title: (name: string) => `Areas of “${name}”`,
     of_surface: (share: string) => `${share} of the surface`,
     nothing: "Nothing is painted in this layer yet.",
@@ -1728,6 +1745,35 @@ export const texts = {
     range_from: "Colours begin at",
     range_to: "Colours end at",
     range: (from: string, to: string) => `Colours run from ${from} to ${to}, for everyone.`,
+  },
+
+  cross_table: {
+    title: "Where it meets another layer",
+    other: "Other layer",
+    choose: "Choose a layer",
+    no_other: "The model has no other layer of classes or records.",
+    of: (layer: string, other: string) => `Areas of “${layer}” and “${other}” together`,
+    nothing: (layer: string) => `not in ${layer}`,
+    empty: "Nothing is painted in either layer.",
+    sum: "All",
+    cut: (n: number) => `The first ${format_count(n)} rows and columns are shown. Copy and files have all.`,
+  },
+
+  column_filter: {
+    title: (column: string) => `Filter by ${column}`,
+    open: (column: string) => `Filter by ${column}`,
+    open_on: (column: string) => `Filter by ${column} (is on)`,
+    show: "Show records",
+    kinds: { one_of: "with one of these values", range: "in a range", contains: "whose text contains", filled: "with any value", empty: "without a value" },
+    remove: "Remove",
+    apply: "Filter",
+    search: "Search values",
+    no_value: "without a value",
+    more: (n: number) => `${format_count(n)} more values: search for them.`,
+    counted: (n: number, all: number) => `Counted in the first ${format_count(n)} of ${format_count(all)} records.`,
+    from: "From",
+    to: "To",
+    contains: "Text",
   },
 
   help: {
@@ -1779,7 +1825,9 @@ export const texts = {
     table: "In the table of records",
     table_rows: [
       ["Arrows · Page · Home · End", "from cell to cell; with Ctrl: first, last"],
-      ["Enter, F2, a letter, or click again", "write into the cell; on the key: the record's form"],
+      ["Enter, F2, or click again", "write into the cell; on the key: the record's form"],
+      ["Letters and digits", "written into cells of text; digits also into numbers, dates and times; everywhere else the keys of the page, such as T, D and V; after Escape these always"],
+      ["A column's funnel", "shows only records with some values, in a range, with a text, or without a value; the condition stands in the filter field"],
       ["Enter · Tab · Escape", "down · next cell · as it was, while you write; Shift + Enter: next line"],
       ["Delete", "empty the cell"],
       ["Space, or click a key", "choose the row; with Ctrl: more, with Shift: all between"],

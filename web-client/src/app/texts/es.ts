@@ -493,6 +493,7 @@ export const texts = {
   },
 
   brush: {
+    change: "Qué se pinta: mostrar todo lo que se puede elegir",
     title: "Pincel",
     eraser_title: "Borrador",
     width: "Ancho",
@@ -1192,6 +1193,7 @@ export const texts = {
     changed: {
       name: "nombre",
       labels: "nombre",
+      descriptions: "descripción",
       slug: "nombre corto",
       description: "descripción",
       text: "descripción",
@@ -1219,6 +1221,7 @@ export const texts = {
   },
 
   tables: {
+    panel: "Tabla",
     open: "Tabla de registros",
     close: "Cerrar la tabla",
     resize: "Altura de la tabla",
@@ -1314,6 +1317,7 @@ export const texts = {
     drop_lead: "Sus valores dejan de mostrarse. Deshacer la devuelve con todos ellos.",
     drop: "Quitar",
     save_csv: "Guardar como CSV",
+    save_xlsx: "Guardar como XLSX (Excel)",
     save_csv_semicolon: "Guardar como CSV con punto y coma (comas decimales)",
     import_csv: "Importar CSV…",
     csv_title: (file) => `Registros de «${file}»`,
@@ -1412,6 +1416,7 @@ export const texts = {
     language: (row) => `Idioma ${row}`,
     language_example: "es, pt-BR",
     label: (language) => `Nombre en ${language}`,
+    description: (language) => `Descripción en ${language}`,
     remove: (language) => `Quitar el nombre${language ? ` en ${language}` : ""}`,
     no_language: "Diga en qué idioma está este nombre.",
     twice: "Este idioma ya tiene un nombre.",
@@ -1651,6 +1656,8 @@ export const texts = {
     transition_takes: "El vuelo dura",
     swipe: "Capas para comparar",
     swipe_hint: "Con el dedo se pasa una sobre otra. Solo se ven las capas públicas.",
+    layer_names: "Nombres de estas capas, como los leen los visitantes. Se guardan en el acto con la capa.",
+    layer_name: (layer, language) => `${layer} en ${language}`,
     layer_add: "Añadir una capa",
     records: "Registros",
     records_hint: "Fichas con texto e imágenes que se pueden abrir.",
@@ -1737,6 +1744,16 @@ export const texts = {
   },
 
   statistics: {
+    copy: "Copiar",
+    copied: "Copiado. Péguelo en un texto o en una hoja de cálculo.",
+    not_copied: "El navegador no permitió copiarlo.",
+    save: { csv: "Guardar como CSV", xlsx: "Guardar como XLSX (Excel)" },
+    class: "Clase",
+    area: "Área",
+    share: "Parte de la superficie",
+    sum: "Todo",
+    from: "Desde",
+    to: "Hasta",
     title: (name) => `Áreas de «${name}»`,
     of_surface: (share) => `${share} de la superficie`,
     nothing: "Todavía no hay nada pintado en esta capa.",
@@ -1749,6 +1766,35 @@ export const texts = {
     range_from: "Los colores empiezan en",
     range_to: "Los colores terminan en",
     range: (from, to) => `Los colores van de ${from} a ${to}, para todos.`,
+  },
+
+  cross_table: {
+    title: "Dónde coincide con otra capa",
+    other: "Otra capa",
+    choose: "Elegir una capa",
+    no_other: "El modelo no tiene otra capa de clases o registros.",
+    of: (layer, other) => `Áreas comunes de «${layer}» y «${other}»`,
+    nothing: (layer) => `fuera de ${layer}`,
+    empty: "No hay nada pintado en ninguna de las dos capas.",
+    sum: "Todo",
+    cut: (n) => `Se muestran las primeras ${format_count(n)} filas y columnas. La copia y los archivos las tienen todas.`,
+  },
+
+  column_filter: {
+    title: (column) => `Filtrar por ${column}`,
+    open: (column) => `Filtrar por ${column}`,
+    open_on: (column) => `Filtrar por ${column} (activo)`,
+    show: "Mostrar registros",
+    kinds: { one_of: "con uno de estos valores", range: "en un intervalo", contains: "cuyo texto contiene", filled: "con algún valor", empty: "sin valor" },
+    remove: "Quitar",
+    apply: "Filtrar",
+    search: "Buscar valores",
+    no_value: "sin valor",
+    more: (n) => `${format_count(n)} valores más: búsquelos.`,
+    counted: (n, all) => `Contado en los primeros ${format_count(n)} de ${format_count(all)} registros.`,
+    from: "Desde",
+    to: "Hasta",
+    contains: "Texto",
   },
 
   help: {
@@ -1800,7 +1846,9 @@ export const texts = {
     table: "En la tabla de registros",
     table_rows: [
       ["Flechas · Página · Inicio · Fin", "de celda en celda; con Ctrl: primera, última"],
-      ["Entrar, F2, una letra u otro clic", "escribir en la celda; en la clave: el formulario del registro"],
+      ["Entrar, F2 u otro clic", "escribir en la celda; en la clave: el formulario del registro"],
+      ["Letras y cifras", "se escriben en celdas de texto; las cifras, también en números, fechas y horas; en las demás son las teclas de la página, como T, D y V; después de Escape, siempre"],
+      ["El embudo de una columna", "muestra solo registros con ciertos valores, en un intervalo, con un texto o sin valor; la condición queda en el campo del filtro"],
       ["Entrar · Tab · Escape", "al escribir: abajo · celda siguiente · como estaba; Mayús + Entrar: línea siguiente"],
       ["Supr", "vaciar la celda"],
       ["Espacio, o clic en una clave", "elegir la fila; con Ctrl: más, con Mayús: todas las intermedias"],
