@@ -4,6 +4,7 @@
 #include "core/csv.h"
 #include "core/term_list.h"
 #include "net/as_of.h"
+#include "net/class_names.h"
 #include "net/painted_keys.h"
 #include "net/record_measures.h"
 #include "net/routes.h"
@@ -12,26 +13,7 @@
 namespace strata::net {
 namespace {
 
-using Names = std::map<std::int64_t, std::string>;  // of records, by key; those that are there, also without a name
-
-// Terms by their labels in `language`.
-Result<Names> record_names(const RouteContext& context, std::int64_t table_id, Role seen_by,
-                           std::vector<std::int64_t> keys, std::optional<std::int64_t> at,
-                           const std::string& language) {
-  store::Store::RecordQuery query;
-  query.keys = std::move(keys);
-  query.at = at;
-  auto page = context.store.records(table_id, seen_by, query);
-  if (!page) return tl::unexpected(page.error());
-  Names names;
-  if (const auto columns = term_columns(page->table)) {
-    for (const ListedTerm& listed : list_terms(*columns, page->records))
-      names[listed.key] = label_in(listed.term, language);
-    return names;
-  }
-  for (const Record& record : page->records) names[record.key] = record_name(record, page->table.columns);
-  return names;
-}
+using Names = RecordNames;
 
 // What records have besides texels: lines and points, of those that have some. Names as in RecordMeasures.
 struct OfMarks {
@@ -82,9 +64,7 @@ std::string label_of(const query::Quantity& quantity, const Layer& layer, const 
   // The colour of a step, and with it its label, begins at its point.
   if (!quantity.value && (layer.palette.mode != PaletteMode::step || !quantity.from)) return {};
   const double at = quantity.value ? *quantity.value : *quantity.from;
-  for (const Palette::Point& point : layer.palette.points)
-    if (point.at == at) return point.label;
-  return {};
+  return palette_label(layer, at);
 }
 
 // As people read it in a column of its own.

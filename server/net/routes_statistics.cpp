@@ -1,4 +1,5 @@
 #include "net/as_of.h"
+#include "net/class_names.h"
 #include "net/routes.h"
 #include "net/sheet.h"
 #include "net/wire.h"
@@ -121,9 +122,64 @@ void select(const RouteContext& context, const Request& request, const Respond& 
   respond(std::move(response));
 }
 
+constexpr const char* kNoValue = "–";  // where one of the two layers has none
+
+// What one side of a cross-table is called.
+Result<std::vector<std::string>> side_names(const RouteContext& context, const room::Room& room, const Layer& layer,
+                                            Role role, const std::vector<query::CrossTable::Key>& side,
+                                            std::optional<std::int64_t> at, const std::string& language) {
+  std::vector<double> values;
+  for (const auto& key : side)
+    if (key) values.push_back(*key);
+  std::optional<std::int64_t> records_at;  // as they were when that edit was made
+  if (layer.table && at) {
+    const auto found = context.store.table_sequence_when(*layer.table, room.model().id, *at);
+    if (!found) return tl::unexpected(found.error());
+    records_at = *found;
+  }
+  auto names = class_names(context, layer, role, values, records_at, language);
+  if (names && values.size() < side.size()) names->emplace_back(kNoValue);  // nothing is the last
+  return names;
+}
+
+// With names and sums, as people read it.
+Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Layer& columns,
+               const std::vector<std::string>& row_names, const std::vector<std::string>& column_names) {
+  Sheet sheet{rows.slug + "-" + columns.slug, {rows.name + " / " + columns.name + ", m²"}, {}};
+  sheet.heads.insert(sheet.heads.end(), column_names.begin(), column_names.end());
+  sheet.heads.emplace_back("total");
+  std::vector<double> sums(column_names.size() + 1, 0.0);
+  for (std::size_t row = 0; row < row_names.size(); ++row) {
+    std::vector<SheetCell> cells{row_names[row]};
+    double sum = 0;
+    for (std::size_t column = 0; column < column_names.size(); ++column) {
+      const double area = table.area_m2[row][column];
+      cells.emplace_back(area);
+      sums[column] += area;
+      sum += area;
+    }
+    cells.emplace_back(sum);
+    sums.back() += sum;
+    sheet.rows.push_back(std::move(cells));
+  }
+  std::vector<SheetCell> last{std::string("total")};
+  last.insert(last.end(), sums.begin(), sums.end());
+  sheet.rows.push_back(std::move(last));
+  return sheet;
+}
+
 Result<Response> cross_table(const RouteContext& context, const Request& request) {
   const auto asked = body_of<protocol::CrossTableRequest>(request);
   if (!asked) return tl::unexpected(asked.error());
+  // Without `f` scripts get keys; what is asked for as a sheet is for people.
+  const bool as_csv =
+      !request.query.contains("f") && request.header("accept").find("text/csv") != std::string_view::npos;
+  const auto format = as_csv ? Result<SheetFormat>(SheetFormat::csv) : sheet_format(request);
+  if (!format) return tl::unexpected(format.error());
+  const auto separator = csv_separator(request);
+  if (!separator) return tl::unexpected(separator.error());
+  const auto language = asked_language(request);
+  if (!language) return tl::unexpected(language.error());
   const auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const auto rows = find_layers(**room, {protocol::to_ref(asked->rows)}, "rows");
@@ -135,10 +191,22 @@ Result<Response> cross_table(const RouteContext& context, const Request& request
   const auto sequence = selection->at.value_or((*room)->sequence());
   const auto table = (*room)->cross_table(rows->front().slug, columns->front().slug, *selection);
   if (!table) return tl::unexpected(table.error());
-  const bool as_csv = request.header("accept").find("text/csv") != std::string_view::npos;
   Response response = as_csv
                           ? text_response(cross_table_csv(*table, rows->front().slug, columns->front().slug), kCsvType)
                           : json_response(to_json(*table));
+  if (!as_csv && *format != SheetFormat::json) {
+    const auto side = [&](const Layer& layer, const std::vector<query::CrossTable::Key>& keys) {
+      return side_names(context, **room, layer, request.role(), keys, selection->at, *language);
+    };
+    const auto row_names = side(rows->front(), table->rows);
+    if (!row_names) return tl::unexpected(row_names.error());
+    const auto column_names = side(columns->front(), table->columns);
+    if (!column_names) return tl::unexpected(column_names.error());
+    auto sheet = sheet_response(sheet_of(*table, rows->front(), columns->front(), *row_names, *column_names), *format,
+                                *separator, context.options.upload_dir);
+    if (!sheet) return sheet;
+    response = std::move(*sheet);
+  }
   add_sequences(response, sequence, (*room)->durable_sequence());
   response.with("Vary", "Accept");
   return response;
@@ -160,6 +228,7 @@ void add_statistics_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/cross-table",
               .handler = answering([&context](const Request& request) { return cross_table(context, request); }),
+              .query = {"f", "separator", "lang"},
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes});
 }

@@ -4,11 +4,17 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { format_area, format_number } from "../core/measure";
 import { color_of, css_color, with_range } from "../core/palette";
-import type { Layer, Palette, Statistics } from "../core/types";
+import type { SheetQuery } from "../core/api";
+import type { KeyStatistics, Layer, Palette, Statistics } from "../core/types";
+import { label_of } from "../core/cells";
 import { describe_value } from "./brush-settings";
+import "./cross-table";
+import { has_classes } from "./cross-table";
 import "./dialog";
 import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
+import { save_from } from "./save-from";
+import { sheet_buttons, sheet_query } from "./sheet-buttons";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -41,6 +47,9 @@ export class StrataStatisticsDialog extends LitElement {
       .total b {
         font: 600 1.7rem var(--serif);
       }
+      .row {
+        flex-wrap: wrap;
+      }
       .bars {
         display: grid;
         gap: 0.625rem;
@@ -53,6 +62,10 @@ export class StrataStatisticsDialog extends LitElement {
         gap: 0.5625rem;
         align-items: center;
         font-size: 0.92rem;
+      }
+      .bars .share {
+        min-width: 4rem;
+        text-align: end;
       }
       .bars .track {
         height: 0.5625rem;
@@ -154,7 +167,8 @@ export class StrataStatisticsDialog extends LitElement {
 
   override render(): TemplateResult {
     return html`<strata-dialog
-      heading=${texts.statistics.title(this.layer.name)}
+      wide
+      heading=${texts.statistics.title(label_of(this.layer))}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
       ${this.problem_
@@ -162,6 +176,7 @@ export class StrataStatisticsDialog extends LitElement {
         : this.statistics_
           ? this.content(this.statistics_)
           : html`<p class="hint" role="status">${texts.loading}</p>`}
+      ${this.statistics_ && has_classes(this.layer) ? html`<strata-cross-table .session=${this.session} .layer=${this.layer}></strata-cross-table>` : nothing}
       <button slot="actions" @click=${() => void this.load()}>${texts.statistics.refresh}</button>
     </strata-dialog>`;
   }
@@ -169,17 +184,59 @@ export class StrataStatisticsDialog extends LitElement {
   private content(statistics: Statistics): TemplateResult {
     const words = texts.statistics;
     if (statistics.texels === 0) return html`<p>${words.nothing}</p>`;
-    const whole = this.session.model?.area_m2 ?? 0;
-    const share = whole > 0 ? `${format_number((statistics.area_m2 / whole) * 100)} %` : "";
+    const share = this.share(statistics.area_m2);
     return html`<div class="total numeric">
         <b>${format_area(statistics.area_m2)}</b>
         ${share ? html`<span class="hint">${words.of_surface(share)}</span>` : nothing}
       </div>
+      <div class="row" role="group" aria-label=${words.title(label_of(this.layer))}>
+        ${sheet_buttons({ what: words.title(label_of(this.layer)), rows: () => this.rows(statistics), save: (f) => this.save(f) })}
+      </div>
       ${this.layer.palette.mode === "categorical" ? this.keys(statistics) : this.spread(statistics)}`;
   }
 
+  /** Of the model's surface. */
+  private share(area_m2: number): string {
+    const whole = this.session.model?.area_m2 ?? 0;
+    return whole > 0 ? `${format_number((area_m2 / whole) * 100)} %` : "";
+  }
+
+  /** As they are copied: what is read here, each number in a cell. */
+  private rows(statistics: Statistics): string[][] {
+    const words = texts.statistics;
+    const line = (name: string, area: number): string[] => [name, format_area(area), this.share(area)];
+    if (this.layer.palette.mode === "categorical")
+      return [
+        [words.class, words.area, words.share],
+        ...sorted(statistics).map((key) => line(describe_value(this.layer, key.key, this.session.tables), key.area_m2)),
+        line(words.sum, statistics.area_m2),
+      ];
+    const { unit } = this.layer;
+    return [
+      line(words.area, statistics.area_m2),
+      ...this.measures(statistics).map(([name, value]) => [name, format_number(value, 4), unit]),
+      [words.from, words.to, words.area],
+      ...statistics.histogram.map((bin) => [format_number(bin.from, 4), format_number(bin.to, 4), format_area(bin.area_m2)]),
+    ];
+  }
+
+  private save(f: SheetQuery["f"]): void {
+    save_from(this.session.api.quantities_url(this.session.model_id, this.layer.id, sheet_query(f)), `${this.layer.slug}.${f}`);
+  }
+
+  private measures(statistics: Statistics): [string, number][] {
+    const words = texts.statistics;
+    const all: [string, number | null | undefined][] = [
+      [words.mean, statistics.mean],
+      [words.min, statistics.min],
+      [words.max, statistics.max],
+      [words.std, statistics.std],
+    ];
+    return all.flatMap(([name, value]): [string, number][] => (value === null || value === undefined ? [] : [[name, value]]));
+  }
+
   private keys(statistics: Statistics): TemplateResult {
-    const keys = [...(statistics.keys ?? [])].sort((a, b) => b.area_m2 - a.area_m2);
+    const keys = sorted(statistics);
     const largest = keys[0]?.area_m2 ?? 1;
     return html`<ul class="bars">
       ${keys.slice(0, kMostRows).map((key) => {
@@ -190,6 +247,7 @@ export class StrataStatisticsDialog extends LitElement {
             <span class="swatch" ${styled({ background })}></span>
             <span class="grow ellipsis">${describe_value(this.layer, key.key, this.session.tables)}</span>
             <span class="numeric">${format_area(key.area_m2)}</span>
+            <span class="numeric hint share">${this.share(key.area_m2)}</span>
           </div>
           <div class="track"><i ${styled({ width: `${(key.area_m2 / largest) * 100}%`, background })}></i></div>
         </li>`;
@@ -200,19 +258,11 @@ export class StrataStatisticsDialog extends LitElement {
   private spread(statistics: Statistics): TemplateResult {
     const words = texts.statistics;
     const unit = this.layer.unit ? ` ${this.layer.unit}` : "";
-    const rows: [string, number | null | undefined][] = [
-      [words.mean, statistics.mean],
-      [words.min, statistics.min],
-      [words.max, statistics.max],
-      [words.std, statistics.std],
-    ];
     const bins = statistics.histogram;
     const largest = Math.max(...bins.map((bin) => bin.area_m2), Number.MIN_VALUE);
     const palette = this.tried_ ?? this.layer.palette;
     return html`<dl class="numeric">
-        ${rows.map(([name, value]) =>
-          value === null || value === undefined ? nothing : html`<div><dt>${name}</dt><dd>${format_number(value, 4)}${unit}</dd></div>`,
-        )}
+        ${this.measures(statistics).map(([name, value]) => html`<div><dt>${name}</dt><dd>${format_number(value, 4)}${unit}</dd></div>`)}
       </dl>
       ${bins.length > 1
         ? html`<div>
@@ -275,3 +325,6 @@ export class StrataStatisticsDialog extends LitElement {
     }
   }
 }
+
+/** The largest first. */
+const sorted = (statistics: Statistics): KeyStatistics[] => [...(statistics.keys ?? [])].sort((a, b) => b.area_m2 - a.area_m2);

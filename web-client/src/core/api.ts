@@ -68,6 +68,13 @@ export interface RecordQuery {
   offset: number;
 }
 
+/** Of a table for a spreadsheet: `lang` is the language in which terms stand in it. */
+export interface SheetQuery {
+  f: "csv" | "xlsx";
+  lang: string;
+  separator: "comma" | "semicolon";
+}
+
 export interface TermQuery {
   q?: string;
   lang: string;
@@ -600,6 +607,18 @@ export class Api {
   }
   async statistics(model: Id, layer: Id): Promise<Statistics> {
     return this.json("GET", `${layer_path(model, layer)}/statistics`);
+  }
+  /** Where the areas of a layer's classes are had as a sheet. */
+  quantities_url(model: Id, layer: Id, query: SheetQuery): string {
+    return `${kBase}${layer_path(model, layer)}/quantities?${new URLSearchParams({ ...query })}`;
+  }
+  /** Areas where two layers meet: layers of whole numbers or keys. */
+  async cross_table(model: Id, rows: Id, columns: Id): Promise<wire.CrossTable> {
+    return this.json("POST", `/models/${encodeURIComponent(model)}/cross-table`, { rows, columns });
+  }
+  async cross_table_sheet(model: Id, rows: Id, columns: Id, query: SheetQuery): Promise<Blob> {
+    const path = `/models/${encodeURIComponent(model)}/cross-table?${new URLSearchParams({ ...query })}`;
+    return (await this.request("POST", path, { rows, columns })).blob();
   }
 
   /** Answered once it is durable. */

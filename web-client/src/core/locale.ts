@@ -42,6 +42,8 @@ export const format_place = (numbers: readonly string[]): string => numbers.join
 
 /** A number with all of its digits, as it is typed into a field. */
 export const typed_number = (value: number): string => with_decimal_sign(String(value));
+/** Between the cells of CSV files, as spreadsheets of the language's countries take them: a comma stands in their numbers. */
+export const csv_separator = (): "comma" | "semicolon" => (decimal === "," ? "semicolon" : "comma");
 /** What JavaScript wrote with a point. */
 export const with_decimal_sign = (plain: string): string => plain.replace(".", decimal);
 

@@ -1,0 +1,54 @@
+#include "net/class_names.h"
+
+#include "core/csv.h"
+#include "core/term_list.h"
+
+namespace strata::net {
+
+Result<RecordNames> record_names(const RouteContext& context, std::int64_t table_id, Role seen_by,
+                                 std::vector<std::int64_t> keys, std::optional<std::int64_t> at,
+                                 const std::string& language) {
+  store::Store::RecordQuery query;
+  query.keys = std::move(keys);
+  query.at = at;
+  auto page = context.store.records(table_id, seen_by, query);
+  if (!page) return tl::unexpected(page.error());
+  RecordNames names;
+  if (const auto columns = term_columns(page->table)) {
+    for (const ListedTerm& listed : list_terms(*columns, page->records))
+      names[listed.key] = label_in(listed.term, language);
+    return names;
+  }
+  for (const Record& record : page->records) names[record.key] = record_name(record, page->table.columns);
+  return names;
+}
+
+std::string palette_label(const Layer& layer, double value) {
+  for (const Palette::Point& point : layer.palette.points)
+    if (point.at == value) return point.label;
+  return {};
+}
+
+Result<std::vector<std::string>> class_names(const RouteContext& context, const Layer& layer, Role seen_by,
+                                             const std::vector<double>& values, std::optional<std::int64_t> at,
+                                             const std::string& language) {
+  RecordNames records;
+  if (layer.table) {
+    std::vector<std::int64_t> keys;
+    for (const double value : values) keys.push_back(static_cast<std::int64_t>(value));
+    auto found = record_names(context, *layer.table, seen_by, std::move(keys), at, language);
+    if (!found) return tl::unexpected(found.error());
+    records = std::move(*found);
+  }
+  std::vector<std::string> names;
+  for (const double value : values) {
+    const auto record = records.find(static_cast<std::int64_t>(value));
+    const std::string name = layer.table ? (record == records.end() ? std::string() : record->second)
+                             : layer.palette.mode == PaletteMode::categorical ? palette_label(layer, value)
+                                                                              : std::string();
+    names.push_back(name.empty() ? csv_number(value, ',') : name);
+  }
+  return names;
+}
+
+}  // namespace strata::net
