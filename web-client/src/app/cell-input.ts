@@ -2,7 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
-import { cell_text, is_number, label_of, named_keys, names_records, parse_cell } from "../core/cells";
+import { cell_text, holds_files, is_number, label_of, named_keys, names_records, parse_cell } from "../core/cells";
 import { holds_marks, marks_of } from "../core/marks";
 import type { CellValue, Column } from "../core/protocol.gen";
 import type { ModelSession } from "./model-session";
@@ -17,9 +17,16 @@ import { texts } from "./texts";
 
 export type CellRead = { value: CellValue } | { problem: string };
 
-/** Whether a letter can begin a new value; the others are chosen. */
+/** Whether what is typed can begin a new value; the others are chosen. */
 export const takes_typing = (column: Column): boolean =>
-  !names_records(column) && !holds_marks(column) && column.kind !== "boolean" && column.kind !== "enumeration" && column.kind !== "date";
+  !names_records(column) && !holds_marks(column) && !holds_files(column) && column.kind !== "boolean" && column.kind !== "enumeration" && column.kind !== "date";
+
+/** Whether a character may be meant as text in a cell of the column. What may not is left to the keys of the page. */
+export function may_be_text(column: Column, character: string): boolean {
+  if (is_number(column)) return /[-+.,\d]/.test(character);
+  if (column.kind === "timestamp" || column.kind === "date") return /\d/.test(character);
+  return takes_typing(column);
+}
 
 @customElement("strata-cell-input")
 export class StrataCellInput extends LitElement {
@@ -65,7 +72,7 @@ export class StrataCellInput extends LitElement {
         border-radius: var(--radius-small);
         background: var(--raised);
       }
-      :host([fixed]) :is(input, textarea, select) {
+      :host([fixed]) :is(input, textarea, select, .number) {
         background: var(--surface);
         color: var(--ink-soft);
       }
@@ -77,8 +84,8 @@ export class StrataCellInput extends LitElement {
         padding: 2px 6px;
         font-size: 0.9rem;
       }
-      :host(.in-cell) .number input {
-        padding-right: 30px;
+      :host(.in-cell) .number > span {
+        padding-right: 6px;
       }
     `,
   ];

@@ -4,6 +4,7 @@ import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { holds_files, is_number, label_of } from "../core/cells";
+import { chosen_in } from "../core/column-filter";
 import { holds_marks } from "../core/marks";
 import { format_area } from "../core/measure";
 import { css_color, record_color } from "../core/palette";
@@ -12,7 +13,8 @@ import type { Layer } from "../core/types";
 import { open_bin_of } from "./bin-dialog";
 import type { CellEdit } from "./cell-edits";
 import "./cell-input";
-import { takes_typing, type StrataCellInput } from "./cell-input";
+import { may_be_text, takes_typing, type StrataCellInput } from "./cell-input";
+import "./column-filter";
 import { ask } from "./dialog";
 import { FileDrop } from "./drop";
 import { follow_session } from "./follow-session";
@@ -70,6 +72,7 @@ export class StrataTablePanel extends LitElement {
   @state() private active_ = { row: 0, column: 0 };
   @state() private editing_: Editing | null = null;
   @state() private editor_problem_ = "";
+  @state() private filtered_: { column: Column; anchor: HTMLElement } | null = null; // whose filter is open
   private claim_: RecordClaim | null = null; // of the record that is written into
   @query(".scroller") private scroller_!: HTMLElement | null;
   @query(".editor strata-cell-input") private input_!: StrataCellInput | null;
@@ -169,7 +172,7 @@ export class StrataTablePanel extends LitElement {
     const { view, layer } = this;
     const { table } = view;
     if (!table || !layer) return html`<p class="empty" role="status">${texts.loading}</p>`;
-    return html`${this.bar(table, layer)} ${this.filter_problem()} ${this.grid(table, layer)}`;
+    return html`${this.bar(table, layer)} ${this.filter_problem()} ${this.grid(table, layer)} ${this.chosen(layer)} ${this.column_filter(table)}`;
   }
 
   private bar(table: Table, layer: Layer): TemplateResult {
@@ -201,13 +204,19 @@ export class StrataTablePanel extends LitElement {
             </button>`}
       </div>
       <span class="grow"></span>
-      ${this.chosen(layer)} ${this.on_model()}
+      ${this.on_model()}
       ${this.can_write
         ? html`<button aria-label=${words.new_record} title=${words.new_record} @click=${() => this.request({ dialog: "record", layer, key: null })}>
               ${icon("plus")}<span class="words">${words.new_record}</span>
             </button>
             ${this.is_narrow ? nothing : this.turns("tool")}`
         : nothing}
+      ${this.is_narrow
+        ? nothing
+        : html`<span class="files">
+            <button title=${words.save_xlsx} aria-label=${words.save_xlsx} @click=${() => this.save_sheet(table, "xlsx")}>XLSX</button>
+            <button title=${words.save_csv} aria-label=${words.save_csv} @click=${() => this.save_sheet(table, "csv")}>CSV</button>
+          </span>`}
       <strata-menu label=${words.more}>
         ${this.can_write && this.is_narrow ? html`${this.turns("menuitem")}<hr />` : nothing}
         ${session.can_curate
@@ -216,8 +225,9 @@ export class StrataTablePanel extends LitElement {
               </button>
               <hr />`
           : nothing}
-        <button class="quiet" role="menuitem" @click=${() => this.save_csv(table, "comma")}>${icon("import")}${words.save_csv}</button>
-        <button class="quiet" role="menuitem" @click=${() => this.save_csv(table, "semicolon")}>${icon("import")}${words.save_csv_semicolon}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.save_sheet(table, "xlsx")}>${icon("import")}${words.save_xlsx}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.save_sheet(table, "csv")}>${icon("import")}${words.save_csv}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.save_sheet(table, "csv", { separator: "semicolon" })}>${icon("import")}${words.save_csv_semicolon}</button>
         ${table.kind === "terms" ? this.terms_menu(table) : nothing}
         ${this.can_write
           ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_csv(table)}>${icon("upload")}${words.import_csv}</button>
@@ -394,6 +404,7 @@ export class StrataTablePanel extends LitElement {
         >
         ${column ? visibility_badge(column.visibility) : nothing} ${sorted === "none" ? nothing : icon(sorted === "ascending" ? "up" : "down")}
       </button>
+      ${column ? this.filter_button(column, label) : nothing}
       ${column && this.session.can_curate
         ? html`<strata-menu label=${words.column_menu(label)} small>
             <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "column", table: this.view.table_id, column })}>
@@ -406,6 +417,15 @@ export class StrataTablePanel extends LitElement {
         : nothing}
       <span class="edge" @pointerdown=${(event: PointerEvent) => this.on_edge(event, name)}></span>
     </div>`;
+  }
+
+  private filter_button(column: Column, label: string): TemplateResult {
+    const words = texts.column_filter;
+    const is_on = chosen_in(this.view.rows.filter, column) !== null;
+    const told = is_on ? words.open_on(label) : words.open(label);
+    return html`<button class="icon quiet by-column ${is_on ? "on" : ""}" aria-haspopup="dialog" aria-label=${told} title=${told} @click=${(event: Event) => this.open_filter(column, event)}>
+      ${icon("filter")}
+    </button>`;
   }
 
   private sort(name: string): void {
@@ -760,8 +780,8 @@ export class StrataTablePanel extends LitElement {
     else if (key === " " && record) this.view.select(record.key, "toggle");
     else if (key === "Enter" || key === "F2") this.enter(record, row, column);
     else if ((key === "Delete" || key === "Backspace") && record && cell && this.can_write) this.clear_cell(record, cell);
-    else if (key.length === 1 && !event.altKey && cell) this.edit_at(row, column, takes_typing(cell) ? key : null);
-    else return key.length === 1; // not a shortcut of the page
+    else if (key.length === 1 && !event.altKey && cell && this.can_write && may_be_text(cell, key)) this.edit_at(row, column, takes_typing(cell) ? key : null);
+    else return key === " ";
     return true;
   }
 
@@ -806,9 +826,13 @@ export class StrataTablePanel extends LitElement {
   // ── the filter, files, and what else is asked for ─────────────────────────────────────────────────────────────────
 
   private on_filter(): void {
+    this.set_filter(this.filter_.value.trim());
+  }
+
+  private set_filter(filter: string): void {
     if (this.scroller_) this.scroller_.scrollTop = 0;
     this.active_ = { row: 0, column: this.active_.column };
-    this.view.rows.set_query({ filter: this.filter_.value.trim() });
+    this.view.rows.set_query({ filter });
   }
 
   private on_filter_key(event: KeyboardEvent): void {
@@ -840,10 +864,32 @@ export class StrataTablePanel extends LitElement {
     session.choose_tool("brush");
   }
 
-  private save_csv(table: Table, separator: string): void {
+  /** Of the rows that the filter finds, in their order. */
+  private save_sheet(table: Table, format: "csv" | "xlsx", more: Record<string, string> = {}): void {
     const { sortby, filter } = this.view.rows;
-    const query = { separator, ...(sortby ? { sortby } : {}), ...(filter ? { filter } : {}) };
-    save_from(this.session.api.records_url({ model: this.session.model_id, layer: this.view.layer_id }, query), `${table.slug}.csv`);
+    const query = { f: format, ...more, ...(sortby ? { sortby } : {}), ...(filter ? { filter } : {}) };
+    save_from(this.session.api.records_url({ model: this.session.model_id, layer: this.view.layer_id }, query), `${table.slug}.${format}`);
+  }
+
+  // ── the filter of a column ────────────────────────────────────────────────────────────────────────────────────────
+
+  private open_filter(column: Column, event: Event): void {
+    this.filtered_ = { column, anchor: event.currentTarget as HTMLElement };
+  }
+
+  private column_filter(table: Table): TemplateResult | typeof nothing {
+    const { filtered_: filtered, view } = this;
+    const column = filtered && table.columns.find(({ id }) => id === filtered.column.id);
+    if (!filtered || !column) return nothing;
+    return html`<strata-column-filter
+      .session=${this.session}
+      .table=${view.table_id}
+      .column=${column}
+      .filter=${view.rows.filter}
+      .anchor=${filtered.anchor}
+      @filter=${(event: CustomEvent<string>) => this.set_filter(event.detail)}
+      @closed=${() => (this.filtered_ = null)}
+    ></strata-column-filter>`;
   }
 
   private choose_photos(table: Table): void {

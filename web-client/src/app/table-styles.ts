@@ -37,8 +37,8 @@ export const table_styles = css`
   .filter {
     position: relative;
     flex: 1 1 10rem;
-    min-width: 5.625rem;
-    max-width: 28.75rem;
+    min-width: 12rem;
+    max-width: 40rem;
     margin-left: 0.375rem;
   }
   .filter input {
@@ -65,20 +65,28 @@ export const table_styles = css`
     padding-right: 0.375rem;
   }
   .chosen > .ellipsis {
+    flex: 0 1 auto;
     min-width: 4rem;
   }
   .chosen > button {
     flex: none;
+    min-height: 2rem;
   }
-  /* beside a choice there is no room for words */
+  .chosen > button.icon {
+    width: 2rem;
+  }
+  .files {
+    display: flex;
+    flex: none;
+    gap: 2px;
+  }
+  .files button {
+    padding: 0 0.5rem;
+    font-size: 0.82rem;
+  }
   @container (max-width: 1000px) {
     .bar .words {
       display: none;
-    }
-    .bar:has(.chosen) .count {
-      max-width: 5.25rem;
-      overflow: hidden;
-      text-overflow: ellipsis;
     }
   }
   .thumbnail {
@@ -89,13 +97,15 @@ export const table_styles = css`
     border-radius: 3px;
     vertical-align: middle;
   }
+  /* below the rows, which stay where they are when one is chosen */
   .chosen {
     display: flex;
     align-items: center;
-    flex: 0 1 auto;
+    flex: none;
     gap: 2px;
-    padding: 2px 4px 2px 0.625rem;
-    border-radius: var(--radius-small);
+    min-width: 0;
+    padding: 2px 0.5rem 2px 0.875rem;
+    border-top: var(--edge) solid var(--line);
     background: var(--accent-soft);
     font-size: 0.88rem;
     white-space: nowrap;
@@ -241,6 +251,17 @@ export const table_styles = css`
   .head .required {
     color: var(--danger);
   }
+  .head .by-column {
+    width: 1.375rem;
+    min-height: 1.75rem;
+    color: var(--ink-soft);
+  }
+  .head .by-column.on {
+    color: var(--accent);
+  }
+  .head .by-column.on svg {
+    fill: currentColor;
+  }
   .head svg.glyph {
     width: 0.875rem;
     height: 0.875rem;
@@ -296,7 +317,7 @@ export const table_styles = css`
     padding: 1.125rem;
     color: var(--ink-soft);
   }
-  /* the title with what closes it, then the filter, then what is chosen */
+  /* the title with what closes it, then the filter */
   :host(.narrow) .bar {
     flex-wrap: wrap;
     row-gap: 3px;
@@ -321,14 +342,5 @@ export const table_styles = css`
   }
   :host(.narrow) .on-model {
     order: 2;
-  }
-  :host(.narrow) .chosen {
-    order: 3;
-    flex: 1 0 100%;
-    overflow-x: auto;
-  }
-  :host(.narrow) .chosen > .ellipsis {
-    flex: 1 0 auto;
-    max-width: 60%;
   }
 `;
