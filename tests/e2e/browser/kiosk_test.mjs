@@ -141,6 +141,16 @@ try {
   await assert_accessible("first stop");
   await shot("first");
 
+  say("on an upright screen the object has most of the height, and its words no more than they need");
+  const fits = async (where) => {
+    const stage = await page.locator("strata-kiosk-stage").boundingBox();
+    assert.ok(stage.height >= 0.6 * kUpright.height, `${where}: the object has ${stage.height} of ${kUpright.height}`);
+    const words = page.locator(".panel > .words");
+    const [room, needed] = await words.evaluate((each) => [each.clientHeight, [...each.children].at(-1).getBoundingClientRect().bottom - each.getBoundingClientRect().top]);
+    assert.ok(room - needed < 12, `${where}: words of ${needed} in ${room}`);
+  };
+  await fits("first stop");
+
   say("keys reach all of it: Tab goes to a button, Enter presses it, and the object has its own");
   const focused = () => page.evaluate(() => {
     let at = document.activeElement;
@@ -219,6 +229,24 @@ try {
   await touch(line([row.x + 200, row.y + 30], [row.x + 500, row.y + 32]));
   await is_shown("Sherds");
 
+  say("a tap on a class says which it is, beside the place, until the object moves");
+  await fits("second stop");
+  await button("pieces").tap();
+  await is_shown("pieces");
+  await live();
+  await page.touchscreen.tap(x, y);
+  const place = page.locator(".place-of-tap");
+  await place.getByText(/^Sherd \d+$/).waitFor();
+  await place.getByText("pieces", { exact: true }).waitFor();
+  const bubble = await place.locator("p").boundingBox();
+  assert.ok(bubble.x >= 0 && bubble.x + bubble.width <= kUpright.width && Math.abs(bubble.x + bubble.width / 2 - x) < 250 && bubble.y + bubble.height < y, JSON.stringify(bubble));
+  await assert_accessible("class");
+  await shot("class");
+  await touch(line([x, y], [x + 120, y + 20]));
+  await place.waitFor({ state: "detached" });
+  await button("Sherds").tap();
+  await is_shown("Sherds");
+
   say("a tap tells of what is there, with its picture");
   await live();
   await page.touchscreen.tap(x, y);
@@ -250,6 +278,7 @@ try {
   say("its words are in the visitor's language");
   await button("Deutsch").tap();
   await heading("Vierzehn Scherben").waitFor();
+  for (const name of ["Scherben", "Risse", "pieces"]) await button(name).waitFor(); // of the last one nobody has written a German name
   await button("Sherd 3").tap();
   await card.getByText("Wandstärke", { exact: true }).waitFor();
   await shot("german");

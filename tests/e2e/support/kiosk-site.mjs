@@ -59,6 +59,7 @@ export async function make_kiosk_site(server, { idle_s = 30 } = {}) {
   await view("The pot", pot_camera(1600, 1000), []);
   await view("Sherds", pot_camera(1600, 1000, 0.9), ["sherds"]);
   await view("Rim", pot_camera(1600, 1000, 2.2, 170), []);
+  for (const [layer, name] of [["sherds", "Scherben"], ["cracks", "Risse"]]) await server.json("PATCH", `${kModel}/layers/${layer}`, { labels: { de: name } });
   await server.json("POST", `${kModel}/tours`, { name: "Round the pot", languages: ["en", "de", "es"], idle_s, stops: kStops });
   const { path, kiosk } = await server.json("POST", `${kTour}/kiosks`, { name: "Foyer" });
   return { path, kiosk, model };

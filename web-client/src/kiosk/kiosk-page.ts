@@ -3,12 +3,14 @@
 import { html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
+import { styled } from "../app/styled";
 import { name_of_language } from "../core/languages";
 import { fill_screen } from "./guard";
 import { direction_of_language } from "./languages";
 import { kiosk_styles } from "./kiosk-styles";
 import type { KioskSession } from "./kiosk-session";
 import "./stage";
+import { name_of_layer } from "./place";
 import { follow_swipes } from "./swipe";
 import { texts_in } from "./texts";
 
@@ -92,9 +94,16 @@ export class StrataKiosk extends LitElement {
       ${repeat([show], (each) => each, () => html`<strata-kiosk-stage class=${session.resting ? "resting" : ""} .session=${session} .show=${show} .changes=${this.changes_} ?inert=${covered}></strata-kiosk-stage>`)}
       ${show.away ? html`<p class="sign away" role="status">${words.stored}</p>` : nothing}
       ${!session.resting && session.index === 0 && show.untouched && show.drawn ? html`<p class="sign">${words.hint}</p>` : nothing}
-      ${this.panel(covered)} ${session.enlarged ? this.enlarged(asked) : nothing} ${session.resting ? this.invitation() : nothing}
+      ${session.place && !covered ? this.place(session.place) : nothing} ${this.panel(covered)} ${session.enlarged ? this.enlarged(asked) : nothing} ${session.resting ? this.invitation() : nothing}
       ${asked ? this.question() : nothing}
     `;
+  }
+
+  /** Beside the finger, above it where there is room. */
+  private place({ title, about, x, y }: { title: string; about: string; x: number; y: number }): TemplateResult {
+    return html`<div class="place-of-tap" role="status" ${styled({ "--x": `${x}px`, "--y": `${y}px` })}>
+      <p><b>${title}</b>${about ? html`<span>${about}</span>` : nothing}</p>
+    </div>`;
   }
 
   private alone(title: string, detail: string): TemplateResult {
@@ -132,7 +141,7 @@ export class StrataKiosk extends LitElement {
         ? html`<div class="row scrolls layers" role="group" aria-label=${words.layers} ?inert=${behind}>
             ${session.choices.map(
               (choice) =>
-                html`<button aria-pressed=${String(choice === session.choice)} @click=${() => session.choose_layer(choice)}>${choice?.name ?? words.as_kept}</button>`,
+                html`<button aria-pressed=${String(choice === session.choice)} @click=${() => session.choose_layer(choice)}>${choice ? name_of_layer(choice, session.language) : words.as_kept}</button>`,
             )}
           </div>`
         : nothing}

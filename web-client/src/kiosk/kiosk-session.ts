@@ -9,6 +9,7 @@ import { card_of, type Card } from "./cards";
 import { IdleWatch } from "./idle";
 import { words_in } from "./languages";
 import { KioskLink } from "./link";
+import { layer_there, words_of_place, type TappedPlace } from "./place";
 import { KioskShow } from "./show";
 import { choices_of, first_choice, layers_shown, seen_layers, step_from, stops_of, type LayerChoice, type Stop } from "./stops";
 import type { KioskStore } from "./store";
@@ -43,6 +44,8 @@ export class KioskSession {
   named: NamedRecord[] = [];
   card: Card | null = null;
   enlarged: Card["pictures"][number] | null = null;
+  /** Where somebody tapped, while it is where they tapped. */
+  private place_: TappedPlace | null = null;
   show: KioskShow | null = null;
 
   readonly idle: IdleWatch;
@@ -110,6 +113,12 @@ export class KioskSession {
   get text(): string {
     return words_in(this.stop?.stop.text, this.language, this.languages);
   }
+  /** What the place that was tapped is called, and where it is on the stage; null: there is nothing to tell of any. */
+  get place(): { title: string; about: string; x: number; y: number } | null {
+    const { place_: place, show } = this;
+    const layer = place && show?.layers.find(({ id }) => id === place.layer);
+    return layer ? { ...words_of_place(layer, place.value, this.language), x: place.x, y: place.y } : null;
+  }
   /** Nobody is there; the tour plays by itself. */
   get resting(): boolean {
     return this.idle.presence.is === "alone";
@@ -160,6 +169,12 @@ export class KioskSession {
   close_card(): void {
     this.asked_card_ += 1;
     this.card = this.enlarged = null;
+    this.place_ = null;
+    this.changed();
+  }
+  private forget_place(): void {
+    if (!this.place_) return;
+    this.place_ = null;
     this.changed();
   }
   enlarge(picture: Card["pictures"][number] | null): void {
@@ -214,14 +229,17 @@ export class KioskSession {
     this.changed();
   }
 
-  /** Of the topmost layer that is seen and holds a record there. */
-  private on_tapped({ values }: Picked): void {
+  /** Of a record its card, of a class or a number what it is, beside the place. */
+  private on_tapped(picked: Picked, { x, y }: { x: number; y: number }): void {
     const { show } = this;
     if (!show || this.resting) return;
-    const layer = seen_layers(show.layers, this.overrides()).find(({ table, slug }) => table !== undefined && values?.[slug]?.valid === true);
-    const key = layer ? values?.[layer.slug]?.value : undefined;
-    if (layer?.table !== undefined && key !== undefined) void this.open_card(String(layer.table), key);
-    else this.close_card();
+    const found = layer_there(seen_layers(show.layers, this.overrides()), picked);
+    this.close_card();
+    if (found?.layer.table !== undefined) void this.open_card(String(found.layer.table), found.value);
+    else if (found) {
+      this.place_ = { x, y, layer: found.layer.id, value: found.value };
+      this.changed();
+    }
   }
 
   // ── the server ────────────────────────────────────────────────────────────────────────────────────────────────────
@@ -273,7 +291,8 @@ export class KioskSession {
       model,
       {
         learned: (what) => (what === "views" ? void this.read_views() : this.show_again()),
-        tapped: (picked) => this.on_tapped(picked),
+        tapped: (picked, at) => this.on_tapped(picked, at),
+        moved: () => this.forget_place(),
         changed: () => this.changed(),
         lost: () => this.link_.ask(), // which knows why
       },

@@ -11,7 +11,8 @@ export const kiosk_styles = css`
     position: fixed;
     inset: 0;
     display: grid;
-    grid-template: minmax(0, 58fr) minmax(0, 42fr) / minmax(0, 1fr);
+    --words: 40; /* the most of the height, in percent, that words may take */
+    grid-template: minmax(0, 1fr) auto / minmax(0, 1fr);
     background: linear-gradient(rgb(241 240 236), rgb(214 211 204)); /* as the server draws it behind the model */
     color: var(--ink);
     font: clamp(17px, 1.7vmin + 7px, 34px) / 1.5 var(--sans);
@@ -110,10 +111,52 @@ export const kiosk_styles = css`
   .sign.away {
     align-self: start;
   }
+  .place-of-tap {
+    grid-area: 1 / 1;
+    position: relative;
+    z-index: 1;
+    overflow: hidden;
+    pointer-events: none;
+  }
+  /* a dot where the finger was, and the words over it, within the stage */
+  .place-of-tap::before {
+    content: "";
+    position: absolute;
+    left: calc(var(--x) - 0.45em);
+    top: calc(var(--y) - 0.45em);
+    width: 0.9em;
+    height: 0.9em;
+    box-sizing: border-box;
+    border: 3px solid #fff;
+    border-radius: 50%;
+    background: var(--calm);
+    box-shadow: 0 1px 6px rgb(32 41 42 / 0.4);
+  }
+  .place-of-tap p {
+    position: absolute;
+    left: clamp(9.5em, var(--x), 100% - 9.5em);
+    bottom: clamp(0.5em, 100% - var(--y) + 1em, 100% - 5em);
+    display: grid;
+    width: max-content;
+    max-width: 18em;
+    padding: 0.45em 1em;
+    border-radius: 1em;
+    background: var(--raised);
+    box-shadow: 0 4px 24px rgb(32 41 42 / 0.24);
+    text-align: center;
+    line-height: 1.25;
+    overflow-wrap: anywhere;
+    transform: translateX(-50%);
+  }
+  .place-of-tap span {
+    color: var(--ink-soft);
+    font-size: 0.8em;
+  }
 
   .panel {
     grid-area: 2 / 1;
     position: relative;
+    max-height: calc(var(--words) * 1dvh); /* as tall as its words, which scroll beyond that */
     display: flex;
     flex-direction: column;
     gap: var(--gap);
@@ -125,7 +168,7 @@ export const kiosk_styles = css`
     touch-action: pan-y;
   }
   .words {
-    flex: 1;
+    flex: 1 1 auto;
     min-height: 0;
     overflow-y: auto;
     overscroll-behavior: contain;
@@ -203,8 +246,9 @@ export const kiosk_styles = css`
 
   .card {
     position: absolute;
-    inset: 0;
+    inset: auto 0 0;
     z-index: 2;
+    height: max(100%, calc(var(--words) * 1dvh)); /* over the foot of the picture, which does not move */
     display: flex;
     flex-direction: column;
     gap: var(--gap);
@@ -360,13 +404,13 @@ export const kiosk_styles = css`
 
   @media (orientation: portrait) and (max-height: 1300px) {
     :host {
-      grid-template: minmax(0, 1fr) minmax(0, 1fr) / minmax(0, 1fr);
+      --words: 50;
     }
   }
   @media (max-width: 600px) and (orientation: portrait) {
     :host {
       --target: 58px;
-      grid-template: minmax(0, 42fr) minmax(0, 58fr) / minmax(0, 1fr);
+      --words: 58;
     }
     .dots,
     .row.scrolls > .label {
@@ -379,13 +423,13 @@ export const kiosk_styles = css`
       grid-template: minmax(0, 1fr) / minmax(360px, 36fr) minmax(0, 64fr);
     }
     strata-kiosk-stage,
+    .place-of-tap,
     .sign {
       grid-area: 1 / 2;
     }
     .panel {
       grid-area: 1 / 1;
       align-self: end;
-      min-height: 50%;
       max-height: calc(100% - 2 * var(--rim));
       margin: var(--rim);
       margin-inline-end: 0;

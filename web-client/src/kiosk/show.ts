@@ -18,8 +18,10 @@ const kTapReach_css = 14; // a finger on glass
 export interface ShowHost {
   /** The model, its layers, or a named view are known, or others; `views`: those of the tour are to be read again. */
   learned(what: "model" | "views"): void;
-  /** A tap, and what is there. */
-  tapped(picked: Picked): void;
+  /** A tap, and what is there; where on the stage, in CSS pixels. */
+  tapped(picked: Picked, at: { x: number; y: number }): void;
+  /** The picture moves away from under what was told of a place. */
+  moved(): void;
   /** There are live pictures, or no longer. */
   changed(): void;
   /** The connection is gone, for a moment or for long. */
@@ -46,6 +48,8 @@ export class KioskShow {
   private placed_ = false; // the camera has been where the view has it
   private away_timer_: ReturnType<typeof setTimeout> | null = null;
   private pick_ = ""; // the newest tap that is not answered
+  private picked_at_ = { x: 0, y: 0 }; // on the stage, CSS pixels
+  private flight_ends_ms_ = 0;
 
   constructor(
     readonly model_ref: string,
@@ -103,7 +107,9 @@ export class KioskShow {
     this.placed_ = this.model !== null;
     if (!this.model) return;
     this.view.set_section(view.camera.section ?? [], flight_s > 0);
-    this.view.fly(place_like(view.camera, this.view.camera), this.drawn ? flight_s * 1000 : 0);
+    const flight_ms = this.drawn ? flight_s * 1000 : 0;
+    this.flight_ends_ms_ = performance.now() + flight_ms;
+    this.view.fly(place_like(view.camera, this.view.camera), flight_ms);
   }
 
   /** What is known of the model, or of the view, may be something else than before. Where visitors have turned to stays, unless the view itself was changed. */
@@ -128,10 +134,12 @@ export class KioskShow {
     this.connection_.set_layer_overrides(layers);
   }
 
-  /** CSS pixels, and window pixels for each. */
+  /** CSS pixels, and window pixels for each. The words of a stop may need more room than those before: what is on its way there goes on. */
   set_viewport(width: number, height: number, scale: number): void {
     this.view.set_viewport(width, height, scale);
-    if (this.view_shown_ && this.stands_at_view_ && this.model) this.view.fly(place_like(this.view_shown_.camera, this.view.camera), 0);
+    if (!this.view_shown_ || !this.stands_at_view_ || !this.model) return;
+    const left_ms = Math.max(0, this.flight_ends_ms_ - performance.now());
+    this.view.fly(place_like(this.view_shown_.camera, this.view.camera), left_ms);
   }
 
   frame_drawn(part: FrameMessage): void {
@@ -147,12 +155,15 @@ export class KioskShow {
   private move(change: () => void): void {
     const first = this.stands_at_view_;
     this.stands_at_view_ = false;
+    this.pick_ = ""; // what was tapped is elsewhere by now
     change();
+    this.host_.moved();
     if (first) this.host_.changed();
   }
 
   private tap({ x, y }: PointerSample): void {
     this.pick_ = new_id();
+    this.picked_at_ = { x: x / this.view.scale, y: y / this.view.scale };
     this.connection_.pick(this.pick_, x, y);
   }
 
@@ -186,7 +197,7 @@ export class KioskShow {
         picked: (message) => {
           if (message.id !== this.pick_) return;
           this.pick_ = "";
-          this.host_.tapped(message);
+          this.host_.tapped(message, this.picked_at_);
         },
         // What visitors could do nothing about is not told to them; who looks after the screen finds it in the browser's console.
         problem: (problem) => console.info("the server refused something:", problem.status, problem.title, problem.detail),
