@@ -1,6 +1,7 @@
 #include "net/docs_page.h"
 
 #include <fstream>
+#include <initializer_list>
 
 namespace strata::net {
 namespace {
@@ -57,6 +58,12 @@ std::string content_of(const json& contract, const json& holder) {
   return text;
 }
 
+std::string table_of(std::initializer_list<const char*> heads, const std::string& rows) {
+  std::string table = "<table><thead><tr>";
+  for (const char* head : heads) table += std::string("<th scope=\"col\">") + head + "</th>";
+  return table + "</tr></thead><tbody>" + rows + "</tbody></table>";
+}
+
 void add_operation(std::string& page, const json& contract, const std::string& path, const std::string& method,
                    const json& operation, const json& shared_parameters) {
   page += "<section class=\"operation\"><h3><span class=\"method " + html_escape(method) + "\">" + html_escape(method) +
@@ -76,7 +83,7 @@ void add_operation(std::string& page, const json& contract, const std::string& p
               html_escape(text_of(parameter, "description")) + "</td></tr>";
     }
   }
-  if (!rows.empty()) page += "<table><tr><th>parameter</th><th>in</th><th>type</th><th></th></tr>" + rows + "</table>";
+  if (!rows.empty()) page += table_of({"parameter", "in", "type", "description"}, rows);
   if (operation.contains("requestBody")) page += "<p>Body:" + content_of(contract, operation["requestBody"]) + "</p>";
   if (auto responses = operation.find("responses"); responses != operation.end()) {
     page += "<ul>";
@@ -98,15 +105,15 @@ void add_schema(std::string& page, const std::string& name, const json& schema) 
     page += "<p>" + type_of(schema) + "</p></section>";
     return;
   }
-  page += "<table><tr><th>member</th><th>type</th><th></th></tr>";
+  std::string rows;
   for (const auto& [member, entry] : properties->items()) {
     bool required = false;
     if (auto list = schema.find("required"); list != schema.end())
       for (const auto& item : *list) required = required || item == member;
-    page += "<tr><td><code>" + html_escape(member) + "</code>" + (required ? "" : " <em>optional</em>") + "</td><td>" +
+    rows += "<tr><td><code>" + html_escape(member) + "</code>" + (required ? "" : " <em>optional</em>") + "</td><td>" +
             type_of(entry) + "</td><td>" + html_escape(text_of(entry, "description")) + "</td></tr>";
   }
-  page += "</table></section>";
+  page += table_of({"member", "type", "description"}, rows) + "</section>";
 }
 
 }  // namespace
@@ -132,7 +139,7 @@ std::string docs_html(const json& contract) {
       "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">"
       "<title>" +
       html_escape(info.value("title", "API")) +
-      "</title><link rel=\"stylesheet\" href=\"/api/v1/docs.css\"></head><body><h1>" +
+      "</title><link rel=\"stylesheet\" href=\"/api/v1/docs.css\"></head><body><main><h1>" +
       html_escape(info.value("title", "API")) + " <small>" + html_escape(info.value("version", "")) + "</small></h1>";
   if (auto description = text_of(info, "description"); !description.empty())
     page += "<p>" + html_escape(description) + "</p>";
@@ -147,7 +154,7 @@ std::string docs_html(const json& contract) {
   const json schemas = contract.value("components", json::object()).value("schemas", json::object());
   if (!schemas.empty()) page += "<h2>Objects</h2>";
   for (const auto& [name, schema] : schemas.items()) add_schema(page, name, schema);
-  return page + "</body></html>";
+  return page + "</main></body></html>";
 }
 
 Result<Response> docs_page(const std::filesystem::path& openapi_json) {

@@ -512,6 +512,17 @@ TEST(Docs, text_of_the_contract_cannot_become_markup) {
   EXPECT_NE(page.find("a &amp; b"), std::string::npos);
 }
 
+TEST(Docs, all_of_it_is_the_main_part_and_every_column_has_a_head) {
+  const nlohmann::json contract = nlohmann::json::parse(R"({"info": {"title": "T"}, "components": {"schemas": {"A": {
+      "properties": {"b": {"type": "string"}}}}}, "paths": {"/a": {"get": {"parameters": [{"name": "p", "in": "query"}],
+      "responses": {"200": {"description": "ok"}}}}}})");
+  const std::string page = docs_html(contract);
+  EXPECT_NE(page.find("<body><main><h1>"), std::string::npos);
+  EXPECT_TRUE(page.ends_with("</main></body></html>"));
+  EXPECT_EQ(page.find("<th></th>"), std::string::npos);
+  EXPECT_NE(page.find("<th scope=\"col\">description</th>"), std::string::npos);
+}
+
 TEST(Metrics, text_names_every_counter_once) {
   Metrics metrics;
   metrics.count_request(204);
