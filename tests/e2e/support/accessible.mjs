@@ -18,6 +18,16 @@ export async function findings(page, rules = null) {
     .flatMap(({ id, nodes }) => nodes.map(({ target, html, any, all }) => `${id}: ${target.flat().join(" ")} ${html.slice(0, 120)} ${[...any, ...all].map(({ message }) => message).join("; ").slice(0, 200)}`));
 }
 
+/** Of these rules all findings, however grave, and rules that axe-core does not ask by itself, a line each. */
+export async function violations(page, rules) {
+  if (!(await page.evaluate(() => "axe" in globalThis))) await page.evaluate(kAxe);
+  const found = await page.evaluate(
+    async (values) => (await globalThis.axe.run(document, { resultTypes: ["violations"], runOnly: { type: "rule", values } })).violations,
+    rules,
+  );
+  return found.flatMap(({ id, nodes }) => nodes.map(({ target, html }) => `${id}: ${target.flat().join(" ")} ${html.slice(0, 160)}`));
+}
+
 /** Sees through the roots of elements. */
 const kDeep = `
   const deep_all = (root = document) => [...root.querySelectorAll("*")].flatMap((each) => [each, ...(each.shadowRoot ? deep_all(each.shadowRoot) : [])]);

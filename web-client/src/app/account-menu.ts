@@ -2,7 +2,7 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { called, initials } from "../core/people";
+import { called, initials, name_with } from "../core/people";
 import { may_administer, type Me } from "../core/types";
 import { icon } from "./icons";
 import "./menu";
@@ -57,7 +57,7 @@ export class StrataAccountMenu extends LitElement {
     const { me } = this;
     const words = texts.account;
     const role = texts.roles[me.role];
-    return html`<strata-menu label=${words.menu(called(me))}>
+    return html`<strata-menu label=${name_with(words.menu(called(me)), initials(me))}>
       <span class="face" slot="face">${initials(me)}</span>
       <div class="who"><b>${called(me)}</b><span>${me.full_name.trim() ? `${me.user} · ${role}` : role}</span></div>
       <hr />

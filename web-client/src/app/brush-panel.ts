@@ -56,7 +56,7 @@ export class StrataBrushPanel extends LitElement {
         align-items: center;
         gap: 0.75rem;
       }
-      .slant input:disabled + span {
+      .slant .check input:disabled + span {
         opacity: var(--unavailable);
       }
       .locked {
@@ -97,12 +97,12 @@ export class StrataBrushPanel extends LitElement {
 
   private locked(layer: Layer): TemplateResult {
     return html`<h2>${texts.tools[this.session.tools.active]}</h2>
-      <p class="locked" role="status">${icon("lock")}<span>${texts.layers.locked_detail(layer.name)}</span></p>`;
+      <p class="locked" role="status">${icon("lock")}<span>${texts.layers.locked_detail(label_of(layer))}</span></p>`;
   }
 
   private strokes(layer: Layer, erases: boolean): TemplateResult {
     return html`<h2>${erases ? texts.brush.eraser_title : texts.brush.title}</h2>
-      ${erases ? html`<p class="hint">${texts.brush.erases(layer.name)}</p>` : this.value(layer)} ${this.width()}
+      ${erases ? html`<p class="hint">${texts.brush.erases(label_of(layer))}</p>` : this.value(layer)} ${this.width()}
       ${this.through()} ${this.slant()} ${this.session.painting.pen_used ? this.pressure() : nothing} ${erases ? nothing : this.whole(layer)}`;
   }
 
@@ -122,7 +122,7 @@ export class StrataBrushPanel extends LitElement {
         chosen: erases,
         choose: (chosen) => painting.set_brush((brush) => (brush.areas.erases = chosen)),
       })}
-      ${erases ? html`<p class="hint">${texts.brush.erases(layer.name)}</p>` : this.value(layer)}
+      ${erases ? html`<p class="hint">${texts.brush.erases(label_of(layer))}</p>` : this.value(layer)}
       ${tool === "bucket"
         ? radio_group<typeof reach>({
             label: words.reach,
@@ -324,7 +324,7 @@ export class StrataBrushPanel extends LitElement {
   private async fill(layer: Layer): Promise<void> {
     const what = describe_value(layer, this.session.painting.brush.value_of(layer), this.session.tables);
     const words = texts.brush;
-    if (await ask({ heading: words.fill_title(layer.name), lead: words.fill_lead(`“${what}”`), yes: words.fill })) {
+    if (await ask({ heading: words.fill_title(label_of(layer)), lead: words.fill_lead(`“${what}”`), yes: words.fill })) {
       this.session.painting.fill(layer);
     }
   }

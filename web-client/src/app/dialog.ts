@@ -113,7 +113,10 @@ export class StrataDialog extends LitElement {
         gap: 1rem;
         padding: 0.875rem 1.5rem 1.25rem;
         overflow: auto;
-        outline-offset: -3px;
+        outline-offset: -2px;
+      }
+      .content.begun:focus-visible {
+        outline: none; /* it was opened a moment ago: what has the keyboard is the whole of it */
       }
       footer {
         display: flex;
@@ -173,6 +176,7 @@ export class StrataDialog extends LitElement {
     if (asks) return asks.focus();
     const first = (this.prose ? this.content_ : await first_stop(this.content_)) ?? this.way_out_;
     if (this.used_ || !this.dialog_.open) return;
+    if (first === this.content_) this.content_.classList.add("begun");
     (first && !opens_keyboard(first) ? first : this.dialog_).focus();
   }
 
@@ -235,6 +239,7 @@ export class StrataDialog extends LitElement {
         tabindex=${this.prose ? 0 : nothing}
         role=${this.prose ? "region" : nothing}
         aria-labelledby=${this.prose ? "heading" : nothing}
+        @blur=${() => this.content_.classList.remove("begun")}
       >
         <slot @slotchange=${this.on_content}></slot>
       </div>

@@ -46,9 +46,6 @@ export class StrataKiosksDialog extends LitElement {
         grid-template-columns: minmax(0, 1fr) 9.375rem;
         align-items: end;
       }
-      .number input {
-        padding-right: 3.5rem;
-      }
       button.new {
         justify-self: start;
       }

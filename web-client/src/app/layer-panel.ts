@@ -3,6 +3,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
+import { description_in, label_of } from "../core/cells";
 import { value_range, type Layer, type LayerPatch } from "../core/types";
 import { ask_to_bin, tell_binned } from "./bin";
 import { open_bin_of } from "./bin-dialog";
@@ -66,6 +67,7 @@ export class StrataLayerPanel extends LitElement {
       }
       .list {
         display: grid;
+        grid-template-columns: minmax(0, 1fr); /* a long name does not widen its card */
         gap: 0.375rem;
         margin: 0;
         padding: 0;
@@ -97,7 +99,14 @@ export class StrataLayerPanel extends LitElement {
         color: var(--ink-soft);
       }
       .selected .name {
+        padding-block: 0.375rem;
         font-weight: 600;
+        text-align: start;
+        white-space: normal; /* of the chosen layer the whole name is read */
+      }
+      .selected .name .ellipsis {
+        overflow-wrap: anywhere;
+        white-space: normal;
       }
       .lock,
       .seen-by {
@@ -121,6 +130,7 @@ export class StrataLayerPanel extends LitElement {
       }
       .more {
         display: grid;
+        grid-template-columns: minmax(0, 1fr);
         gap: 0.75rem;
         padding: 0.375rem 0.875rem 0.875rem;
         border-top: var(--edge) solid var(--line);
@@ -254,8 +264,8 @@ export class StrataLayerPanel extends LitElement {
           ? html`<span
               class="grip"
               draggable="true"
-              title=${words.drag(layer.name)}
-              @dragstart=${(event: DragEvent) => this.drag_.start(event, layer.id, layer.name)}
+              title=${words.drag(label_of(layer))}
+              @dragstart=${(event: DragEvent) => this.drag_.start(event, layer.id, label_of(layer))}
               @dragend=${this.drag_.end}
               >${icon("grip")}</span
             >`
@@ -263,8 +273,8 @@ export class StrataLayerPanel extends LitElement {
         <button
           class="icon quiet"
           aria-pressed=${visible}
-          aria-label=${visible ? words.hide(layer.name) : words.show(layer.name)}
-          title=${visible ? words.hide(layer.name) : words.show(layer.name)}
+          aria-label=${visible ? words.hide(label_of(layer)) : words.show(label_of(layer))}
+          title=${visible ? words.hide(label_of(layer)) : words.show(label_of(layer))}
           @click=${() => session.layers.set_visible(layer, !visible)}
         >
           ${icon(visible ? "eye" : "eye_off")}
@@ -272,15 +282,15 @@ export class StrataLayerPanel extends LitElement {
         <button
           class="quiet name ${visible ? "" : "off"}"
           aria-pressed=${selected}
-          aria-label=${words.select(layer.name)}
-          title=${layer.name}
+          aria-label=${words.select(label_of(layer))}
+          title=${label_of(layer)}
           @click=${() => session.layers.select(layer)}
         >
-          ${layer_chip(session.layers.palette(layer))}<span class="ellipsis">${layer.name}</span>
+          ${layer_chip(session.layers.palette(layer))}<span class="ellipsis">${label_of(layer)}</span>
         </button>
         ${visibility_badge(layer.visibility)}
         ${layer.locked ? html`<span class="lock" role="img" aria-label=${this.who_is_locked(layer)} title=${this.who_is_locked(layer)}>${icon("lock")}</span>` : nothing}
-        <strata-menu label=${words.options(layer.name)}>
+        <strata-menu label=${words.options(label_of(layer))}>
           ${session.can_curate
             ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "edit", layer })}>
                   ${icon("edit")}${words.edit}
@@ -355,7 +365,7 @@ export class StrataLayerPanel extends LitElement {
     const opacity = session.layers.opacity(layer);
     return html`<div class="more">
       ${layer.locked ? this.lock_told(layer) : nothing} ${layer.review ? this.review_told(layer) : nothing}
-      ${layer.description ? html`<p class="description">${layer.description}</p>` : nothing} ${legend(layer, session.layers.palette(layer), session.tables)}
+      ${description_in(layer) ? html`<p class="description">${description_in(layer)}</p>` : nothing} ${legend(layer, session.layers.palette(layer), session.tables)}
       ${layer.expression === undefined ? nothing : this.formula(layer)}
       ${layer.table === undefined
         ? nothing
@@ -369,7 +379,7 @@ export class StrataLayerPanel extends LitElement {
           min="0"
           max="100"
           .value=${String(Math.round(opacity * 100))}
-          aria-label=${texts.layers.opacity_of(layer.name)}
+          aria-label=${texts.layers.opacity_of(label_of(layer))}
           @input=${(event: Event) => session.layers.set_opacity(layer, Number((event.target as HTMLInputElement).value) / 100)}
         />
         <output class="numeric">${Math.round(opacity * 100)} %</output>
@@ -449,7 +459,7 @@ export class StrataLayerPanel extends LitElement {
   private async widen(layer: Layer): Promise<void> {
     const words = texts.layers;
     const [, highest] = value_range(layer.type);
-    if (!(await ask({ heading: words.widen_title(layer.name), lead: words.widen_lead(highest), yes: words.widen_yes }))) return;
+    if (!(await ask({ heading: words.widen_title(label_of(layer)), lead: words.widen_lead(highest), yes: words.widen_yes }))) return;
     await this.session.layers
       .change(layer, { type: "u32" })
       .then(() => notices.show("success", words.widened))

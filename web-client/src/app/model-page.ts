@@ -25,6 +25,7 @@ import { growing, growth } from "./growth";
 import "./hover-card";
 import type { LayerPanelRequest } from "./layer-panel";
 import "./layer-panel";
+import "./paint-chip";
 import { model_styles } from "./model-styles";
 import "./measure-panel";
 import { ModelSession } from "./model-session";
@@ -179,6 +180,14 @@ export class StrataModelPage extends LitElement {
     options?.parentElement?.scrollTo({ top: options.offsetTop, behavior: wants_less_motion() ? "instant" : "smooth" });
   }
 
+  /** What can be chosen for the tool in hand, from where the panel lies over the model. */
+  private show_options(session: ModelSession): void {
+    if (session.tables.view) session.tables.close();
+    this.panel_shown_ = true;
+    this.tool_ = null; // brought into sight with the next update
+    this.requestUpdate();
+  }
+
   private readonly on_hash = (event: HashChangeEvent): void => {
     if (event.newURL !== location.href) return; // the page was held, and its address put back
     this.read_address();
@@ -224,7 +233,10 @@ export class StrataModelPage extends LitElement {
       >
         <strata-tour .session=${session} .held=${this.dialog_ !== null || this.tour_editor_ !== null}></strata-tour>
         ${this.header(session)}
-        <strata-tool-rail role="toolbar" aria-label=${texts.model.tools} .session=${session}></strata-tool-rail>
+        <section class="tools" aria-label=${texts.model.tools}>
+          <strata-paint-chip .session=${session} @options=${() => this.show_options(session)}></strata-paint-chip>
+          <strata-tool-rail role="toolbar" aria-label=${texts.model.tools} .session=${session}></strata-tool-rail>
+        </section>
         <main>
           <strata-stage .session=${session}></strata-stage>
           <strata-together-bar .session=${session}></strata-together-bar>
@@ -378,7 +390,7 @@ export class StrataModelPage extends LitElement {
   }
 
   private table(session: ModelSession, view: TableView): TemplateResult {
-    return html`<div class="table">
+    return html`<section class="table" aria-label=${texts.tables.panel}>
       <div
         class="splitter across"
         role="separator"
@@ -399,7 +411,7 @@ export class StrataModelPage extends LitElement {
           @drop-column=${(event: CustomEvent<Column>) => void drop_column(session, view, event.detail)}
         ></strata-table-panel>`,
       )}
-    </div>`;
+    </section>`;
   }
 
   private dialog(session: ModelSession): TemplateResult {

@@ -55,6 +55,9 @@ export const model_styles = css`
     font-size: 1.15rem;
     padding-left: 0.375rem;
   }
+  .tools {
+    display: contents;
+  }
   strata-tool-rail {
     grid-area: rail;
   }
@@ -194,6 +197,7 @@ export const model_styles = css`
         "header" 3.125rem
         "stage" minmax(0, 1fr)
         "panel" auto
+        "chip" auto
         "rail" auto
         / minmax(0, 1fr);
     }
@@ -202,6 +206,7 @@ export const model_styles = css`
         "header" 3.125rem
         "stage" minmax(0, 1fr)
         "table" 52dvh
+        "chip" auto
         "rail" auto
         / minmax(0, 1fr);
     }

@@ -4,7 +4,7 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { format_list } from "../core/locale";
-import { called, initials } from "../core/people";
+import { called, initials, name_with } from "../core/people";
 import { ink_on, type PersonHere } from "../core/people-here";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
@@ -20,10 +20,21 @@ const kMostFacesOnPhone = 2;
 @customElement("strata-people-menu")
 export class StrataPeopleMenu extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
+  private readonly narrow_ = matchMedia("(max-width: 820px)");
+  private readonly resized_ = (): void => this.requestUpdate();
 
   constructor() {
     super();
     follow_session(this);
+  }
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.narrow_.addEventListener("change", this.resized_);
+  }
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.narrow_.removeEventListener("change", this.resized_);
   }
 
   static override styles = [
@@ -89,20 +100,6 @@ export class StrataPeopleMenu extends LitElement {
         padding: 0.5rem 0.75rem;
         color: var(--ink-soft);
       }
-      .wide {
-        display: contents;
-      }
-      .phone {
-        display: none;
-      }
-      @media (max-width: 820px) {
-        .wide {
-          display: none;
-        }
-        .phone {
-          display: contents;
-        }
-      }
     `,
   ];
 
@@ -112,10 +109,11 @@ export class StrataPeopleMenu extends LitElement {
     if (people.length === 0) return html``;
     const words = texts.together;
     const others = people.filter(({ viewer }) => viewer !== null);
-    return html`<strata-menu wide label="${texts.people.here(people.length)}: ${format_list(people.map((person) => this.name(person)))}">
-      <span class="faces" slot="face">
-        <span class="wide">${this.faces(kMostFaces)}</span><span class="phone">${this.faces(kMostFacesOnPhone)}</span>
-      </span>
+    const most = this.narrow_.matches ? kMostFacesOnPhone : kMostFaces;
+    const seen = [...people.slice(0, most).map(initials), ...(people.length > most ? [`+${people.length - most}`] : [])].join(" ");
+    const label = `${texts.people.here(people.length)}: ${format_list(people.map((person) => this.name(person)))}`;
+    return html`<strata-menu wide label=${name_with(label, seen)}>
+      <span class="faces" slot="face">${this.faces(most)}</span>
       ${others.length === 0 ? html`<p class="alone">${words.nobody_else}</p>` : nothing}
       ${repeat(
         others,
@@ -140,8 +138,7 @@ export class StrataPeopleMenu extends LitElement {
   private faces(most: number): TemplateResult {
     const { people } = this.session.together;
     const rest = people.slice(most);
-    return html`${people.slice(0, most).map((person) => face(person, this.name(person)))}
-    ${rest.length > 0 ? html`<span class="face rest" title=${rest.map((person) => this.name(person)).join("\n")}>+${rest.length}</span>` : nothing}`;
+    return html`${people.slice(0, most).map((person) => html`${face(person, this.name(person))} `)}${rest.length > 0 ? html`<span class="face rest" title=${rest.map((person) => this.name(person)).join("\n")}>+${rest.length}</span>` : nothing}`;
   }
 
   private entry(person: PersonHere): TemplateResult {

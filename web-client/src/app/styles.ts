@@ -345,23 +345,59 @@ export const choices_styles = css`
   }
 `;
 
-/** A number with its unit inside the field. */
+/** A number with its unit inside the field, however long the unit is: the field is drawn around both. */
 export const number_field_styles = css`
   .number {
-    position: relative;
+    display: flex;
+    align-items: center;
+    min-width: 0;
+    border: var(--edge) solid var(--line-strong);
+    border-radius: var(--radius-small);
+    background: var(--raised);
+    cursor: text;
   }
-  .number input {
-    padding-right: 2.125rem;
+  .number input[type="text"] {
+    flex: 1;
+    min-width: 2.5rem;
+    min-height: calc(2.375rem - 2 * var(--edge));
+    border: 0;
+    background: none;
     text-align: right;
+    outline: none;
   }
-  .number span {
-    position: absolute;
-    right: 0.625rem;
-    top: 50%;
-    transform: translateY(-50%);
+  .number > span {
+    order: 1;
+    flex: 0 1 auto;
+    max-width: 60%;
+    padding-right: 0.625rem;
+    overflow: hidden;
     color: var(--ink-soft);
     font-size: 0.85rem;
+    text-overflow: ellipsis;
+    white-space: nowrap;
     pointer-events: none;
+  }
+  .number > span:empty {
+    display: none;
+  }
+  .number:has(> span:not(:empty)) input {
+    padding-right: 0.3125rem;
+  }
+  .number:focus-within {
+    outline: var(--focus);
+  }
+  .number:has([aria-invalid="true"]) {
+    border-color: var(--danger);
+  }
+  .number:has(:disabled) {
+    opacity: var(--unavailable);
+    cursor: default;
+  }
+  @media (forced-colors: active) {
+    .number:focus-within {
+      outline: 3px solid CanvasText;
+      outline-offset: 2px;
+    }
   }
 `;
 

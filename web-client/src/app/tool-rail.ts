@@ -65,6 +65,9 @@ export class StrataToolRail extends LitElement {
       button[aria-pressed="true"]:hover:not(:disabled) {
         background: var(--accent);
       }
+      .turns {
+        display: contents;
+      }
       hr:not(strata-menu > hr) {
         width: 1.75rem;
         margin: 5px 0;
@@ -89,7 +92,30 @@ export class StrataToolRail extends LitElement {
           --fade: 2.125rem;
           --from: 0px;
           --to: 0px;
-          scroll-padding-inline: var(--fade); /* a button that the keyboard comes to is seen whole */
+          --turns: 0px; /* room of what does not scroll */
+          scroll-padding-inline: var(--fade) calc(var(--fade) + var(--turns)); /* a button that the keyboard comes to is seen whole */
+        }
+        :host([paints]) {
+          --turns: calc(2 * 2.75rem + 1.125rem);
+        }
+        /* What was painted can be taken back at any time: these stay while the tools scroll beneath them. */
+        .turns {
+          position: sticky;
+          z-index: 1;
+          right: 0;
+          order: 1;
+          display: flex;
+          flex: none;
+          align-items: center;
+          justify-content: end;
+          box-sizing: border-box;
+          width: var(--turns);
+          margin-right: -0.375rem;
+          padding-right: 0.375rem;
+          background: var(--surface);
+        }
+        .turns hr:last-child {
+          display: none;
         }
         :host([more-before]) {
           --from: var(--fade);
@@ -99,7 +125,8 @@ export class StrataToolRail extends LitElement {
         }
         :host([more-before]),
         :host([more-after]) {
-          mask-image: linear-gradient(to right, transparent, black var(--from), black calc(100% - var(--to)), transparent);
+          mask-image: linear-gradient(to right, transparent, black var(--from), black calc(100% - var(--turns) - var(--to)), transparent calc(100% - var(--turns))),
+            linear-gradient(to right, transparent calc(100% - var(--turns)), black calc(100% - var(--turns)));
         }
         hr:not(strata-menu > hr) {
           width: 0;
@@ -122,6 +149,10 @@ export class StrataToolRail extends LitElement {
     `,
   ];
 
+  override willUpdate(): void {
+    this.toggleAttribute("paints", this.session.can_paint);
+  }
+
   override render(): TemplateResult {
     const { session } = this;
     const words = texts.model;
@@ -139,9 +170,10 @@ export class StrataToolRail extends LitElement {
             ${icon(name)}
           </button>`,
       )}
-      <hr />
       ${session.can_paint
-        ? html`<button
+        ? html`<div class="turns">
+            <hr />
+            <button
               class="icon quiet"
               data-tour="undo"
               aria-label=${words.undo}
@@ -160,8 +192,9 @@ export class StrataToolRail extends LitElement {
             >
               ${icon("redo")}
             </button>
-            <hr />`
-        : nothing}
+            <hr />
+          </div>`
+        : html`<hr />`}
       <button
         class="icon quiet"
         aria-label=${texts.views.fit}

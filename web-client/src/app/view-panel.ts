@@ -56,8 +56,8 @@ export class StrataViewPanel extends FoldingPanel {
         color: var(--ink-soft);
       }
       .segments button {
-        padding: 0 0.375rem;
-        min-width: 0;
+        flex: 1 1 auto; /* as wide as its word, and more where there is room */
+        padding: 0 0.5rem;
       }
       output {
         text-align: right;

@@ -13,6 +13,12 @@ export function initials({ user, full_name }: Pick<Me, "user" | "full_name">): s
   return [first, last].map((word) => [...word][0] ?? "").join("").toUpperCase();
 }
 
+/** The name of a control, for readers of the screen and for speech: what is seen on it is part of it (WCAG 2.5.3). */
+export function name_with(name: string, seen: string): string {
+  const said = seen.trim();
+  return name.toLocaleLowerCase().includes(said.toLocaleLowerCase()) ? name : `${name} (${said})`;
+}
+
 /** What a person is called where others read it. */
 export const called = ({ user, full_name }: Pick<Me, "user" | "full_name">): string => full_name.trim() || user;
 
