@@ -59,6 +59,9 @@ JpegFacts read_jpeg_facts(Bytes bytes) {
     if (marker == 0xe1 && content.size() > sizeof kExif &&
         std::equal(std::begin(kExif), std::end(kExif), content.begin()))
       facts.orientation = orientation_of(content.subspan(sizeof kExif));
+    constexpr std::uint8_t kAdobe[] = {'A', 'd', 'o', 'b', 'e'};
+    if (marker == 0xee && content.size() >= 12 && std::equal(std::begin(kAdobe), std::end(kAdobe), content.begin()))
+      facts.adobe = true;
     const bool is_frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
     // Coded in several scans: spectral selection, in any of its variants.
     if (is_frame) facts.progressive = marker == 0xc2 || marker == 0xc6 || marker == 0xca || marker == 0xce;

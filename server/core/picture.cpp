@@ -1,14 +1,23 @@
 #include "core/picture.h"
 
 #include <png.h>
+#include <stdio.h>
 #include <turbojpeg.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <memory>
 #include <stdexcept>
 #include <string>
 
+#include "core/jpeg_facts.h"
+#include "core/picture_formats.h"
+
 namespace strata {
+
+using namespace std::literals;
+
 namespace {
 
 struct DestroyTurbo {
@@ -38,56 +47,76 @@ struct PngReader {
   ~PngReader() { png_image_free(&image); }
 };
 
+// From here on what encoding takes is grown: the worst case would be more than the pixels themselves.
+constexpr std::size_t kLargePicture_bytes = std::size_t{64} << 20;
+
+// For the C library: a stream's bytes at the end of a vector.
+ssize_t append_bytes(void* vector, const char* bytes, std::size_t count) {
+  auto& out = *static_cast<std::vector<std::uint8_t>*>(vector);
+  try {
+    out.insert(out.end(), bytes, bytes + count);
+  } catch (const std::bad_alloc&) {
+    return 0;
+  }
+  return static_cast<ssize_t>(count);
+}
+
 void check_size(std::span<const std::uint8_t> rgba, int width, int height) {
   if (width < 1 || height < 1 || rgba.size() != std::size_t(width) * std::size_t(height) * 4)
     throw std::invalid_argument("A picture's pixels do not have its size.");
 }
 
-tl::unexpected<Problem> damaged(PictureFormat format, const std::string& why) {
-  return fail(422, "Picture not readable",
-              std::string(format == PictureFormat::jpeg ? "The JPEG" : "The PNG") + " cannot be read: " + why + ".");
-}
-
-Result<PictureInfo> check_side(PictureInfo info, std::uint64_t width, std::uint64_t height, int largest_side) {
-  if (width < 1 || height < 1 || std::max(width, height) > static_cast<std::uint64_t>(largest_side))
-    return fail(422, "Picture size not usable",
-                "The picture has " + std::to_string(width) + " × " + std::to_string(height) + " pixels; 1 to " +
-                    std::to_string(largest_side) + " a side are taken.");
-  info.width = static_cast<int>(width);
-  info.height = static_cast<int>(height);
-  return info;
-}
-
-Result<PictureInfo> inspect_jpeg(std::span<const std::uint8_t> bytes, int largest_side) {
+Result<PictureInfo> inspect_jpeg(std::span<const std::uint8_t> bytes, int largest_side, int* color_space = nullptr) {
   int width = 0, height = 0, sampling = 0, space = 0;
   const tjhandle handle = decompressor();
   if (tjDecompressHeader3(handle, bytes.data(), bytes.size(), &width, &height, &sampling, &space) != 0)
-    return damaged(PictureFormat::jpeg, tjGetErrorStr2(handle));
-  return check_side({PictureFormat::jpeg}, std::max(width, 0), std::max(height, 0), largest_side);
+    return damaged_picture(PictureFormat::jpeg, tjGetErrorStr2(handle));
+  if (color_space) *color_space = space;
+  return sized_picture(PictureFormat::jpeg, std::max(width, 0), std::max(height, 0), largest_side);
 }
 
 Result<PictureInfo> begin_png(PngReader& reader, std::span<const std::uint8_t> bytes, int largest_side) {
   if (!png_image_begin_read_from_memory(&reader.image, bytes.data(), bytes.size()))
-    return damaged(PictureFormat::png, reader.image.message);
-  return check_side({PictureFormat::png}, reader.image.width, reader.image.height, largest_side);
+    return damaged_picture(PictureFormat::png, reader.image.message);
+  return sized_picture(PictureFormat::png, reader.image.width, reader.image.height, largest_side);
+}
+
+// Inks to colours, in place.
+void show_inks(std::vector<std::uint8_t>& pixels, bool inverted) {
+  for (std::size_t i = 0; i + 3 < pixels.size(); i += 4) {
+    const unsigned paper = inverted ? pixels[i + 3] : 255u - pixels[i + 3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const unsigned light = inverted ? pixels[i + c] : 255u - pixels[i + c];
+      pixels[i + c] = static_cast<std::uint8_t>((light * paper + 127) / 255);
+    }
+    pixels[i + 3] = 255;
+  }
+}
+
+bool says_premature_end(std::string why) {
+  std::transform(why.begin(), why.end(), why.begin(), [](unsigned char c) { return std::tolower(c); });
+  return why.find("premature end") != std::string::npos;
 }
 
 // `divisor` of the sides: 1, 2, 4 or 8.
 Result<Picture> decode_jpeg(std::span<const std::uint8_t> bytes, int largest_side, int divisor = 1) {
-  const auto info = inspect_jpeg(bytes, largest_side);
+  int space = 0;
+  const auto info = inspect_jpeg(bytes, largest_side, &space);
   if (!info) return tl::unexpected(info.error());
   const tjscalingfactor scale{1, divisor};
   Picture picture{TJSCALED(info->width, scale), TJSCALED(info->height, scale), {}};
   picture.rgba.resize(std::size_t(picture.width) * std::size_t(picture.height) * 4);
   const tjhandle handle = decompressor();
+  const bool is_cmyk = space == TJCS_CMYK || space == TJCS_YCCK;
   // LIMITSCANS: a small file of many scans would take minutes.
   if (tjDecompress2(handle, bytes.data(), bytes.size(), picture.rgba.data(), picture.width, 0, picture.height,
-                    TJPF_RGBA, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0) {
+                    is_cmyk ? TJPF_CMYK : TJPF_RGBA, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0) {
     // Strange but harmless bytes are only warnings; a picture that ends too early is one, too, and is refused.
     const std::string why = tjGetErrorStr2(handle);
-    if (tjGetErrorCode(handle) == TJERR_FATAL || why.find("Premature end") != std::string::npos)
-      return damaged(PictureFormat::jpeg, why);
+    if (tjGetErrorCode(handle) == TJERR_FATAL || says_premature_end(why))
+      return damaged_picture(PictureFormat::jpeg, why);
   }
+  if (is_cmyk) show_inks(picture.rgba, read_jpeg_facts(bytes).adobe);
   return picture;
 }
 
@@ -100,46 +129,121 @@ Result<Picture> decode_png(std::span<const std::uint8_t> bytes, int largest_side
   Picture picture{info->width, info->height, {}};
   picture.rgba.resize(PNG_IMAGE_SIZE(reader.image));
   if (!png_image_finish_read(&reader.image, nullptr, picture.rgba.data(), 0, nullptr))
-    return damaged(PictureFormat::png, reader.image.message);
+    return damaged_picture(PictureFormat::png, reader.image.message);
   return picture;
 }
 
-tl::unexpected<Problem> neither() {
-  return fail(415, "Picture format not taken", "The picture is neither a JPEG nor a PNG; save it as one of them.");
+bool starts_with(std::span<const std::uint8_t> bytes, std::string_view magic, std::size_t at = 0) {
+  return bytes.size() >= at + magic.size() &&
+         std::equal(magic.begin(), magic.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                    [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
+}
+
+// Formats that people send and that no library here reads, so that the refusal names them.
+struct OtherFormat {
+  std::size_t at;
+  std::string_view magic, name;
+};
+constexpr std::array kOtherFormats{
+    OtherFormat{0, "\xabKTX 20"sv, "a KTX2 (Basis Universal) texture"},
+    OtherFormat{0, "\xabKTX 11"sv, "a KTX texture"},
+    OtherFormat{0, "sB"sv, "a Basis Universal texture"},
+    OtherFormat{0, "DDS "sv, "a DDS texture"},
+    OtherFormat{0, "GIF8"sv, "a GIF"},
+    OtherFormat{0, "8BPS"sv, "a Photoshop file"},
+    OtherFormat{0, "\x76\x2f\x31\x01"sv, "an OpenEXR picture"},
+    OtherFormat{0, "#?RADIANCE"sv, "a Radiance HDR picture"},
+    OtherFormat{4, "ftypavif"sv, "an AVIF picture"},
+    OtherFormat{4, "ftyphei"sv, "a HEIC picture"},
+    OtherFormat{4, "ftypmif1"sv, "a HEIF picture"},
+    OtherFormat{4, "jP  \r\n\x87\n"sv, "a JPEG 2000 picture"},
+    OtherFormat{4, "JXL \r\n\x87\n"sv, "a JPEG XL picture"},
+};
+
+tl::unexpected<Problem> no_format(std::span<const std::uint8_t> bytes) {
+  for (const OtherFormat& other : kOtherFormats)
+    if (starts_with(bytes, other.magic, other.at))
+      return fail(415, "Picture format not taken",
+                  "The picture is " + std::string(other.name) +
+                      ", which is not read; save it as JPEG or PNG, and a model with such textures, too.");
+  return fail(415, "Picture format not taken",
+              "The picture is none of JPEG, PNG, TIFF, WebP, BMP and TGA; save it as one of them.");
 }
 
 }  // namespace
 
-std::string_view media_type(PictureFormat format) { return format == PictureFormat::jpeg ? "image/jpeg" : "image/png"; }
+std::string_view media_type(PictureFormat format) {
+  switch (format) {
+    case PictureFormat::jpeg: return "image/jpeg";
+    case PictureFormat::png: return "image/png";
+    case PictureFormat::tiff: return "image/tiff";
+    case PictureFormat::webp: return "image/webp";
+    case PictureFormat::bmp: return "image/bmp";
+    case PictureFormat::tga: return "image/x-tga";
+  }
+  return "application/octet-stream";
+}
+
+tl::unexpected<Problem> damaged_picture(PictureFormat format, const std::string& why) {
+  constexpr std::array kNames{"JPEG", "PNG", "TIFF", "WebP", "BMP", "TGA"};
+  return fail(422, "Picture not readable",
+              std::string("The ") + kNames.at(static_cast<std::size_t>(format)) + " cannot be read: " + why + ".");
+}
+
+Result<PictureInfo> sized_picture(PictureFormat format, std::uint64_t width, std::uint64_t height, int largest_side) {
+  if (width < 1 || height < 1 || std::max(width, height) > static_cast<std::uint64_t>(largest_side))
+    return fail(422, "Picture size not usable",
+                "The picture has " + std::to_string(width) + " × " + std::to_string(height) + " pixels; 1 to " +
+                    std::to_string(largest_side) + " a side are taken.");
+  return PictureInfo{format, static_cast<int>(width), static_cast<int>(height)};
+}
 
 std::optional<PictureFormat> picture_format(std::span<const std::uint8_t> bytes) {
-  constexpr std::uint8_t kJpeg[] = {0xff, 0xd8, 0xff}, kPng[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  const auto starts = [&](std::span<const std::uint8_t> magic) {
-    return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
-  };
-  if (starts(kJpeg)) return PictureFormat::jpeg;
-  if (starts(kPng)) return PictureFormat::png;
+  if (starts_with(bytes, "\xff\xd8\xff"sv)) return PictureFormat::jpeg;
+  if (starts_with(bytes, "\x89PNG\r\n\x1a\n"sv)) return PictureFormat::png;
+  for (const auto magic : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv})
+    if (starts_with(bytes, magic)) return PictureFormat::tiff;
+  if (starts_with(bytes, "RIFF"sv) && starts_with(bytes, "WEBP"sv, 8)) return PictureFormat::webp;
+  if (is_bmp(bytes)) return PictureFormat::bmp;
+  if (is_tga(bytes)) return PictureFormat::tga;
   return std::nullopt;
 }
 
 Result<PictureInfo> inspect_picture(std::span<const std::uint8_t> bytes, int largest_side) {
   const auto format = picture_format(bytes);
-  if (!format) return neither();
-  if (*format == PictureFormat::jpeg) return inspect_jpeg(bytes, largest_side);
-  PngReader reader;
-  return begin_png(reader, bytes, largest_side);
+  if (!format) return no_format(bytes);
+  switch (*format) {
+    case PictureFormat::jpeg: return inspect_jpeg(bytes, largest_side);
+    case PictureFormat::png: {
+      PngReader reader;
+      return begin_png(reader, bytes, largest_side);
+    }
+    case PictureFormat::tiff: return inspect_tiff_picture(bytes, largest_side);
+    case PictureFormat::webp: return inspect_webp(bytes, largest_side);
+    case PictureFormat::bmp:
+    case PictureFormat::tga: break;
+  }
+  return inspect_bitmap(*format, bytes, largest_side);
 }
 
 Result<Picture> decode_picture(std::span<const std::uint8_t> bytes, int largest_side) {
   const auto format = picture_format(bytes);
-  if (!format) return neither();
-  return *format == PictureFormat::jpeg ? decode_jpeg(bytes, largest_side) : decode_png(bytes, largest_side);
+  if (!format) return no_format(bytes);
+  switch (*format) {
+    case PictureFormat::jpeg: return decode_jpeg(bytes, largest_side);
+    case PictureFormat::png: return decode_png(bytes, largest_side);
+    case PictureFormat::tiff: return decode_tiff_picture(bytes, largest_side);
+    case PictureFormat::webp: return decode_webp(bytes, largest_side);
+    case PictureFormat::bmp:
+    case PictureFormat::tga: break;
+  }
+  return decode_bitmap(*format, bytes, largest_side);
 }
 
 Result<Picture> decode_coarse(std::span<const std::uint8_t> bytes, int side) {
   const auto info = inspect_picture(bytes);
   if (!info) return tl::unexpected(info.error());
-  if (info->format != PictureFormat::jpeg) return decode_png(bytes, kLargestPictureSide);
+  if (info->format != PictureFormat::jpeg) return decode_picture(bytes);
   int divisor = 1;
   while (divisor < 8 && std::max(info->width, info->height) / (2 * divisor) >= side) divisor *= 2;
   return decode_jpeg(bytes, kLargestPictureSide, divisor);
@@ -150,15 +254,25 @@ std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int wi
   check_size(rgba, width, height);
   const tjhandle handle = compressor();
   const int sampling = settings.full_color ? TJSAMP_444 : TJSAMP_420;
-  std::vector<std::uint8_t> jpeg(tjBufSize(width, height, sampling));
   // The fast transform's errors show only where little else is lost.
   const int transform = settings.quality < 85 ? TJFLAG_FASTDCT : TJFLAG_ACCURATEDCT;
+  const auto compress = [&](unsigned char** out, unsigned long* size, int flags) {
+    if (tjCompress2(handle, rgba.data(), width, 0, height, TJPF_RGBX, out, size, sampling, settings.quality,
+                    flags | transform) != 0)
+      throw std::runtime_error(std::string("A picture was not encoded: ") + tjGetErrorStr2(handle));
+  };
+  unsigned long size = 0;
+  if (rgba.size() > kLargePicture_bytes) {
+    unsigned char* grown = nullptr;
+    compress(&grown, &size, 0);
+    const std::unique_ptr<unsigned char, decltype(&tjFree)> held(grown, tjFree);
+    return {grown, grown + size};
+  }
+  std::vector<std::uint8_t> jpeg(tjBufSize(width, height, sampling));
   unsigned char* out = jpeg.data();
-  unsigned long size = jpeg.size();
+  size = jpeg.size();
   // NOREALLOC: the buffer has the worst-case size, so the library never replaces it.
-  if (tjCompress2(handle, rgba.data(), width, 0, height, TJPF_RGBX, &out, &size, sampling, settings.quality,
-                  TJFLAG_NOREALLOC | transform) != 0)
-    throw std::runtime_error(std::string("A picture was not encoded: ") + tjGetErrorStr2(handle));
+  compress(&out, &size, TJFLAG_NOREALLOC);
   jpeg.resize(size);
   return jpeg;
 }
@@ -171,11 +285,12 @@ std::vector<std::uint8_t> encode_png(std::span<const std::uint8_t> rgba, int wid
   image.height = static_cast<png_uint_32>(height);
   image.format = PNG_FORMAT_RGBA;
   image.flags = PNG_IMAGE_FLAG_FAST;  // half the time for a tenth more bytes
-  std::vector<std::uint8_t> png(PNG_IMAGE_PNG_SIZE_MAX(image));
-  png_alloc_size_t size = png.size();
-  if (!png_image_write_to_memory(&image, png.data(), &size, 0, rgba.data(), 0, nullptr))
+  std::vector<std::uint8_t> png;
+  const std::unique_ptr<FILE, decltype(&fclose)> file(
+      fopencookie(&png, "wb", {nullptr, append_bytes, nullptr, nullptr}), fclose);
+  if (!file) throw std::runtime_error("A picture was not encoded: no memory for a stream.");
+  if (!png_image_write_to_stdio(&image, file.get(), 0, rgba.data(), 0, nullptr) || fflush(file.get()) != 0)
     throw std::runtime_error(std::string("A picture was not encoded: ") + image.message);
-  png.resize(size);
   return png;
 }
 

@@ -10,7 +10,11 @@
 
 namespace strata {
 
-// Pictures as files: JPEG and PNG, told apart by their first bytes, never by a name. Thread-safe.
+// Pictures as files, told apart by their bytes, never by a name. Thread-safe.
+//
+// JPEG: also grey and CMYK (whose inks become colours without their profile). PNG: all. TIFF: the first page; grey, colour tables,
+// RGB, CMYK and YCbCr of up to 16 bits, in strips or tiles, losslessly packed, as JPEG or as fax. WebP: still pictures. BMP:
+// without run lengths. TGA: all. Of 16 bits the upper 8 are kept.
 
 // RGBA8, row 0 at the top, sRGB; alpha is not multiplied in.
 struct Picture {
@@ -18,11 +22,16 @@ struct Picture {
   std::vector<std::uint8_t> rgba;
 };
 
-enum class PictureFormat { jpeg, png };
-std::string_view media_type(PictureFormat format);  // "image/jpeg", "image/png"
+enum class PictureFormat { jpeg, png, tiff, webp, bmp, tga };
+std::string_view media_type(PictureFormat format);  // "image/jpeg", "image/png", …
 
-// What the first bytes say; nothing: neither.
+// What the first bytes say; nothing: none of them. A TGA has no mark: bytes are one where all fields of its header make sense.
 std::optional<PictureFormat> picture_format(std::span<const std::uint8_t> bytes);
+
+// Looks are JPEG or PNG, which every browser shows. Others are stored as the PNG of their pixels.
+inline bool is_look_format(PictureFormat format) {
+  return format == PictureFormat::jpeg || format == PictureFormat::png;
+}
 
 struct PictureInfo {
   PictureFormat format = PictureFormat::png;
@@ -31,11 +40,12 @@ struct PictureInfo {
 
 constexpr int kLargestPictureSide = 16384;
 
-// The size, from the header alone. 415: neither JPEG nor PNG; 422: damaged, or a side of more than `largest_side`.
+// The size, from the header alone. 415: none of the formats, by its name where it is a known one; 422: damaged, or a side of more
+// than `largest_side`.
 Result<PictureInfo> inspect_picture(std::span<const std::uint8_t> bytes, int largest_side = kLargestPictureSide);
 
-// Whole: all that libjpeg-turbo and libpng read (grey, palettes, 16 bits), as RGBA8. Refused as above, and where the
-// data ends before the picture does.
+// Whole, as RGBA8. Refused as above, where the data ends before the picture does, and where it is of a kind that is not read
+// (422, which names it). Sizes are checked before anything is allocated; takes at most twice the pixels' memory.
 Result<Picture> decode_picture(std::span<const std::uint8_t> bytes, int largest_side = kLargestPictureSide);
 
 // The same, but a JPEG may come smaller, by halves, as long as its longer side keeps `side` pixels: it then takes little memory.

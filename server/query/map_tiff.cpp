@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/tiff_memory.h"
 #include "query/geo_tags.h"
-#include "query/tiff_memory.h"
 
 namespace strata::query {
 namespace {

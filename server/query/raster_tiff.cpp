@@ -2,9 +2,9 @@
 #include <cstring>
 #include <string>
 
+#include "core/tiff_memory.h"
 #include "query/raster.h"
 #include "query/raster_rows.h"
-#include "query/tiff_memory.h"
 
 namespace strata::query {
 namespace {

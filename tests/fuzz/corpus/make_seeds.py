@@ -11,7 +11,7 @@ import zipfile
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "e2e"))
 from support import maps  # noqa: E402
-from support.pictures import png  # noqa: E402
+from support.pictures import bmp, png, tga  # noqa: E402
 
 
 def ply(name, order, elements, rows):
@@ -37,6 +37,20 @@ PROGRESSIVE_JPEG = (
     "AAAAAAAR/9oACAEBAAY/Aq//xAAXEAEBAQEAAAAAAAAAAAAAAAABEQAx/9oACAEBAAE/ISUcC7//2gAMAwEAAgADAAAAEP8A/8QAFhEBAQEAAAAAAAAAAAAA"
     "AAAAAQAh/9oACAEDAQE/ECG3/8QAGBEAAgMAAAAAAAAAAAAAAAAAAAERQZH/2gAIAQIBAT8QV04w/8QAGBABAAMBAAAAAAAAAAAAAAAAAQARIVH/2gAIAQEA"
     "AT8QV42jwJ//2Q==")
+# The same size: WebP without loss and with, and inks.
+LOSSLESS_WEBP = (
+    "UklGRjgAAABXRUJQVlA4TCsAAAAvB8ABEJkyRPQ/NhHR/zCYadsmSMof6K4x8HhMgkAgSXaqZScgK2oYwv0PAA==")
+LOSSY_WEBP = (
+    "UklGRnQAAABXRUJQVlA4WAoAAAAQAAAABwAABwAAQUxQSAwAAAABD/Cy/4iI0IOI/gdWUDggQgAAABACAJ0BKggACAACgEIlsAJ0ugACuX1cSgAA/vii8/UPrt/1+zf/GI"
+    "MK/4Ydy//HJb/r/cdq8J4+m55FNvizMtAAAA==")
+CMYK_JPEG = (
+    "/9j/7gAOQWRvYmUAZAAAAAAC/9sAQwAGBAUGBQQGBgUGBwcGCAoQCgoJCQoUDg8MEBcUGBgXFBYWGh0lHxobIxwWFiAsICMmJykqKRkfLTAtKDAlKCko/9sAQwEHBwcKCA"
+    "oTCgoTKBoWGigoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgo/8AAFAgACAAIBAERAAIRAQMRAQQRAP/EAB8AAAEFAQEBAQEBAAAA"
+    "AAAAAAABAgMEBQYHCAkKC//EALUQAAIBAwMCBAMFBQQEAAABfQECAwAEEQUSITFBBhNRYQcicRQygZGhCCNCscEVUtHwJDNicoIJChYXGBkaJSYnKCkqNDU2Nzg5OkNERU"
+    "ZHSElKU1RVVldYWVpjZGVmZ2hpanN0dXZ3eHl6g4SFhoeIiYqSk5SVlpeYmZqio6Slpqeoqaqys7S1tre4ubrCw8TFxsfIycrS09TV1tfY2drh4uPk5ebn6Onq8fLz9PX2"
+    "9/j5+v/EAB8BAAMBAQEBAQEBAQEAAAAAAAABAgMEBQYHCAkKC//EALURAAIBAgQEAwQHBQQEAAECdwABAgMRBAUhMQYSQVEHYXETIjKBCBRCkaGxwQkjM1LwFWJy0QoWJD"
+    "ThJfEXGBkaJicoKSo1Njc4OTpDREVGR0hJSlNUVVZXWFlaY2RlZmdoaWpzdHV2d3h5eoKDhIWGh4iJipKTlJWWl5iZmqKjpKWmp6ipqrKztLW2t7i5usLDxMXGx8jJytLT"
+    "1NXW19jZ2uLj5OXm5+jp6vLz9PX29/j5+v/aAA4EAQACEQMRBAAAPwDrPFPxB+/++/Wvt8Fkvkc3E/D3xaHrn7Pn/Im3v/YQf/0XHX//2Q==")
 XYZ = ["property float x", "property float y", "property float z"]
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.5)]
 for tag, order in (("ascii", ""), ("little", "<"), ("big", ">")):
@@ -209,6 +223,16 @@ PICTURE = {
     "rgb.png": png(2, 7, lambda x, y: (255 * x, 30 * y, 0)),
     "grey.jpg": base64.b64decode(GREY_JPEG),
     "progressive.jpg": base64.b64decode(PROGRESSIVE_JPEG),
+    "cmyk.jpg": base64.b64decode(CMYK_JPEG),
+    "lossless.webp": base64.b64decode(LOSSLESS_WEBP),
+    "lossy.webp": base64.b64decode(LOSSY_WEBP),
+    "rgb.bmp": bmp(5, 3, lambda x, y: (40 * x, 80 * y, 9)),
+    "rgb.tga": tga(5, 3, lambda x, y: (40 * x, 80 * y, 9)),
+    "packed.tga": tga(5, 3, lambda x, y: (40 * x, 80 * y, 9), packed=True),
+    "grey.tif": maps.tiff(5, 3, lambda x, y: 40 * x + y, kind="B"),
+    "deep.tif": maps.tiff(5, 3, lambda x, y: (9000 * x, 80 * y, 9), kind="H", samples=3, deflated=True),
+    "alpha.tif": maps.tiff(3, 2, lambda x, y: (255, x, y, 255 * (x > 0)), kind="B", samples=4),
+    "numbers.tif": maps.tiff(3, 2, lambda x, y: x / 3),
 }
 stripes = lambda x, y: (x, (y // 40) % 2)
 numpy_head = b"{'descr': [('value', '<f4'), ('valid', '|b1')], 'fortran_order': False, 'shape': (128, 128), }\n"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace strata::query {
+namespace strata {
 
 // TIFF files in memory, for libtiff. What a file may make it allocate at once is bounded.
 
@@ -35,4 +35,4 @@ Tiff open_tiff(TiffMemory& file, const char* mode);
 // Of a compression code: the others change values, and are the larger attack surface.
 bool is_lossless(int compression);
 
-}  // namespace strata::query
+}  // namespace strata

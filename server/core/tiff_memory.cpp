@@ -1,11 +1,11 @@
-#include "query/tiff_memory.h"
+#include "core/tiff_memory.h"
 
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
 
-namespace strata::query {
+namespace strata {
 namespace {
 
 TiffMemory& memory(thandle_t handle) { return *static_cast<TiffMemory*>(handle); }
@@ -75,4 +75,4 @@ bool is_lossless(int compression) {
   }
 }
 
-}  // namespace strata::query
+}  // namespace strata
