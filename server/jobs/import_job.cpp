@@ -74,6 +74,7 @@ Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair
   if (!mesh.corner_uvs.empty()) {
     progress.report(0, "Checking the texture coordinates");
     auto kept = mesh::keep_uvs(mesh, kLowestResolution, progress);
+    if (kept) repairs.insert(repairs.end(), kept->repairs.begin(), kept->repairs.end());
     if (kept || kept.error().status == 499) return kept;
     repairs.push_back({"texture coordinates not kept: " + kept.error().detail, mesh.triangle_count()});
   }
@@ -101,7 +102,7 @@ Result<void> check(const ImportRequest& request) {
 }
 
 Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,
-                           const store::FirstAnswer<Model>& answer) {
+                           const store::FirstAnswer<Model>& answer, MemoryLedger* memory) {
   if (auto good = check(request); !good) return tl::unexpected(good.error());
   const ImportFile& scan = request.files[*mesh::pick_scan(names_of(request.files))];
   const auto project = store.project(request.project);
@@ -133,7 +134,7 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
 
   progress.begin_stage(kUnfolded, kPainted);
   store::Store::NewModel fresh;
-  auto base_color = mesh::bake_base_color(loaded->mesh, *atlas, loaded->repairs, progress);
+  auto base_color = mesh::bake_base_color(loaded->mesh, *atlas, loaded->repairs, progress, memory);
   if (!base_color) return tl::unexpected(base_color.error());
   if (auto& color = *base_color)
     fresh.looks.push_back(

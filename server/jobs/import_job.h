@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/memory_ledger.h"
 #include "core/progress.h"
 #include "mesh/input_files.h"
 #include "store/store.h"
@@ -33,9 +34,10 @@ struct ImportRequest {
 Result<void> check(const ImportRequest& request);
 
 // Files → mesh → atlas → geometry → one transaction, which also keeps the caller's answer. Everything or nothing: a bad file or a
-// cancel leaves nothing behind.
+// cancel leaves nothing behind. What textures take while they become the base colour is reserved in `memory` (null: not counted);
+// where it has no room the base colour is smaller, and `repairs` says so.
 Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,
-                           const store::FirstAnswer<Model>& answer = {});
+                           const store::FirstAnswer<Model>& answer = {}, MemoryLedger* memory = nullptr);
 
 // The demo project: the pot of mesh::make_demo_pot with two filled layers, `cracks` and `pieces` (as in the paper's
 // figure 1), painted by rule on its surface map. Idempotent: returns the model there already is.

@@ -3,55 +3,66 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
+#include <map>
 #include <string>
 
 #include "mesh/buckets.h"
-#include "mesh/color_math.h"
 #include "mesh/gutter_fill.h"
 #include "mesh/load_formats.h"
-#include "mesh/parallel.h"
-#include "mesh/texel_raster.h"
+#include "mesh/surface_paint.h"
 #include "mesh/texture_sampler.h"
 
 namespace strata::mesh {
 namespace {
 
 constexpr int kSmallestBaseColor = 256, kPlainColors = 2048;
-constexpr int kGutterRing = 8;
+constexpr int kLargestPower = 2048, kSideStep = 1024;  // sides are powers of two up to there, then multiples
+constexpr int kGutterRing = 8, kRingsPerSide = 1024;
 constexpr int kJpegQuality = 92;
-constexpr double kDensitySlack = 0.9;      // of the side of a power of two, before the next one is taken
+constexpr double kRounding = 1 - 1e-3;     // of a side, before the next larger one is taken
 constexpr double kMostMinification = 1.5;  // that mixing four texels bears
-constexpr int kBands = 2;
-constexpr std::uint8_t kCovered = 255, kClaimed = 254;
+constexpr double kLost = 0.02;             // of a texture's pixels: less is rounding
+constexpr double kBytesPerTexel = 6;       // the picture, its coarser levels and what is encoded
+
+std::string size_text(int width, int height) { return std::to_string(width) + " × " + std::to_string(height); }
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
 class Baker {
  public:
-  Baker(TriangleMesh& mesh, const Atlas& atlas, std::vector<Repair>& repairs, Progress& progress)
-      : mesh_(mesh), atlas_(atlas), repairs_(repairs), progress_(progress) {}
+  Baker(TriangleMesh& mesh, const Atlas& atlas, std::vector<Repair>& repairs, Progress& progress, MemoryLedger* memory)
+      : mesh_(mesh), atlas_(atlas), repairs_(repairs), progress_(progress), memory_(memory), paint_(mesh, atlas) {}
 
   Result<std::optional<BaseColor>> run() {
     look_at_materials();
-    if (mesh_.materials.empty() || (!textured_ && !several_colors_)) {
+    if (textured_) {
+      if (const int only = only_texture(); only >= 0) {
+        auto kept = as_it_is(only);
+        if (!kept || *kept) return kept;
+        forget_texture(only);
+      } else if (auto shares = shares_of_textures(); true) {
+        auto baked = bake(shares);
+        if (!baked || *baked) return baked;
+      }
+      // None of the textures could be read: the mesh is as if it had none.
+      look_at_materials();
+    }
+    if (mesh_.materials.empty() || !several_colors_) {
       if (!mesh_.materials.empty()) color_vertices();
       return std::nullopt;
     }
-    if (!textured_ && !mesh_.vertex_colors.empty() && !mesh_.colors_tint_materials) return std::nullopt;
-    if (const int only = only_texture(); only >= 0) return as_it_is(only);
-    return bake();
+    if (!mesh_.vertex_colors.empty() && !mesh_.colors_tint_materials) return std::nullopt;
+    return bake(shares_of_textures());
   }
 
  private:
-  const Material& material_of(std::size_t triangle) const {
-    static const Material plain;
-    const std::uint16_t material = mesh_.triangle_materials.empty() ? kNoMaterial : mesh_.triangle_materials[triangle];
-    return material == kNoMaterial ? plain : mesh_.materials[material];
-  }
+  const Material& material_of(std::size_t triangle) const { return paint_.material_of(triangle); }
 
   void look_at_materials() {
     if (mesh_.materials.empty()) return;
     first_color_ = material_of(0).color;
+    several_colors_ = textured_ = false;
     all_jpeg_ = true;
     for (std::size_t t = 0; t < mesh_.triangle_count(); ++t) {
       const Material& material = material_of(t);
@@ -65,13 +76,21 @@ class Baker {
 
   static bool is_white(const glm::vec4& color) { return glm::vec3(color) == glm::vec3(1); }
 
-  // The texture whose bytes can stay as they are, or −1.
+  // The texture whose pixels can stay as they are, or −1. Triangles that were moved may lack one.
   int only_texture() const {
-    if (atlas_.report.source != "file" || several_colors_ || !is_white(first_color_)) return -1;
+    if (atlas_.report.source != "file" || atlas_.kept_scale < 1 || several_colors_ || !is_white(first_color_))
+      return -1;
     if (mesh_.colors_tint_materials && !mesh_.vertex_colors.empty()) return -1;
-    const int texture = material_of(0).texture;
-    for (std::size_t t = 0; t < mesh_.triangle_count(); ++t)
-      if (material_of(t).texture != texture) return -1;
+    int texture = -1;
+    auto moved = atlas_.moved.begin();
+    for (std::size_t t = 0; t < mesh_.triangle_count(); ++t) {
+      const bool is_moved = moved != atlas_.moved.end() && *moved == t;
+      if (is_moved) ++moved;
+      const int own = material_of(t).texture;
+      if (own == texture || (is_moved && own < 0)) continue;
+      if (texture >= 0 || own < 0) return -1;
+      texture = own;
+    }
     return texture;
   }
 
@@ -81,30 +100,50 @@ class Baker {
     if (mesh_.vertex_colors.empty()) mesh_.vertex_colors.assign(mesh_.positions.size(), 0xffffffffu);
     for (std::uint32_t& color : mesh_.vertex_colors) {
       std::uint8_t rgb[3] = {std::uint8_t(color), std::uint8_t(color >> 8), std::uint8_t(color >> 16)};
-      multiply(rgb, first_color_);
+      multiply_light(rgb, first_color_);
       color = (color & 0xff000000u) | rgb[0] | std::uint32_t{rgb[1]} << 8 | std::uint32_t{rgb[2]} << 16;
     }
-  }
-
-  static void multiply(std::uint8_t* rgb, const glm::vec4& color) {
-    const ColorTables& tables = color_tables();
-    for (int c = 0; c < 3; ++c)
-      rgb[c] = tables.srgb[static_cast<std::size_t>(tables.linear[rgb[c]] * linear_of_srgb(color[c]) + 0.5)];
   }
 
   void note_unreadable(const Texture& texture, const Problem& problem) {
     note(repairs_, "texture not read: " + texture.name + ": " + problem.detail, 1);
   }
 
+  void forget_texture(int texture) {
+    for (Material& material : mesh_.materials)
+      if (material.texture == texture) material.texture = -1;
+  }
+
+  Result<MemoryLedger::Share> reserved(double bytes) {
+    if (!memory_) return MemoryLedger::Share();
+    return memory_->reserve(static_cast<std::uint64_t>(bytes), "the textures of an import");
+  }
+
+  // Nothing: it cannot be read, which is noted.
   Result<std::optional<BaseColor>> as_it_is(int index) {
     Texture& texture = mesh_.textures[index];
     progress_.report(0, "Checking the texture");
-    if (const auto whole = decode_picture(texture.bytes); !whole) {
-      note_unreadable(texture, whole.error());
-      return std::nullopt;
-    }
     const auto info = inspect_picture(texture.bytes);
-    return BaseColor{info->format, info->width, info->height, std::move(texture.bytes)};
+    if (!info) return note_unreadable(texture, info.error()), std::nullopt;
+    const double pixels = double(info->width) * info->height;
+    const bool stays = atlas_.moved.empty() && is_look_format(info->format);
+    auto share = reserved(pixels * (stays ? 4 : kBytesPerTexel));
+    if (!share) return tl::unexpected(share.error());
+    auto whole = decode_picture(texture.bytes);
+    if (!whole) return note_unreadable(texture, whole.error()), std::nullopt;
+    if (stays) return BaseColor{info->format, info->width, info->height, std::move(texture.bytes)};
+    texture.bytes = {};
+    progress_.report(0.3, "Painting the base colour");
+    if (!atlas_.moved.empty()) paint_.paint_moved(index, std::max(1, whole->width / kRingsPerSide), *whole);
+    if (progress_.cancelled()) return cancelled_problem();
+    return encoded(*whole, info->format == PictureFormat::jpeg);
+  }
+
+  BaseColor encoded(const Picture& picture, bool as_jpeg) {
+    progress_.report(0.85, "Packing the base colour");
+    return {as_jpeg ? PictureFormat::jpeg : PictureFormat::png, picture.width, picture.height,
+            as_jpeg ? encode_jpeg(picture.rgba, picture.width, picture.height, {kJpegQuality, true})
+                    : encode_png(picture.rgba, picture.width, picture.height)};
   }
 
   glm::dvec2 atlas_uv(std::size_t triangle, int k) const { return atlas_.corner_uvs[3 * triangle + k]; }
@@ -117,51 +156,71 @@ class Baker {
     return std::abs(cross((this->*uv)(triangle, 1) - a, (this->*uv)(triangle, 2) - a)) / 2;
   }
 
-  // Texels of the textures, and share of the atlas, that the triangles of each texture take.
+  // Pixels of a texture, and share of the atlas, that its triangles take. The first one is of those without.
   struct Share {
+    PictureInfo info;
     double texture_pixels = 0, atlas = 0;
+    bool read = false;
   };
 
-  Result<std::optional<BaseColor>> bake() {
-    const std::size_t textures = mesh_.textures.size();
-    std::vector<PictureInfo> infos(textures);
-    for (std::size_t i = 0; i < textures; ++i)
-      if (const auto info = inspect_picture(mesh_.textures[i].bytes); info) infos[i] = *info;
-    std::vector<Share> shares(textures + 1);
+  std::vector<Share> shares_of_textures() const {
+    std::vector<Share> shares(mesh_.textures.size() + 1);
+    for (std::size_t i = 0; i < mesh_.textures.size(); ++i)
+      if (const auto info = inspect_picture(mesh_.textures[i].bytes); info) shares[i + 1].info = *info;
     for (std::size_t t = 0; t < mesh_.triangle_count(); ++t) {
       const int texture = material_of(t).texture;
       Share& share = shares[texture + 1];
       share.atlas += uv_area(t, &Baker::atlas_uv);
-      if (texture >= 0)
-        share.texture_pixels +=
-            uv_area(t, &Baker::texture_uv) * double(infos[texture].width) * double(infos[texture].height);
+      const double pixels = uv_area(t, &Baker::texture_uv) * double(share.info.width) * double(share.info.height);
+      if (texture >= 0 && std::isfinite(pixels)) share.texture_pixels += pixels;
     }
+    return shares;
+  }
+
+  // The largest picture up to the one that keeps all pixels for which there is memory.
+  Result<MemoryLedger::Share> reserve_picture(const std::vector<Share>& shares, int& side) {
+    double source = 0;
+    for (const Share& share : shares) source = std::max(source, 4.0 * share.info.width * share.info.height);
+    for (side = resolution_for(shares);; side = std::max(kSmallestBaseColor, side / 2)) {
+      auto share = reserved(kBytesPerTexel * side * side + source);
+      if (share || side == kSmallestBaseColor) return share;
+    }
+  }
+
+  // Nothing where there were textures and none could be read.
+  Result<std::optional<BaseColor>> bake(std::vector<Share> shares) {
+    const std::size_t textures = mesh_.textures.size();
     // Triangles by their textures; those without come first.
     const auto place_of = [&](std::uint32_t t) { return material_of(t).texture + 1; };
     const Buckets by_texture(static_cast<int>(textures) + 1, static_cast<std::uint32_t>(mesh_.triangle_count()),
                              [&](std::uint32_t t) {
                                return std::pair{place_of(t), place_of(t)};
                              });
-    const int side = resolution_for(shares);
-    picture_.width = picture_.height = side;
-    picture_.rgba.assign(std::size_t(side) * side * 4, 0);
+    int side = 0;
+    const auto memory = reserve_picture(shares, side);
+    if (!memory) return tl::unexpected(memory.error());
+    Picture picture{side, side, std::vector<std::uint8_t>(std::size_t(side) * side * 4, 0)};
+    bool any_read = !textured_;
     for (std::size_t i = 0; i <= textures; ++i) {
       progress_.report(0.7 * double(i) / double(textures + 1), "Painting the base colour");
       if (progress_.cancelled()) return cancelled_problem();
       const auto triangles = by_texture[static_cast<int>(i)];
       if (triangles.empty()) continue;
       Picture source;
-      if (i > 0) source = decoded(mesh_.textures[i - 1], shares[i], side);
-      paint(triangles, source);
+      if (i > 0) {
+        source = decoded(mesh_.textures[i - 1], shares[i], side);
+        if (source.rgba.empty()) forget_texture(static_cast<int>(i - 1));
+        shares[i].read = !source.rgba.empty();
+        any_read = any_read || shares[i].read;
+      }
+      paint_.paint(triangles, source, picture);
     }
+    if (!any_read) return std::nullopt;
+    note_lost_pixels(shares, side);
     progress_.report(0.7, "Painting the base colour");
-    fill_gutter(picture_, kGutterRing);
-    progress_.report(0.85, "Packing the base colour");
+    fill_gutter(picture, kGutterRing);
     if (progress_.cancelled()) return cancelled_problem();
-    BaseColor result{all_jpeg_ ? PictureFormat::jpeg : PictureFormat::png, side, side, {}};
-    result.bytes = all_jpeg_ ? encode_jpeg(picture_.rgba, side, side, {kJpegQuality, true})
-                             : encode_png(picture_.rgba, side, side);
-    return result;
+    return encoded(picture, all_jpeg_);
   }
 
   static int resolution_for(const std::vector<Share>& shares) {
@@ -172,9 +231,43 @@ class Baker {
         atlas += share.atlas;
       }
     if (!(pixels > 0) || !(atlas > 0)) return kPlainColors;
-    const double side = std::clamp(std::sqrt(pixels / atlas) * kDensitySlack, 1.0, double(kLargestBaseColor));
-    const auto power = std::bit_ceil(static_cast<unsigned>(std::ceil(side)));
-    return std::clamp(static_cast<int>(power), kSmallestBaseColor, kLargestBaseColor);
+    const double wanted =
+        std::clamp(std::sqrt(pixels / atlas) * kRounding, double(kSmallestBaseColor), double(kLargestBaseColor));
+    if (wanted <= kLargestPower) return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(wanted))));
+    return static_cast<int>(std::ceil(wanted / kSideStep)) * kSideStep;
+  }
+
+  // Says what came in and what is kept, where that is less.
+  void note_lost_pixels(const std::vector<Share>& shares, int side) {
+    double used = 0, kept = 0;
+    std::uint64_t smaller = 0;
+    std::map<std::pair<int, int>, int, std::greater<>> sizes;
+    for (std::size_t i = 1; i < shares.size(); ++i) {
+      const Share& share = shares[i];
+      if (!share.read) continue;
+      ++sizes[{share.info.width, share.info.height}];
+      const double own = std::min(share.texture_pixels, share.atlas * side * side);
+      used += share.texture_pixels;
+      kept += own;
+      smaller += own < share.texture_pixels * (1 - kLost);
+    }
+    if (smaller == 0) return;
+    std::string came;
+    constexpr std::size_t kMostSizes = 5;
+    std::size_t told = 0;
+    for (const auto& [size, count] : sizes) {
+      if (told++ == kMostSizes) {
+        came += ", …";
+        break;
+      }
+      came += (came.empty() ? "" : ", ") + std::to_string(count) + " of " + size_text(size.first, size.second);
+    }
+    char share[16];
+    std::snprintf(share, sizeof share, "%.0f %%", 100 * kept / used);
+    note(repairs_,
+         "textures made smaller: " + came + " pixels became one picture of " + size_text(side, side) +
+             ", which keeps " + share + " of the pixels that the surface uses",
+         smaller);
   }
 
   // As fine as the atlas can show. An empty picture where it cannot be decoded.
@@ -189,86 +282,21 @@ class Baker {
     return std::move(*picture);
   }
 
-  void paint(std::span<const std::uint32_t> triangles, const Picture& source) {
-    const TextureSampler sampler(source);
-    const int side = picture_.width, rows = (side + kBands - 1) / kBands;
-    parallel_for(kBands, kBands, [&](int band) {
-      for (const std::uint32_t t : triangles)
-        paint_triangle(t, source.rgba.empty() ? nullptr : &sampler, band * rows, std::min(side, (band + 1) * rows));
-    });
-  }
-
-  void paint_triangle(std::uint32_t t, const TextureSampler* sampler, int row_begin, int row_end) {
-    const int side = picture_.width;
-    const glm::dvec2 a = atlas_uv(t, 0) * double(side), b = atlas_uv(t, 1) * double(side),
-                     c = atlas_uv(t, 2) * double(side);
-    const double low = std::min({a.y, b.y, c.y}) - 1, high = std::max({a.y, b.y, c.y}) + 1;
-    if (high < row_begin || low > row_end) return;
-    const double area = cross(b - a, c - a);
-    const Material& material = material_of(t);
-    const auto put = [&](int x, int y, std::uint8_t mark) {
-      const glm::dvec2 at = glm::dvec2(x + 0.5, y + 0.5) - a;
-      glm::dvec3 weights(1.0 / 3);
-      if (area != 0) {
-        weights.y = std::clamp(cross(at, c - a) / area, 0.0, 1.0);
-        weights.z = std::clamp(cross(b - a, at) / area, 0.0, 1.0 - weights.y);
-        weights.x = 1 - weights.y - weights.z;
-      }
-      std::uint8_t* out = &picture_.rgba[(std::size_t(side - 1 - y) * side + x) * 4];
-      if (mark == kClaimed && out[3] != 0) return;
-      shade(t, material, weights, sampler, out);
-      out[3] = mark;
-    };
-    const CoverageRaster raster(snap_to_subtexels(a.x, a.y), snap_to_subtexels(b.x, b.y), snap_to_subtexels(c.x, c.y));
-    bool covers = false;
-    raster.for_each_span(0, side, 0, side, [&](int y, int x_begin, int x_end) {
-      covers = true;
-      if (y >= row_begin && y < row_end)
-        for (int x = x_begin; x < x_end; ++x) put(x, y, kCovered);
-      return true;
-    });
-    if (covers) return;
-    // Too thin for any texel's centre: the one it lies in, unless another triangle has it.
-    const glm::dvec2 middle = (a + b + c) / 3.0;
-    const int x = std::clamp(static_cast<int>(middle.x), 0, side - 1),
-              y = std::clamp(static_cast<int>(middle.y), 0, side - 1);
-    if (y >= row_begin && y < row_end) put(x, y, kClaimed);
-  }
-
-  void shade(std::uint32_t t, const Material& material, const glm::dvec3& weights, const TextureSampler* sampler,
-             std::uint8_t* out) const {
-    out[0] = out[1] = out[2] = 255;
-    if (sampler) {
-      const glm::dvec2 uv = texture_uv(t, 0) * weights.x + texture_uv(t, 1) * weights.y + texture_uv(t, 2) * weights.z;
-      const glm::vec3 sampled = sampler->sample(uv, material.wrap_u, material.wrap_v) + 0.5f;
-      for (int c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(sampled[c]);
-    }
-    if (!is_white(material.color)) multiply(out, material.color);
-    // A triangle without any material shows its vertices' colours.
-    const bool tinted = mesh_.colors_tint_materials || (!sampler && is_white(material.color));
-    if (mesh_.vertex_colors.empty() || !tinted) return;
-    glm::dvec3 tint(0);
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t color = mesh_.vertex_colors[mesh_.triangles[3 * std::size_t{t} + k]];
-      tint += weights[k] * glm::dvec3(color & 0xff, color >> 8 & 0xff, color >> 16 & 0xff) / 255.0;
-    }
-    multiply(out, glm::vec4(tint, 1));
-  }
-
   TriangleMesh& mesh_;
   const Atlas& atlas_;
   std::vector<Repair>& repairs_;
   Progress& progress_;
+  MemoryLedger* memory_;
+  SurfacePaint paint_;
   glm::vec4 first_color_{1};
   bool several_colors_ = false, textured_ = false, all_jpeg_ = false;
-  Picture picture_;
 };
 
 }  // namespace
 
 Result<std::optional<BaseColor>> bake_base_color(TriangleMesh& mesh, const Atlas& atlas, std::vector<Repair>& repairs,
-                                                 Progress& progress) {
-  return Baker(mesh, atlas, repairs, progress).run();
+                                                 Progress& progress, MemoryLedger* memory) {
+  return Baker(mesh, atlas, repairs, progress, memory).run();
 }
 
 }  // namespace strata::mesh

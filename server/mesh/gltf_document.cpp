@@ -21,9 +21,10 @@ constexpr std::size_t kMostJson = std::size_t{256} << 20;
 constexpr std::uint64_t kMostMeshoptGain = 64;
 
 // Extensions that a file may require and that are read, or that change only how it looks.
-constexpr std::array<std::string_view, 8> kKnownExtensions{
+constexpr std::array<std::string_view, 10> kKnownExtensions{
     "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization", "KHR_texture_transform",
-    "KHR_lights_punctual",        "KHR_texture_basisu",      "EXT_texture_webp",      "KHR_animation_pointer"};
+    "KHR_lights_punctual",        "KHR_texture_basisu",      "EXT_texture_webp",      "MSFT_texture_dds",
+    "EXT_texture_avif",           "KHR_animation_pointer"};
 
 std::uint32_t little_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
   std::uint32_t value;

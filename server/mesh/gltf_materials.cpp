@@ -102,7 +102,7 @@ class MaterialReader {
   // The plain picture where there is one; otherwise the one of an extension, which will be noted as not read.
   static Result<std::uint64_t> image_of(const json& texture) {
     if (texture.contains("source")) return whole_number(texture, "source");
-    for (const char* extension : {"EXT_texture_webp", "KHR_texture_basisu"}) {
+    for (const char* extension : {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"}) {
       const json& found = object_in(object_in(texture, "extensions"), extension);
       if (found.contains("source")) return whole_number(found, "source");
     }

@@ -10,8 +10,8 @@
 
 namespace strata::mesh {
 
-// Collects the pictures that the materials of a file name, each once, into TriangleMesh::textures. What was not sent along or is
-// no JPEG or PNG is noted in `repairs` by its name.
+// Collects the pictures that the materials of a file name, each once, into TriangleMesh::textures. What was not sent along or
+// cannot be read is noted in `repairs` by its name.
 class TextureShelf {
  public:
   TextureShelf(const InputFiles& files, TriangleMesh& mesh, std::vector<Repair>& repairs)

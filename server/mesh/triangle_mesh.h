@@ -12,7 +12,7 @@ namespace strata::mesh {
 // How a texture goes on outside [0,1].
 enum class Wrap : std::uint8_t { repeat, clamp, mirror };
 
-// A picture of a file, as it is encoded there (JPEG or PNG).
+// A picture of a file, as it is encoded there, in any format of core/picture.h.
 struct Texture {
   std::string name;
   std::vector<std::uint8_t> bytes;

@@ -124,11 +124,11 @@ Result<Response> start_import(const RouteContext& context, JobBook& book, const 
   const auto project = context.store.project(asked->project);
   if (!project) return tl::unexpected(project.error());
   auto job = context.jobs.add(project->id,
-                              [&store = context.store, asked = *asked, kept = std::move(kept),
-                               answer](Progress& progress) -> Result<jobs::JobResult> {
+                              [&store = context.store, &memory = context.rooms.memory(), asked = *asked,
+                               kept = std::move(kept), answer](Progress& progress) -> Result<jobs::JobResult> {
                                 store::FirstAnswer<Model> kept_answer = answer;
                                 kept_answer.job = progress.job();
-                                auto model = jobs::import_model(store, asked, progress, kept_answer);
+                                auto model = jobs::import_model(store, asked, progress, kept_answer, &memory);
                                 if (!model) return tl::unexpected(model.error());
                                 return model->id;
                               });

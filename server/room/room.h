@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/memory_ledger.h"
 #include "query/cross_table.h"
 #include "query/key_areas.h"
 #include "query/profile.h"
@@ -323,6 +324,7 @@ class Rooms {
   void forget(std::int64_t model_id);  // the model was deleted: members are told, the room closes
   std::size_t open_rooms() const;
   std::uint64_t memory_bytes_used() const;
+  MemoryLedger& memory();  // of what open models, and pictures on their way to one, hold; thread-safe
   // Refuses new edits, and returns when every other is durable or refused, after `drain_for` at the latest: then what still waits
   // is refused.
   void drain();

@@ -255,6 +255,7 @@ void Rooms::forget(std::int64_t model_id) {
 }
 
 std::uint64_t Rooms::memory_bytes_used() const { return impl_->memory.used(); }
+MemoryLedger& Rooms::memory() { return impl_->memory; }
 
 std::size_t Rooms::open_rooms() const {
   std::lock_guard lock(impl_->mutex);

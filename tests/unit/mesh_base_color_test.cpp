@@ -6,6 +6,7 @@
 #include "mesh/gutter_fill.h"
 #include "mesh/texture_sampler.h"
 #include "mesh/vertex_color.h"
+#include "support/picture_files.h"
 
 namespace {
 
@@ -162,6 +163,97 @@ TEST(BaseColor, a_texture_that_breaks_off_is_reported_and_left_out) {
   alone.mesh.textures[0].bytes.resize(alone.mesh.textures[0].bytes.size() / 2);
   EXPECT_FALSE(alone.bake());
   EXPECT_EQ(alone.repairs.size(), 1u);
+}
+
+TEST(BaseColor, textures_of_which_none_can_be_read_are_no_look) {
+  Squares squares;
+  for (auto& texture : squares.mesh.textures) texture.bytes.resize(texture.bytes.size() / 2);
+  EXPECT_FALSE(squares.bake()) << "and no white picture";
+  EXPECT_EQ(squares.repairs.size(), 2u);
+
+  Squares coloured;
+  for (auto& texture : coloured.mesh.textures) texture.bytes.resize(texture.bytes.size() / 2);
+  for (auto& material : coloured.mesh.materials) material.color = {1, 0, 0, 1};
+  EXPECT_FALSE(coloured.bake());
+  EXPECT_EQ(coloured.mesh.vertex_colors, std::vector<std::uint32_t>(6, 0xff0000ffu)) << "the materials' colour";
+}
+
+TEST(BaseColor, pixels_that_are_lost_are_said_with_the_sizes) {
+  Squares squares;
+  MemoryLedger memory("memory", "--memory", 12 << 20);  // enough for 1024² and no more
+  const auto baked = mesh::bake_base_color(squares.mesh, squares.atlas, squares.repairs, squares.progress, &memory);
+  ASSERT_TRUE(baked && *baked);
+  EXPECT_EQ((*baked)->width, 1024);
+  ASSERT_EQ(squares.repairs.size(), 1u);
+  EXPECT_EQ(squares.repairs[0].what,
+            "textures made smaller: 2 of 1024 × 1024 pixels became one picture of 1024 × 1024, which keeps 25 % of the "
+            "pixels that the surface uses");
+  EXPECT_EQ(squares.repairs[0].count, 2u);
+  EXPECT_EQ(memory.used(), 0u);
+
+  Squares poor;
+  MemoryLedger little("memory", "--memory", 1 << 20);
+  const auto refused = mesh::bake_base_color(poor.mesh, poor.atlas, poor.repairs, poor.progress, &little);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().status, 503);
+}
+
+TEST(BaseColor, a_tiff_becomes_a_png_of_its_pixels) {
+  Squares squares;
+  squares.mesh.materials[1].texture = 0;
+  squares.atlas.report.source = "file";
+  test::TiffSettings settings;
+  squares.mesh.textures[0].bytes = test::tiff_of(64, 32, settings, [](int x, int y, int s) {
+    return static_cast<std::uint32_t>(s == 0 ? x : s == 1 ? y : 7);
+  });
+  const auto baked = squares.bake();
+  ASSERT_TRUE(baked);
+  EXPECT_EQ(baked->format, PictureFormat::png);
+  EXPECT_EQ(picture_format(baked->bytes), PictureFormat::png);
+  const auto picture = decode_picture(baked->bytes);
+  EXPECT_EQ(std::pair(picture->width, picture->height), std::pair(64, 32));
+  EXPECT_EQ(picture->rgba[4 * (5 * 64 + 9)], 9);
+  EXPECT_EQ(picture->rgba[4 * (5 * 64 + 9) + 1], 5);
+}
+
+TEST(BaseColor, a_triangle_that_was_moved_takes_its_pixels_along_and_the_others_keep_theirs) {
+  Squares squares;
+  squares.mesh.materials[1].texture = 0;
+  squares.atlas.report.source = "file";
+  // The texture is the atlas, but for the second triangle: the lower half of the picture is red, the upper half blue.
+  squares.mesh.corner_uvs = squares.atlas.corner_uvs;
+  std::vector<std::uint8_t> rgba(512 * 512 * 4, 255);
+  for (std::size_t i = 0; i < rgba.size(); i += 4) {
+    const bool upper = i < rgba.size() / 2;
+    rgba[i] = upper ? 0 : 200, rgba[i + 1] = 0, rgba[i + 2] = upper ? 200 : 0;
+  }
+  squares.mesh.textures[0].bytes = encode_png(rgba, 512, 512);
+  squares.atlas.moved = {1};
+  const glm::vec2 place[] = {{0.6f, 0.1f}, {0.9f, 0.1f}, {0.6f, 0.4f}};
+  std::copy(std::begin(place), std::end(place), squares.atlas.corner_uvs.begin() + 3);
+  const auto own = [&](std::initializer_list<glm::vec2> uvs) {
+    std::copy(uvs.begin(), uvs.end(), squares.mesh.corner_uvs.begin() + 3);
+  };
+
+  own({{0.6f, 1.6f}, {0.9f, 1.6f}, {0.9f, 1.9f}});  // outside, repeated: blue
+  auto baked = squares.bake();
+  ASSERT_TRUE(baked);
+  auto picture = decode_picture(baked->bytes);
+  EXPECT_EQ(color_at(*picture, 0.7, 0.2), glm::ivec3(0, 0, 200));
+  EXPECT_EQ(color_at(*picture, 0.5995, 0.2), glm::ivec3(0, 0, 200)) << "and a ring around it";
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < rgba.size(); i += 4) changed += rgba[i] != picture->rgba[i];
+  EXPECT_NEAR(double(changed), 512 * 512 * 0.045, 800) << "nothing else";
+
+  // Without coordinates it takes the colours that its corners have beside it: the first one is red there.
+  squares.mesh.textures[0].bytes = encode_png(rgba, 512, 512);
+  const float none = NAN;
+  own({{none, none}, {none, none}, {none, none}});
+  baked = squares.bake();
+  ASSERT_TRUE(baked);
+  picture = decode_picture(baked->bytes);
+  EXPECT_GT(color_at(*picture, 0.605, 0.105).r, 180);
+  EXPECT_EQ(color_at(*picture, 0.75, 0.75), glm::ivec3(0, 0, 200));
 }
 
 TEST(BaseColor, a_cancelled_bake_stops) {

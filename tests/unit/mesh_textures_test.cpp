@@ -69,7 +69,7 @@ TEST(ObjMaterials, pictures_that_are_missing_or_no_pictures_are_named) {
   EXPECT_EQ(count_of(loaded->repairs, "texture not among the files: lost.jpg"), 1u);
   ASSERT_EQ(loaded->repairs.size(), 2u);
   EXPECT_THAT(loaded->repairs[1].what,
-              HasSubstr("texture not read: text.png: The picture is neither a JPEG nor a PNG"));
+              HasSubstr("texture not read: text.png: The picture is none of JPEG, PNG, TIFF, WebP, BMP and TGA"));
 }
 
 TEST(ObjMaterials, names_in_another_encoding_are_found_and_told_as_utf8) {

@@ -51,12 +51,12 @@ TEST(mesh_uv_check, refuses_uvs_that_are_not_finite) {
   cube.corner_uvs[6].y = std::numeric_limits<float>::infinity();
   const auto atlas = keep(cube);
   ASSERT_FALSE(atlas);
-  EXPECT_THAT(atlas.error().detail, HasSubstr("2 of 36 triangle corners are not finite"));
+  EXPECT_THAT(atlas.error().detail, HasSubstr("of 2 of 12 triangles are not finite numbers"));
 }
 
 TEST(mesh_uv_check, refuses_uvs_outside_the_unit_square) {
   auto cube = test::cube_with_face_charts();
-  cube.corner_uvs[0].x = -0.01f;
+  for (auto& uv : cube.corner_uvs) uv.x *= 3;
   const auto atlas = keep(cube);
   ASSERT_FALSE(atlas);
   EXPECT_THAT(atlas.error().detail, HasSubstr("outside the unit square"));
@@ -91,10 +91,71 @@ TEST(mesh_uv_check, keeps_and_reports_a_little_overlap) {
 
 TEST(mesh_uv_check, refuses_surface_without_area_in_the_texture) {
   auto cube = test::cube_with_face_charts();
-  cube.corner_uvs[2] = cube.corner_uvs[1];
+  for (const int corner : {0, 3, 6}) cube.corner_uvs[corner + 2] = cube.corner_uvs[corner + 1];
   const auto atlas = keep(cube);
   ASSERT_FALSE(atlas);
   EXPECT_THAT(atlas.error().detail, HasSubstr("have no area in the texture"));
+}
+
+// What a faulty face leads to: it alone is moved, at half the size of the rest or more, and all the others stay where they are.
+void expect_one_moved(const TriangleMesh& mesh, std::uint32_t face, const std::string& why) {
+  const auto atlas = keep(mesh, 1024);
+  ASSERT_TRUE(atlas) << atlas.error().detail;
+  EXPECT_EQ(atlas->report.source, "file");
+  EXPECT_EQ(atlas->moved, std::vector<std::uint32_t>{face});
+  EXPECT_EQ(atlas->report.overlap, 0);
+  EXPECT_LT(atlas->report.stretch_p99, 4.5);
+  for (std::size_t corner = 0; corner < mesh.corner_uvs.size(); ++corner) {
+    if (corner / 3 != face) {
+      EXPECT_EQ(atlas->corner_uvs[corner], mesh.corner_uvs[corner]) << corner;
+    }
+    const glm::vec2 uv = atlas->corner_uvs[corner];
+    EXPECT_TRUE(uv.x >= 0 && uv.y >= 0 && uv.x <= 1 && uv.y <= 1) << corner;
+  }
+  ASSERT_EQ(atlas->repairs.size(), 1u);
+  EXPECT_THAT(atlas->repairs[0].what, HasSubstr(why));
+  EXPECT_EQ(atlas->repairs[0].count, 1u);
+}
+
+TEST(mesh_uv_check, one_faulty_face_is_moved_and_the_rest_stays) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  const auto with = [](std::initializer_list<glm::vec2> uvs, int face) {
+    auto cube = test::cube_with_face_charts();
+    int corner = 3 * face;
+    for (const glm::vec2 uv : uvs) cube.corner_uvs[corner++] = uv;
+    return cube;
+  };
+  expect_one_moved(with({{kNone, 0}, {kNone, kNone}, {0, 0}}, 4), 4, "are not finite numbers");
+  expect_one_moved(with({{0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}}, 11), 11, "have no area");
+  expect_one_moved(with({{1.5f, 0.5f}, {1.8f, 0.5f}, {1.8f, 0.8f}}, 0), 0, "lie outside the unit square");
+  // Over nearly all others, and the first of the file.
+  expect_one_moved(with({{0, 0}, {1, 0}, {0.5f, 1}}, 0), 0, "overlap others");
+}
+
+TEST(mesh_uv_check, where_no_texel_is_free_the_rest_makes_room) {
+  auto grid = test::open_grid(16);
+  for (auto& uv : grid.corner_uvs) uv = (uv - 0.05f) / 0.9f;  // all of the square
+  grid.positions.push_back({0.03, 0.03, 0.2});
+  grid.triangles.insert(grid.triangles.end(), {0, 1, static_cast<std::uint32_t>(grid.positions.size()) - 1});
+  grid.corner_uvs.insert(grid.corner_uvs.end(), 3, glm::vec2(2));
+  const auto atlas = keep(grid, 1024);
+  ASSERT_TRUE(atlas) << atlas.error().detail;
+  EXPECT_EQ(atlas->moved, std::vector<std::uint32_t>{512});
+  EXPECT_LT(atlas->kept_scale, 1);
+  EXPECT_EQ(atlas->corner_uvs[0], grid.corner_uvs[0] * atlas->kept_scale);
+  EXPECT_EQ(atlas->report.overlap, 0);
+  ASSERT_EQ(atlas->repairs.size(), 2u);
+  EXPECT_THAT(atlas->repairs[1].what, HasSubstr("make room"));
+}
+
+TEST(mesh_uv_check, a_fault_of_a_face_without_surface_costs_nothing) {
+  auto cube = test::cube_with_face_charts();
+  cube.triangles.insert(cube.triangles.end(), {0, 1, 1});
+  cube.corner_uvs.insert(cube.corner_uvs.end(), 3, glm::vec2(std::numeric_limits<float>::infinity()));
+  const auto atlas = keep(cube);
+  ASSERT_TRUE(atlas) << atlas.error().detail;
+  EXPECT_TRUE(atlas->moved.empty());
+  EXPECT_TRUE(atlas->repairs.empty());
 }
 
 TEST(mesh_uv_check, stops_when_cancelled) {
