@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <mutex>
 
@@ -48,7 +49,8 @@ NewAttachment inspected(const Upload& upload, const std::string& wished_name) {
   const auto head = head_of(upload.file);
   file.media_type = sniff_media_type(head, file.name);
   // A picture whose size cannot be told is kept all the same: it is the person's file.
-  if (const auto info = inspect_picture(head, 1 << 16)) {
+  const bool is_picture = is_raster_picture(file.media_type);
+  if (const auto info = inspect_picture(head, 1 << 16); is_picture && info) {
     file.width = info->width;
     file.height = info->height;
   }
@@ -179,10 +181,12 @@ Result<Response> thumbnail(const RouteContext& context, const Attachment& attach
   auto kept = context.store.thumbnail(attachment, side);
   if (!kept) return tl::unexpected(kept.error());
   if (*kept) return bytes_response(std::move(**kept), "image/jpeg");
-  if (attachment.media_type != "image/jpeg" && attachment.media_type != "image/png")
-    return fail(415, "No small picture",
-                "Small pictures are made of JPEG and PNG pictures; this is " + attachment.media_type + ".",
-                "thumbnail");
+  constexpr std::array<std::string_view, 5> kTypes{"image/jpeg", "image/png", "image/tiff", "image/webp", "image/bmp"};
+  if (std::find(kTypes.begin(), kTypes.end(), attachment.media_type) == kTypes.end())
+    return fail(
+        415, "No small picture",
+        "Small pictures are made of JPEG, PNG, TIFF, WebP and BMP pictures; this is " + attachment.media_type + ".",
+        "thumbnail");
   if (attachment.bytes > kThumbnailFileBytes)
     return fail(422, "Picture too large",
                 "Small pictures are made of files of at most " + std::to_string(kThumbnailFileBytes >> 20) + " MiB.",

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include "core/mapped_file.h"
 #include "core/picture.h"
@@ -45,14 +47,28 @@ Result<Response> create_look(const RouteContext& context, const Request& request
   auto look = new_look(request);
   if (!look) return tl::unexpected(look.error());
   const auto body = MappedFile::open(request.body_file);
-  if (!body || body->bytes().empty()) return fail(400, "Empty body", "Send a JPEG or PNG picture as the body.", "body");
-  const auto picture = body->bytes();
+  if (!body || body->bytes().empty())
+    return fail(400, "Empty body", "Send a picture as the body: JPEG, PNG, TIFF, WebP, BMP or TGA.", "body");
+  std::span<const std::uint8_t> picture = body->bytes();
+  const auto info = inspect_picture(picture);
+  if (!info) return tl::unexpected(info.error());
+  look->width = info->width;
+  look->height = info->height;
+  const bool stays = is_look_format(info->format);
+  look->media_type = media_type(stays ? info->format : PictureFormat::png);
   // Whole, so that what cannot be shown is told now.
+  const auto memory =
+      context.rooms.memory().reserve(std::uint64_t{stays ? 4u : 8u} * static_cast<std::uint64_t>(info->width) *
+                                         static_cast<std::uint64_t>(info->height),
+                                     "the picture of a new look");
+  if (!memory) return tl::unexpected(memory.error());
   auto decoded = decode_picture(picture);
   if (!decoded) return tl::unexpected(decoded.error());
-  look->media_type = media_type(*picture_format(picture));
-  look->width = decoded->width;
-  look->height = decoded->height;
+  std::vector<std::uint8_t> as_png;
+  if (!stays) {
+    as_png = encode_png(decoded->rgba, decoded->width, decoded->height);
+    picture = as_png;
+  }
   decoded->rgba = {};
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());

@@ -53,7 +53,8 @@ Result<Response> create_tool(const RouteContext& context, const Request& request
   const auto part = part_of(request);
   if (!part) return tl::unexpected(part.error());
   const auto body = MappedFile::open(request.body_file);
-  if (!body || body->bytes().empty()) return fail(400, "Empty body", "Send a JPEG or PNG picture as the body.", "body");
+  if (!body || body->bytes().empty())
+    return fail(400, "Empty body", "Send a picture as the body: PNG, JPEG, TIFF, WebP, BMP or TGA.", "body");
   const auto picture = decode_picture(body->bytes(), kLargestPictureSide_px);
   if (!picture) return tl::unexpected(picture.error());
   const auto shape = shape_of(*picture, *part);

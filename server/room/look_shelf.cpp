@@ -11,15 +11,16 @@
 namespace strata::room {
 namespace {
 
-constexpr int kLargestSide = 8192, kSmallestSide = 512;  // texels of a look on the GPU
+constexpr int kLargestSide = 16384, kSmallestSide = 512;  // texels of a look on the GPU
+constexpr int kMostDivided = 8;                           // as libjpeg-turbo divides the sides
 
 bool is_memory_used_up(const Problem& problem) { return problem.title == "GPU memory used up"; }
 
 }  // namespace
 
 LookShelf::LookShelf(store::Store& store, render::Renderer& renderer, boost::asio::thread_pool& workers,
-                     std::function<void()> ready)
-    : store_(store), renderer_(renderer), workers_(workers), ready_(std::move(ready)) {}
+                     MemoryLedger& memory, std::function<void()> ready)
+    : store_(store), renderer_(renderer), workers_(workers), memory_(memory), ready_(std::move(ready)) {}
 
 void LookShelf::put(const Look& look) {
   std::lock_guard lock(mutex_);
@@ -65,6 +66,7 @@ void LookShelf::set_model(render::ModelHandle model) {
 void LookShelf::stop() {
   std::lock_guard lock(mutex_);
   stopped_ = true;
+  for (auto& [id, slot] : slots_) slot.memory.reset();
 }
 
 std::vector<LookView> LookShelf::shown(const std::optional<std::vector<LookView>>& wanted) const {
@@ -142,20 +144,46 @@ void LookShelf::load(std::int64_t id, int largest_side) {
   });
 }
 
-Result<std::shared_ptr<const render::LookImage>> LookShelf::read(std::int64_t id, int largest_side) {
-  Bytes encoded;
+Result<LookShelf::Bytes> LookShelf::encoded_bytes(std::int64_t id) {
   {
     std::lock_guard lock(mutex_);
-    if (const auto found = slots_.find(id); found != slots_.end()) encoded = found->second.encoded;
+    if (const auto found = slots_.find(id); found != slots_.end() && found->second.encoded)
+      return found->second.encoded;
   }
-  if (!encoded) {
-    auto bytes = store_.look_picture(id);
-    if (!bytes) return tl::unexpected(bytes.error());
-    encoded = std::make_shared<const std::vector<std::uint8_t>>(std::move(*bytes));
-    std::lock_guard lock(mutex_);
-    if (const auto found = slots_.find(id); found != slots_.end()) found->second.encoded = encoded;
+  auto bytes = store_.look_picture(id);
+  if (!bytes) return tl::unexpected(bytes.error());
+  auto encoded = std::make_shared<const std::vector<std::uint8_t>>(std::move(*bytes));
+  std::lock_guard lock(mutex_);
+  if (const auto found = slots_.find(id); found != slots_.end()) found->second.encoded = encoded;
+  return encoded;
+}
+
+Result<int> LookShelf::reserve_pixels(std::int64_t id, const PictureInfo& info) {
+  for (int divisor = 1;; divisor *= 2) {
+    // Four bytes a pixel, and a third more for the coarser levels.
+    const auto pixels =
+        static_cast<std::uint64_t>(info.width / divisor + 1) * static_cast<std::uint64_t>(info.height / divisor + 1);
+    auto share = memory_.reserve(pixels * 16 / 3, "a model's picture");
+    if (share) {
+      std::lock_guard lock(mutex_);
+      const auto found = slots_.find(id);
+      if (found != slots_.end() && !stopped_) found->second.memory = std::move(*share);
+      return divisor;
+    }
+    if (info.format != PictureFormat::jpeg || divisor == kMostDivided) return tl::unexpected(share.error());
   }
-  auto picture = decode_picture(*encoded);
+}
+
+Result<std::shared_ptr<const render::LookImage>> LookShelf::read(std::int64_t id, int largest_side) {
+  const auto bytes = encoded_bytes(id);
+  if (!bytes) return tl::unexpected(bytes.error());
+  const std::vector<std::uint8_t>& encoded = **bytes;
+  const auto info = inspect_picture(encoded);
+  if (!info) return tl::unexpected(info.error());
+  const auto divisor = reserve_pixels(id, *info);
+  if (!divisor) return tl::unexpected(divisor.error());
+  auto picture =
+      *divisor == 1 ? decode_picture(encoded) : decode_coarse(encoded, std::max(info->width, info->height) / *divisor);
   if (!picture) return tl::unexpected(picture.error());
   return std::make_shared<const render::LookImage>(
       render::make_look_image(std::move(picture->rgba), picture->width, picture->height, largest_side));
@@ -194,6 +222,7 @@ void LookShelf::finish(std::int64_t id, const Result<render::LookHandle>& handle
     if (const auto found = slots_.find(id); found != slots_.end()) {
       Slot& slot = found->second;
       slot.loading = false;
+      slot.memory.reset();
       waiting = std::exchange(slot.waiting, {});
       if (handle)
         slot.handle = *handle, kept = true;

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "core/look.h"
+#include "core/memory_ledger.h"
+#include "core/picture.h"
 #include "render/renderer.h"
 #include "room/room.h"
 #include "store/store.h"
@@ -17,11 +19,13 @@
 namespace strata::room {
 
 // The looks of an open model. A look's texture is made when a view first shows it, on a worker, and kept while the room is open;
-// its encoded bytes are kept with it, so that it comes back after a lost context without the database. Thread-safe.
+// its encoded bytes are kept with it, so that it comes back after a lost context without the database. Up to 16384² is shown, which
+// OpenGL 4.5 guarantees, or less where the GPU's memory has no room for it. Its pixels are reserved in `memory` until they are on the
+// GPU; where there is no room a JPEG is decoded smaller. Thread-safe.
 class LookShelf : public std::enable_shared_from_this<LookShelf> {
  public:
   // `ready` is called, on any thread, whenever a texture that was asked for is there.
-  LookShelf(store::Store& store, render::Renderer& renderer, boost::asio::thread_pool& workers,
+  LookShelf(store::Store& store, render::Renderer& renderer, boost::asio::thread_pool& workers, MemoryLedger& memory,
             std::function<void()> ready);
 
   void put(const Look& look);
@@ -46,12 +50,15 @@ class LookShelf : public std::enable_shared_from_this<LookShelf> {
     Bytes encoded;
     render::LookHandle handle = 0;
     bool loading = false;
+    MemoryLedger::Share memory;     // of its pixels while it loads
     std::optional<Problem> damage;  // the picture cannot be shown, ever
     std::vector<Loaded> waiting;
   };
   std::vector<LookView> shown(const std::optional<std::vector<LookView>>& wanted) const;  // under the mutex
   void request(std::int64_t id, Loaded loaded);
   void load(std::int64_t id, int largest_side);
+  Result<Bytes> encoded_bytes(std::int64_t id);
+  Result<int> reserve_pixels(std::int64_t id, const PictureInfo& info);  // what its sides are to be divided by
   Result<std::shared_ptr<const render::LookImage>> read(std::int64_t id, int largest_side);
   void add(std::int64_t id, int largest_side, const Result<std::shared_ptr<const render::LookImage>>& image);
   void on_added(std::int64_t id, render::ModelHandle model, int largest_side, const Result<render::LookHandle>& handle);
@@ -60,6 +67,7 @@ class LookShelf : public std::enable_shared_from_this<LookShelf> {
   store::Store& store_;
   render::Renderer& renderer_;
   boost::asio::thread_pool& workers_;
+  MemoryLedger& memory_;
   const std::function<void()> ready_;
   mutable std::mutex mutex_;
   std::map<std::int64_t, Slot> slots_;

@@ -96,7 +96,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const s
     const Strand strand = open->strand_;  // not on the GPU thread
     boost::asio::post(strand, [open = std::move(open)] { open->sort_layers_changed(); });
   };
-  room->look_shelf_ = std::make_shared<LookShelf>(parts.store, parts.renderer, parts.workers, restyle);
+  room->look_shelf_ = std::make_shared<LookShelf>(parts.store, parts.renderer, parts.workers, parts.memory, restyle);
   room->record_colors_ = std::make_shared<RecordColors>(parts.store, parts.workers, restyle);
   room->record_marks_ = std::make_shared<RecordMarks>(parts.store, parts.workers, room->id(), restyle);
   room->look_shelf_->set_model(gpu->model);

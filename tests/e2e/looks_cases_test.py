@@ -8,7 +8,8 @@ import tempfile
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.cameras import camera_from
 from support.meshes import bumpy_ball
-from support.pictures import pixels, png
+from support.maps import tiff
+from support.pictures import bmp, pixels, png, tga
 from support.strata_server import LONG_S, StrataServer
 
 M = "/models/ball"
@@ -71,6 +72,19 @@ def check_looks(server, camera):
     ]:
         answer = server.request(method, path, body, headers=headers)
         assert answer.status == status, f"{what}: {answer}"
+
+    # Other formats are kept as a PNG of their pixels, and shown in a frame.
+    blue = lambda x, y: (0, 0, 255)
+    for name, kind, other in (("tga", "image/x-tga", tga(8, 4, blue)), ("bmp", "image/bmp", bmp(8, 4, blue)),
+                              ("tiff", "image/tiff", tiff(8, 4, blue, kind="B", samples=3))):
+        made = server.ok("POST", M + f"/looks?name={name}", other, headers={"Content-Type": kind}).json()
+        assert (made["width"], made["height"], made["media_type"]) == (8, 4, "image/png"), made
+        assert set(sum(pixels(server.ok("GET", M + f"/looks/{name}/picture").body), [])) == {(0, 0, 255)}
+        assert center(frame(server, camera=camera, light={"mode": "unlit"}, looks=[{"look": name}])) == (0, 0, 255)
+        assert server.request("POST", M + "/looks?name=x", other[:-20], headers={"Content-Type": kind}).status == 422
+        server.ok("DELETE", M + f"/looks/{name}")
+    dds = server.request("POST", M + "/looks?name=x", b"DDS " + bytes(200), headers=RED)
+    assert dds.status == 415 and "DDS" in dds.json()["detail"], dds
 
     assert server.request("DELETE", M + "/looks/uv-light").status == 204
     assert server.get(M + "/looks/uv-light").status == 404

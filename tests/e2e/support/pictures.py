@@ -1,4 +1,4 @@
-"""PNG pictures, made and read."""
+"""PNG pictures, made and read; TGA and BMP pictures, made."""
 import struct
 import zlib
 
@@ -13,6 +13,20 @@ def png(width, height, color):
 
     head = struct.pack(">IIBBBBB", width, height, 8, kind, 0, 0, 0)
     return b"\x89PNG\r\n\x1a\n" + part(b"IHDR", head) + part(b"IDAT", zlib.compress(rows)) + part(b"IEND", b"")
+
+
+def tga(width, height, color, packed=False):
+    """Of (r, g, b); `packed`: each pixel a run of its own."""
+    kind = 10 if packed else 2
+    body = b"".join((b"\x80" if packed else b"") + bytes(reversed(color(x, y))) for y in reversed(range(height)) for x in range(width))
+    return struct.pack("<BBB5sHHHHBB", 0, 0, kind, bytes(5), 0, 0, width, height, 24, 0) + body
+
+
+def bmp(width, height, color):
+    """Of (r, g, b)."""
+    pad = bytes(-3 * width % 4)
+    rows = b"".join(b"".join(bytes(reversed(color(x, y))) for x in range(width)) + pad for y in reversed(range(height)))
+    return (b"BM" + struct.pack("<IIIIiiHHIIiiII", 54 + len(rows), 0, 54, 40, width, height, 1, 24, 0, len(rows), 0, 0, 0, 0) + rows)
 
 
 def pixels(picture, shown=slice(0, 3)):

@@ -173,7 +173,7 @@ export class StrataHomePage extends LitElement {
       ${this.project === null && this.curated.length > 1 ? this.project_choice(this.curated) : nothing}
       ${this.can_curate
         ? html`<button class=${this.has_none ? "" : "primary"} @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
-            <input type="file" accept=".ply,.obj,.stl,.gltf,.glb,.zip,.mtl,.bin,.png,.jpg,.jpeg" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
+            <input type="file" accept=".ply,.obj,.stl,.gltf,.glb,.zip,.mtl,.bin,.png,.jpg,.jpeg,.tif,.tiff,.webp,.bmp,.tga" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
         : nothing}
       ${this.project === null && this.can_administer
         ? html`<button @click=${() => void this.make_project()}>${icon("plus")}${texts.projects.new}</button>`

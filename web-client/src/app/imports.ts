@@ -23,7 +23,7 @@ export interface ImportEntry {
 }
 
 const kScans = /\.(ply|obj|stl|gltf|glb|zip)$/i;
-const kCompanions = /\.(mtl|bin|png|jpe?g)$/i; // materials, buffers and pictures that a mesh names
+const kCompanions = /\.(mtl|bin|png|jpe?g|tiff?|webp|bmp|tga)$/i; // materials, buffers and pictures that a mesh names
 
 /** How an import ended; neither where it was cancelled, or refused before it began. */
 export interface ImportResult {

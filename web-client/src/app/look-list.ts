@@ -91,7 +91,7 @@ export class StrataLookList extends LitElement {
                   ${icon("import")}${texts.orthophoto.open}
                 </button>
               </strata-menu>
-              <input type="file" accept="image/jpeg,image/png" hidden aria-label=${words.look_add} @change=${this.on_file} />`
+              <input type="file" accept="image/jpeg,image/png,image/tiff,image/webp,image/bmp,.tga" hidden aria-label=${words.look_add} @change=${this.on_file} />`
           : nothing}
       </div>
       ${shown.length === 0

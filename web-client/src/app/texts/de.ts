@@ -1465,7 +1465,7 @@ export const texts = {
     look_delete_lead: "Das Bild wird für alle gelöscht. Das lässt sich nicht rückgängig machen.",
     no_looks: "Dieses Modell hat keine Bilder seiner Oberfläche.",
     no_looks_curator:
-      "Ein Oberflächenbild ist ein Bild auf der Textur des Modells: seine Farben, oder dieselbe Oberfläche unter UV-Licht oder im Infrarot. Hinzugefügt wird es als JPEG oder PNG.",
+      "Ein Oberflächenbild ist ein Bild auf der Textur des Modells: seine Farben, oder dieselbe Oberfläche unter UV-Licht oder im Infrarot. Hinzugefügt wird es als JPEG, PNG, TIFF, WebP, BMP oder TGA.",
     too_many_looks: (n) => `Eine Ansicht zeigt höchstens ${n} Oberflächenbilder. Bitte zuerst eines ausblenden.`,
     light: "Licht",
     lights: { museum: "Museum", headlight: "Frontal", raking: "Streifend", unlit: "Ohne" },

@@ -1450,7 +1450,7 @@ export const texts = {
     look_delete_lead: "The picture is deleted for everyone. This cannot be undone.",
     no_looks: "This model has no pictures of its surface.",
     no_looks_curator:
-      "A look is a picture on the model's own texture: its colours, or the same surface under UV light or in infrared. Add a JPEG or PNG.",
+      "A look is a picture on the model's own texture: its colours, or the same surface under UV light or in infrared. Add a JPEG, PNG, TIFF, WebP, BMP or TGA.",
     too_many_looks: (n: number) => `A view shows at most ${n} looks. Hide one first.`,
     light: "Light",
     lights: { museum: "Museum", headlight: "Headlight", raking: "Raking", unlit: "None" },

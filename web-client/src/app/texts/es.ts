@@ -1471,7 +1471,7 @@ export const texts = {
     look_delete_lead: "La imagen se elimina para todos. Esto no se puede deshacer.",
     no_looks: "Este modelo no tiene imágenes de su superficie.",
     no_looks_curator:
-      "Una imagen de la superficie está sobre la textura del modelo: sus colores, o la misma superficie con luz ultravioleta o en infrarrojo. Añada un JPEG o PNG.",
+      "Una imagen de la superficie está sobre la textura del modelo: sus colores, o la misma superficie con luz ultravioleta o en infrarrojo. Añada un JPEG, PNG, TIFF, WebP, BMP o TGA.",
     too_many_looks: (n) => `Una vista muestra como máximo ${n} imágenes de la superficie. Oculte una primero.`,
     light: "Luz",
     lights: { museum: "Museo", headlight: "Frontal", raking: "Rasante", unlit: "Sin luz" },
