@@ -36,7 +36,8 @@ void write_samples(TIFF* tiff, int width, int height, const TiffSettings& s,
     if (bits > 0) put(bytes, collected << (8 - bits), 1);
     return bytes;
   };
-  constexpr int kTile = 16;
+  constexpr int kTile =
+      32;  // libtiff refuses uncompressed tiles of less than 1024 bytes that are not mapped from a file
   const int planes = s.separate ? s.samples : 1;
   for (int plane = 0; plane < planes; ++plane) {
     const int first = s.separate ? plane : 0, last = s.separate ? plane + 1 : s.samples;
@@ -84,8 +85,8 @@ Bytes tiff_of(int width, int height, const TiffSettings& s, const std::function<
         TIFFSetField(tiff.get(), TIFFTAG_COLORMAP, table, table + count, table + 2 * count);
       }
       if (s.tiled) {
-        TIFFSetField(tiff.get(), TIFFTAG_TILEWIDTH, 16);
-        TIFFSetField(tiff.get(), TIFFTAG_TILELENGTH, 16);
+        TIFFSetField(tiff.get(), TIFFTAG_TILEWIDTH, 32);
+        TIFFSetField(tiff.get(), TIFFTAG_TILELENGTH, 32);
       } else {
         TIFFSetField(tiff.get(), TIFFTAG_ROWSPERSTRIP, 5);
       }
