@@ -39,7 +39,11 @@ namespace {
 
 // `museum.example` of `museum.example:8080`; an IPv6 address keeps its brackets.
 std::string_view without_port(std::string_view host) {
-  if (host.starts_with('[')) return host.substr(0, host.find(']') + 1);
+  if (host.starts_with('[')) {
+    const auto end = host.find(']');
+    const bool is_whole = end != std::string_view::npos && (end + 1 == host.size() || host[end + 1] == ':');
+    return is_whole ? host.substr(0, end + 1) : host;
+  }
   return host.substr(0, host.find(':'));
 }
 
