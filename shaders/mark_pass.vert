@@ -1,12 +1,13 @@
 #version 450 core
 #include "shared/marks.h"
-// A rectangle around each segment, two triangles.
+// A rectangle around each segment, two triangles; nothing around one that is hidden.
 layout(std140, binding = 0) uniform MarkBlock { MarkUniforms marks; };
 layout(std430, binding = 0) readonly buffer SegmentBlock { MarkSegment segments[]; };
 layout(location = 0) out vec2 place;  // pixels
 layout(location = 1) flat out vec4 ends;
 layout(location = 2) flat out float mark_half_width;
 layout(location = 3) flat out vec4 mark_color;
+layout(location = 4) flat out uvec2 places;
 
 const vec3 kCasing = vec3(1.0);
 
@@ -24,5 +25,6 @@ void main() {
   ends = vec4(segment.from.xy, segment.to.xy);
   mark_half_width = half_width;
   mark_color = marks.size.z == 0.0 ? vec4(kCasing, segment.color.a) : segment.color;
-  gl_Position = vec4(place / marks.size.xy * 2.0 - 1.0, end.z * 2.0 - 1.0, 1.0);
+  places = uvec2(segment.place_count, segment.shown);
+  gl_Position = segment.shown == 0u ? vec4(0.0, 0.0, 0.0, 1.0) : vec4(place / marks.size.xy * 2.0 - 1.0, 0.0, 1.0);
 }

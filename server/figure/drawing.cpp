@@ -4,12 +4,16 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <numeric>
 
 #include "core/up.h"
 #include "figure/paper.h"
 
 namespace strata::figure {
 namespace {
+
+constexpr int kSymbolReach_px =
+    8;  // of the camera's window: at least as far as lines and points reach from their places
 
 // The axes of the front view, as the page has them.
 Plane front_of(std::string_view up) {
@@ -97,12 +101,18 @@ double fitting_scale(const glm::dvec2& size, const glm::dvec2& paper_mm, double 
 
 std::vector<Part> parts_of(const Drawing& drawing, int side) {
   const int inches = std::max(1, side / drawing.dpi), step = inches * drawing.dpi;
+  // Whole pixels of the drawing and of the camera, so that all parts have the same ones.
+  const int common = std::gcd(drawing.dpi, kCameraDpi);
+  const int unit_px = drawing.dpi / common * 2, unit_camera = kCameraDpi / common * 2;
+  const int units = (kSymbolReach_px + unit_camera - 1) / unit_camera;
+  const int margin = units * unit_px, size = inches * kCameraDpi + 2 * units * unit_camera;
+  const double pixel_mm = kInch_mm / drawing.dpi;
   std::vector<Part> parts;
   for (int y = 0; y < drawing.height; y += step)
     for (int x = 0; x < drawing.width; x += step)
-      parts.push_back({camera_over(drawing, glm::dvec2(x, y) * (kInch_mm / drawing.dpi), glm::dvec2(inches * kInch_mm),
-                                   inches * kCameraDpi, inches * kCameraDpi),
-                       x, y, step, step});
+      parts.push_back({camera_over(drawing, glm::dvec2(x - margin, y - margin) * pixel_mm,
+                                   glm::dvec2(size * (kInch_mm / kCameraDpi)), size, size),
+                       x, y, step, step, margin});
   return parts;
 }
 

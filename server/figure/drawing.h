@@ -57,10 +57,12 @@ struct Drawing {
 // A camera counts in hundredths of an inch, so that lines and patterns have the same width at any resolution.
 constexpr int kCameraDpi = 100;
 
-// A camera over a part of the drawing and the pixels that it fills: of those the ones beyond the drawing are left out.
+// A camera over a part of the drawing and the pixels that it fills: of those the ones beyond the drawing are left out. The camera sees
+// `margin` more pixels on each side, which are left out, too: a symbol that reaches into the part is drawn by what hides its place.
 struct Part {
   Camera camera;
-  int x = 0, y = 0, width = 0, height = 0;  // pixels; origin at the drawing's top left
+  int x = 0, y = 0, width = 0, height = 0;  // pixels without the margin; origin at the drawing's top left
+  int margin = 0;                           // even
 };
 // Squares of whole inches of about `side` pixels, so that all have the same pixels to the inch; row by row.
 std::vector<Part> parts_of(const Drawing& drawing, int side = 2048);

@@ -271,14 +271,16 @@ Result<Picture> draw(const FigureWish& wish, const figure::Drawing& drawing, Pro
   fine.height *= finer;
   const auto parts = figure::parts_of(fine);
   std::vector<room::PicturePart> wanted;
-  for (const auto& part : parts) wanted.push_back({part.camera, static_cast<double>(part.width) / part.camera.width});
+  for (const auto& part : parts)
+    wanted.push_back({part.camera, static_cast<double>(part.width + 2 * part.margin) / part.camera.width});
   auto drawn = wish.room->pictures(wish.shown, wanted, [&](std::size_t i, const render::Frame& frame) -> Result<void> {
     const int left = parts[i].x / finer, top = parts[i].y / finer;  // parts are of whole inches
-    const int columns = std::min(frame.width / finer, picture.width - left);
-    const int rows = std::min(frame.height / finer, picture.height - top);
+    const int margin = parts[i].margin;
+    const int columns = std::min(parts[i].width / finer, picture.width - left);
+    const int rows = std::min(parts[i].height / finer, picture.height - top);
     const std::size_t stride = std::size_t{4} * frame.width;
     for (int row = 0; row < rows; ++row) {
-      const std::uint8_t* from = frame.pixels.data() + stride * finer * row;
+      const std::uint8_t* from = frame.pixels.data() + stride * (margin + finer * row) + std::size_t{4} * margin;
       std::uint8_t* to = picture.rgba.data() + std::size_t{4} * (std::size_t(top + row) * picture.width + left);
       if (finer == 1) {
         std::memcpy(to, from, std::size_t{4} * columns);

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t kBytesCollectedPerStep = std::size_t{16} << 20;  // a few milliseconds
 
-// The surface between the places of a line may bulge, and that of a coarser copy lies where it likes.
-constexpr double kMarkLift_px = 3, kMarkLiftOfCopies_px = 10;
+// How far a place of a mark may lie below what is seen, in pixels of the camera's window: a coarser copy's surface lies where it likes.
+constexpr double kMarkReach_px = 1, kMarkReachOfCopies_px = 10;
 
 // All marks are drawn for each rectangle: what one segment of them costs there (0.8 µs with llvmpipe), as `kRectCost_px`.
 constexpr std::int64_t kMarkCost_px = 28;
@@ -208,16 +208,21 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
   frame_.width = request.width;
   frame_.height = request.height;
   if (request.changed && view.shows(request)) {
-    const auto marks = static_cast<std::int64_t>(view.mark_segments.size());
-    frame_.rects = screen_rects(*request.changed, clip, request.width, request.height, request.align_to_16,
-                                kRectCost_px + marks * kMarkCost_px);
+    const auto marks = static_cast<std::int64_t>(view.seen_marks.count);
+    frame_.rects =
+        screen_rects(*request.changed, clip, request.width, request.height, request.align_to_16,
+                     kRectCost_px + marks * kMarkCost_px, static_cast<double>(request.width) / request.camera.width);
     if (frame_.rects.empty()) return {};
   } else {
     frame_.rects = {{0, 0, request.width, request.height}};
-    view.mark_segments.clear();
+    std::vector<shader::MarkSegment> pieces;
     if (request.marks)
-      view.mark_segments = project_marks(*request.marks, request.camera, request.width, request.height,
-                                         view.key.level == 0 ? kMarkLift_px : kMarkLiftOfCopies_px);
+      pieces = project_marks(*request.marks, request.camera, request.width, request.height,
+                             {view.key.level == 0 ? kMarkReach_px : kMarkReachOfCopies_px,
+                              glm::distance(geometry.box_min, geometry.box_max)});
+    const bool cut_open = !request.camera.section.empty() && eye_is_cut_away(request.camera);
+    auto looked = scene.mark_pass().look(pieces, view.depth->texture, cut_open, view.seen_marks);
+    if (!looked) return looked;
   }
   surface_ = screen_rect({geometry.box_min, geometry.box_max}, clip, request.width, request.height, false);
   std::size_t bytes = 0;
@@ -250,7 +255,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   }
   if (auto flushed = scene.tables().flush(); !flushed) return tl::unexpected(flushed.error());
   if (auto shaded = scene.shade_pass().shade(input, scene.tables()); !shaded) return tl::unexpected(shaded.error());
-  auto marked = scene.mark_pass().draw(view.mark_segments, view.shading, request.width, request.height, band);
+  auto marked = scene.mark_pass().draw(view.seen_marks, view.shading, request.width, request.height, band);
   if (!marked) return tl::unexpected(marked.error());
 
   const int rows_below = rect.height - shaded_.done - band.height;

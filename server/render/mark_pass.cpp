@@ -3,25 +3,46 @@
 namespace strata::render {
 
 Result<MarkPass> MarkPass::create(const std::filesystem::path& shader_dir) {
+  MarkPass pass;
   auto program = gl::Program::load(shader_dir, {"mark_pass.vert", "mark_pass.frag"}, {});
   if (!program) return tl::unexpected(program.error());
-  MarkPass pass;
   pass.program_ = std::move(*program);
+  for (auto [phase, made] : {std::pair{"CLOSE_GAPS 0", &pass.sight_}, {"CLOSE_GAPS 1", &pass.gaps_}}) {
+    auto built = gl::Program::load(shader_dir, {"mark_sight_pass.comp"}, {phase});
+    if (!built) return tl::unexpected(built.error());
+    *made = std::move(*built);
+  }
   return pass;
 }
 
-Result<void> MarkPass::draw(std::span<const shader::MarkSegment> segments, const gl::Framebuffer& target, int width,
-                            int height, const PixelRect& rect) {
-  if (segments.empty() || rect.width == 0 || rect.height == 0) return {};
-  if (auto sent = segments_.replace(segments); !sent) return sent;
-  segments_.bind_storage(0);
+Result<void> MarkPass::look(std::span<const shader::MarkSegment> segments, const gl::Texture& depth, bool cut_open,
+                            MarkBuffer& marks) const {
+  marks.count = 0;
+  if (segments.empty()) return {};
+  if (auto sent = marks.segments.replace(segments); !sent) return sent;
+  marks.count = segments.size();
+  marks.segments.bind_storage(0);
+  depth.bind(0);
+  for (const gl::Program* phase : {&sight_, &gaps_}) {
+    phase->use();
+    phase->set(0, static_cast<GLuint>(segments.size()));
+    if (phase == &sight_) phase->set(1, cut_open ? shader::kMarkCutOpen : 0u);
+    glDispatchCompute(static_cast<GLuint>((segments.size() + 63) / 64), 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  }
+  return {};
+}
+
+Result<void> MarkPass::draw(const MarkBuffer& marks, const gl::Framebuffer& target, int width, int height,
+                            const PixelRect& rect) {
+  if (marks.count == 0 || rect.width == 0 || rect.height == 0) return {};
+  marks.segments.bind_storage(0);
   program_.use();
   no_vertices_.bind();
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.id());
   glViewport(0, 0, width, height);
   glDisable(GL_CULL_FACE);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LEQUAL);
+  glDisable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // the picture stays opaque
@@ -33,7 +54,7 @@ Result<void> MarkPass::draw(std::span<const shader::MarkSegment> segments, const
     sent = uniforms_.replace(std::span(&uniforms, 1));
     if (!sent) break;
     uniforms_.bind_uniform(0);
-    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * segments.size()));
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * marks.count));
   }
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);

@@ -5,6 +5,7 @@
 
 #include "gl/framebuffer.h"
 #include "gl/program.h"
+#include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "render/renderer.h"
 #include "render/stream_buffer.h"
@@ -12,19 +13,29 @@
 
 namespace strata::render {
 
-// Draws lines and points into a rectangle of a view's picture that is shaded already (shaders/mark_pass.*), where nothing of the surface
-// is before them. Sets all state it needs, and leaves neither scissor nor blending behind.
+// The marks of a view as the camera of its g-buffer sees them, on the GPU.
+struct MarkBuffer {
+  StreamBuffer segments{"marks"};
+  std::size_t count = 0;
+};
+
+// Draws lines and points over a view's picture (shaders/mark_*). `look` finds out once for a camera which of their places the surface
+// hides; `draw` then draws them whole where their place is visible, into one rectangle after the other. Both set all state they need,
+// and leave neither scissor nor blending behind.
 class MarkPass {
  public:
   static Result<MarkPass> create(const std::filesystem::path& shader_dir);
-  // `target`: RGBA8 picture and the g-buffer's depth, of `width` × `height`; row 0 lowest. `rect`: origin top left.
-  Result<void> draw(std::span<const shader::MarkSegment> segments, const gl::Framebuffer& target, int width, int height,
+  // `depth`: of the whole picture. `cut_open`: it carries the marks of a solid's inside (shared/section.h).
+  Result<void> look(std::span<const shader::MarkSegment> segments, const gl::Texture& depth, bool cut_open,
+                    MarkBuffer& marks) const;
+  // `target`: RGBA8 picture of `width` × `height`, shaded already; row 0 lowest. `rect`: origin top left.
+  Result<void> draw(const MarkBuffer& marks, const gl::Framebuffer& target, int width, int height,
                     const PixelRect& rect);
 
  private:
-  gl::Program program_;
+  gl::Program program_, sight_, gaps_;
   gl::VertexArray no_vertices_{"marks"};
-  StreamBuffer uniforms_{"marks' uniforms"}, segments_{"marks"};
+  StreamBuffer uniforms_{"marks' uniforms"};
 };
 
 }  // namespace strata::render

@@ -10,8 +10,8 @@
 namespace strata::render {
 namespace {
 
-// A texel's colour reaches the pixels around it, and so does its outline.
-constexpr double kPadding_px = 1.5 + shader::kOutlinePixels;
+// A texel's colour reaches the pixels around it, and so does its outline, which is wider in pictures of more pixels than their window.
+double padding_px(double pixel_scale) { return 1.5 + shader::kOutlinePixels * std::max(1.0, pixel_scale); }
 constexpr int kAlign = 16;
 std::int64_t area(const PixelRect& rect) { return std::int64_t{rect.width} * rect.height; }
 
@@ -52,7 +52,8 @@ PixelRect take_nearest(std::vector<PixelRect>& rects) {
 }  // namespace
 
 PixelRect screen_rect(const FrameRequest::Box& box, const glm::dmat4& clip_from_model, int width, int height,
-                      bool align_to_16) {
+                      bool align_to_16, double pixel_scale) {
+  const double padding = padding_px(pixel_scale);
   int behind = 0;
   double x0 = std::numeric_limits<double>::max(), y0 = x0, x1 = -x0, y1 = -x0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -70,8 +71,8 @@ PixelRect screen_rect(const FrameRequest::Box& box, const glm::dmat4& clip_from_
   if (behind == 8) return {};
   if (behind > 0) return {0, 0, width, height};
   const auto clamped = [](double value, int limit) { return static_cast<int>(std::clamp(value, 0.0, double(limit))); };
-  int left = clamped(std::floor(x0 - kPadding_px), width), right = clamped(std::ceil(x1 + kPadding_px), width);
-  int top = clamped(std::floor(y0 - kPadding_px), height), bottom = clamped(std::ceil(y1 + kPadding_px), height);
+  int left = clamped(std::floor(x0 - padding), width), right = clamped(std::ceil(x1 + padding), width);
+  int top = clamped(std::floor(y0 - padding), height), bottom = clamped(std::ceil(y1 + padding), height);
   if (left >= right || top >= bottom) return {};
   if (align_to_16) {
     left -= left % kAlign;
@@ -83,10 +84,11 @@ PixelRect screen_rect(const FrameRequest::Box& box, const glm::dmat4& clip_from_
 }
 
 std::vector<PixelRect> screen_rects(std::span<const FrameRequest::Box> boxes, const glm::dmat4& clip_from_model,
-                                    int width, int height, bool align_to_16, std::int64_t rect_cost_px) {
+                                    int width, int height, bool align_to_16, std::int64_t rect_cost_px,
+                                    double pixel_scale) {
   std::vector<PixelRect> rects;
   for (const auto& box : boxes) {
-    const PixelRect rect = screen_rect(box, clip_from_model, width, height, align_to_16);
+    const PixelRect rect = screen_rect(box, clip_from_model, width, height, align_to_16, pixel_scale);
     if (rect.width == 0) continue;
     add_rect(rects, rect, rect_cost_px);
     if (rects.size() > kMaxScreenRects) add_rect(rects, take_nearest(rects), rect_cost_px);

@@ -12,6 +12,7 @@ void View::drop_buffers() {
   picture = {};
   depth.reset();
   share.reset();
+  seen_marks = {};
   gbuffer_complete = picture_complete = false;
 }
 

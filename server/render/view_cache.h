@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "render/depth_buffers.h"
+#include "render/mark_pass.h"
 #include "render/renderer.h"
 
 namespace strata::render {
@@ -29,7 +30,7 @@ struct View {
   Background background;
   double unit_mm = 0;
   MarksShown marks;
-  std::vector<shader::MarkSegment> mark_segments;  // of the marks, as the camera of the g-buffer sees them
+  MarkBuffer seen_marks;  // the marks, as the camera of the g-buffer sees them
 
   bool has_buffers() const { return static_cast<bool>(picture); }
   void drop_buffers();

@@ -1,16 +1,32 @@
 #pragma once
 #include "shared/types.h"
 STRATA_SHARED_BEGIN
-// A line, or a point where both ends are one, on the plane of a picture: pixels from its lower left corner, depth 0…1.
+// Places of a segment whose visibility is decided, one bit each.
+const uint kMarkMostPlaces = 32u;
+const float kMarkStep_px = 2.0;      // between two places of a line, pixels of the camera's window
+const uint kMarkClosedPlaces = 3u;   // hidden places between visible ones that a line is drawn over
+const float kMarkSteepest = 12.0;    // slope of the surface to the picture's plane that the reach still follows
+const uint kMarkJoinsLast = 1u;      // the segment continues the line of the one before it in the buffer
+const uint kMarkJoinsNext = 2u;      // the one after it continues the line
+const uint kMarkCutOpen = 1u;        // of MarkSightUniforms: depths carry marks of a solid's inside (shared/section.h)
+
+// A piece of a line, or a point where both ends are one, on the plane of a picture: pixels from its lower left corner, depth 0…1.
 struct MarkSegment {
-  vec4 from;  // x, y, depth, half of its width
-  vec4 to;    // x, y, depth, width of its casing
+  vec4 from;   // x, y, depth, half of its width
+  vec4 to;     // x, y, depth, width of its casing
   vec4 color;
+  // Of its ends: by how much depth grows over the length of one pixel there, and how far below the surface that is seen a place
+  // may lie and still be visible, in pixels.
+  vec4 reach;  // depth at from, depth at to, pixels at from, pixels at to
+  uint place_count;  // 1…kMarkMostPlaces, spread evenly over it
+  uint joins;
+  uint seen;   // a bit for each place that the surface does not hide
+  uint shown;  // the same with short gaps closed: what is drawn
 };
 struct MarkUniforms {
   vec4 size;  // of the picture: width, height; z is 0 where casings are drawn, 1 where what is in them is
 };
 STRATA_SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(strata::shader::MarkSegment) == 48);
+static_assert(sizeof(strata::shader::MarkSegment) == 80);
 #endif

@@ -78,9 +78,13 @@ mesh::TriangleMesh folded_sheets(double gap) {
 }
 
 mesh::TriangleMesh flat_square(int quads_per_edge) {
+  return relief_square(quads_per_edge, [](double, double) { return 0.0; });
+}
+
+mesh::TriangleMesh relief_square(int quads_per_edge, const std::function<double(double, double)>& height) {
   mesh::TriangleMesh mesh;
   add_chart(
-      mesh, quads_per_edge, [](double u, double v) { return glm::dvec3(u - 0.5, v - 0.5, 0); },
+      mesh, quads_per_edge, [&](double u, double v) { return glm::dvec3(u - 0.5, v - 0.5, height(u - 0.5, v - 0.5)); },
       [](double u, double v) { return glm::vec2(0.05 + 0.9 * u, 0.05 + 0.9 * v); });
   return mesh;
 }

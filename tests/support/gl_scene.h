@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <future>
 #include <memory>
 #include <string>
@@ -15,6 +16,8 @@ namespace strata::test {
 mesh::TriangleMesh bumpy_sphere(int quads_per_edge);     // radius ≈ 1; 6 charts; 12 · n² triangles
 mesh::TriangleMesh folded_sheets(double gap);            // two unit squares at z = 0 and z = -gap; 2 charts
 mesh::TriangleMesh flat_square(int quads_per_edge = 1);  // unit square at z = 0, uv 0.05 … 0.95
+// The same with heights: of x and y, -0.5 … 0.5.
+mesh::TriangleMesh relief_square(int quads_per_edge, const std::function<double(double, double)>& height);
 
 Camera perspective_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height,
                           double fov_degrees = 45);

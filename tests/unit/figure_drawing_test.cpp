@@ -27,7 +27,8 @@ Drawing some_drawing(const Plane& plane) {
 // Pixels of a part, origin at the drawing's top left.
 glm::dvec2 pixel_of(const Part& part, const glm::dvec3& world) {
   const glm::dvec4 clip = part.camera.projection * part.camera.view * glm::dvec4(world, 1);
-  return {part.x + (clip.x / clip.w + 1) / 2 * part.width, part.y + (1 - clip.y / clip.w) / 2 * part.height};
+  return {part.x - part.margin + (clip.x / clip.w + 1) / 2 * (part.width + 2 * part.margin),
+          part.y - part.margin + (1 - clip.y / clip.w) / 2 * (part.height + 2 * part.margin)};
 }
 
 // Where a place is on the drawing by its scale alone: millimetres from its top left corner, y down.
@@ -116,7 +117,10 @@ TEST(Parts, CoverTheDrawingOnceWithOneScale) {
     for (const Part& part : parts) {
       EXPECT_TRUE(validate(part.camera));
       EXPECT_TRUE(is_orthographic(part.camera));
-      EXPECT_EQ(part.width * kCameraDpi, part.camera.width * drawing.dpi);  // whole pixels to the inch
+      EXPECT_EQ((part.width + 2 * part.margin) * kCameraDpi,
+                part.camera.width * drawing.dpi);            // whole pixels to the inch
+      EXPECT_GE(part.margin * kCameraDpi, 8 * drawing.dpi);  // symbols reach so far from their places
+      EXPECT_EQ(part.margin % 2, 0);
       for (int y = part.y; y < std::min(drawing.height, part.y + part.height); ++y)
         for (int x = part.x; x < std::min(drawing.width, part.x + part.width); ++x)
           ++covered[static_cast<std::size_t>(y) * drawing.width + x];
@@ -134,13 +138,27 @@ TEST(Parts, CoverTheDrawingOnceWithOneScale) {
   }
 }
 
+TEST(Parts, JoinAtEveryResolution) {
+  for (const int dpi : {50, 72, 96, 97, 150, 600, 1200}) {
+    Drawing drawing = some_drawing(plane_from(Direction::front, 'z'));
+    drawing.dpi = dpi;
+    const glm::dvec3 place = drawing.plane.in_world({2.1, -1.4, 3});
+    for (const Part& part : parts_of(drawing, 1000)) {
+      EXPECT_TRUE(validate(part.camera));
+      EXPECT_EQ((part.width + 2 * part.margin) * kCameraDpi, part.camera.width * dpi);
+      EXPECT_LT(glm::distance(pixel_of(part, place), on_paper(drawing, place) / 25.4 * (1.0 * dpi)), 1e-6) << dpi;
+    }
+  }
+}
+
 TEST(Parts, OfCoarseDrawingsAreWhole) {
   Drawing drawing = some_drawing(plane_from(Direction::top, "z"));
   drawing.dpi = 50;
   drawing.width = drawing.height = 500;
   const auto parts = parts_of(drawing);
   ASSERT_EQ(parts.size(), 1u);
-  EXPECT_EQ(parts[0].camera.width, 40 * kCameraDpi);
+  EXPECT_EQ(parts[0].width, 40 * 50);
+  EXPECT_GE(parts[0].camera.width, 40 * kCameraDpi);
 }
 
 }  // namespace
