@@ -1,16 +1,18 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { LineMeasure, type PlacesSeen } from "../src/app/line-measure";
+import { LineMeasure } from "../src/app/line-measure";
 import { beside } from "../src/core/beside";
 import type { Point } from "../src/core/connection";
 import type { MarkPlace } from "../src/core/protocol.gen";
 
 const kLong_ms = 10_000;
 
+type PlacesSeen = readonly (MarkPlace | null)[];
+
 let asked: (readonly Point[])[];
 let answer: (places?: PlacesSeen) => void; // the newest question; the surface is the plane of the picture where nothing else is said
 let refuse: () => void;
-let measure: LineMeasure;
+let measure: LineMeasure<MarkPlace | null>;
 let told: (number | null)[];
 
 const settle = (): Promise<unknown> => vi.advanceTimersByTimeAsync(kLong_ms);

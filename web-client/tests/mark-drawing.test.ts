@@ -32,7 +32,7 @@ beforeEach(() => {
     told.push(what);
     const body = init!.body ? (JSON.parse(String(init!.body)) as { version: number; values: object }) : null;
     if (what.endsWith("/profile")) {
-      const samples = [[0, 0, 0], [3, 0, 0], null, [9, 0, 0], [9, 4, 0]].map((position) => ({ along_mm: 0, point: position ? { hit: true, position } : { hit: false } })); // prettier-ignore
+      const samples = [[0, 0, 0], [3, 0, 0], null, ...Array.from({ length: 41 }, (_, step) => [90, step / 10, 0])].map((position) => ({ along_mm: 0, point: position ? { hit: true, position } : { hit: false } })); // prettier-ignore
       return Promise.resolve(answer({ length_mm: 0, samples }));
     }
     if (what.endsWith("/pick")) return Promise.resolve(answer({ hit: true, position: [1, 2, 3] }));
@@ -65,9 +65,10 @@ describe("what is drawn on the surface", () => {
   it("is added to the record in the column that was chosen, as lines where the surface was seen", async () => {
     marks.choose_column(3, marks.columns("line")[1]!);
     expect(marks.begin_line()).toBe(true);
-    marks.finish_line([[0, 0], [9, 9]]); // prettier-ignore
-    await is_told(texts.marks.line_drawn("7 cm", "North"));
-    expect(stored.values).toEqual({ joints: [{ model: 9, coordinates: [[0, 0, 0], [3, 0, 0]] }, { model: 9, coordinates: [[9, 0, 0], [9, 4, 0]] }] }); // prettier-ignore
+    marks.finish_line([[0, 0], [31, 31]]); // prettier-ignore
+    await is_told(texts.marks.line_cut(2));
+    expect(shown.at(-1)!.detail).toBe(texts.marks.line_drawn("7 cm", "North"));
+    expect(stored.values).toEqual({ joints: [{ model: 9, coordinates: [[0, 0, 0], [3, 0, 0]] }, { model: 9, coordinates: [[90, 0, 0], [90, 4, 0]] }] }); // prettier-ignore
   });
 
   it("stays with what others add to the record meanwhile, and with what was drawn just before", async () => {

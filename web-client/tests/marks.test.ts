@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import { cell_text, named_keys } from "../src/core/cells";
-import { describe_mark, lines_seen, mark_length, marks_of, simplify_line, summary_of } from "../src/core/marks";
+import { describe_mark, mark_length, marks_of, simplify_line, summary_of } from "../src/core/marks";
 import type { Mark, MarkPlace } from "../src/core/protocol.gen";
 
 const line = (model: number, ...coordinates: MarkPlace[]): Mark => ({ model, coordinates });
@@ -54,16 +54,5 @@ describe("a line that was seen pixel by pixel", () => {
   it("closes up where it ends at its beginning", () => {
     const there_and_back = [...row(0, 20), ...row(0, 20).reverse()];
     expect(simplify_line(there_and_back, one)).toEqual([[0, 0, 0], [20, 0, 0], [0, 0, 0]]); // prettier-ignore
-  });
-
-  it("is several lines where there is no surface between, and none of a single place", () => {
-    expect(lines_seen([null, ...row(0, 9), null, [12, 0, 0], null, ...row(15, 20)], one)).toEqual([[[0, 0, 0], [9, 0, 0]], [[15, 0, 0], [20, 0, 0]]]); // prettier-ignore
-    expect(lines_seen([null, null], one)).toEqual([]);
-    expect(lines_seen([[1, 1, 1], [1, 1, 1]], one)).toEqual([]); // prettier-ignore
-  });
-
-  it("does not leap from an edge to what lies far behind it", () => {
-    expect(lines_seen([...row(0, 9), ...row(10, 19, 500)], one)).toEqual([[[0, 0, 0], [9, 0, 0]], [[10, 0, 500], [19, 0, 500]]]); // prettier-ignore
-    expect(lines_seen([...row(0, 9), ...row(10, 19, 5)], one)).toHaveLength(1);
   });
 });

@@ -2,38 +2,35 @@
 // a long line must not cost more with every move of the pointer.
 
 import type { Point } from "../core/connection";
-import type { MarkPlace } from "../core/protocol.gen";
 import type { Outline } from "../tools/outline";
 
 const kAskEvery_ms = 80;
 
-/** Under the pixels of a path; null where there is no surface. */
-export type PlacesSeen = readonly (MarkPlace | null)[];
-
-export interface LineMeasureHost {
-  look_along(path: readonly Point[]): Promise<PlacesSeen>;
-  metres_along(places: PlacesSeen): number;
+export interface LineMeasureHost<Step> {
+  /** What lies under the pixels of a path. */
+  look_along(path: readonly Point[]): Promise<readonly Step[]>;
+  metres_along(steps: readonly Step[]): number;
   changed(): void;
 }
 
 /** Of the line: from where the part before ended. */
-interface Part {
+interface Part<Step> {
   path: readonly Point[];
-  places: PlacesSeen;
+  steps: readonly Step[];
 }
 
-export class LineMeasure {
+export class LineMeasure<Step> {
   /** Newest known; null: nothing is drawn, none of it is on the surface, or that is not known yet. */
   metres: number | null = null;
 
   private line_: Pick<Outline, "points" | "pointer"> | null = null;
   private due_ = false; // it is another than the one that `metres` is about
-  private known_: Part[] = [];
+  private known_: Part<Step>[] = [];
   private asking_ = false;
   private timer_: ReturnType<typeof setTimeout> | null = null;
   private count_ = 0; // of lines: answers about the one before come too late
 
-  constructor(private readonly host_: LineMeasureHost) {}
+  constructor(private readonly host_: LineMeasureHost<Step>) {}
 
   /** The line goes this way now; null: there is none any more. */
   follow(line: Pick<Outline, "points" | "pointer"> | null): void {
@@ -81,18 +78,18 @@ export class LineMeasure {
       this.timer_ = null;
       this.ask();
     }, kAskEvery_ms);
-    const places = await this.host_.look_along(path).catch(() => null); // what is wrong is told when the line is finished
+    const steps = await this.host_.look_along(path).catch(() => null); // what is wrong is told when the line is finished
     this.asking_ = false;
     if (count === this.count_) {
-      if (!places) this.due_ = false;
-      else if (stays) this.known_.push({ path, places });
-      else this.tell(places);
+      if (!steps) this.due_ = false;
+      else if (stays) this.known_.push({ path, steps });
+      else this.tell(steps);
     }
     this.ask();
   }
 
-  private tell(tip: PlacesSeen): void {
-    const metres = this.host_.metres_along([...this.known_.flatMap(({ places }) => places), ...tip]);
+  private tell(tip: readonly Step[]): void {
+    const metres = this.host_.metres_along([...this.known_.flatMap(({ steps }) => steps), ...tip]);
     this.metres = metres > 0 ? metres : null;
     this.host_.changed();
   }

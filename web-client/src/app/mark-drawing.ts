@@ -4,13 +4,14 @@ import { ApiError, type Api } from "../core/api";
 import type { CameraMessage } from "../core/camera";
 import type { Point } from "../core/connection";
 import type { PointerSample } from "../core/input";
-import { lines_seen, mark_columns, mark_length, marks_of, type MarkKind } from "../core/marks";
+import { mark_columns, mark_length, marks_of, type MarkKind } from "../core/marks";
 import { format_length, metres_per } from "../core/measure";
 import type { Column, MarkPlace, TableRecord } from "../core/protocol.gen";
+import { length_seen, line_on_surface, steps_along, type Measures, type Step } from "../core/surface-line";
 import type { Model } from "../core/types";
 import type { Outline } from "../tools/outline";
 import type { LayerList } from "./layer-list";
-import { LineMeasure, type PlacesSeen } from "./line-measure";
+import { LineMeasure } from "./line-measure";
 import { notices } from "./notices";
 import type { Painting } from "./painting";
 import type { Tables } from "./tables";
@@ -44,7 +45,7 @@ export class MarkDrawing {
   private readonly chosen_ = new Map<string, number>(); // ids of columns, by table and kind
   private work_: Promise<void> = Promise.resolve(); // one after the other
   private notice_ = 0; // that offers to take the newest back
-  private readonly measure_: LineMeasure; // of the line that is being drawn
+  private readonly measure_: LineMeasure<Step>; // of the line that is being drawn
 
   constructor(
     private readonly api_: Api,
@@ -52,7 +53,7 @@ export class MarkDrawing {
   ) {
     this.measure_ = new LineMeasure({
       look_along: async (path) => this.look_along(host_.model()!, host_.view.camera.message(), path),
-      metres_along: (places) => metres_of(lines_seen(places, host_.view.camera.pixel_size()), host_.model()!),
+      metres_along: (steps) => length_seen(steps, this.measures()) * metres_per(host_.model()!.unit),
       changed: () => host_.changed(),
     });
   }
@@ -94,11 +95,13 @@ export class MarkDrawing {
   finish_line(path: Point[]): void {
     const target = this.target("line");
     if (!target) return;
-    const { camera } = this.host_.view;
-    const [seen_by, pixel_at] = [camera.message(), camera.pixel_size()];
+    const seen_by = this.host_.view.camera.message();
+    const measures = this.measures();
     this.queue(async () => {
-      const lines = lines_seen(await this.look_along(target.model, seen_by, path), pixel_at);
-      await this.add(target, lines, (name) => words.line_drawn(format_length(metres_of(lines, target.model)), name));
+      const steps = await this.look_along(target.model, seen_by, path);
+      const lines = await line_on_surface(steps, measures, (from, to, step) => this.nearest_along(target.model, from, to, step));
+      const cut = lines.length > 1 ? words.line_cut(lines.length) : "";
+      await this.add(target, lines, (name) => words.line_drawn(format_length(metres_of(lines, target.model)), name), cut);
     });
   }
 
@@ -133,16 +136,23 @@ export class MarkDrawing {
     return wrong || layer.table === undefined || !column ? null : { model, table: layer.table, key, column };
   }
 
-  private async look_along({ id }: Model, seen_by: CameraMessage, path: readonly Point[]): Promise<PlacesSeen> {
+  private async look_along({ id }: Model, seen_by: CameraMessage, path: readonly Point[]): Promise<Step[]> {
     const { samples } = await this.api_.profile(`${id}`, seen_by, path);
+    return steps_along(path, samples);
+  }
+  private async nearest_along({ id, unit }: Model, from: MarkPlace, to: MarkPlace, step: number): Promise<(MarkPlace | null)[]> {
+    const { samples } = await this.api_.profile_of(`${id}`, { places: [from, to], step_mm: step * metres_per(unit) * 1000, layers: [] });
     return samples.map(({ point }) => (point.hit && point.position ? (point.position as MarkPlace) : null));
+  }
+  private measures(): Measures {
+    return { pixel_at: this.host_.view.camera.pixel_size(), scale: Math.max(1, globalThis.devicePixelRatio || 1) };
   }
 
   private queue(work: () => Promise<void>): void {
     this.work_ = this.work_.then(work).catch((error: unknown) => notices.error(error));
   }
 
-  private async add({ model, table, key, column }: Target, places: MarkPlace[][], told: (name: string) => string): Promise<void> {
+  private async add({ model, table, key, column }: Target, places: MarkPlace[][], told: (name: string) => string, cut = ""): Promise<void> {
     if (places.length === 0) {
       notices.show("info", words.missed);
       return;
@@ -155,7 +165,9 @@ export class MarkDrawing {
     if (tables.view?.table_id === table) tables.view.rows.put(changed);
     notices.dismiss(this.notice_);
     const act = (): void => this.queue(() => this.take_back(table, changed.version));
-    this.notice_ = notices.show("success", told(tables.label(table, key) ?? texts.tables.record(key)), "", { label: texts.model.undo, act });
+    const what = told(tables.label(table, key) ?? texts.tables.record(key));
+    const link = { label: texts.model.undo, act };
+    this.notice_ = cut ? notices.show("problem", cut, what, link) : notices.show("success", what, "", link);
   }
 
   /** Onto the record as it is: marks that others add meanwhile stay. */

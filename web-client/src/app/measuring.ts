@@ -13,7 +13,7 @@ import { length_of, passes_through, profile_parts, simplify_profile, type Profil
 import type { Layer, Model } from "../core/types";
 import type { Vec3 } from "../core/vector";
 import { kSnap_px } from "../tools/outline";
-import { LineMeasure, type PlacesSeen } from "./line-measure";
+import { LineMeasure } from "./line-measure";
 import type { LayerList } from "./layer-list";
 import { notices } from "./notices";
 import { faces } from "./pin-sight";
@@ -70,7 +70,7 @@ export class Measuring {
   private waiting_ = 0; // of them, for an answer or for their turn
   private count_ = 0; // of measurements: what is answered to one that was cleared comes too late
   private asked_ = 0; // for a profile: the newest counts
-  private readonly so_far_: LineMeasure;
+  private readonly so_far_: LineMeasure<MarkPlace | null>;
 
   constructor(
     private readonly api_: Api,
@@ -350,12 +350,12 @@ export class Measuring {
     this.so_far_.follow({ points: points.map((at): Point => [at!.x, at!.y]), pointer: tip });
   }
 
-  private async look_along(path: readonly Point[]): Promise<PlacesSeen> {
+  private async look_along(path: readonly Point[]): Promise<readonly (MarkPlace | null)[]> {
     const { samples } = await this.api_.profile(this.host_.model()!.id, this.seen_by_!, path);
     return samples.map(({ point }) => (point.hit && point.position ? (point.position as MarkPlace) : null));
   }
 
-  private metres_along(places: PlacesSeen): number {
+  private metres_along(places: readonly (MarkPlace | null)[]): number {
     const parts = parts_of_line(places, (place) => place, this.host_.view.camera.pixel_size());
     return sum(parts.map((coordinates) => mark_length({ coordinates }))) * metres_per(this.host_.model()!.unit);
   }

@@ -61,12 +61,6 @@ export function parts_of_line<T>(found: readonly (T | null)[], place_of: (each: 
   return parts;
 }
 
-/** The same of places, simplified to half a pixel: what is kept of a line that was drawn. */
-export function lines_seen(places: readonly (MarkPlace | null)[], pixel_at: (place: MarkPlace) => number): MarkPlace[][] {
-  const lines = parts_of_line(places, (place) => place, pixel_at);
-  return lines.map((each) => simplify_line(each, (place) => pixel_at(place) / 2)).filter((each) => mark_length({ coordinates: each }) > 0);
-}
-
 /** Leaves out places that are no farther than the tolerance there from the line that remains (Ramer 1972, Douglas and Peucker 1973). */
 export function simplify_line(places: readonly MarkPlace[], tolerance_at: (place: MarkPlace) => number): MarkPlace[] {
   const kept = new Set([0, places.length - 1]);

@@ -1015,6 +1015,7 @@ export const texts = {
       line: "Linien gehören zu Datensätzen: bitte eine Ebene wählen, deren Tabelle eine Spalte für Linien hat, oder der Tabelle eine hinzufügen.",
       point: "Punkte gehören zu Datensätzen: bitte eine Ebene wählen, deren Tabelle eine Spalte für Punkte hat, oder der Tabelle eine hinzufügen.",
     },
+    line_cut: (pieces) => `Die Linie lief über eine Kante und wurde in ${pieces} Stücke geteilt.`,
     line_drawn: (length, record) => `${length} für „${record}“ gezeichnet.`,
     point_set: (record) => `Ein Punkt für „${record}“ gesetzt.`,
     missed: "Dort ist keine Oberfläche.",

@@ -1001,6 +1001,7 @@ export const texts = {
       line: "Lines belong to records: choose a layer whose table has a column of lines, or add one to its table of records.",
       point: "Points belong to records: choose a layer whose table has a column of points, or add one to its table of records.",
     },
+    line_cut: (pieces: number) => `The line crossed an edge and was cut into ${pieces} pieces.`,
     line_drawn: (length: string, record: string) => `${length} drawn for “${record}”.`,
     point_set: (record: string) => `A point was set for “${record}”.`,
     missed: "There is no surface there.",

@@ -1021,6 +1021,7 @@ export const texts = {
       line: "Las líneas son de registros: elija una capa cuya tabla tenga una columna de líneas, o añada una a su tabla.",
       point: "Los puntos son de registros: elija una capa cuya tabla tenga una columna de puntos, o añada una a su tabla.",
     },
+    line_cut: (pieces) => `La línea cruzó un borde y se cortó en ${pieces} partes.`,
     line_drawn: (length, record) => `${length} para «${record}».`,
     point_set: (record) => `Se puso un punto para «${record}».`,
     missed: "Allí no hay superficie.",
