@@ -1,3 +1,5 @@
+#include <set>
+
 #include "net/routes.h"
 #include "net/wire.h"
 #include "room/record_colors.h"
@@ -5,7 +7,8 @@
 namespace strata::net {
 namespace {
 
-// Where the records lie that a person highlights: to fly there, and to tell how much surface they have.
+// Where the records lie that a person highlights, with what is painted and with their lines and points: to fly there, and to tell how
+// much surface they have.
 Result<Response> extent(const RouteContext& context, const Request& request) {
   auto asked = body_of<protocol::Highlight>(request);
   if (!asked) return tl::unexpected(asked.error());
@@ -19,21 +22,38 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
   if (!keys) return tl::unexpected(keys.error());
   auto areas = (*room)->key_areas(layer->slug);
   if (!areas) return tl::unexpected(areas.error());
+  const auto marks = context.store.marks(*layer->table, request.role(), (*room)->model().id);
+  if (!marks) return tl::unexpected(marks.error());
   query::KeyArea all;
+  bool is_somewhere = false;
+  const auto add_bounds = [&](const glm::dvec3& low, const glm::dvec3& high) {
+    all.bounds_min = is_somewhere ? glm::min(all.bounds_min, low) : low;
+    all.bounds_max = is_somewhere ? glm::max(all.bounds_max, high) : high;
+    is_somewhere = true;
+  };
   std::size_t painted = 0;
   for (const std::uint32_t key : *keys) {
     const auto area = areas->find(key);
     if (area == areas->end()) continue;
     const query::KeyArea& one = area->second;
-    all.bounds_min = painted ? glm::min(all.bounds_min, one.bounds_min) : one.bounds_min;
-    all.bounds_max = painted ? glm::max(all.bounds_max, one.bounds_max) : one.bounds_max;
+    add_bounds(one.bounds_min, one.bounds_max);
     all.texels += one.texels;
     all.area_m2 += one.area_m2;
     ++painted;
   }
-  nlohmann::json json{
-      {"records", keys->size()}, {"painted", painted}, {"texels", all.texels}, {"area_m2", all.area_m2}};
-  if (painted > 0) json["bounds"] = bounds_json(all.bounds_min, all.bounds_max);
+  const std::set<std::int64_t> wanted(keys->begin(), keys->end());
+  std::set<std::int64_t> marked;
+  for (const auto& [key, mark] : *marks) {
+    if (!wanted.contains(key)) continue;
+    marked.insert(key);
+    for (const glm::dvec3& place : mark.places) add_bounds(place, place);
+  }
+  nlohmann::json json{{"records", keys->size()},
+                      {"painted", painted},
+                      {"marked", marked.size()},
+                      {"texels", all.texels},
+                      {"area_m2", all.area_m2}};
+  if (is_somewhere) json["bounds"] = bounds_json(all.bounds_min, all.bounds_max);
   return json_response(json);
 }
 

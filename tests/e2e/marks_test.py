@@ -90,6 +90,22 @@ def tables(server):
     server.ok("PATCH", M, {"unit": "mm"}, headers={"If-Match": etag})
 
 
+def extents(server):
+    """Where records lie that have lines and points, and nothing painted."""
+    extent = server.ok("POST", L + "/extent", {"keys": [1]}).json()
+    assert (extent["records"], extent["painted"], extent["marked"], extent["area_m2"]) == (1, 0, 1, 0), extent
+    assert extent["bounds"] == {"min": [10, 10, 0], "max": [50, 90, 0]}, extent
+    both = server.ok("POST", L + "/extent", {"filter": "crack is not null or sample is not null"}).json()
+    assert (both["records"], both["marked"]) == (2, 2) and both["bounds"] == {"min": [10, 10, 0], "max": [85, 90, 0]}, both
+    nowhere = server.ok("POST", L + "/extent", {"keys": [3]}).json()
+    assert (nowhere["records"], nowhere["marked"]) == (1, 0) and "bounds" not in nowhere, nowhere
+    # With what is painted, together.
+    server.ok("POST", L + "/readings?radius_mm=2", "x,y,z,value\n95,5,0,1\n", headers={"Content-Type": "text/csv"})
+    painted = server.ok("POST", L + "/extent", {"keys": [1]}).json()
+    assert painted["painted"] == painted["marked"] == 1 and painted["bounds"]["max"][0] > 94 and painted["bounds"]["min"][0] == 10, painted
+    server.ok("POST", L + "/undo")
+
+
 def count(rows, color):
     return sum(all(abs(a - b) <= 30 for a, b in zip(pixel, color)) for row in rows for pixel in row)
 
@@ -185,6 +201,7 @@ def main():
         model = make(server)
         write(server, model)
         tables(server)
+        extents(server)
         camera = camera_from(server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
         pictures(server, camera)
         live(server, model)

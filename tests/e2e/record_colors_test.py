@@ -126,7 +126,7 @@ def check_highlight(server, camera):
     assert near(low[:2], (20, 20), 0.2) and near(high[:2], (80, 80), 0.2), extent
     alone = server.ok("POST", L + "/extent", {"keys": [2]}).json()
     assert near(alone["bounds"]["max"][:2], (80, 40), 0.2) and alone["painted"] == 1, alone
-    assert server.ok("POST", L + "/extent", {"keys": [77]}).json() == {"records": 1, "painted": 0, "texels": 0, "area_m2": 0}
+    assert server.ok("POST", L + "/extent", {"keys": [77]}).json() == {"records": 1, "painted": 0, "marked": 0, "texels": 0, "area_m2": 0}
     assert server.post(L + "/extent", {"filter": "thick > 1"}).json()["field"] == "filter"
     assert server.post(M + "/layers/wet/extent", {"keys": [1]}).status == 422
 

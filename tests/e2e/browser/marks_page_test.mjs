@@ -149,6 +149,97 @@ try {
   await wait_for(async () => (await row("Sample A").getByRole("gridcell").last().innerText()).trim() === "1", "the number of points");
   await shot("mark-point");
 
+  say("a record that has a line or a point alone is gone to, also after the page was loaded again");
+  const view_of = async () => new URL(page.url()).searchParams.toString() + (await page.locator("strata-stage .scale").innerText());
+  const goes_to = async (name) => {
+    await page.keyboard.press("v");
+    await page.locator("strata-stage .surface").focus();
+    await page.keyboard.press("Home");
+    await row(name).getByRole("rowheader").click();
+    const go = panel.getByRole("button", { name: "Go to where they are" });
+    await wait_for(async () => (await go.isEnabled()) && (await go.getAttribute("title")) === "Go to where they are", "the way there");
+    const before = await view_of();
+    await go.click();
+    await wait_for(async () => (await view_of()) !== before, "the camera to be there");
+    await shot(`mark-gone-to-${name.split(" ")[0].toLowerCase()}`);
+    await button("Choose none").click();
+  };
+  await goes_to("Sample A");
+  await page.reload();
+  await browser.drawn();
+  await button("Paint on Damages").click();
+  if (!(await panel.count())) await page.keyboard.press("t");
+  await goes_to("Sample A");
+  await goes_to("North crack");
+  const table_of = await server.json("GET", "/tables/damages/records");
+  assert.equal(table_of.records.length, 2);
+  const bare = await server.json("POST", "/tables/damages/records", { values: { name: "Nothing" } });
+  await row("Nothing").getByRole("rowheader").click();
+  await panel.getByRole("button", { name: "Go to where they are" }).and(page.locator("[title='None of them has an area, a line or a point on this model']")).waitFor();
+  await server.json("DELETE", `/tables/damages/records/${bare.key}`);
+  await wait_for(async () => (await row("Nothing").count()) === 0, "the record to be gone");
+  await page.locator("strata-stage .surface").focus();
+  await page.keyboard.press("Home");
+
+  say("a drag along the silhouette is one line on the surface that was begun");
+  await row("North crack").getByRole("rowheader").click();
+  await button("Paint with it").click();
+  await button("Choose none").click();
+  await button("Line").click();
+  const kept = (await marks(1, "cracks")).length;
+  let camera = null;
+  page.on("request", (request) => {
+    if (request.method() === "POST" && request.url().endsWith("/profile")) camera = request.postDataJSON().camera ?? camera;
+  });
+  await click_at(0.42, 0.56);
+  await browser.point(0.46, 0.58);
+  await wait_for(() => camera, "the camera of what is drawn");
+  await page.keyboard.press("Escape");
+  const frame = await browser.stage_box();
+  const scale = camera.width / frame.width;
+  /** Where the pot begins in a row of the picture, in pixels of the page. */
+  const edge_at = async (y) => {
+    const path = [[1, y * scale], [camera.width / 2, y * scale]];
+    const { samples } = await server.json("POST", `${base}/profile`, { camera, path, layers: [] });
+    const at = samples.findIndex(({ point }) => point.hit);
+    return ((at / (samples.length - 1)) * (camera.width / 2 - 1) + 1) / scale;
+  };
+  const [top, bottom] = [0.5 * frame.height, 0.62 * frame.height];
+  const way = [];
+  for (let y = top; y <= bottom; y += 3) way.push([(await edge_at(y)) + 3 + 7 * Math.sin((y - top) / 6), y]);
+  const draw = async (points) => {
+    await page.mouse.move(frame.x + points[0][0], frame.y + points[0][1]);
+    await page.mouse.down();
+    for (const [x, y] of points.slice(1)) await page.mouse.move(frame.x + x, frame.y + y, { steps: 2 });
+    await page.mouse.up();
+  };
+  await draw(way);
+  await wait_for(async () => (await marks(1, "cracks")).length > kept, "the line along the edge");
+  const along = (await marks(1, "cracks")).slice(kept);
+  await shot("mark-along-the-edge");
+  assert.equal(along.length, 1, `${along.length} lines of one drag`);
+  assert.equal(await page.locator("strata-notices").getByText(/was cut into/).count(), 0);
+  const way_m = way.slice(1).reduce((sum, at, index) => sum + distance(at, way[index]), 0) * (await metres_per_pixel());
+  const along_m = length_of(along[0]) * metres_per;
+  assert.ok(along_m > 0.5 * way_m && along_m < 2.5 * way_m, `${along_m} m where ${way_m} m were drawn`);
+  // From place to place it goes along the surface: no leap of centimetres to what lies behind.
+  const longest = Math.max(...along[0].coordinates.slice(1).map((place, at) => distance(place, along[0].coordinates[at]))) * metres_per;
+  assert.ok(longest < 0.012, `a step of ${longest} m`);
+  await page.locator("strata-notices").getByRole("button", { name: "Undo" }).last().click();
+  await wait_for(async () => (await marks(1, "cracks")).length === kept, "the line to be gone");
+
+  say("a line that crosses an edge for good is cut, says so, and is taken back as a whole");
+  const middle = 0.5 * frame.width;
+  await draw([[middle, 0.6 * frame.height], [middle, 0.45 * frame.height], [middle, 0.3 * frame.height], [middle, 0.24 * frame.height]]);
+  const cut = page.locator("strata-notices .notice", { hasText: /^The line crossed an edge and was cut into \d pieces\./ });
+  await cut.waitFor();
+  const pieces = (await marks(1, "cracks")).length - kept;
+  assert.match(await cut.innerText(), new RegExp(`cut into ${pieces} pieces[^]*drawn for “North crack”`));
+  await shot("mark-cut");
+  await cut.getByRole("button", { name: "Undo" }).click();
+  await wait_for(async () => (await marks(1, "cracks")).length === kept, "all of its pieces to be gone");
+  await page.keyboard.press("v");
+
   say("the form lists what the record has, and takes one out");
   await row("North crack").getByRole("rowheader").click();
   await button("Edit the record").click();

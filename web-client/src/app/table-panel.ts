@@ -299,6 +299,7 @@ export class StrataTablePanel extends LitElement {
     const { view } = this;
     const { extent, highlight } = view;
     const by_filter = extent !== null && view.selected.size === 0;
+    const is_nowhere = extent !== null && !extent.bounds;
     return html`<div class="on-model" role="group" aria-label=${words.on_model}>
       ${by_filter ? html`<span class="hint numeric" title=${words.painted_of(extent.painted, extent.records)}>${format_area(extent.area_m2)}</span>` : nothing}
       <button
@@ -315,9 +316,9 @@ export class StrataTablePanel extends LitElement {
       </button>
       <button
         class="icon quiet"
-        ?disabled=${highlight === null || extent?.painted === 0}
+        ?disabled=${highlight === null || is_nowhere}
         aria-label=${words.fly}
-        title=${extent?.painted === 0 ? words.nothing_painted : words.fly}
+        title=${is_nowhere ? words.nothing_here : words.fly}
         @click=${() => view.fly()}
       >
         ${icon("fit")}

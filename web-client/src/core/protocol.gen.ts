@@ -2642,9 +2642,11 @@ export interface Extent {
   records: number;
   /** Of them, those that are painted on the layer. */
   painted: number;
+  /** Of them, those that have lines or points on the model. */
+  marked: number;
   texels: number;
   area_m2: number;
-  /** Of their texels; absent where there is none. */
+  /** Of their texels, lines and points; absent where there are none. */
   bounds?: Bounds;
 }
 

@@ -3192,6 +3192,7 @@ nlohmann::json to_json(const CrossTable& value) {
 void read(const nlohmann::json& json, Extent& value) {
   read_member(json, "records", value.records);
   read_member(json, "painted", value.painted);
+  read_member(json, "marked", value.marked);
   read_member(json, "texels", value.texels);
   read_member(json, "area_m2", value.area_m2);
   read_optional_member(json, "bounds", value.bounds);
@@ -3201,6 +3202,7 @@ nlohmann::json to_json(const Extent& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "records", value.records);
   write_member(json, "painted", value.painted);
+  write_member(json, "marked", value.marked);
   write_member(json, "texels", value.texels);
   write_member(json, "area_m2", value.area_m2);
   write_optional_member(json, "bounds", value.bounds);

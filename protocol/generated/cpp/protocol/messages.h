@@ -2395,9 +2395,10 @@ inline constexpr Schema kSchemaOf<CrossTable> = Schema::CrossTable;
 struct Extent {
   std::int64_t records = 0;  // That are meant.
   std::int64_t painted = 0;  // Of them, those that are painted on the layer.
+  std::int64_t marked = 0;  // Of them, those that have lines or points on the model.
   std::int64_t texels = 0;
   double area_m2 = 0;
-  std::optional<Bounds> bounds;  // Of their texels; absent where there is none.
+  std::optional<Bounds> bounds;  // Of their texels, lines and points; absent where there are none.
   bool operator==(const Extent&) const = default;
 };
 void read(const nlohmann::json& json, Extent& value);

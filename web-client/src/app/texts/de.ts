@@ -1236,7 +1236,7 @@ export const texts = {
     light_up_hint: "Ohne Auswahl die, die der Filter findet.",
     isolate: "Alle anderen Datensätze ausblenden",
     fly: "Dorthin gehen, wo sie sind",
-    nothing_painted: "Keiner davon ist auf dieses Modell gemalt",
+    nothing_here: "Keiner davon hat eine Fläche, eine Linie oder einen Punkt auf diesem Modell",
     painted_of: (n, all) => `${format_count(n)} von ${count(all, "Datensatz", "Datensätzen")} auf dieses Modell gemalt`,
     sort: (column) => `Nach ${column} ordnen; noch einmal kehrt die Reihenfolge um`,
     required: "Braucht einen Wert",

@@ -1222,7 +1222,7 @@ export const texts = {
     light_up_hint: "Without a choice, those that the filter finds.",
     isolate: "Hide all other records",
     fly: "Go to where they are",
-    nothing_painted: "None of them is painted on this model",
+    nothing_here: "None of them has an area, a line or a point on this model",
     painted_of: (n: number, all: number) => `${format_count(n)} of ${count(all, "record", "records")} painted on this model`,
     sort: (column: string) => `Sort by ${column}; again turns the order round`,
     required: "Must have a value",

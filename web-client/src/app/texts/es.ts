@@ -1242,7 +1242,7 @@ export const texts = {
     light_up_hint: "Sin elección, los que encuentra el filtro.",
     isolate: "Ocultar todos los demás registros",
     fly: "Ir adonde están",
-    nothing_painted: "Ninguno está pintado en este modelo",
+    nothing_here: "Ninguno tiene un área, una línea ni un punto en este modelo",
     painted_of: (n, all) => `${format_count(n)} de ${records(all)} ${plural(n, "pintado", "pintados")} en este modelo`,
     sort: (column) => `Ordenar por ${column}; otra vez invierte el orden`,
     required: "Debe tener un valor",
