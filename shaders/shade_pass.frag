@@ -133,10 +133,9 @@ bool same_texel(ShadeLayer layer, uint units, ivec2 pixel, uint bits) {
 
 float outline_cover(ShadeLayer layer, uint units, uint bits) {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  bool inside = same_texel(layer, units, pixel + ivec2(kOutlinePixels, 0), bits) &&
-                same_texel(layer, units, pixel - ivec2(kOutlinePixels, 0), bits) &&
-                same_texel(layer, units, pixel + ivec2(0, kOutlinePixels), bits) &&
-                same_texel(layer, units, pixel - ivec2(0, kOutlinePixels), bits);
+  int width = max(1, int(kOutlinePixels * shade.patterns.w + 0.5));
+  bool inside = same_texel(layer, units, pixel + ivec2(width, 0), bits) && same_texel(layer, units, pixel - ivec2(width, 0), bits) &&
+                same_texel(layer, units, pixel + ivec2(0, width), bits) && same_texel(layer, units, pixel - ivec2(0, width), bits);
   return inside ? 0.0 : 1.0;
 }
 
@@ -147,7 +146,9 @@ vec4 add_layer(vec4 below, ShadeLayer layer, uint mode, uint type, uint units, u
   Ink ink = ink_of(layer, mode, type, texel.x);
   float cover = ink.color.a * layer.opacity;
   if (patterned != 0u && (ink.pattern & 3u) != kPatternSolid) {
-    cover *= (ink.pattern & 3u) == kPatternOutline ? outline_cover(layer, units, texel.x) : pattern_cover(ink.pattern);
+    bool is_outline = (ink.pattern & 3u) == kPatternOutline, is_bare = layer.bare != 0u && !is_outline;
+    float border = is_bare ? 0.0 : outline_cover(layer, units, texel.x);
+    cover *= is_outline ? border : mix(is_bare ? 0.0 : kPatternGround, 1.0, max(border, pattern_cover(ink.pattern)));
   }
   return vec4(mix(below.rgb, ink.color.rgb * light, cover), below.a * (1.0 - cover));
 }

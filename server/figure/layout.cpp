@@ -42,39 +42,58 @@ std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& throu
   return std::pair(through + from * along, through + to * along);
 }
 
-// As the page's legend has them: opaque, so that the paper below does not count.
+// How patterns are drawn, as shaders/shared/shade.h has it: pixels there are hundredths of an inch here.
+constexpr double kPatternPixel = kInch_mm / 100;
+constexpr double kSpacing = 7 * kPatternPixel, kHatchStroke = 0.4 * kSpacing, kDotRadius = 0.32 * kSpacing;
+constexpr double kGround = 0.3, kBorder = 2 * kPatternPixel;
+
+Rgba on_paper(const Rgba& ink, double share) {
+  const auto mixed = [&](int channel) {
+    return static_cast<std::uint8_t>(std::lround(255 + (ink[static_cast<std::size_t>(channel)] - 255) * share));
+  };
+  return {mixed(0), mixed(1), mixed(2), 255};
+}
+
+void add_filled(std::vector<Item>& items, const glm::dvec2& corner, const glm::dvec2& size, const Rgba& ink) {
+  Path path = rectangle(corner, size);
+  path.fill = ink;
+  items.push_back(std::move(path));
+}
+
+// As the page's legend and the drawing have them: opaque, so that the paper below does not count.
 void add_swatch(std::vector<Item>& items, const Box& box, const LegendEntry& entry) {
   const Rgba ink{entry.color[0], entry.color[1], entry.color[2], 255};
   Path frame = rectangle(box.corner, box.size);
+  frame.stroke_mm = kThin;
   if (entry.pattern == Pattern::solid) frame.fill = ink;
+  const bool has_lines = entry.pattern == Pattern::hatch || entry.pattern == Pattern::dots;
+  if (has_lines && !entry.bare) add_filled(items, box.corner, box.size, on_paper(ink, kGround));
   const glm::dvec2 middle = box.corner + box.size / 2.0;
   const glm::dvec2 along = direction(entry.angle), across(-along.y, along.x);
-  constexpr double kSpacing = 1.2, kStroke = 0.5;
   if (entry.pattern == Pattern::hatch)
     for (int i = -8; i <= 8; ++i)
       if (const auto line = clipped(middle + (i * kSpacing) * across, along, box)) {
-        const glm::dvec2 half = across * (kStroke / 2);
+        const glm::dvec2 half = across * (kHatchStroke / 2);
         items.push_back(
             Path{{line->first - half, line->second - half, line->second + half, line->first + half}, true, ink});
       }
   if (entry.pattern == Pattern::dots)
-    for (double y = box.corner.y + 0.75; y < box.corner.y + box.size.y; y += kSpacing)
-      for (double x = box.corner.x + 0.75; x < box.corner.x + box.size.x; x += kSpacing) {
-        Path dot{{}, true, ink};
-        for (int corner = 0; corner < 12; ++corner)
-          dot.points.push_back(glm::dvec2(x, y) + 0.35 * direction(30.0 * corner));
-        items.push_back(std::move(dot));
-      }
-  frame.stroke_mm = kThin;
-  if (entry.pattern == Pattern::outline) {
-    Path inner = rectangle(box.corner + 0.3, box.size - 0.6);
-    Path outer = rectangle(box.corner, box.size);
-    outer.fill = ink;
-    inner.fill = Rgba{255, 255, 255, 255};
-    items.insert(items.end(), {outer, inner});
+    for (int i = -2; i <= 2; ++i) {
+      Path dot{{}, true, ink};
+      const glm::dvec2 at = middle + glm::dvec2(i * kSpacing, 0);
+      if (std::abs(at.x - middle.x) + kDotRadius > box.size.x / 2) continue;
+      for (int corner = 0; corner < 12; ++corner) dot.points.push_back(at + kDotRadius * direction(30.0 * corner));
+      items.push_back(std::move(dot));
+    }
+  if (entry.pattern == Pattern::solid || entry.bare) {
+    items.push_back(std::move(frame));
     return;
   }
-  items.push_back(std::move(frame));
+  const glm::dvec2 lying(box.size.x, kBorder), standing(kBorder, box.size.y);
+  add_filled(items, box.corner, lying, ink);
+  add_filled(items, box.corner + glm::dvec2(0, box.size.y - kBorder), lying, ink);
+  add_filled(items, box.corner, standing, ink);
+  add_filled(items, box.corner + glm::dvec2(box.size.x - kBorder, 0), standing, ink);
 }
 
 // What of a legend stands on one line.
@@ -91,16 +110,104 @@ std::string first_line(const std::string& text, bool bold, double width) {
   return lines.empty() ? std::string() : lines[0];
 }
 
-std::vector<Row> rows_of(const std::vector<Legend>& legends, double width) {
-  std::vector<Row> rows;
+using List = std::vector<Row>;  // of a layer, its title first
+
+std::vector<List> lists_of(const std::vector<Legend>& legends, double width) {
+  std::vector<List> lists;
   for (const Legend& legend : legends) {
-    rows.push_back({Row::Kind::title, first_line(legend.title, true, width)});
-    if (!legend.ramp.empty()) rows.push_back({Row::Kind::ramp, {}, nullptr, &legend});
-    for (const LegendEntry& entry : legend.entries) {
-      rows.push_back({Row::Kind::entry, first_line(entry.label, false, width - kSwatchWidth - 2), &entry});
+    List list{{Row::Kind::title, first_line(legend.title, true, width)}};
+    if (!legend.ramp.empty()) list.push_back({Row::Kind::ramp, {}, nullptr, &legend});
+    for (const LegendEntry& entry : legend.entries)
+      list.push_back({Row::Kind::entry, first_line(entry.label, false, width - kSwatchWidth - 2), &entry});
+    lists.push_back(std::move(list));
+  }
+  return lists;
+}
+
+struct PlacedRow {
+  Row row;
+  int column;
+  double y;
+};
+
+// Column by column. A list that has no room below others begins a column; one that is broken (`may_break`) has its title on each of its
+// parts. Nothing: not all has room.
+std::optional<std::vector<PlacedRow>> place_lists(const std::vector<List>& lists, int columns, double height,
+                                                  bool may_break, const std::string& continued) {
+  constexpr double kRounding = 1e-9;
+  std::vector<PlacedRow> placed;
+  int column = 0;
+  double y = 0;
+  const auto put = [&](const Row& row) {
+    placed.push_back({row, column, y});
+    y += row.height();
+  };
+  const auto has_room = [&](double needed) { return y + needed <= height + kRounding; };
+  for (const List& list : lists) {
+    double total = 0;
+    for (const Row& row : list) total += row.height();
+    const double first = list[0].height() + (list.size() > 1 ? list[1].height() : 0);
+    const bool stays_whole = total <= height + kRounding && column + 1 < columns;
+    if (y > 0 && !has_room(stays_whole || !may_break ? total : first)) {
+      ++column;
+      y = 0;
+    }
+    if (column >= columns || !has_room(may_break ? first : total)) return std::nullopt;
+    for (const Row& row : list) {
+      if (!has_room(row.height())) {
+        if (++column >= columns) return std::nullopt;
+        y = 0;
+        Row title = list[0];
+        if (!continued.empty()) title.text += " " + continued;
+        put(title);
+        if (!has_room(row.height())) return std::nullopt;
+      }
+      put(row);
     }
   }
-  return rows;
+  return placed;
+}
+
+// The same of as many rows as have room; the others are counted.
+std::vector<PlacedRow> place_most(const std::vector<List>& lists, int columns, double height,
+                                  const std::string& continued) {
+  std::size_t all = 0;
+  for (const List& list : lists) all += list.size();
+  const auto place = [&](std::size_t count) {
+    std::vector<List> kept;
+    std::size_t left = count;
+    for (const List& list : lists) {
+      if (left == 0) break;
+      kept.emplace_back(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(std::min(left, list.size())));
+      left -= kept.back().size();
+    }
+    if (count < all) {
+      const Row more{Row::Kind::more, "… + " + std::to_string(all - count)};
+      if (kept.empty()) kept.emplace_back();
+      kept.back().push_back(more);
+    }
+    return place_lists(kept, columns, height, true, continued);
+  };
+  std::size_t fits = 0, too_many = all + 1;
+  while (fits + 1 < too_many) {
+    const std::size_t middle = (fits + too_many) / 2;
+    (place(middle) ? fits : too_many) = middle;
+  }
+  return place(fits).value_or(std::vector<PlacedRow>());
+}
+
+struct PlacedLegend {
+  double height = 0;
+  std::vector<PlacedRow> rows;
+};
+
+// In as little height as keeps its lists whole; where that is more than `whole`, they are broken so that the columns are about the same.
+PlacedLegend place_legend(const std::vector<List>& lists, int columns, double whole, double most,
+                          const std::string& continued) {
+  for (const bool may_break : {false, true})
+    for (double height = kEntry + kTitleGap; height <= (may_break ? most : whole) + 1e-9; height += kEntry / 2)
+      if (auto rows = place_lists(lists, columns, height, may_break, continued)) return {height, std::move(*rows)};
+  return {most, place_most(lists, columns, most, continued)};
 }
 
 void add_row(std::vector<Item>& items, const Row& row, const glm::dvec2& at, double width) {
@@ -129,26 +236,11 @@ void add_row(std::vector<Item>& items, const Row& row, const glm::dvec2& at, dou
   }
 }
 
-// Column by column; what has no room is counted.
-std::vector<Item> legend_items(const std::vector<Row>& rows, const Box& box, int columns) {
+std::vector<Item> legend_items(const PlacedLegend& legend, const Box& box, int columns) {
   std::vector<Item> items;
   const double width = box.size.x / columns;
-  int column = 0;
-  double y = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const bool is_last_line = column + 1 == columns && y + rows[i].height() + kEntry > box.size.y + 1e-9;
-    if (is_last_line && i + 1 < rows.size()) {
-      add_row(items, {Row::Kind::more, "… + " + std::to_string(rows.size() - i)},
-              box.corner + glm::dvec2(column * width, y), width - 2);
-      break;
-    }
-    if (y + rows[i].height() > box.size.y + 1e-9) {
-      ++column;
-      y = 0;
-    }
-    add_row(items, rows[i], box.corner + glm::dvec2(column * width, y), width - 2);
-    y += rows[i].height();
-  }
+  for (const PlacedRow& placed : legend.rows)
+    add_row(items, placed.row, box.corner + glm::dvec2(placed.column * width, placed.y), width - 2);
   return items;
 }
 
@@ -248,22 +340,17 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions, const std::
   Box area{{kMargin, kMargin}, {width, strip_top - kGap - kMargin}};
   const bool aside = paper.x > paper.y;  // the legend's place
   const int columns = aside ? 1 : std::max(1, static_cast<int>(width / kLegendColumn));
-  const auto rows = rows_of(legends, aside ? kLegendColumn - 2 : width / columns - 4);
+  const auto lists = lists_of(legends, aside ? kLegendColumn - 2 : width / columns - 4);
   Group legend{"legend", {}};
-  if (!rows.empty() && aside) {
+  if (!lists.empty() && aside) {
     area.size.x -= kLegendColumn + kGap;
+    const auto placed = place_legend(lists, columns, area.size.y, area.size.y, captions.continued);
     legend.items =
-        legend_items(rows, {{paper.x - kMargin - kLegendColumn, kMargin}, {kLegendColumn, area.size.y}}, columns);
-  } else if (!rows.empty()) {
-    double needed = 0, highest = 0;
-    for (const Row& row : rows) {
-      needed += row.height();
-      highest = std::max(highest, row.height());
-    }
-    // A short one is not torn into columns.
-    const double height = std::min(std::max(needed / columns + highest, std::min(needed, 6 * kEntry)), area.size.y / 3);
-    area.size.y -= height + kGap;
-    legend.items = legend_items(rows, {{kMargin, strip_top - kGap - height}, {width, height}}, columns);
+        legend_items(placed, {{paper.x - kMargin - kLegendColumn, kMargin}, {kLegendColumn, area.size.y}}, columns);
+  } else if (!lists.empty()) {
+    const auto placed = place_legend(lists, columns, area.size.y / 4, area.size.y / 3, captions.continued);
+    area.size.y -= placed.height + kGap;
+    legend.items = legend_items(placed, {{kMargin, strip_top - kGap - placed.height}, {width, placed.height}}, columns);
   }
 
   // On whole pixels, so that a drawing has its scale in every kind of file.

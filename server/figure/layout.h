@@ -16,6 +16,7 @@ glm::dvec2 paper_mm(Paper paper, bool landscape);
 
 struct Captions {
   std::string title, caption, credit;
+  std::string continued = "(continued)";  // behind the title of a list that goes on in another column of the legend
 };
 
 struct Label {

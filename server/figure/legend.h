@@ -14,6 +14,7 @@ struct LegendEntry {
   Rgba color{};
   Pattern pattern = Pattern::solid;
   double angle = 45;  // degrees, of lines
+  bool bare = false;  // lines or dots without tint and border: what waits for review
 };
 
 // A layer's: classes, or for numbers a ramp from `low` to `high`.

@@ -11,8 +11,8 @@
 #include "core/uuid.h"
 #include "net/as_of.h"
 #include "net/at_field.h"
+#include "net/figure_legend.h"
 #include "net/view_wire.h"
-#include "room/provisional.h"
 #include "store/named_parts.h"
 
 namespace strata::net {
@@ -102,41 +102,6 @@ Result<void> read_labels(const RouteContext& context, const protocol::FigureLabe
                 "labels.column");
   wish.labels = {*layer, *column};
   return {};
-}
-
-// How each layer is drawn, as the picture has it.
-const Palette& palette_of(const FigureWish& wish, const Layer& layer) {
-  const auto& own = wish.shown.shown.of(layer.id).palette;
-  return own ? *own : layer.palette;
-}
-
-Result<std::vector<figure::Legend>> legends_of(const RouteContext& context, const FigureWish& wish) {
-  std::vector<figure::Legend> legends;
-  if (!wish.legend) return legends;
-  for (auto layer = wish.layers.rbegin(); layer != wish.layers.rend(); ++layer) {  // as they lie over each other
-    const Palette& palette = palette_of(wish, *layer);
-    room::Selection whole;
-    whole.at = wish.shown.at;
-    const auto painted = wish.room->statistics(layer->slug, whole);
-    if (!painted) return tl::unexpected(painted.error());
-    const bool is_bare = painted->texels == 0;
-    const bool waits = wish.shown.provisional.contains(layer->id);  // also where it was erased
-    if (is_bare && !waits) continue;
-    std::set<double> there;
-    for (const auto& [value, area] : painted->keys) there.insert(value);
-    legends.push_back(figure::legend_of(*layer, palette, there.empty() && !is_bare ? nullptr : &there));
-    if (waits) {
-      const Palette::Point& mark = room::provisional_palette()->points.front();
-      legends.back().entries.push_back({wish.waiting_label, mark.color, mark.pattern, mark.angle});
-    }
-    if (palette.column.empty() || !layer->table) continue;
-    const auto table = context.store.table(std::to_string(*layer->table), wish.role);
-    const Column* column = table ? find_column(table->columns, palette.column) : nullptr;
-    if (column)
-      legends.back().title =
-          layer->name + ": " + column->name + (column->unit.empty() ? "" : " [" + column->unit + "]");
-  }
-  return legends;
 }
 
 // The cells of a grid in which a key is seen, those farthest from what is another first.
@@ -344,8 +309,8 @@ Result<FigureWish> figure_wish(const RouteContext& context, const Request& reque
   wish.dpi = asked->dpi;
   wish.format = static_cast<figure::Format>(asked->format.value_or(protocol::FigureFormat::pdf));
   const Model model = wish.room->model();
-  wish.captions = {asked->title.value_or(model.name), asked->caption.value_or(""),
-                   asked->credit.value_or(model.credit)};
+  wish.captions = {asked->title.value_or(model.name), asked->caption.value_or(""), asked->credit.value_or(model.credit),
+                   asked->continued};
   wish.legend = asked->legend;
   wish.waiting_label = asked->provisional;
   return wish;
@@ -359,25 +324,36 @@ Result<std::shared_ptr<const jobs::JobFile>> make_figure(const RouteContext& con
   const auto geometry = wish.room->geometry();
   const auto extent = figure::extent_of(geometry->positions, wish.plane, wish.section);
   if (!extent) return fail(422, "Nothing to draw", "The section cuts everything away.", "camera.section");
-  const auto legends = legends_of(context, wish);
-  if (!legends) return tl::unexpected(legends.error());
   const glm::dvec2 size = wish.center ? 2.0 * glm::max(glm::abs(glm::dvec2(extent->max - wish.plane.of(*wish.center))),
                                                        glm::abs(glm::dvec2(wish.plane.of(*wish.center) - extent->min)))
                                       : glm::dvec2(extent->max - extent->min);
-  const Composed composed = compose(wish, *legends, size, model.metres());
+  const auto drawing_on = [&](const Composed& composed) {
+    figure::Drawing drawing;
+    drawing.plane = wish.plane;
+    drawing.center =
+        wish.center ? glm::dvec2(wish.plane.of(*wish.center)) : glm::dvec2(extent->min + extent->max) / 2.0;
+    const double depth =
+        std::max(extent->max.z - extent->min.z, 1e-3 * glm::length(model.bounds_max - model.bounds_min));
+    drawing.near = extent->min.z - 0.01 * depth;
+    drawing.far = extent->max.z + 0.01 * depth;
+    drawing.scale = composed.scale;
+    drawing.metres_per_unit = model.metres();
+    drawing.dpi = wish.dpi;
+    drawing.width = composed.layout.drawing_width();
+    drawing.height = composed.layout.drawing_height();
+    drawing.section = wish.section;
+    return drawing;
+  };
+  std::vector<figure::Legend> legends;
+  if (wish.legend) {
+    // The drawing is largest without a legend: what is seen there is told.
+    auto seen = legends_of(context, wish, drawing_on(compose(wish, {}, size, model.metres())));
+    if (!seen) return tl::unexpected(seen.error());
+    legends = std::move(*seen);
+  }
+  const Composed composed = compose(wish, legends, size, model.metres());
   const figure::SheetLayout& layout = composed.layout;
-  figure::Drawing drawing;
-  drawing.plane = wish.plane;
-  drawing.center = wish.center ? glm::dvec2(wish.plane.of(*wish.center)) : glm::dvec2(extent->min + extent->max) / 2.0;
-  const double depth = std::max(extent->max.z - extent->min.z, 1e-3 * glm::length(model.bounds_max - model.bounds_min));
-  drawing.near = extent->min.z - 0.01 * depth;
-  drawing.far = extent->max.z + 0.01 * depth;
-  drawing.scale = composed.scale;
-  drawing.metres_per_unit = model.metres();
-  drawing.dpi = wish.dpi;
-  drawing.width = layout.drawing_width();
-  drawing.height = layout.drawing_height();
-  drawing.section = wish.section;
+  const figure::Drawing drawing = drawing_on(composed);
 
   const auto held = budget.take(std::uint64_t{4} * drawing.width * drawing.height);
   if (!held) return tl::unexpected(held.error());

@@ -251,7 +251,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   for (const LayerStyle& style : request.layers) {
     auto layer = scene.layer(style.layer);
     if (!layer) return tl::unexpected(layer.error());
-    input.layers.push_back({&(*layer)->textures(), style.palette, style.opacity});
+    input.layers.push_back({&(*layer)->textures(), style.palette, style.opacity, style.bare});
   }
   if (auto flushed = scene.tables().flush(); !flushed) return tl::unexpected(flushed.error());
   if (auto shaded = scene.shade_pass().shade(input, scene.tables()); !shaded) return tl::unexpected(shaded.error());

@@ -72,6 +72,8 @@ struct LayerStyle {  // one layer in a view, bottom to top
   LayerHandle layer = 0;
   std::shared_ptr<const Palette> palette;  // told apart by the object: nothing of it may change
   float opacity = 1;
+  bool bare =
+      false;  // its hatch and dots have neither tint nor border: a sign over another layer, which is no class of its own
   bool operator==(const LayerStyle&) const = default;
 };
 

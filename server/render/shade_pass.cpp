@@ -89,6 +89,7 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
   out.has_others = layer.palette->others ? 1 : 0;
   out.others = packed(layer.palette->others.value_or(Rgba{}));
   out.patterned = entry.patterned ? 1 : 0;
+  out.bare = layer.bare ? 1 : 0;
   // Without a range every value takes an end; the shader divides by it.
   const bool has_range = out.palette_max > out.palette_min;
   if (!has_range && layer.palette->mode == PaletteMode::linear)

@@ -22,6 +22,7 @@ struct ShadeInput {
     const LayerTextures* textures;
     std::shared_ptr<const Palette> palette;
     float opacity;
+    bool bare = false;  // patterns without tint and border
   };
   // How patterns lie on the picture's plane.
   struct Patterns {

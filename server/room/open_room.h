@@ -92,6 +92,9 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
                         const SeePicture& see) override;
   Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string& layer, const Camera& camera,
                                                               int columns, int rows, At at) override;
+  Result<std::vector<query::SeenLayer>> seen_layers(const std::vector<std::string>& layers,
+                                                    const std::vector<query::LayerCover>& covers, const Camera& camera,
+                                                    int columns, int rows, At at) override;
   std::vector<Look> looks() const override { return look_shelf_->all(); }
   Result<Look> look(const std::string& ref) const override;
   Result<Look> create_look(Look look, std::span<const std::uint8_t> picture,

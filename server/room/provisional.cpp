@@ -49,7 +49,7 @@ std::shared_ptr<const Palette> provisional_palette() {
 void add_styles(const render::LayerStyle& style, std::optional<render::LayerHandle> waiting,
                 std::vector<render::LayerStyle>& styles) {
   styles.push_back(style);
-  if (waiting) styles.push_back({*waiting, provisional_palette(), style.opacity});
+  if (waiting) styles.push_back({*waiting, provisional_palette(), style.opacity, true});
 }
 
 }  // namespace strata::room

@@ -95,6 +95,15 @@ Result<std::vector<std::optional<std::uint32_t>>> OpenRoom::seen_keys(const std:
   return query::seen_keys(*surface_->tree(), geometry_->origin, camera, columns, rows, views->front());
 }
 
+Result<std::vector<query::SeenLayer>> OpenRoom::seen_layers(const std::vector<std::string>& layers,
+                                                            const std::vector<query::LayerCover>& covers,
+                                                            const Camera& camera, int columns, int rows, At at) {
+  touch();
+  auto views = layer_views(layers, at);
+  if (!views) return tl::unexpected(views.error());
+  return query::seen_layers(*surface_->tree(), geometry_->origin, camera, columns, rows, *views, covers);
+}
+
 // Nothing where the whole surface is meant.
 Result<std::optional<query::TexelSelection>> OpenRoom::select_texels(const Selection& selection,
                                                                      const mesh::SurfaceMap& map) {

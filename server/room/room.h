@@ -15,6 +15,7 @@
 #include "query/key_areas.h"
 #include "query/profile.h"
 #include "query/quantities.h"
+#include "query/seen_layers.h"
 #include "query/statistics.h"
 #include "query/texel_samples.h"
 #include "query/values.h"
@@ -287,6 +288,11 @@ class Room {
   // top left. Nothing: no surface, or nothing painted there.
   virtual Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string& layer, const Camera& camera,
                                                                       int columns, int rows, At at = {}) = 0;
+  // What is seen of layers (bottom to top) over a camera's window; `covers`: one for each. See query::seen_layers.
+  virtual Result<std::vector<query::SeenLayer>> seen_layers(const std::vector<std::string>& layers,
+                                                            const std::vector<query::LayerCover>& covers,
+                                                            const Camera& camera, int columns, int rows,
+                                                            At at = {}) = 0;
 
   // Pictures of the surface. Changes block (database) and are announced to the listeners.
   virtual std::vector<Look> looks() const = 0;  // by order

@@ -95,6 +95,12 @@ class SeenRoom final : public Room {
     if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
     return room_->seen_keys(layer, camera, columns, rows, at);
   }
+  Result<std::vector<query::SeenLayer>> seen_layers(const std::vector<std::string>& layers,
+                                                    const std::vector<query::LayerCover>& covers, const Camera& camera,
+                                                    int columns, int rows, At at) override {
+    if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
+    return room_->seen_layers(layers, covers, camera, columns, rows, at);
+  }
   DurableState durable_state() const override {
     DurableState state = room_->durable_state();
     std::erase_if(state.provisional, [&](const auto& entry) { return !layer(std::to_string(entry.first)); });

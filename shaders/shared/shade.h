@@ -11,11 +11,13 @@ const uint kPatternSolid = 0u;  // as strata::Pattern
 const uint kPatternHatch = 1u;
 const uint kPatternDots = 2u;
 const uint kPatternOutline = 3u;
-const float kPatternPixels = 9.0;         // between lines or dots that have no spacing of their own
-const float kPatternClosestPixels = 5.0;  // closer ones are drawn every 2nd, 4th… instead
+// Of patterns, in pixels of the camera's window: on a figure these are hundredths of an inch of paper.
+const float kPatternPixels = 7.0;         // between lines or dots that have no spacing of their own
+const float kPatternClosestPixels = 6.0;  // closer ones are drawn every 2nd, 4th… instead
+const float kPatternGround = 0.3;         // how much of the colour lies between lines or dots
 const float kHatchShare = 0.4;            // of the spacing that is line
 const float kDotRadius = 0.32;            // in spacings
-const int kOutlinePixels = 2;
+const float kOutlinePixels = 2.0;         // of the border around a value
 
 // One layer of a view. The order of `type` is that of strata::ValueType.
 struct ShadeLayer {
@@ -34,7 +36,7 @@ struct ShadeLayer {
   uint others;            // colour of unlisted values, red in the low byte
   uint has_others;        // 0: unlisted values get a generated colour
   uint patterned;         // some point is not solid
-  uint unused;
+  uint bare;              // hatch and dots have neither tint nor border
 };
 
 // A palette point: the bits of the value and the colour, red in the low byte. Step: `key` is a float, ascending.

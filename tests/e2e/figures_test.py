@@ -236,6 +236,45 @@ def names(server):
     return wish
 
 
+def legends(server):
+    """The legend has what the drawing shows: not what an opaque layer covers wholly, nor what is out of it; with classes that are lines and points alone."""
+    for name in ("Low", "High"):
+        points = [{"at": at, "color": color, "label": f"{name} {at}"} for at, color in ((1, "#2040ff"), (2, "#20c040"))]
+        server.ok("POST", M + "/layers", {"name": name, "type": "u8", "resolution": 2048, "palette": {"mode": "categorical", "points": points}})
+    fill(server, "x < 50", 1, "low")
+    fill(server, "x > 60", 2, "low")
+    fill(server, "x < 55", 1, "high")
+    others = [{"layer": layer, "visible": False} for layer in ("marks", "units")]
+
+    def told(high={}, **more):
+        wish = {"direction": "top", "format": "svg", "dpi": 50, "scale": 1, "layers": [*others, {"layer": "high", **high}], **more}
+        return group_of(figure(server, **wish).body, "legend")[1]
+    assert told() == ["High", "High 1", "Low", "Low 2"], told()
+    assert told({"opacity": 0.5}) == ["High", "High 1", "Low", "Low 1", "Low 2"]
+    assert told({"visible": False}) == ["Low", "Low 1", "Low 2"]
+    hatched = {"palette": {"mode": "categorical", "points": [{"at": 1, "color": "#2040ff", "label": "Lines", "pattern": "hatch"}]}}
+    assert told(hatched) == ["High", "Lines", "Low", "Low 1", "Low 2"], "below a pattern the others are seen"
+    assert told(scale=0.1, paper="a5", center=[90, 50, 0]) == ["Low", "Low 2"], "on 15 mm around its right side"
+    # Records that have lines alone are classes of the drawing, too.
+    table = server.ok("POST", "/projects/default/tables", {"name": "Cracks", "columns": [{"name": "Way", "kind": "line"}]}).json()
+    points = [{"at": at, "color": "#ff8000", "label": label} for at, label in ((1, "Crack"), (2, "Elsewhere"))]
+    server.ok("POST", M + "/layers", {"name": "Cracks", "kind": "database", "type": "u16", "table": table["slug"], "resolution": 2048, "palette": {"mode": "categorical", "points": points}})
+    model = server.get(M).json()["id"]
+    way = [{"model": model, "coordinates": [[80, 20, 0], [80, 80, 0]]}]
+    for key, values in ((1, {"way": way}), (2, {})):
+        server.ok("POST", "/tables/cracks/records", {"key": key, "values": values})
+    assert told() == ["Cracks", "Crack", "High", "High 1", "Low", "Low 2"], told()
+    # A long list goes on below its title.
+    points = [{"at": at, "color": "#2040ff", "label": f"Class {at}"} for at in range(1, 61)]
+    server.ok("POST", M + "/layers", {"name": "Many", "type": "u8", "resolution": 2048, "palette": {"mode": "categorical", "points": points}})
+    for at in range(1, 61):
+        fill(server, f"x > {at * 1.5} and y > 3", at, "many")
+    words = told(continued="(weiter)")
+    assert words.count("Many (weiter)") >= 1 and all(f"Class {at}" in words for at in range(1, 61)), words
+    for name in ("low", "high", "cracks", "many"):
+        server.ok("DELETE", f"{M}/layers/{name}")
+
+
 def states_and_jobs(server, labels):
     """A figure of then; one that others cannot change while it is drawn; jobs, their files, who gets them and who ends them."""
     viewer, other = server.add_person("vera", "viewer"), server.add_person("ada", "annotator")
@@ -312,7 +351,7 @@ def reviews(server):
     rows = drawn(server, token=vito, **wish)
     assert inks(rows, 0) == [1, 0], inks(rows, 0)
     red, dark = inks(rows, up)
-    assert 0.3 < red < 0.8 and 0.1 < dark < 0.5, (red, dark)
+    assert 0.3 < red < 0.8 and 0.1 < dark < 0.5, (red, dark)  # lines without a tint: the colour below is what it was
     words = lambda **more: group_of(figure(server, format="svg", **{**wish, "legend": True, **more}).body, "legend")[1]
     assert words().count("Provisional") == 1 and words(provisional="Vorläufig").count("Vorläufig") == 1, words()
     assert "Provisional" not in words(layers=[{"layer": "finds", "visible": False}])
@@ -375,6 +414,7 @@ def main():
         labels = names(server)
         views(server)
         reviews(server)
+        legends(server)
         states_and_jobs(server, labels)
         refusals(server)
         server.assert_clean_log()

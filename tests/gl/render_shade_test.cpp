@@ -149,15 +149,17 @@ TEST_F(Shade, a_palette_lists_as_many_keys_as_a_table_has_records) {
   }
 }
 
-// What shaders/shade_pass.frag says of hatch and dots, in plain C++: the share of a pixel (origin bottom left) that is covered.
-double pattern_cover(Pattern pattern, double angle_deg, double spacing_px, glm::dvec2 from) {
+// What shaders/shade_pass.frag says of hatch and dots, in plain C++: the share of a pixel (origin bottom left) that is covered. Between
+// them lies a tint, unless they are bare.
+double pattern_cover(Pattern pattern, double angle_deg, double spacing_px, glm::dvec2 from, bool bare) {
   const double angle = angle_deg / 180 * 3.14159265358979;
   const glm::dvec2 along(std::cos(angle), std::sin(angle)), across(-along.y, along.x);
   const glm::dvec2 place(glm::dot(from, along) / spacing_px, glm::dot(from, across) / spacing_px);
   const glm::dvec2 middle = (place - glm::floor(place) - 0.5) * spacing_px;
   const double inside =
       pattern == Pattern::dots ? 0.32 * spacing_px - glm::length(middle) : 0.4 / 2 * spacing_px - std::abs(middle.y);
-  return std::clamp(inside + 0.5, 0.0, 1.0);
+  const double ground = bare ? 0 : 0.3;
+  return ground + (1 - ground) * std::clamp(inside + 0.5, 0.0, 1.0);
 }
 
 TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
@@ -169,23 +171,25 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
   struct Case {
     Pattern pattern;
     double angle, spacing_mm, spacing_px;
+    bool bare = false;
   };
-  for (const Case& c : {Case{Pattern::hatch, 0, 0, 9}, Case{Pattern::hatch, 45, 40, 40 / mm_per_pixel},
-                        Case{Pattern::hatch, 90, 10, 4 * 10 / mm_per_pixel / 2}, Case{Pattern::dots, 30, 0, 9},
-                        Case{Pattern::dots, 120, 60, 60 / mm_per_pixel}}) {
+  for (const Case& c :
+       {Case{Pattern::hatch, 0, 0, 7}, Case{Pattern::hatch, 135, 0, 7, true},
+        Case{Pattern::hatch, 45, 40, 40 / mm_per_pixel}, Case{Pattern::hatch, 90, 10, 4 * 10 / mm_per_pixel},
+        Case{Pattern::dots, 30, 0, 7}, Case{Pattern::dots, 120, 60, 60 / mm_per_pixel}}) {
     for (const PaletteMode mode : {PaletteMode::step, PaletteMode::categorical}) {
       SCOPED_TRACE(std::to_string(int(c.pattern)) + " " + std::to_string(c.angle) + " " + std::to_string(c.spacing_mm));
       Palette::Point point{7, {0, 0, 255, 255}};
       point.pattern = c.pattern, point.angle = c.angle, point.spacing_mm = c.spacing_mm;
       auto inked = std::make_shared<Palette>(Palette{mode, 0, 10, {point}, {}});
-      request_.layers = {{lower, red, 1}, {upper, inked, 1}};
+      request_.layers = {{lower, red, 1}, {upper, inked, 1, c.bare}};
       const auto frame = renderer_.draw(request_);
       double worst = 0;
       std::size_t covered = 0;
       for (int y = 20; y < 236; ++y) {
         for (int x = 20; x < 236; ++x) {
           const glm::dvec2 from(x + 0.5 - kSize / 2.0, kSize - y - 0.5 - kSize / 2.0);
-          const double cover = pattern_cover(c.pattern, c.angle, c.spacing_px, from);
+          const double cover = pattern_cover(c.pattern, c.angle, c.spacing_px, from, c.bare);
           const auto got = pixel(frame, x, y);
           worst = std::max({worst, std::abs(got[0] - 255 * lit * (1 - cover)), std::abs(got[2] - 255 * lit * cover)});
           covered += cover > 0.5;
@@ -196,6 +200,46 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
       EXPECT_LT(covered, 216u * 216 / 2);
     }
   }
+}
+
+TEST_F(Shade, hatched_paint_is_seen_at_every_zoom_by_its_tint_and_its_border) {
+  // A tile of the four holds the value: a quarter of the square, which is seen from so far away that it has few pixels, and so near that
+  // lines of 40 mm are far from each other.
+  const auto layer = renderer_.add_layer(model_, ValueType::u8, 256);
+  auto tile = std::make_shared<TileData>(ValueType::u8);
+  for (int i = 0; i < kTexelsPerTile; ++i) tile->write(i, 7u);
+  renderer_.write(layer, {{{0, 0}, tile}});
+  for (const double spacing_mm : {0.0, 40.0, 500.0})
+    for (const double half_height : {8.0, 2.0, 0.5, 0.05})
+      for (const int scale : {1, 3}) {
+        SCOPED_TRACE(std::to_string(spacing_mm) + " " + std::to_string(half_height) + " " + std::to_string(scale));
+        Palette::Point point{7, {0, 0, 255, 255}};
+        point.pattern = Pattern::hatch, point.spacing_mm = spacing_mm;
+        render::FrameRequest request = request_;
+        request.camera = orthographic_camera({-0.25, -0.25, 2}, {-0.25, -0.25, 0}, kSize, kSize, half_height);
+        request.width = request.height = scale * kSize;
+        request.layers = {};
+        const auto bare = renderer_.draw(request);
+        request.layers = {{layer, std::make_shared<Palette>(Palette{PaletteMode::categorical, 0, 10, {point}, {}}), 1}};
+        const auto frame = renderer_.draw(request);
+        // Blue over what is there: the tint everywhere, and more of it along the border.
+        std::size_t tinted = 0, full = 0;
+        for (int y = 0; y < frame.height; ++y)
+          for (int x = 0; x < frame.width; ++x) {
+            const auto got = pixel(frame, x, y), was = pixel(bare, x, y);
+            if (got == was) continue;
+            const double share = 1 - double(got[0]) / std::max(1, int(was[0]));
+            ASSERT_GT(share, 0.25) << x << " " << y;
+            ++(share > 0.9 ? full : tinted);
+          }
+        const double side_px = std::min(1.0 * kSize, 0.5 / half_height / 2 * kSize) * scale;
+        EXPECT_GT(static_cast<double>(tinted + full), 0.7 * side_px * side_px);
+        if (half_height > 1) {
+          EXPECT_GT(static_cast<double>(full), 0.3 * side_px * side_px) << "the border of a small one";
+        } else if (spacing_mm < 100) {
+          EXPECT_GT(tinted, full / 2);
+        }
+      }
 }
 
 TEST_F(Shade, an_outline_is_drawn_where_the_value_ends_and_not_inside) {

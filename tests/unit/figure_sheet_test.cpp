@@ -82,6 +82,65 @@ TEST(SheetLayout, EverythingIsOnThePaperAndBesideTheDrawing) {
       }
 }
 
+TEST(SheetLayout, AListOfTheLegendStaysTogetherOrHasItsTitleInEachColumn) {
+  for (const Paper paper : {Paper::a5, Paper::a4, Paper::a3})
+    for (const bool landscape : {false, true})
+      for (const int entries : {1, 3, 9, 14, 30}) {
+        SCOPED_TRACE(std::to_string(entries) + (landscape ? " landscape" : " portrait"));
+        std::vector<Legend> lists;
+        for (int list = 0; list < 3; ++list) {
+          lists.push_back({"List " + std::to_string(list), {}, {}, {}, {}});
+          for (int i = 0; i < (list == 1 ? entries : 4); ++i)
+            lists.back().entries.push_back({std::to_string(list) + "-" + std::to_string(i), Rgba{200, 90, 30, 255}});
+        }
+        Captions captions = kCaptions;
+        captions.continued = "(goes on)";
+        const Sheet sheet = SheetLayout(paper_mm(paper, landscape), captions, lists, 300).finish(20, std::nullopt, {});
+        const auto group = std::ranges::find(sheet.groups, "legend", &Group::id);
+        ASSERT_NE(group, sheet.groups.end());
+        std::string title;  // in force where the next entry stands
+        int told = 0, titles = 0;
+        double column = 0, y = 0;
+        for (const Item& item : group->items) {
+          const auto* words = std::get_if<Words>(&item);
+          if (!words) continue;
+          if (words->bold) {
+            EXPECT_EQ(words->text.ends_with(" (goes on)"), words->text.substr(0, 6) == title) << words->text;
+            title = words->text.substr(0, 6);
+            column = words->at.x;
+            ++titles;
+          } else {
+            EXPECT_EQ(words->text[0], title[5]) << words->text << " below " << title;
+            EXPECT_NEAR(words->at.x - column, 8, 1e-9) << words->text << " stands in a column without its title";
+            EXPECT_GT(words->at.y, y);
+            ++told;
+          }
+          y = words->at.y;
+        }
+        EXPECT_TRUE(told == 8 + entries || paper == Paper::a5);
+        EXPECT_TRUE(titles == 3 || entries > 9);
+      }
+}
+
+TEST(SheetLayout, ASwatchIsTintedAndHasABorderAsTheDrawing) {
+  Legend legend{"Damage", {}, {}, {}, {}};
+  for (const Pattern pattern : {Pattern::hatch, Pattern::dots})
+    for (const bool bare : {false, true}) {
+      legend.entries = {{"Loss", Rgba{200, 0, 100, 255}, pattern, 45, bare}};
+      const Sheet sheet =
+          SheetLayout(paper_mm(Paper::a4, false), kCaptions, {legend}, 300).finish(20, std::nullopt, {});
+      const auto group = std::ranges::find(sheet.groups, "legend", &Group::id);
+      int tints = 0, inks = 0;
+      for (const Item& item : group->items)
+        if (const auto* path = std::get_if<Path>(&item); path && path->fill) {
+          tints += *path->fill == Rgba{239, 179, 209, 255};  // 30 % of the colour on white
+          inks += *path->fill == Rgba{200, 0, 100, 255};
+        }
+      EXPECT_EQ(tints, bare ? 0 : 1);
+      EXPECT_GT(inks, bare ? 2 : 6);  // lines or dots, and four sides
+    }
+}
+
 TEST(SheetLayout, LongWordsAreBrokenAndEnd) {
   const std::string endless(5000, 'x');
   const SheetLayout layout(paper_mm(Paper::a4, false), {endless, endless, endless}, {}, 150);

@@ -106,7 +106,7 @@ export class StrataFigureDialog extends LitElement {
     const { words: written, face } = session.figures.draft;
     const shown = view ? { view: String(view.id) } : { ...session.views.content(), ...(this.camera_ ? { camera: this.camera_ } : {}) };
     const request = figure_request(shown, this.choices_, written, face, this.labels_now);
-    return request && { ...request, provisional: texts.figures.provisional };
+    return request && { ...request, provisional: texts.figures.provisional, continued: texts.figures.continued };
   }
 
   /** Null: none, or none yet. */

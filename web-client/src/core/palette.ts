@@ -138,13 +138,21 @@ export function with_range(palette: Palette, min: number, max: number): Palette 
   return { ...palette, min, max, points };
 }
 
+/** The colour with a share of its opacity. */
+function with_share(color: string, share: number): string {
+  const { a } = parse_color(color);
+  return `${opaque_color(color)}${Math.round(a * share).toString(16).padStart(2, "0")}`;
+}
+
 /** A square of a legend: the colour as it is laid on. Measures as in shaders/shared/shade.h. */
 export function swatch_style({ color, pattern = "solid", angle = 45 }: Pick<PalettePoint, "color" | "pattern" | "angle">): Record<string, string> {
   const shown = css_color(color);
   if (pattern === "outline") return { background: "transparent", border: `2px solid ${shown}`, "box-shadow": "none" };
   // CSS turns clockwise from the vertical, and across the lines.
-  if (pattern === "hatch") return { background: `repeating-linear-gradient(${-angle}deg, ${shown} 0 2.4px, transparent 2.4px 6px)` };
-  if (pattern === "dots") return { background: `radial-gradient(circle at center, ${shown} 0 1.9px, transparent 2.3px) 0 0 / 6px 6px` };
+  const ground = css_color(with_share(color, 0.3));
+  const border = { "box-shadow": `inset 0 0 0 2px ${shown}` };
+  if (pattern === "hatch") return { background: `repeating-linear-gradient(${-angle}deg, ${shown} 0 2.8px, ${ground} 2.8px 7px)`, ...border };
+  if (pattern === "dots") return { background: `radial-gradient(circle at center, ${shown} 0 2.2px, ${ground} 2.6px) 0 0 / 7px 7px`, ...border };
   return { background: shown };
 }
 

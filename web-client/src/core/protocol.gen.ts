@@ -2722,10 +2722,12 @@ export interface FigureRequest {
   caption?: string;
   /** Absent: the model's. */
   credit?: string;
-  /** Of the layers that are seen. Default: true. */
+  /** Of the layers and classes that the drawing shows: not of what an opaque layer above covers wholly, or of what is not in the drawing. Default: true. */
   legend?: boolean;
   /** What the legend calls what waits for review, which is hatched. Default: "Provisional". */
   provisional?: string;
+  /** What the legend puts behind the title of a list that goes on in another column. Default: "(continued)". */
+  continued?: string;
   labels?: FigureLabels;
 }
 

@@ -3282,6 +3282,7 @@ void read(const nlohmann::json& json, FigureRequest& value) {
   read_optional_member(json, "credit", value.credit);
   read_optional_member(json, "legend", value.legend);
   read_optional_member(json, "provisional", value.provisional);
+  read_optional_member(json, "continued", value.continued);
   read_optional_member(json, "labels", value.labels);
 }
 
@@ -3306,6 +3307,7 @@ nlohmann::json to_json(const FigureRequest& value) {
   write_optional_member(json, "credit", value.credit);
   write_member(json, "legend", value.legend);
   write_member(json, "provisional", value.provisional);
+  write_member(json, "continued", value.continued);
   write_optional_member(json, "labels", value.labels);
   return json;
 }

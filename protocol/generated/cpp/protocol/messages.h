@@ -2492,8 +2492,9 @@ struct FigureRequest {
   std::optional<std::string> title;  // Absent: the model's name.
   std::optional<std::string> caption;
   std::optional<std::string> credit;  // Absent: the model's.
-  bool legend = true;  // Of the layers that are seen.
+  bool legend = true;  // Of the layers and classes that the drawing shows: not of what an opaque layer above covers wholly, or of what is not in the drawing.
   std::string provisional = "Provisional";  // What the legend calls what waits for review, which is hatched.
+  std::string continued = "(continued)";  // What the legend puts behind the title of a list that goes on in another column.
   std::optional<FigureLabels> labels;
   bool operator==(const FigureRequest&) const = default;
 };

@@ -1575,6 +1575,7 @@ export const texts = {
     caption_hint: "Westwand, Zustand im Frühjahr",
     credit_hint: "Wer es gemacht hat, wem es gehört, unter welcher Lizenz",
     legend: "Legende der sichtbaren Ebenen",
+    continued: "(Fortsetzung)",
     provisional: "Vorläufig",
     labels: "Beschriftung mit Datensätzen",
     no_labels: "Keine",

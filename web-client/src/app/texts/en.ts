@@ -1560,6 +1560,7 @@ export const texts = {
     caption_hint: "West wall, state of spring",
     credit_hint: "Who made it, who owns it, under which licence",
     legend: "Legend of the layers that are seen",
+    continued: "(continued)",
     provisional: "Provisional",
     labels: "Labels of records",
     no_labels: "None",

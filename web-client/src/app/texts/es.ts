@@ -1581,6 +1581,7 @@ export const texts = {
     caption_hint: "Muro oeste, estado en primavera",
     credit_hint: "Quién la hizo, a quién pertenece, con qué licencia",
     legend: "Leyenda de las capas que se ven",
+    continued: "(continuación)",
     provisional: "Provisional",
     labels: "Rótulos de registros",
     no_labels: "Ninguno",

@@ -1,0 +1,121 @@
+#include "net/figure_legend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "room/provisional.h"
+
+namespace strata::net {
+namespace {
+
+constexpr double kMostCells = 250'000;   // of the grid in which the drawing is looked at: some tenths of a second
+constexpr std::size_t kMostPlaces = 32;  // of a line that are looked at
+constexpr double kOpaque = 0.99;
+constexpr double kPlaceReach_px = 4, kPlaceReachOfSize = 1e-3;  // as far below the surface as marks are drawn
+
+// How each layer is drawn, as the picture has it.
+const Palette& palette_of(const FigureWish& wish, const Layer& layer) {
+  const auto& own = wish.shown.shown.of(layer.id).palette;
+  return own ? *own : layer.palette;
+}
+
+query::LayerCover cover_of(const FigureWish& wish, const Layer& layer) {
+  const Palette& palette = palette_of(wish, layer);
+  const double opacity = std::clamp(wish.shown.shown.of(layer.id).opacity.value_or(layer.opacity), 0.0, 1.0);
+  query::LayerCover cover;
+  cover.tells_values = lists_values(palette);
+  if (!palette.column.empty()) {
+    // Its colours are those of records: some may let through what lies below.
+    cover.of = [opacity](double) { return opacity > 0 ? query::Cover::some : query::Cover::nothing; };
+    return cover;
+  }
+  cover.of = [&palette, opacity](double value) {
+    const double alpha = color_of(palette, value)[3] / 255.0 * opacity;
+    if (alpha <= 0) return query::Cover::nothing;
+    const Palette::Point* point = point_of(palette, value);
+    const bool is_solid = !point || point->pattern == Pattern::solid;
+    return is_solid && alpha >= kOpaque ? query::Cover::all : query::Cover::some;
+  };
+  return cover;
+}
+
+// Whether a place of the surface is in the drawing, and nothing lies before it.
+Result<bool> is_seen(const FigureWish& wish, const Camera& camera, const glm::dvec3& place, double reach) {
+  const glm::dvec4 clip = camera.projection * camera.view * glm::dvec4(place, 1);
+  const glm::dvec2 pixel((clip.x + 1) / 2 * camera.width, (1 - clip.y) / 2 * camera.height);
+  if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x <= camera.width && pixel.y <= camera.height)) return false;
+  const auto hit = wish.room->pick(camera, pixel.x, pixel.y, {}, {});
+  if (!hit) return tl::unexpected(hit.error());
+  return hit->hit && glm::distance(hit->position, place) <= reach;
+}
+
+// Keys of records whose lines or points the drawing shows. They lie over all layers.
+Result<std::set<double>> marked_keys(const RouteContext& context, const FigureWish& wish, const Layer& layer,
+                                     const Camera& camera) {
+  const Model model = wish.room->model();
+  const auto at = context.store.table_sequence_when(*layer.table, model.id, *wish.shown.at);
+  if (!at) return tl::unexpected(at.error());
+  const auto marks = context.store.marks(*layer.table, wish.role, model.id, *at);
+  if (!marks) return tl::unexpected(marks.error());
+  const double pixel = 2 / (std::abs(camera.projection[0][0]) * camera.width);
+  const double reach = kPlaceReach_px * pixel + kPlaceReachOfSize * glm::distance(model.bounds_min, model.bounds_max);
+  std::set<double> keys;
+  for (const auto& [key, mark] : *marks) {
+    const auto value = static_cast<double>(key);
+    const std::size_t step = std::max<std::size_t>(1, mark.places.size() / kMostPlaces);
+    for (std::size_t i = 0; i < mark.places.size() && !keys.contains(value); i += step) {
+      const auto seen = is_seen(wish, camera, mark.places[i], reach);
+      if (!seen) return tl::unexpected(seen.error());
+      if (*seen) keys.insert(value);
+    }
+  }
+  return keys;
+}
+
+}  // namespace
+
+Result<std::vector<figure::Legend>> legends_of(const RouteContext& context, const FigureWish& wish,
+                                               const figure::Drawing& drawing) {
+  const Camera camera = figure::camera_of(drawing);
+  const double cells = static_cast<double>(camera.width) * camera.height;
+  const double coarser = std::max(1.0, std::sqrt(cells / kMostCells));
+  std::vector<std::string> refs;
+  std::vector<query::LayerCover> covers;
+  for (const Layer& layer : wish.layers) {
+    refs.push_back(std::to_string(layer.id));
+    covers.push_back(cover_of(wish, layer));
+  }
+  std::vector<figure::Legend> legends;
+  if (refs.empty()) return legends;
+  const auto seen = wish.room->seen_layers(refs, covers, camera, std::max(1, static_cast<int>(camera.width / coarser)),
+                                           std::max(1, static_cast<int>(camera.height / coarser)), wish.shown.at);
+  if (!seen) return tl::unexpected(seen.error());
+  for (std::size_t i = wish.layers.size(); i-- > 0;) {  // as they lie over each other
+    const Layer& layer = wish.layers[i];
+    const Palette& palette = palette_of(wish, layer);
+    std::set<double> there = (*seen)[i].values;
+    bool is_shown = (*seen)[i].is_seen;
+    if (layer.table) {
+      const auto marked = marked_keys(context, wish, layer, camera);
+      if (!marked) return tl::unexpected(marked.error());
+      is_shown |= !marked->empty();
+      there.insert(marked->begin(), marked->end());
+    }
+    const bool waits = wish.shown.provisional.contains(layer.id);  // also where it was erased
+    if (!is_shown && !waits) continue;
+    legends.push_back(figure::legend_of(layer, palette, &there));
+    if (waits) {
+      const Palette::Point& mark = room::provisional_palette()->points.front();
+      legends.back().entries.push_back({wish.waiting_label, mark.color, mark.pattern, mark.angle, true});
+    }
+    if (palette.column.empty() || !layer.table) continue;
+    const auto table = context.store.table(std::to_string(*layer.table), wish.role);
+    const Column* column = table ? find_column(table->columns, palette.column) : nullptr;
+    if (column)
+      legends.back().title = layer.name + ": " + column->name + (column->unit.empty() ? "" : " [" + column->unit + "]");
+  }
+  return legends;
+}
+
+}  // namespace strata::net
