@@ -7,14 +7,13 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <mutex>
 #include <numbers>
 
 #include "mesh/parallel.h"
 #include "mesh/slot_bits.h"
+#include "query/evaluation_plan.h"
 #include "query/texel_values.h"
-#include "query/tile_table.h"
 
 namespace strata::query {
 namespace {
@@ -42,34 +41,59 @@ struct Truths {
   Bits known = 0;
 };
 
-struct Source {
-  TileTable tiles;
-  ValueType type;
-  int resolution;
-};
-using Sources = std::map<std::string, Source>;
-
 // What a formula reads; constant while it is evaluated.
 struct Inputs {
-  Sources layers;
+  const std::vector<PlanSource>& sources;
   const std::vector<RecordNumbers>& records;
   const mesh::SurfaceMap& map;
   const Frame& frame;
 };
 
+// Values of layers that were decoded, so that a block decodes each of them once.
+class Decoded {
+ public:
+  explicit Decoded(std::size_t sources) : of_source_(sources) {}
+  void clear() {
+    for (Entry& entry : of_source_) entry.is_here = false;
+  }
+  template <class Make>
+  const Numbers& get(int source, Make make) {
+    Entry& entry = of_source_[static_cast<std::size_t>(source)];
+    if (!entry.is_here) entry.numbers = make();
+    entry.is_here = true;
+    return entry.numbers;
+  }
+
+ private:
+  struct Entry {
+    bool is_here = false;
+    Numbers numbers;
+  };
+  std::vector<Entry> of_source_;
+};
+
 class Block {
  public:
-  Block(const Inputs& inputs, std::uint32_t slot)
+  Block(const Inputs& inputs, std::uint32_t slot, Decoded& decoded)
       : inputs_(inputs),
+        decoded_(decoded),
         slot_(slot),
         bx_(static_cast<int>(inputs.map.block_of_slot[slot]) % inputs.map.blocks_per_side),
-        by_(static_cast<int>(inputs.map.block_of_slot[slot]) / inputs.map.blocks_per_side) {}
+        by_(static_cast<int>(inputs.map.block_of_slot[slot]) / inputs.map.blocks_per_side) {
+    decoded_.clear();
+  }
+  // Of no place: the one source has 64 bit patterns from `first` on, or no value.
+  Block(const Inputs& inputs, std::optional<std::uint32_t> first, Decoded& decoded)
+      : inputs_(inputs), decoded_(decoded), slot_(0), bx_(0), by_(0), is_pattern_(true), first_pattern_(first) {
+    decoded_.clear();
+  }
 
-  Truths truths(const Expression& e) const {
+  Truths truths(const PlanNode& e) const {
+    if (e.table) return by_table(e);
     const auto part = [&](std::size_t i) { return truths(e.parts[i]); };
     switch (e.op) {
       case Op::truth: return {e.number != 0 ? kAll : 0, kAll};
-      case Op::valid: return {layer(e.name, false).known, kAll};
+      case Op::valid: return {validity(e.source), kAll};
       case Op::known: return {numbers(e.parts[0]).known, kAll};
       case Op::record_truth: {
         const Numbers answer = of_records(e);
@@ -104,7 +128,7 @@ class Block {
   }
 
   // A condition is 1 or 0.
-  Numbers any(const Expression& e) const {
+  Numbers any(const PlanNode& e) const {
     if (!e.is_condition()) return numbers(e);
     const Truths truth = truths(e);
     Numbers result;
@@ -114,7 +138,7 @@ class Block {
     return result;
   }
 
-  Numbers numbers(const Expression& e) const {
+  Numbers numbers(const PlanNode& e) const {
     switch (e.op) {
       case Op::number: {
         Numbers constant;
@@ -123,7 +147,7 @@ class Block {
         constant.known = known ? kAll : 0;
         return constant;
       }
-      case Op::layer: return layer(e.name, true);
+      case Op::layer: return layer(e.source);
       case Op::record_number: return of_records(e);
       case Op::choose: return choice(e);
       case Op::negate: return mapped(e, [](double x) { return -x; });
@@ -160,23 +184,96 @@ class Block {
   }
 
  private:
-  Truths comparison(const Expression& e) const {
-    const Numbers a = numbers(e.parts[0]), b = numbers(e.parts[1]);
-    const auto where = [&](auto test) { return bits_where([&](int i) { return test(a.value[i], b.value[i]); }); };
+  Truths comparison(const PlanNode& e) const {
+    if (e.set) return among(e);
+    const Numbers a = numbers(e.parts[0]);
+    const PlanNode& right = e.parts[1];
+    if (right.op == Op::number && std::isfinite(right.number))
+      return {compare(e.op, a, [constant = right.number](std::size_t) { return constant; }) & a.known, a.known};
+    const Numbers b = numbers(right);
     const Bits known = a.known & b.known;
-    Bits holds = 0;
-    switch (e.op) {
-      case Op::less: holds = where([](double x, double y) { return x < y; }); break;
-      case Op::less_equal: holds = where([](double x, double y) { return x <= y; }); break;
-      case Op::greater: holds = where([](double x, double y) { return x > y; }); break;
-      case Op::greater_equal: holds = where([](double x, double y) { return x >= y; }); break;
-      case Op::equal: holds = where([](double x, double y) { return x == y; }); break;
-      default: holds = where([](double x, double y) { return x != y; }); break;
-    }
-    return {holds & known, known};
+    return {compare(e.op, a, [&b](std::size_t i) { return b.value[i]; }) & known, known};
   }
 
-  Numbers choice(const Expression& e) const {
+  template <class Right>
+  static Bits compare(Op op, const Numbers& a, Right right) {
+    const auto where = [&](auto test) { return bits_where([&](std::size_t i) { return test(a.value[i], right(i)); }); };
+    switch (op) {
+      case Op::less: return where([](double x, double y) { return x < y; });
+      case Op::less_equal: return where([](double x, double y) { return x <= y; });
+      case Op::greater: return where([](double x, double y) { return x > y; });
+      case Op::greater_equal: return where([](double x, double y) { return x >= y; });
+      case Op::equal: return where([](double x, double y) { return x == y; });
+      default: return where([](double x, double y) { return x != y; });
+    }
+  }
+
+  Truths among(const PlanNode& e) const {
+    const Numbers a = numbers(e.parts[0]);
+    Bits holds = 0;
+    double last = std::numeric_limits<double>::quiet_NaN();
+    bool found = false;
+    for (Bits rest = a.known; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      const double value = a.value[static_cast<std::size_t>(i)];
+      if (value != last) {  // neighbours mostly hold one value
+        last = value;
+        found = e.set->contains(value);
+      }
+      holds |= Bits{found} << i;
+    }
+    return {holds, a.known};
+  }
+
+  Truths by_table(const PlanNode& e) const {
+    const PlanSource& source = inputs_.sources[static_cast<std::size_t>(e.source)];
+    const TruthTable& table = *e.table;
+    Truths result;
+    const auto put = [&](int i, Bits truth) {
+      result.holds |= (truth & 1u) << i;
+      result.known |= (truth >> 1u) << i;
+    };
+    if (source.resolution != inputs_.map.resolution) {
+      for_each_under(source, [&](int i, const TileData* tile, int texel) {
+        const bool has_value = tile != nullptr && tile->valid.test(texel);
+        put(i, has_value ? table.of_bits[tile->bits(texel)] : table.of_nothing);
+      });
+      return result;
+    }
+    const TileData* tile = source.tiles.of_block(bx_, by_);
+    const int bx = bx_ % kBlocksPerTile, by = by_ % kBlocksPerTile;
+    const Bits valid = tile == nullptr ? 0 : block_bits(tile->valid, bx, by);
+    if (valid != kAll) {
+      if (table.of_nothing & 1u) result.holds = ~valid;
+      if (table.of_nothing & 2u) result.known = ~valid;
+    }
+    if (valid == 0) return result;
+    const auto take = [&]<class TexelBits>(TexelBits) {
+      for (int row = 0; row < kBlockSize; ++row) {
+        const std::size_t first =
+            (static_cast<std::size_t>(by) * kBlockSize + static_cast<std::size_t>(row)) * kTileSize +
+            static_cast<std::size_t>(bx) * kBlockSize;
+        std::array<TexelBits, kBlockSize> bits;
+        std::memcpy(bits.data(), tile->values.data() + first * sizeof(TexelBits), sizeof bits);
+        Bits holds = 0, known = 0;
+        for (int x = 0; x < kBlockSize; ++x) {
+          const Bits truth = table.of_bits[bits[static_cast<std::size_t>(x)]];
+          holds |= (truth & 1u) << x;
+          known |= (truth >> 1u) << x;
+        }
+        const Bits in_row = valid >> (row * kBlockSize) & 0xffu;
+        result.holds |= (holds & in_row) << (row * kBlockSize);
+        result.known |= (known & in_row) << (row * kBlockSize);
+      }
+    };
+    if (bytes_per_texel(source.type) == 1)
+      take(std::uint8_t{});
+    else
+      take(std::uint16_t{});
+    return result;
+  }
+
+  Numbers choice(const PlanNode& e) const {
     const Truths when = truths(e.parts[0]);
     const Numbers then = numbers(e.parts[1]), otherwise = numbers(e.parts[2]);
     Numbers result;
@@ -186,14 +283,14 @@ class Block {
   }
 
   template <class Function>
-  Numbers mapped(const Expression& e, Function function) const {
+  Numbers mapped(const PlanNode& e, Function function) const {
     Numbers result = numbers(e.parts[0]);
     for (double& value : result.value) value = function(value);
     return only_finite(std::move(result));
   }
 
   template <class Function>
-  Numbers folded(const Expression& e, Function function) const {
+  Numbers folded(const PlanNode& e, Function function) const {
     Numbers result = numbers(e.parts[0]);
     for (std::size_t part = 1; part < e.parts.size(); ++part) {
       const Numbers next = numbers(e.parts[part]);
@@ -233,9 +330,9 @@ class Block {
   }
 
   // What is known of the records whose keys the layer holds.
-  Numbers of_records(const Expression& e) const {
+  Numbers of_records(const PlanNode& e) const {
     const RecordNumbers& records = inputs_.records[e.index];
-    Numbers result = layer(e.name, true);
+    Numbers result = layer(e.source);
     double last = -1, found = std::numeric_limits<double>::quiet_NaN();  // neighbours mostly hold one key
     for (int i = 0; i < kTexels; ++i) {
       if (((result.known >> i) & 1u) == 0) continue;
@@ -250,26 +347,48 @@ class Block {
     return only_finite(std::move(result));
   }
 
-  // Validity alone costs no decoding.
-  Numbers layer(const std::string& slug, bool decoded) const {
-    const Source& source = inputs_.layers.at(slug);
+  const Numbers& layer(int number) const {
+    return decoded_.get(number, [&] { return decode(inputs_.sources[static_cast<std::size_t>(number)], true); });
+  }
+  // Costs no decoding.
+  Bits validity(int number) const { return decode(inputs_.sources[static_cast<std::size_t>(number)], false).known; }
+
+  Numbers decode(const PlanSource& source, bool decoded) const {
+    if (is_pattern_) return pattern(source, decoded);
     if (source.resolution == inputs_.map.resolution) return same_block(source, decoded);
     Numbers result;
+    for_each_under(source, [&](int i, const TileData* tile, int texel) {
+      if (tile == nullptr || !tile->valid.test(texel)) return;
+      const auto place = static_cast<std::size_t>(i);
+      if (decoded) result.value[place] = decode_value(source.type, tile->bits(texel));
+      // A raster may have brought infinity into a float layer.
+      if (!decoded || std::isfinite(result.value[place])) result.known |= Bits{1} << i;
+    });
+    return decoded ? only_finite(std::move(result)) : result;
+  }
+
+  // visit(texel of the block, tile or null, texel in the tile): what of a layer of another resolution lies under it.
+  template <class Visit>
+  void for_each_under(const PlanSource& source, Visit visit) const {
     for (int i = 0; i < kTexels; ++i) {
       const int x = source.tiles.texel_under(bx_ * kBlockSize + i % kBlockSize, inputs_.map.resolution),
                 y = source.tiles.texel_under(by_ * kBlockSize + i / kBlockSize, inputs_.map.resolution);
-      const TileData* tile = source.tiles.of_texel(x, y);
-      const int texel = (y % kTileSize) * kTileSize + x % kTileSize;
-      if (tile == nullptr || !tile->valid.test(texel)) continue;
-      if (decoded) result.value[i] = decode_value(source.type, tile->bits(texel));
-      // A raster may have brought infinity into a float layer.
-      if (!decoded || std::isfinite(result.value[i])) result.known |= Bits{1} << i;
+      visit(i, source.tiles.of_texel(x, y), (y % kTileSize) * kTileSize + x % kTileSize);
     }
-    return result;
+  }
+
+  Numbers pattern(const PlanSource& source, bool decoded) const {
+    Numbers result;
+    if (!first_pattern_) return result;
+    result.known = kAll;
+    if (!decoded) return result;
+    const double* values = values_of_bits(source.type);
+    for (std::size_t i = 0; i < kTexels; ++i) result.value[i] = values[*first_pattern_ + i];
+    return only_finite(std::move(result));
   }
 
   // Of a layer that has the map's own texels.
-  Numbers same_block(const Source& source, bool decoded) const {
+  Numbers same_block(const PlanSource& source, bool decoded) const {
     Numbers result;
     const TileData* tile = source.tiles.of_block(bx_, by_);
     if (tile == nullptr) return result;
@@ -278,11 +397,14 @@ class Block {
     if (!decoded || result.known == 0) return result;
     const auto take = [&]<class TexelBits>(TexelBits, auto value_of) {
       for (int row = 0; row < kBlockSize; ++row) {
-        const auto first = static_cast<std::size_t>((by * kBlockSize + row) * kTileSize + bx * kBlockSize);
+        const std::size_t first =
+            (static_cast<std::size_t>(by) * kBlockSize + static_cast<std::size_t>(row)) * kTileSize +
+            static_cast<std::size_t>(bx) * kBlockSize;
         std::array<TexelBits, kBlockSize> bits;
         std::memcpy(bits.data(), tile->values.data() + first * sizeof(TexelBits), sizeof bits);
         for (int x = 0; x < kBlockSize; ++x)
-          result.value[static_cast<std::size_t>(row * kBlockSize + x)] = value_of(bits[static_cast<std::size_t>(x)]);
+          result.value[static_cast<std::size_t>(row) * kBlockSize + static_cast<std::size_t>(x)] =
+              value_of(bits[static_cast<std::size_t>(x)]);
       }
     };
     const double* values = values_of_bits(source.type);
@@ -298,25 +420,49 @@ class Block {
   }
 
   const Inputs& inputs_;
+  Decoded& decoded_;
   const std::uint32_t slot_;
   const int bx_, by_;
+  const bool is_pattern_ = false;
+  const std::optional<std::uint32_t> first_pattern_{};
 };
 
-// The layers that the formula names, by slug. Refused: one that is not there.
-Result<Sources> sources_of(const Expression& expression, const std::vector<LayerView>& layers,
-                           const std::string& field) {
-  Sources sources;
-  for (const std::string& slug : layers_of(expression)) {
-    const auto found = std::find_if(layers.begin(), layers.end(), [&](const auto& v) { return v.layer.slug == slug; });
-    if (found == layers.end())
-      return fail(
-          422, "Expression not understood",
-          "This model has no layer '" + slug + "'. Layers are named by their slugs; a subtraction needs spaces.",
-          field);
-    const Layer& layer = found->layer;
-    sources.try_emplace(slug, Source{TileTable(found->snapshot.tiles, layer.resolution), layer.type, layer.resolution});
+// Below it a condition is as quick as its table.
+constexpr std::uint64_t kFewestSteps = 3;
+
+TruthTable table_of(const PlanNode& condition, const Inputs& inputs) {
+  const ValueType type = inputs.sources[static_cast<std::size_t>(condition.source)].type;
+  Decoded decoded(inputs.sources.size());
+  const auto truth_of = [](const Truths& truths, int i) {
+    return static_cast<std::uint8_t>((truths.holds >> i & 1u) | (truths.known >> i & 1u) << 1u);
+  };
+  TruthTable table;
+  table.of_bits.resize(std::size_t{1} << (8 * bytes_per_texel(type)));
+  for (std::uint32_t first = 0; first < table.of_bits.size(); first += kTexels) {
+    const Truths truths = Block(inputs, std::optional(first), decoded).truths(condition);
+    for (int i = 0; i < kTexels; ++i) table.of_bits[first + static_cast<std::uint32_t>(i)] = truth_of(truths, i);
   }
-  return sources;
+  table.of_nothing = truth_of(Block(inputs, std::optional<std::uint32_t>(), decoded).truths(condition), 0);
+  return table;
+}
+
+// Makes tables of the largest conditions that have one, where there are texels enough to look them up.
+void make_tables(PlanNode& node, const Inputs& inputs) {
+  if (node.is_condition() && steps_of(node) >= kFewestSteps) {
+    const int source = only_source(node);
+    const int bytes = source < 0 ? 4 : bytes_per_texel(inputs.sources[static_cast<std::size_t>(source)].type);
+    const std::size_t blocks = (std::size_t{1} << (8 * bytes)) / kTexels;
+    if (bytes <= 2 && inputs.map.block_of_slot.size() >= 2 * blocks) {
+      PlanNode looked_up;
+      looked_up.op = node.op;
+      node.source = source;
+      looked_up.source = source;
+      looked_up.table = std::make_shared<const TruthTable>(table_of(node, inputs));
+      node = std::move(looked_up);
+      return;
+    }
+  }
+  for (PlanNode& part : node.parts) make_tables(part, inputs);
 }
 
 // Numbers of one block become texels of its tile. The bits where a number does not fit the type.
@@ -341,17 +487,20 @@ Bits write_block(const Numbers& numbers, Bits wanted, ValueType type, int block_
 Result<TexelSelection> select_where(const BoundExpression& condition, const std::vector<LayerView>& layers,
                                     const mesh::SurfaceMap& map, const std::string& field, int threads,
                                     const Frame& frame) {
-  auto sources = sources_of(condition.expression, layers, field);
-  if (!sources) return tl::unexpected(sources.error());
-  const Inputs inputs{std::move(*sources), condition.records, map, frame};
+  auto plan = plan_evaluation(condition.expression, layers, field);
+  if (!plan) return tl::unexpected(plan.error());
+  const Inputs inputs{plan->sources, condition.records, map, frame};
+  make_tables(plan->root, inputs);
   const std::size_t slots = map.block_of_slot.size();
   TexelSelection selection(slots, 0);
   constexpr std::size_t kSlotsAtOnce = 1024;
   mesh::parallel_for(threads, static_cast<int>((slots + kSlotsAtOnce - 1) / kSlotsAtOnce), [&](int part) {
-    for (std::size_t slot = part * kSlotsAtOnce; slot < std::min(slots, (part + 1) * kSlotsAtOnce); ++slot) {
+    Decoded decoded(plan->sources.size());
+    const std::size_t first = static_cast<std::size_t>(part) * kSlotsAtOnce;
+    for (std::size_t slot = first; slot < std::min(slots, first + kSlotsAtOnce); ++slot) {
       if (map.surface_mask[slot] == 0) continue;
-      const Block block(inputs, static_cast<std::uint32_t>(slot));
-      selection[slot] = block.truths(condition.expression).holds & map.surface_mask[slot];
+      const Block block(inputs, static_cast<std::uint32_t>(slot), decoded);
+      selection[slot] = block.truths(plan->root).holds & map.surface_mask[slot];
     }
   });
   return selection;
@@ -360,9 +509,10 @@ Result<TexelSelection> select_where(const BoundExpression& condition, const std:
 Result<TileMap> compute_tiles(const BoundExpression& expression, const std::vector<LayerView>& layers,
                               const mesh::SurfaceMap& map, const Frame& frame, ValueType type, const std::string& field,
                               int threads) {
-  auto sources = sources_of(expression.expression, layers, field);
-  if (!sources) return tl::unexpected(sources.error());
-  const Inputs inputs{std::move(*sources), expression.records, map, frame};
+  auto plan = plan_evaluation(expression.expression, layers, field);
+  if (!plan) return tl::unexpected(plan.error());
+  const Inputs inputs{plan->sources, expression.records, map, frame};
+  make_tables(plan->root, inputs);
   const int tiles_per_side = map.resolution / kTileSize;
   std::vector<std::shared_ptr<TileData>> tiles(static_cast<std::size_t>(tiles_per_side) *
                                                static_cast<std::size_t>(tiles_per_side));
@@ -371,12 +521,13 @@ Result<TileMap> compute_tiles(const BoundExpression& expression, const std::vect
   double unfit = 0;
   mesh::parallel_for(threads, static_cast<int>(tiles.size()), [&](int number) {
     auto tile = std::make_shared<TileData>(type);
+    Decoded decoded(plan->sources.size());
     for (int i = 0; i < kBlocksPerTile * kBlocksPerTile && fits; ++i) {
       const int bx = number % tiles_per_side * kBlocksPerTile + i % kBlocksPerTile,
                 by = number / tiles_per_side * kBlocksPerTile + i / kBlocksPerTile;
       const std::uint32_t slot = mesh::slot_at(map, bx, by);
       if (slot == mesh::kNoSlot || map.surface_mask[slot] == 0) continue;
-      const Numbers numbers = Block(inputs, slot).any(expression.expression);
+      const Numbers numbers = Block(inputs, slot, decoded).any(plan->root);
       const Bits wrong = write_block(numbers, map.surface_mask[slot], type, bx, by, *tile);
       if (wrong == 0) continue;
       const std::lock_guard lock(mutex);

@@ -6,7 +6,9 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <sstream>
 
+#include "query/evaluation_plan.h"
 #include "query/expression_evaluator.h"
 #include "query/expression_parser.h"
 
@@ -248,6 +250,76 @@ struct Finding {
 std::optional<Finding> finding(double key) {
   if (key < 0) return {};
   return Finding{key * 2 - 1, key == 2};
+}
+
+// "a, b, …": every `step`th number, times `unit`.
+std::string numbers_between(int low, int high, int step, double unit = 1) {
+  std::ostringstream text;
+  for (int n = low; n <= high; n += step) text << (n == low ? "" : ",") << n * unit;
+  return text.str();
+}
+
+TEST(Expression, a_list_selects_as_its_comparisons_do_for_every_type) {
+  const auto is_listed = [](Value v, double step) { return v && std::fmod(*v + 30, step) == 0; };
+  const std::string eighths = numbers_between(-128, 128, 1, 0.125), thirds = numbers_between(-30, 999, 3);
+  expect_selected("wet in (" + eighths + ")", [&](int, int, const At& a) { return is_listed(a.wet, 0.125); });
+  expect_selected("wet not in (1, 2, 3)",
+                  [&](int, int, const At& a) { return a.wet && *a.wet != 1 && *a.wet != 2 && *a.wet != 3; });
+  expect_selected("fine in (" + thirds + ")", [&](int, int, const At& a) { return is_listed(a.fine, 3); });
+  expect_selected("\"3d\" in (" + thirds + ")", [&](int, int, const At& a) { return is_listed(a.coarse, 3); });
+  expect_selected("\"3d\" not in (" + thirds + ")",
+                  [&](int, int, const At& a) { return a.coarse && !is_listed(a.coarse, 3); });
+  expect_selected("\"roof-crack\" + 0 in (" + thirds + ")",
+                  [&](int, int, const At& a) { return is_listed(a.crack, 3); });
+  expect_selected("abs(wet) in (" + thirds + ") or \"3d\" in (1, 2, 8)", [&](int, int, const At& a) {
+    return (a.wet && is_listed(std::abs(*a.wet), 3)) ||
+           (a.coarse && (*a.coarse == 1 || *a.coarse == 2 || *a.coarse == 8));
+  });
+  expect_selected("wet <> 1 and wet <> 2 and 3 <> wet and wet <> -0.0", [](int, int, const At& a) {
+    return a.wet && *a.wet != 1 && *a.wet != 2 && *a.wet != 3 && *a.wet != 0;
+  });
+  expect_selected("wet in (1, \"3d\", null, 2, 3, 4)", [](int, int, const At& a) {
+    return a.wet && (*a.wet == 1 || *a.wet == 2 || *a.wet == 3 || *a.wet == 4 || (a.coarse && *a.wet == *a.coarse));
+  });
+  expect_selected("wet not in (1, 2, 3, null) or wet = 5", [](int, int, const At& a) { return a.wet == 5; });
+}
+
+TEST(Expression, a_condition_over_one_layer_of_bytes_is_what_its_parts_are) {
+  expect_selected("not (\"roof-crack\" between -1 and 1 and \"roof-crack\" <> 0) or \"roof-crack\" is null",
+                  [](int, int, const At& a) { return !a.crack || *a.crack == 0 || std::abs(*a.crack) > 1; });
+  expect_selected("case when valid(\"3d\") then \"3d\" ^ 2 else 11 end > 10",
+                  [](int, int, const At& a) { return !a.coarse || *a.coarse * *a.coarse > 10; });
+}
+
+TEST(Expression, the_steps_at_a_texel_do_not_grow_with_a_list) {
+  const auto steps = [](const std::string& text) {
+    const auto condition = parse_condition(text, "where");
+    EXPECT_TRUE(condition) << condition.error().detail;
+    return steps_of(plan_evaluation(*condition, views(), "where")->root);
+  };
+  const std::string few = numbers_between(1, 5, 1), many = numbers_between(1, 900, 1);
+  EXPECT_EQ(steps("wet in (" + many + ")"), steps("wet in (" + few + ")"));
+  EXPECT_EQ(steps("wet not in (" + many + ")"), steps("wet not in (" + few + ")"));
+  std::string chain = "wet = 0", nested = "wet = 0", contrary = "wet <> 0";
+  for (int i = 1; i < 200; ++i) {
+    chain += " or wet = " + std::to_string(i);
+    nested = i < 60 ? "(" + nested + " or wet = " + std::to_string(i) + ")" : nested;
+    contrary += " and wet <> " + std::to_string(i);
+  }
+  EXPECT_EQ(steps(chain), steps("wet in (1, 2, 3)"));
+  EXPECT_EQ(steps(nested), steps("wet in (1, 2, 3)"));
+  EXPECT_EQ(steps(contrary), steps("wet <> 1 and wet <> 2 and wet <> 3"));
+}
+
+TEST(NumberSet, finds_what_it_was_given_and_nothing_else) {
+  std::vector<double> numbers{-0.0, 1e300, -1e-300};
+  for (int i = 0; i < 1900; ++i) numbers.push_back(i * 1024.0);
+  const NumberSet set(numbers);
+  EXPECT_EQ(set.size(), 1902u);
+  for (const double number : numbers) EXPECT_TRUE(set.contains(number)) << number;
+  EXPECT_TRUE(set.contains(0.0));
+  for (int i = 0; i < 1900; ++i) EXPECT_FALSE(set.contains(i * 1024.0 + 1)) << i;
+  EXPECT_FALSE(NumberSet({}).contains(0));
 }
 
 TEST(Expression, a_computed_layer_holds_what_the_formula_is_at_each_texel) {
