@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
+
+#include "core/question.h"
 
 namespace strata::mesh {
 
@@ -12,16 +16,37 @@ inline int background_threads() { return static_cast<int>(std::max(2u, std::thre
 
 inline int hardware_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
 
-// Runs work(0) … work(count - 1) on up to `threads` threads (this one among them), each index once, in any order.
+// Runs work(0) … work(count - 1) on up to `threads` threads (this one among them), each index once, in any order. Between them the current question
+// (core/question.h) is asked whether it goes on. What one of them throws ends all and is thrown here.
 template <class Work>
 void parallel_for(int threads, int count, Work&& work) {
+  const QuestionTurn turn;
+  Question* const question = Question::current();
   std::atomic<int> next{0};
+  std::mutex mutex;
+  std::exception_ptr failure;
   const auto run = [&] {
-    for (int i = next++; i < count; i = next++) work(i);
+    try {
+      for (int i = next++; i < count; i = next++) {
+        turn.check();
+        work(i);
+      }
+    } catch (...) {
+      next = count;
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
   };
-  std::vector<std::jthread> others;
-  for (int t = 1; t < std::min(threads, count); ++t) others.emplace_back(run);
-  run();
+  {
+    std::vector<std::jthread> others;
+    for (int t = 1; t < std::min(threads, count); ++t)
+      others.emplace_back([&] {
+        const Question::Helper helper(question);
+        run();
+      });
+    run();
+  }
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace strata::mesh

@@ -80,9 +80,10 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       templates_(std::move(templates)),
       shared_(make_shared_state(options_, store, tools_)),
       workers_(options_.worker_threads, options_.max_waiting_requests),
+      questions_({.threads = options_.question_threads, .waiting = options_.max_waiting_requests}),
       bin_keeper_(store.bin(), std::chrono::days(options_.bin_days)),
-      context_{options_,          store,    rooms,   jobs,       renderer,   auth_, edit_book_, *shared_->sockets,
-               *shared_->metrics, workers_, *tools_, templates_, bin_keeper_},
+      context_{options_,          store,    rooms,      jobs,    renderer,   auth_,      edit_book_, *shared_->sockets,
+               *shared_->metrics, workers_, questions_, *tools_, templates_, bin_keeper_},
       recomputer_(context_) {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
@@ -132,6 +133,7 @@ App::~App() { stop_workers(); }
 void App::stop_workers() {
   recomputer_.stop();
   bin_keeper_.stop();
+  questions_.stop();
   workers_.stop();
   shared_->queries->stop();
 }
@@ -243,6 +245,8 @@ void App::handle(const Request& request, const Route& route, const Respond& send
                                     : respond;
   try {
     route.handler(request, answer);
+  } catch (const QuestionEnded& ended) {
+    answer(ended.problem());
   } catch (const std::exception& error) {
     // The address of a kiosk is its secret.
     const bool is_secret = !request.segments.empty() && request.segments.front() == "kiosk";

@@ -9,6 +9,7 @@
 #include "net/auth.h"
 #include "net/live_session.h"
 #include "net/live_sockets.h"
+#include "net/question_desk.h"
 #include "net/recomputer.h"
 #include "net/router.h"
 #include "net/routes.h"
@@ -31,6 +32,7 @@ class App {
   const ServerOptions& options() const { return options_; }
   Metrics& metrics() { return *shared_->metrics; }
   WorkerPool& workers() { return workers_; }
+  QuestionDesk& questions() { return questions_; }
 
   // Once the request's head is read; does not block. Puts the path's parameters into the request. Null: `refusal` is the answer.
   const Route* find_route(Request& request, Response& refusal) const;
@@ -74,6 +76,7 @@ class App {
   const TemplateShelf templates_;
   std::shared_ptr<LiveShared> shared_;
   WorkerPool workers_;
+  QuestionDesk questions_;
   Router router_;
   Route page_;  // everything that is no API address
   Route live_;  // the live connections, which no handler answers

@@ -15,6 +15,7 @@
 
 #include "core/log.h"
 #include "core/uuid.h"
+#include "net/client_watch.h"
 #include "net/connection_stream.h"
 #include "net/on_worker.h"
 #include "net/origin.h"
@@ -249,13 +250,27 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         co_return co_await send(response, request->method, false);
       }
     }
-    const Work handle = [this, request, route, has_body](const Respond& respond) {
+    std::shared_ptr<Question> question;
+    std::optional<ClientWatch> watch;
+    if (route->is_question || route->is_long_edit) {
+      question = app_.questions().begin(*request);
+      if (route->is_long_edit) question->skip_turns();
+      watch.emplace(stream_.get_executor(), connection().socket().native_handle(), question,
+                    [connections = connections_] { ++connections->app.metrics().questions_left; });
+    }
+    const Work handle = [this, request, route, has_body, question](const Respond& respond) {
+      const Question::Scope scope(question);
       if (has_body)
         if (auto refused = app_.admit_again(*request, *route)) return respond(std::move(*refused));
       app_.handle(*request, *route, respond);
     };
-    response = co_await on_worker(connections_, stream_.get_executor(), handle);
+    const std::shared_ptr<Question> at_desk = route->is_question ? question : nullptr;
+    response = co_await on_worker(connections_, stream_.get_executor(), handle, at_desk);
+    watch.reset();
     remove_body_file(*request);
+    // Of an answer that is made while it is sent the client's leaving is seen by the sending.
+    if (question) question->let_take_time();
+    stream_question_ = response.stream ? std::move(question) : nullptr;
     co_return co_await send(response, request->method, keep_alive);
   }
 
@@ -468,14 +483,21 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (!head_sent) co_return false;
     auto whole = std::make_shared<bool>(false);
     auto stream = *response.stream;
-    const Work pump = [this, self = shared_from_this(), stream, whole, in_chunks](const Respond& respond) {
+    const Work pump = [this, self = shared_from_this(), stream, whole, in_chunks,
+                       question = std::move(stream_question_)](const Respond& respond) {
+      const Question::Scope scope(question);
       std::uint64_t sent = 0;
-      const bool written = stream.write([&](std::span<const std::uint8_t> bytes) {
-        if (bytes.empty()) return true;  // an empty chunk would be the last one
-        if ((stream.length && sent + bytes.size() > *stream.length) || !send_piece(bytes, in_chunks)) return false;
-        sent += bytes.size();
-        return true;
-      });
+      bool written = false;
+      try {
+        written = stream.write([&](std::span<const std::uint8_t> bytes) {
+          if (bytes.empty()) return true;  // an empty chunk would be the last one
+          if ((stream.length && sent + bytes.size() > *stream.length) || !send_piece(bytes, in_chunks)) return false;
+          sent += bytes.size();
+          return true;
+        });
+      } catch (const QuestionEnded&) {
+        // The server stops: the client sees that it does not have all.
+      }
       *whole = written && (!stream.length || sent == *stream.length) && (!in_chunks || send_piece({}, true));
       respond(empty_response(200));
     };
@@ -609,6 +631,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   unsigned http_version_ = 11;  // of the request: 10 or 11
   bool by_https_ = false;       // the request came so, to here or to a proxy
   bool handed_over_ = false;
+  std::shared_ptr<Question> stream_question_;  // whose answer is made while it is sent
 };
 
 }  // namespace

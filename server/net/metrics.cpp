@@ -30,6 +30,8 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   gauge("strata_open_sockets", "WebSocket connections.", metrics.open_sockets.load());
   gauge("strata_open_rooms", "Models in memory.", gauges.open_rooms);
   gauge("strata_waiting_requests", "Requests that wait for a worker.", gauges.waiting_requests);
+  gauge("strata_waiting_questions", "Questions that wait to be answered.", gauges.waiting_questions);
+  gauge("strata_questions_under_way", "Questions that are being answered.", gauges.questions_under_way);
   gauge("strata_gpu_bytes", "GPU memory in use.", gauges.gpu_bytes);
   gauge("strata_memory_bytes", "Main memory that open models hold.", gauges.memory_bytes);
   counter("strata_edits_applied_total", "Edits that became visible.", metrics.edits_applied);
@@ -40,6 +42,9 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
   counter("strata_frame_bytes_sent_total", "Bytes of the pictures.", metrics.frame_bytes_sent);
   counter("strata_messages_received_total", "WebSocket messages received.", metrics.messages_received);
   counter("strata_messages_refused_total", "WebSocket messages refused.", metrics.messages_refused);
+  counter("strata_questions_left_total", "Questions whose client left before the answer.", metrics.questions_left);
+  add(text, "strata_question_steps_total", "counter", "Steps of questions: texels times the parts of a condition.",
+      std::to_string(gauges.question_steps));
   return text;
 }
 

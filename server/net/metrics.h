@@ -15,6 +15,7 @@ struct Metrics {
   std::atomic<std::uint64_t> edits_applied{0}, edits_saved{0}, edits_unsaved{0}, edits_refused{0};
   std::atomic<std::uint64_t> frames_sent{0}, frame_bytes_sent{0};
   std::atomic<std::uint64_t> messages_received{0}, messages_refused{0};
+  std::atomic<std::uint64_t> questions_left{0};  // by their clients
 
   void count_request(int status) { ++requests[status >= 100 && status < 600 ? status / 100 : 0]; }
 };
@@ -23,6 +24,8 @@ struct Gauges {
   std::size_t open_rooms = 0;
   std::uint64_t gpu_bytes = 0, memory_bytes = 0;
   std::size_t waiting_requests = 0;
+  std::size_t waiting_questions = 0, questions_under_way = 0;
+  std::uint64_t question_steps = 0;
 };
 
 // Prometheus text format 0.0.4.

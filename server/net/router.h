@@ -33,6 +33,10 @@ struct Route {
   bool keeps_answer = false;
   // …or what this makes of what was kept.
   std::function<Result<Response>(const Request& request, const nlohmann::json& kept)> replay{};
+  // An edit that may take long: ends with its client, within the limits of a question, but waits for no turn.
+  bool is_long_edit = false;
+  bool is_question =
+      false;  // may take long: answered by the question desk (net/question_desk.h), in turns, within limits
 };
 
 // Finds the route of a request. Filled before the server starts, read-only (so thread-safe) afterwards.

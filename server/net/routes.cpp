@@ -69,6 +69,7 @@ void apply_edit(const RouteContext& context, const Request& request, const std::
   if (!layer) return respond(layer.error());
   if (auto known = check_keys(context.store, *layer, room::painted_by(*layer, edit)); !known)
     return respond(known.error());
+  if (Question* question = Question::current()) edit.question = question->shared_from_this();
   const bool keyed = !request.header("idempotency-key").empty();
   if (keyed)
     if (auto same = context.edit_book.begin(room->model().id, edit); !same) return respond(same.error());

@@ -10,6 +10,7 @@
 #include "net/edit_book.h"
 #include "net/live_sockets.h"
 #include "net/metrics.h"
+#include "net/question_desk.h"
 #include "net/router.h"
 #include "net/server_options.h"
 #include "net/template_shelf.h"
@@ -33,6 +34,7 @@ struct RouteContext {
   LiveSockets& live_sockets;
   Metrics& metrics;
   WorkerPool& workers;
+  QuestionDesk& questions;
   ToolShelf& tools;
   const TemplateShelf& templates;
   BinKeeper& bin_keeper;

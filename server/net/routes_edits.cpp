@@ -109,7 +109,8 @@ void add_edit_routes(Router& router, const RouteContext& context) {
                 .handler = std::move(handler),
                 .role = role,
                 .body = BodyKind::memory,
-                .max_body = context.options.max_json_bytes});
+                .max_body = context.options.max_json_bytes,
+                .is_long_edit = true});
   };
   router.add({.method = Method::get,
               .pattern = layer + "/edits",

@@ -64,7 +64,8 @@ void add_extent_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/models/{model}/layers/{layer}/extent",
               .handler = answering([&context](const Request& request) { return extent(context, request); }),
               .body = BodyKind::memory,
-              .max_body = context.options.max_json_bytes});
+              .max_body = context.options.max_json_bytes,
+              .is_question = true});
 }
 
 }  // namespace strata::net

@@ -112,7 +112,8 @@ void add_map_routes(Router& router, const RouteContext& context) {
                 .role = Role::annotator,
                 .query = std::move(query),
                 .body = BodyKind::file,
-                .max_body = kMaxMapBytes});
+                .max_body = kMaxMapBytes,
+                .is_long_edit = true});
   };
   const auto map = [&](MakeValues make) {
     return [&context, budget, make](const Request& request, const Target& target) {

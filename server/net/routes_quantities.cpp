@@ -326,11 +326,13 @@ void add_quantity_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/layers/{layer}/quantities",
               .handler = answering([&context](const Request& request) { return layer_quantities(context, request); }),
-              .query = {"at", "lang", "f", "separator"}});
+              .query = {"at", "lang", "f", "separator"},
+              .is_question = true});
   router.add({.method = Method::get,
               .pattern = "/api/v1/tables/{table}/quantities",
               .handler = answering([&context](const Request& request) { return table_quantities(context, request); }),
-              .query = {"lang", "f", "separator"}});
+              .query = {"lang", "f", "separator"},
+              .is_question = true});
 }
 
 }  // namespace strata::net

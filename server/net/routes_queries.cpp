@@ -136,12 +136,14 @@ void add_query_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/models/{model}/positions",
               .handler = answering([&context](const Request& request) { return positions(context, request); }),
               .body = BodyKind::memory,
-              .max_body = context.options.max_positions_bytes});
+              .max_body = context.options.max_positions_bytes,
+              .is_question = true});
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/profile",
               .handler = answering([&context](const Request& request) { return profile(context, request); }),
               .body = BodyKind::memory,
-              .max_body = context.options.max_json_bytes});
+              .max_body = context.options.max_json_bytes,
+              .is_question = true});
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/pick",
               .handler = answering([&context](const Request& request) { return pick(context, request); }),

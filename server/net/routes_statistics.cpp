@@ -218,19 +218,22 @@ void add_statistics_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/layers/{layer}/statistics",
               .handler = answering([&context](const Request& request) { return statistics(context, request); }),
-              .query = {"include", "at", "where"}});
+              .query = {"include", "at", "where"},
+              .is_question = true});
   router.add(
       {.method = Method::post,
        .pattern = "/api/v1/models/{model}/select",
        .handler = [&context](const Request& request, const Respond& respond) { select(context, request, respond); },
        .body = BodyKind::memory,
-       .max_body = context.options.max_json_bytes});
+       .max_body = context.options.max_json_bytes,
+       .is_question = true});
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/cross-table",
               .handler = answering([&context](const Request& request) { return cross_table(context, request); }),
               .query = {"f", "separator", "lang"},
               .body = BodyKind::memory,
-              .max_body = context.options.max_json_bytes});
+              .max_body = context.options.max_json_bytes,
+              .is_question = true});
 }
 
 }  // namespace strata::net

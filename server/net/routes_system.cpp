@@ -35,7 +35,9 @@ void add_system_routes(Router& router, const RouteContext& context) {
   open("/readyz", [&context](const Request&) -> Result<Response> { return readiness(context); });
   open("/metrics", [&context](const Request&) -> Result<Response> {
     return text_response(metrics_text(context.metrics, {context.rooms.open_rooms(), context.renderer.gpu_bytes_used(),
-                                                        context.rooms.memory_bytes_used(), context.workers.waiting()}),
+                                                        context.rooms.memory_bytes_used(), context.workers.waiting(),
+                                                        context.questions.waiting(), context.questions.under_way(),
+                                                        context.questions.steps()}),
                          "text/plain; version=0.0.4; charset=utf-8");
   });
   open("/api/v1/openapi.json", [&context](const Request&) { return contract(context); });

@@ -42,7 +42,8 @@ void add_vertex_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/vertices.ply",
               .handler = answering([&context](const Request& request) { return read_vertices(context, request); }),
-              .query = {"layers", "at"}});
+              .query = {"layers", "at"},
+              .is_question = true});
 }
 
 }  // namespace strata::net

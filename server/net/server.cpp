@@ -160,6 +160,7 @@ void Server::stop() {
     boost::system::error_code ignored;
     impl.acceptor.close(ignored);
   });
+  impl.app.questions().end_all({503, "Server stops", "The server is shutting down; ask again when it is back.", {}});
   impl.app.live_sockets().close_all(kCloseGoingAway, "the server stops");
   wait_until([&] { return impl.app.metrics().open_sockets.load() == 0; }, kGoodbye);
   wait_until([&] { return impl.connections->requests_at_work.load() == 0; }, kAnswers);

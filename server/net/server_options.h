@@ -21,6 +21,7 @@ struct ServerOptions {
   std::string owner_token;                   // STRATA_OWNER_TOKEN: empty or at least 32 characters
   int http_threads = 2;                      // for sockets; nothing on them blocks
   int worker_threads = 8;                    // for what blocks
+  int question_threads = 8;                  // for questions; few of one person at once
   int query_threads = 2;                     // for picks of the live connections
   std::size_t max_waiting_requests = 256;    // more get a 503
   std::size_t max_connections = 2048;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <unordered_map>
 
+#include "core/question.h"
 #include "query/tile_table.h"
 
 namespace strata::query {
@@ -84,7 +85,9 @@ Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& column
   std::unordered_map<std::uint64_t, int> row_bits, column_bits;
   std::pair<std::uint64_t, std::uint64_t> last{kNone, kNone};
   Sum* last_sum = nullptr;  // neighbours mostly share both; references stay valid in this map
+  const QuestionTurn turn;
   for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
+    if (slot % 256 == 0) turn.check(256 * kBlockSize * kBlockSize);
     const auto block = static_cast<int>(map.block_of_slot[slot]);
     const int x0 = block % map.blocks_per_side * kBlockSize, y0 = block / map.blocks_per_side * kBlockSize;
     std::uint64_t rest = map.surface_mask[slot];

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <numbers>
 
+#include "core/question.h"
 #include "mesh/parallel.h"
 #include "mesh/slot_bits.h"
 #include "query/evaluation_plan.h"
@@ -427,6 +428,13 @@ class Block {
   const std::optional<std::uint32_t> first_pattern_{};
 };
 
+// A block takes microseconds, a long condition some hundred.
+constexpr std::size_t kBlocksBetweenChecks = 64;
+
+void spend(std::uint64_t steps) {
+  if (Question* question = Question::current()) question->spend(steps);
+}
+
 // Below it a condition is as quick as its table.
 constexpr std::uint64_t kFewestSteps = 3;
 
@@ -486,21 +494,31 @@ Bits write_block(const Numbers& numbers, Bits wanted, ValueType type, int block_
 
 Result<TexelSelection> select_where(const BoundExpression& condition, const std::vector<LayerView>& layers,
                                     const mesh::SurfaceMap& map, const std::string& field, int threads,
-                                    const Frame& frame) {
+                                    const Frame& frame, const TexelSelection* within) {
   auto plan = plan_evaluation(condition.expression, layers, field);
   if (!plan) return tl::unexpected(plan.error());
   const Inputs inputs{plan->sources, condition.records, map, frame};
   make_tables(plan->root, inputs);
   const std::size_t slots = map.block_of_slot.size();
+  const auto wanted = [&](std::size_t slot) {
+    return within ? map.surface_mask[slot] & (*within)[slot] : map.surface_mask[slot];
+  };
+  std::size_t blocks = 0;
+  for (std::size_t slot = 0; slot < slots; ++slot) blocks += wanted(slot) != 0;
+  const std::uint64_t steps = steps_of(plan->root) * kTexels;
+  spend(steps * blocks);
   TexelSelection selection(slots, 0);
   constexpr std::size_t kSlotsAtOnce = 1024;
   mesh::parallel_for(threads, static_cast<int>((slots + kSlotsAtOnce - 1) / kSlotsAtOnce), [&](int part) {
     Decoded decoded(plan->sources.size());
     const std::size_t first = static_cast<std::size_t>(part) * kSlotsAtOnce;
+    const QuestionTurn turn;
+    std::size_t done = 0;
     for (std::size_t slot = first; slot < std::min(slots, first + kSlotsAtOnce); ++slot) {
-      if (map.surface_mask[slot] == 0) continue;
+      if (wanted(slot) == 0) continue;
+      if (++done % kBlocksBetweenChecks == 0) turn.check(steps * kBlocksBetweenChecks);
       const Block block(inputs, static_cast<std::uint32_t>(slot), decoded);
-      selection[slot] = block.truths(plan->root).holds & map.surface_mask[slot];
+      selection[slot] = block.truths(plan->root).holds & wanted(slot);
     }
   });
   return selection;
@@ -513,6 +531,9 @@ Result<TileMap> compute_tiles(const BoundExpression& expression, const std::vect
   if (!plan) return tl::unexpected(plan.error());
   const Inputs inputs{plan->sources, expression.records, map, frame};
   make_tables(plan->root, inputs);
+  std::size_t blocks = 0;
+  for (const std::uint64_t mask : map.surface_mask) blocks += mask != 0;
+  spend(steps_of(plan->root) * kTexels * blocks);
   const int tiles_per_side = map.resolution / kTileSize;
   std::vector<std::shared_ptr<TileData>> tiles(static_cast<std::size_t>(tiles_per_side) *
                                                static_cast<std::size_t>(tiles_per_side));

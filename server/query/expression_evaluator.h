@@ -24,10 +24,11 @@ struct BoundExpression {
 
 // The surface texels of the map where the condition holds (never gutter texels, and none where it is unknown). A layer of
 // another resolution counts by the texel that holds the centre of the map's texel. Refused (422 at `field`): a layer that is not
-// among `layers`. Runs on up to `threads` threads.
+// among `layers`. `within`: only these are looked at; null: all. Runs on up to `threads` threads, and may cost the current question
+// (core/question.h) more than it may (QuestionEnded), which is known before it begins.
 Result<TexelSelection> select_where(const BoundExpression& condition, const std::vector<LayerView>& layers,
                                     const mesh::SurfaceMap& map, const std::string& field, int threads = 2,
-                                    const Frame& frame = {});
+                                    const Frame& frame = {}, const TexelSelection* within = nullptr);
 
 // The content of a layer of `type` at the map's resolution: at each surface texel what the formula is there, nothing where it is
 // unknown; a condition is 1 or 0. Types of whole numbers get the nearest one. Gutter texels follow their owners. Refused as

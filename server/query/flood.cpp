@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/question.h"
 #include "query/tile_table.h"
 
 namespace strata::query {
@@ -18,7 +19,9 @@ TexelSelection flood(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
     open.push_back(texel);
   };
   take(start);
-  while (!open.empty()) {
+  const QuestionTurn turn;
+  for (std::size_t done = 0; !open.empty(); ++done) {
+    if (done % kTexelsPerTile == 0) turn.check(kTexelsPerTile);
     const std::uint32_t texel = open.back();
     open.pop_back();
     mesh::for_each_neighbour(map, graph, texel, take);

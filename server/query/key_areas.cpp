@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "core/question.h"
 #include "query/texel_values.h"
 
 namespace strata::query {
@@ -25,7 +26,9 @@ std::map<std::int64_t, KeyArea> key_areas(const LayerView& view, const mesh::Sur
   const auto add = [&](const TileSums::Key& key) {
     if (const auto [found, fresh] = sums.try_emplace(key.bits, key); !fresh) found->second.add(key);
   };
+  const QuestionTurn turn;
   for (const auto& [address, tile] : view.snapshot.tiles) {
+    turn.check(kTexelsPerTile);
     const auto make = [&] { return sum_tile(*tile, address, view.layer.type, map, nullptr); };
     const auto counted = cache ? cache->sums(address, tile, make) : std::make_shared<const TileSums>(make());
     for (const TileSums::Key& key : counted->keys) add(key);

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/question.h"
 #include "query/texel_values.h"
 
 namespace strata::query {
@@ -37,16 +38,21 @@ PieceCounts count_pieces(const LayerView& view, const mesh::SurfaceMap& map, con
   const ValueType type = view.layer.type;
   const bool is_one = !classes.each && classes.limits.empty();
   const std::size_t texels = map.block_of_slot.size() * 64;
+  const QuestionMemory memory(texels * sizeof(std::uint32_t) * (is_one ? 1 : 2));
+  const QuestionTurn turn;
   Trees trees(texels);
   std::vector<std::uint32_t> class_of(is_one ? 0 : texels);
-  for (const auto& [address, tile] : view.snapshot.tiles)
+  for (const auto& [address, tile] : view.snapshot.tiles) {
+    turn.check(kTexelsPerTile);
     for_each_value(*tile, address, type, map, within,
                    [&](std::uint32_t slot, int texel, std::uint32_t bits, double value) {
                      const std::uint32_t number = slot * 64 + static_cast<std::uint32_t>(texel);
                      trees.add(number);
                      if (!is_one) class_of[number] = classes.of(bits, value);
                    });
+  }
   for (std::uint32_t texel = 0; texel < texels; ++texel) {
+    if (texel % kTexelsPerTile == 0) turn.check(kTexelsPerTile);
     if (!trees.has(texel)) continue;
     mesh::for_each_neighbour(map, graph, texel, [&](std::uint32_t other) {
       if (other < texel && trees.has(other) && (is_one || class_of[other] == class_of[texel])) trees.join(texel, other);

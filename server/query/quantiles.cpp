@@ -3,6 +3,7 @@
 #include <bit>
 #include <map>
 
+#include "core/question.h"
 #include "query/texel_values.h"
 
 namespace strata::query {
@@ -57,12 +58,15 @@ std::optional<Quantiles> quantiles(const LayerView& view, const mesh::SurfaceMap
 
   // Two digits of 16 bits: the area of each upper one, then of the lower ones where a share is reached.
   constexpr std::size_t kDigits = std::size_t{1} << 16;
+  const QuestionTurn turn;
   const auto for_each = [&](auto visit) {
-    for (const auto& [address, tile] : view.snapshot.tiles)
+    for (const auto& [address, tile] : view.snapshot.tiles) {
+      turn.check(kTexelsPerTile);
       for_each_value(
           *tile, address, type, map, within, [&](std::uint32_t slot, int texel, std::uint32_t, double value) {
             visit(code_of(type, value), double{map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)]});
           });
+    }
   };
   std::vector<double> upper(kDigits, 0.0);
   for_each([&](std::uint32_t code, double area) { upper[code >> 16] += area; });

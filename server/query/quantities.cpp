@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "core/question.h"
 #include "query/pieces.h"
 #include "query/texel_values.h"
 
@@ -30,8 +31,10 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
   };
   std::unordered_map<std::uint32_t, Sum> sums;
   std::uint32_t last_class = 0;
+  const QuestionTurn turn;
   Sum* last = nullptr;  // neighbours mostly are of one class; references into the map stay
   for (const auto& [address, tile] : sorted_tiles(view.snapshot.tiles)) {
+    turn.check(kTexelsPerTile);
     for_each_value(*tile, address, type, map, nullptr,
                    [&](std::uint32_t slot, int texel, std::uint32_t bits, double value) {
                      const std::uint32_t number = classes.of(bits, value);

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "core/question.h"
+
 namespace strata::query {
 namespace {
 
@@ -21,6 +23,7 @@ TileRows::TileRows(const Layer& layer, const TileMap& tiles)
 }
 
 void TileRows::read(int file_row, std::span<std::uint32_t> bits, std::span<std::uint8_t> valid) const {
+  check_question();
   std::fill(bits.begin(), bits.end(), 0u);
   std::fill(valid.begin(), valid.end(), std::uint8_t{0});
   const int y = resolution_ - 1 - file_row;

@@ -52,6 +52,7 @@ std::uint32_t largest_key(const CellSum& sum) {
 
 Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, double edge) {
   const bool has_keys = classes_of(texels.view.layer).each;
+  const QuestionTurn turn;
   std::unordered_map<Cell, CellSum, CellHash> cells;
   bool countable = true;
   for_each_sample(texels, [&](const TexelSample& sample) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/question.h"
 #include "query/texel_selection.h"
 #include "query/texel_values.h"
 #include "query/values.h"
@@ -33,6 +34,7 @@ void for_each_sample(const SurfaceTexels& texels, Visit&& visit) {
   const mesh::SurfaceMap& map = *texels.map;
   bool goes_on = true;
   for (const auto& [address, tile] : sorted_tiles(texels.view.snapshot.tiles)) {
+    check_question();
     for_each_value(*tile, address, texels.view.layer.type, map, texels.within ? &*texels.within : nullptr,
                    [&](std::uint32_t slot, int texel, std::uint32_t bits, double value) {
                      if (!goes_on) return;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "core/question.h"
 #include "core/texel_lookup.h"
 
 namespace strata::query {
@@ -112,6 +113,7 @@ bool VertexPly::write(const std::function<bool(std::span<const std::uint8_t>)>& 
   std::vector<std::uint8_t> out(text.begin(), text.end());
   const auto send_full = [&] {
     if (out.size() < kPieceBytes) return true;
+    check_question();
     const bool sent = sink(out);
     out.clear();
     return sent;

@@ -9,6 +9,7 @@
 #include "core/expression.h"
 #include "core/layer.h"
 #include "core/problem.h"
+#include "core/question.h"
 #include "core/review.h"
 #include "core/role.h"
 #include "core/stroke.h"
@@ -81,7 +82,8 @@ struct EditRequest {
   std::int64_t layer_id = 0;
   std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit, RestoreEdit, ReviewEdit>
       edit{};
-  nlohmann::json record{};  // the edit as asked, for the journal
+  nlohmann::json record{};               // the edit as asked, for the journal
+  std::shared_ptr<Question> question{};  // it is part of its answer; none: it has the limits of its author
 };
 
 // The keys that an edit of the layer paints: none where it erases, undoes or brings back what was.

@@ -312,10 +312,18 @@ void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
     if (!map)
       return done(
           Result<ComputedEdit>(fail(503, "GPU lost", "The graphics context is being restored; send the edit again.")));
+    auto question = item->request.question;
+    const Author& author = item->request.author;
+    if (!question) question = std::make_shared<Question>(author.user, limits_of(author.role), nullptr);
+    question->skip_turns();
+    const Question::Scope scope(question);
     try {
+      question->check();
       done(compute_edit(item->request, meta,
                         {*map, tiles, layers, metres, parts_.store, *parts_.surface, parts_.renderer, model,
                          meta.visibility, item->request.author.role}));
+    } catch (const QuestionEnded& ended) {
+      done(Result<ComputedEdit>(tl::unexpected(ended.problem())));
     } catch (const std::bad_alloc&) {
       done(Result<ComputedEdit>(
           fail(503, "Out of memory", "The server lacks the memory for this edit at the moment; try again later.")));

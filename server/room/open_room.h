@@ -137,7 +137,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   std::size_t people() const;   // who are in it, a connection each
   std::size_t take_departed();  // who have left it since this was asked
   const SurfaceMaps& maps() const { return *maps_; }
-  bool drop_map();  // the one that was not used for the longest time, where nothing is being painted. Blocks
+  bool drop_map();
   void take_no_edits() { takes_edits_ = false; }  // new ones are refused
   bool idle() const { return unanswered_ == 0; }  // every edit is durable or refused
   void shut(const Problem& why);                  // refuses what waits and what comes, lets go of the GPU; blocks
@@ -174,6 +174,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   // queries.cpp
   Result<TileMirror::Snapshot> tiles_at(const LayerState& state, At at) const;
   Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs, At at) const;
+  Result<std::optional<query::TexelSelection>> texels_within(const Selection& selection, const mesh::SurfaceMap& map);
   Result<std::optional<query::TexelSelection>> select_texels(const Selection& selection, const mesh::SurfaceMap& map);
   // `within` is null where the whole surface is meant; `is_now`: the view is the newest, whose sums are kept.
   Result<query::Statistics> count(const query::LayerView& view, const mesh::SurfaceMap& map,

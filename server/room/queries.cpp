@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "core/question.h"
 #include "mesh/parallel.h"
 #include "mesh/slot_bits.h"
 #include "query/expression_evaluator.h"
@@ -29,10 +30,6 @@ query::TexelSelection as_selection(const TileMasks& masks, const mesh::SurfaceMa
               query::block_bits(mask, static_cast<int>(bx), static_cast<int>(by)) & map.surface_mask[slot];
       }
   return selection;
-}
-
-void narrow(query::TexelSelection& selection, const query::TexelSelection& other) {
-  for (std::size_t slot = 0; slot < selection.size(); ++slot) selection[slot] &= other[slot];
 }
 
 }  // namespace
@@ -104,46 +101,41 @@ Result<std::vector<query::SeenLayer>> OpenRoom::seen_layers(const std::vector<st
   return query::seen_layers(*surface_->tree(), geometry_->origin, camera, columns, rows, *views, covers);
 }
 
-// Nothing where the whole surface is meant.
-Result<std::optional<query::TexelSelection>> OpenRoom::select_texels(const Selection& selection,
+Result<std::optional<query::TexelSelection>> OpenRoom::texels_within(const Selection& selection,
                                                                      const mesh::SurfaceMap& map) {
-  std::optional<query::TexelSelection> selected;
-  if (selection.where) {
-    std::vector<std::string> slugs;
-    for (const auto& layer : layers())
-      if (sees(selection.seen_by, layer.visibility)) slugs.push_back(layer.slug);
-    const std::vector<std::string> named = layers_of(*selection.where);
-    // Those that are not there are refused by the evaluator, with the field.
-    std::erase_if(slugs, [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
-    const auto views = layer_views(slugs, selection.at);
-    if (!views) return tl::unexpected(views.error());
-    const auto bound =
-        bind_expression(*selection.where, *views, parts_.store, selection.seen_by, selection.at, "where");
-    if (!bound) return tl::unexpected(bound.error());
-    auto holds = query::select_where(*bound, *views, map, "where", mesh::background_threads(),
-                                     {geometry_->origin, model().metres()});
-    if (!holds) return tl::unexpected(holds.error());
-    selected = std::move(*holds);
-  }
-  if (!selection.within) return selected;
-  query::TexelSelection inside;
+  if (!selection.within) return std::nullopt;
   if (const auto* outline = std::get_if<Outline>(&*selection.within)) {
     const auto masks = texels_in(*outline, map, *surface_, parts_.renderer, model_handle());
     if (!masks) return tl::unexpected(masks.error());
-    inside = as_selection(*masks, map);
-  } else {
-    const auto& around = std::get<Selection::Around>(*selection.within);
-    const auto start = find_place(around.at, map, *surface_, "within.at");
-    if (!start) return tl::unexpected(start.error());
-    const auto graph = surface_->graph(map);
-    if (!graph) return tl::unexpected(graph.error());
-    inside = query::select_near(map, **graph, start->texel, start->position, static_cast<float>(around.radius));
+    return as_selection(*masks, map);
   }
-  if (selected)
-    narrow(*selected, inside);
-  else
-    selected = std::move(inside);
-  return selected;
+  const auto& around = std::get<Selection::Around>(*selection.within);
+  const auto start = find_place(around.at, map, *surface_, "within.at");
+  if (!start) return tl::unexpected(start.error());
+  const auto graph = surface_->graph(map);
+  if (!graph) return tl::unexpected(graph.error());
+  return query::select_near(map, **graph, start->texel, start->position, static_cast<float>(around.radius));
+}
+
+// Nothing where the whole surface is meant. A condition is looked at within the place alone, so that a small one is quickly answered.
+Result<std::optional<query::TexelSelection>> OpenRoom::select_texels(const Selection& selection,
+                                                                     const mesh::SurfaceMap& map) {
+  auto inside = texels_within(selection, map);
+  if (!inside || !selection.where) return inside;
+  std::vector<std::string> slugs;
+  for (const auto& layer : layers())
+    if (sees(selection.seen_by, layer.visibility)) slugs.push_back(layer.slug);
+  const std::vector<std::string> named = layers_of(*selection.where);
+  // Those that are not there are refused by the evaluator, with the field.
+  std::erase_if(slugs, [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
+  const auto views = layer_views(slugs, selection.at);
+  if (!views) return tl::unexpected(views.error());
+  const auto bound = bind_expression(*selection.where, *views, parts_.store, selection.seen_by, selection.at, "where");
+  if (!bound) return tl::unexpected(bound.error());
+  auto holds = query::select_where(*bound, *views, map, "where", mesh::background_threads(),
+                                   {geometry_->origin, model().metres()}, *inside ? &**inside : nullptr);
+  if (!holds) return tl::unexpected(holds.error());
+  return std::move(*holds);
 }
 
 Result<query::Statistics> OpenRoom::count(const query::LayerView& view, const mesh::SurfaceMap& map,

@@ -1,8 +1,11 @@
 #include "room/surface_lookup.h"
 
+#include "core/question.h"
+
 namespace strata::room {
 
 std::shared_ptr<const mesh::SearchTree> SurfaceLookup::tree() {
+  const Question::Aside aside;  // whoever asks next wants it, too
   std::call_once(tree_once_, [&] { tree_ = std::make_shared<const mesh::SearchTree>(geometry_); });
   return tree_;
 }
@@ -24,6 +27,7 @@ Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::graph(const mesh:
 }
 
 Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::find_or_build(const mesh::SurfaceMap& map) {
+  const Question::Aside aside;
   std::lock_guard lock(graphs_mutex_);  // held while it is built: who else asks wants the same
   if (const auto found = graphs_.find(map.resolution); found != graphs_.end()) return found->second.graph;
   auto built = mesh::build_texel_graph(*geometry_, map, progress_);

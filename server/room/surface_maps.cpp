@@ -31,7 +31,7 @@ void SurfaceMaps::request(int resolution, Ready ready) {
 }
 
 Result<SurfaceMaps::MapPtr> SurfaceMaps::wait(int resolution) {
-  return await<MapPtr>([&](auto ready) { request(resolution, std::move(ready)); });
+  return await_for_question<MapPtr>([&](auto ready) { request(resolution, std::move(ready)); });
 }
 
 void SurfaceMaps::set_model(render::ModelHandle model) {
