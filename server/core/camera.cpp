@@ -71,6 +71,16 @@ glm::mat4 clip_from_model(const Camera& camera, const glm::dvec3& origin) {
   return glm::mat4(camera.projection * camera.view * glm::translate(glm::dmat4(1.0), origin));
 }
 
+Camera camera_of_rows(const Camera& camera, int top, int rows) {
+  Camera part = camera;
+  part.height = rows;
+  const double share = static_cast<double>(rows) / camera.height;
+  const double middle = 1 - (2.0 * top + rows) / camera.height;
+  for (glm::length_t column = 0; column < 4; ++column)
+    part.projection[column][1] = (camera.projection[column][1] - middle * camera.projection[column][3]) / share;
+  return part;
+}
+
 SectionPlanes section_in_model(const Camera& camera, const glm::dvec3& origin) {
   SectionPlanes planes;
   planes.fill(glm::vec4(0, 0, 0, 1));

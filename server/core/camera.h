@@ -40,6 +40,9 @@ SectionPlanes section_in_model(const Camera& camera, const glm::dvec3& origin);
 // Then the back of a surface that is seen is a solid's inside. (Without perspective the eye is infinitely far away.)
 bool eye_is_cut_away(const Camera& camera);
 
+// The camera of some rows of its window, from the top: what it sees there, it sees as the whole one does. `rows` above 0.
+Camera camera_of_rows(const Camera& camera, int top, int rows);
+
 struct Ray {
   glm::dvec3 origin;     // on the near plane, world
   glm::dvec3 direction;  // unit length

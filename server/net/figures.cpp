@@ -238,29 +238,44 @@ Result<Picture> draw(const FigureWish& wish, const figure::Drawing& drawing, Pro
   std::vector<room::PicturePart> wanted;
   for (const auto& part : parts)
     wanted.push_back({part.camera, static_cast<double>(part.width + 2 * part.margin) / part.camera.width});
-  auto drawn = wish.room->pictures(wish.shown, wanted, [&](std::size_t i, const render::Frame& frame) -> Result<void> {
-    const int left = parts[i].x / finer, top = parts[i].y / finer;  // parts are of whole inches
-    const int margin = parts[i].margin;
-    const int columns = std::min(parts[i].width / finer, picture.width - left);
-    const int rows = std::min(parts[i].height / finer, picture.height - top);
-    const std::size_t stride = std::size_t{4} * frame.width;
-    for (int row = 0; row < rows; ++row) {
-      const std::uint8_t* from = frame.pixels.data() + stride * (margin + finer * row) + std::size_t{4} * margin;
-      std::uint8_t* to = picture.rgba.data() + std::size_t{4} * (std::size_t(top + row) * picture.width + left);
-      if (finer == 1) {
-        std::memcpy(to, from, std::size_t{4} * columns);
-        continue;
-      }
-      for (int x = 0; x < columns; ++x, from += 8)
-        for (int channel = 0; channel < 4; ++channel)
-          *to++ = static_cast<std::uint8_t>(
-              (from[channel] + from[channel + 4] + from[stride + channel] + from[stride + channel + 4] + 2) / 4);
-    }
-    progress.report(static_cast<double>(i + 1) / parts.size(),
-                    "Drawing part " + std::to_string(i + 1) + " of " + std::to_string(parts.size()));
-    if (progress.cancelled()) return cancelled_problem();
-    return {};
-  });
+  // Where each pixel is the mean of four, a band may end between two rows of a pair.
+  std::vector<std::uint8_t> upper;
+  auto drawn =
+      wish.room->pictures(wish.shown, wanted, [&](std::size_t i, const room::Room::PictureBand& band) -> Result<void> {
+        const int left = parts[i].x / finer, top = parts[i].y / finer;  // parts are of whole inches
+        const int margin = parts[i].margin;
+        const int columns = std::min(parts[i].width / finer, picture.width - left);
+        const std::size_t stride = std::size_t{4} * static_cast<std::size_t>(band.width);
+        for (int row = 0; row < band.rows; ++row) {
+          const int inner = band.top + row - margin;  // row of the part
+          const int y = top + inner / finer;
+          if (inner < 0) continue;
+          if (inner >= parts[i].height || y >= picture.height) break;
+          const std::uint8_t* from = band.rgba.data() + stride * static_cast<std::size_t>(row) +
+                                     std::size_t{4} * static_cast<std::size_t>(margin);
+          std::uint8_t* to = picture.rgba.data() +
+                             std::size_t{4} * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                                               static_cast<std::size_t>(left));
+          if (finer == 1) {
+            std::memcpy(to, from, std::size_t{4} * static_cast<std::size_t>(columns));
+            continue;
+          }
+          if (inner % finer == 0) {
+            upper.assign(from, from + std::size_t{4} * static_cast<std::size_t>(parts[i].width));
+            continue;
+          }
+          const std::uint8_t* above = upper.data();
+          for (int x = 0; x < columns; ++x, from += 8, above += 8)
+            for (int channel = 0; channel < 4; ++channel)
+              *to++ = static_cast<std::uint8_t>(
+                  (above[channel] + above[channel + 4] + from[channel] + from[channel + 4] + 2) / 4);
+        }
+        if (band.top + band.rows == band.height)
+          progress.report(static_cast<double>(i + 1) / static_cast<double>(parts.size()),
+                          "Drawing part " + std::to_string(i + 1) + " of " + std::to_string(parts.size()));
+        if (progress.cancelled()) return cancelled_problem();
+        return {};
+      });
   if (!drawn) return tl::unexpected(drawn.error());
   return picture;
 }

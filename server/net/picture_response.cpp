@@ -4,10 +4,13 @@
 
 namespace strata::net {
 
-Response picture_response(const render::Frame& picture, bool is_png) {
+Result<Response> picture_response(room::Room& room, const room::PictureRequest& shown, const Camera& camera,
+                                  bool is_png) {
   constexpr int kJpegQuality = 90;  // one picture, not a frame of many
-  if (is_png) return bytes_response(encode_png(picture.pixels, picture.width, picture.height), "image/png");
-  return bytes_response(encode_jpeg(picture.pixels, picture.width, picture.height, {kJpegQuality, true}), "image/jpeg");
+  const PictureFormat format = is_png ? PictureFormat::png : PictureFormat::jpeg;
+  auto file = room.picture_file(shown, camera, format, {kJpegQuality, true});
+  if (!file) return tl::unexpected(file.error());
+  return bytes_response(std::move(*file), std::string(media_type(format)));
 }
 
 }  // namespace strata::net

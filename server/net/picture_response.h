@@ -1,11 +1,12 @@
 #pragma once
 
 #include "net/http_types.h"
-#include "render/renderer.h"
+#include "room/room.h"
 
 namespace strata::net {
 
-// A rendered picture, for keeps: JPEG of good quality, or PNG.
-Response picture_response(const render::Frame& picture, bool is_png);
+// A rendered picture, for keeps: JPEG of good quality, or PNG. Encoded while it is drawn.
+Result<Response> picture_response(room::Room& room, const room::PictureRequest& shown, const Camera& camera,
+                                  bool is_png);
 
 }  // namespace strata::net

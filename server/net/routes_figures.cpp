@@ -54,7 +54,8 @@ void add_figure_routes(Router& router, const RouteContext& context) {
        .pattern = "/api/v1/models/{model}/figures",
        .handler = answering([&context, budget](const Request& request) { return answer(context, budget, request); }),
        .body = BodyKind::memory,
-       .max_body = context.options.max_json_bytes});
+       .max_body = context.options.max_json_bytes,
+       .is_question = true});
 }
 
 }  // namespace strata::net

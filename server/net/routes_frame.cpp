@@ -53,10 +53,9 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   const auto background = background_of(asked->background);
   if (!background) return tl::unexpected(background.error());
   wanted.shown.background = *background;
-  auto picture = (*room)->picture(wanted, asked->camera);
-  if (!picture) return tl::unexpected(picture.error());
-  Response response = picture_response(*picture, asked->format == protocol::FrameRequestFormat::png);
-  add_sequences(response, wanted.at.value_or(sequence), (*room)->durable_sequence());
+  auto response = picture_response(**room, wanted, asked->camera, asked->format == protocol::FrameRequestFormat::png);
+  if (!response) return response;
+  add_sequences(*response, wanted.at.value_or(sequence), (*room)->durable_sequence());
   return response;
 }
 
@@ -67,7 +66,8 @@ void add_frame_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/models/{model}/frame",
               .handler = answering([&context](const Request& request) { return frame(context, request); }),
               .body = BodyKind::memory,
-              .max_body = context.options.max_json_bytes});
+              .max_body = context.options.max_json_bytes,
+              .is_question = true});
 }
 
 }  // namespace strata::net

@@ -117,10 +117,9 @@ Result<Response> view_picture(const RouteContext& context, const Request& reques
   }
   wanted.shown = std::move(*shown);
   const auto sequence = found->room->sequence();
-  const auto picture = found->room->picture(wanted, camera);
-  if (!picture) return tl::unexpected(picture.error());
-  Response response = picture_response(*picture, format == "png");
-  add_sequences(response, sequence, found->room->durable_sequence());
+  auto response = picture_response(*found->room, wanted, camera, format == "png");
+  if (!response) return response;
+  add_sequences(*response, sequence, found->room->durable_sequence());
   return response;
 }
 

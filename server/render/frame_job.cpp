@@ -246,6 +246,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
                    band,
                    intersection(band, surface_),
                    request.background,
+                   request.background_rows,
                    {},
                    patterns_of(request, (*model)->mesh().geometry())};
   for (const LayerStyle& style : request.layers) {
@@ -271,6 +272,7 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   view.picture_complete = true;
   view.layers = request.layers;
   view.background = request.background;
+  view.background_rows = request.background_rows;
   view.unit_mm = request.unit_mm;
   view.marks = request.marks;
   return true;

@@ -18,7 +18,7 @@ class FrameJob {
   double busy_ms() const { return busy_ms_; }
   // With what its asker has been served by now.
   FrameTask::Turn turn() const {
-    return {task_.turn.acting, task_.turn.ms + busy_ms_ / static_cast<double>(task_.askers.size())};
+    return {task_.turn.acting, task_.turn.ms + busy_ms_ / static_cast<double>(task_.askers.size()), task_.turn.large};
   }
   Step step(GpuScene& scene);
   void abort(const Problem& problem) { answer(tl::unexpected(problem)); }

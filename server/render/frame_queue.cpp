@@ -11,6 +11,8 @@ namespace strata::render {
 namespace {
 
 constexpr std::size_t kMaxBoxes = 64;
+// One is drawn while the other is read back: more would take the places of smaller pictures (GpuThread).
+constexpr std::size_t kMostLarge = 2;
 
 // Everything that either had to redraw is to be redrawn.
 void inherit(FrameRequest& request, const FrameRequest& other) {
@@ -26,7 +28,8 @@ void inherit(FrameRequest& request, const FrameRequest& other) {
 bool same_picture(const FrameRequest& a, const FrameRequest& b) {
   return a.model != 0 && a.model == b.model && a.moving == b.moving && a.width == b.width && a.height == b.height &&
          a.camera == b.camera && a.layers == b.layers && a.looks == b.looks && a.marks == b.marks &&
-         a.light == b.light && a.unit_mm == b.unit_mm && a.background == b.background && a.align_to_16 == b.align_to_16;
+         a.light == b.light && a.unit_mm == b.unit_mm && a.background == b.background &&
+         a.background_rows == b.background_rows && a.large == b.large && a.align_to_16 == b.align_to_16;
 }
 
 }  // namespace
@@ -52,7 +55,7 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
     return other.request.changed.has_value() == request.changed.has_value() && same_picture(other.request, request);
   });
   if (same == waiting_.end()) {
-    waiting_.push_back({std::move(request), {}, 0});
+    waiting_.push_back({std::move(request), {}, {}});
     same = std::prev(waiting_.end());
   } else {
     inherit(same->request, request);
@@ -96,7 +99,7 @@ FrameTask::Turn FrameQueue::turn_of(const FrameTask& task) const {
   double ms = std::numeric_limits<double>::infinity();
   for (const auto& asker : task.askers)
     if (const View& state = views_.at(asker.view); state.acting == task.turn.acting) ms = std::min(ms, state.served_ms);
-  return {task.turn.acting, ms};
+  return {task.turn.acting, ms, task.request.large};
 }
 
 bool FrameQueue::is_before(const FrameTask::Turn& a, const FrameTask::Turn& b) const {
@@ -142,6 +145,7 @@ std::optional<FrameTask> FrameQueue::take_if(const Wanted& wanted) {
       continue;
     }
     Half& from = half(turn.acting);
+    large_under_way_ += next->request.large;
     from.now_ms = std::max(from.now_ms, turn.ms);
     now_ms_ = std::max(now_ms_, from.served_ms);
     ++from.under_way;
@@ -164,7 +168,9 @@ std::optional<FrameTask> FrameQueue::take_if(const Wanted& wanted) {
 
 std::optional<FrameTask> FrameQueue::take() {
   std::lock_guard lock(mutex_);
-  return take_if([](const FrameTask&, const FrameTask::Turn&) { return true; });
+  return take_if([this](const FrameTask& task, const FrameTask::Turn&) {
+    return !task.request.large || large_under_way_ < kMostLarge;
+  });
 }
 
 std::optional<FrameTask> FrameQueue::take_part(std::span<const FrameTask::Turn> under_way) {
@@ -177,8 +183,13 @@ std::optional<FrameTask> FrameQueue::take_part(std::span<const FrameTask::Turn> 
     if (is_under_way(task)) continue;
     if (const auto its = turn_of(task); !first || its.ms < first->ms) first = its;
   }
+  // A band of a large picture takes longer than most other pictures: they need not wait until it is done.
+  const bool only_large = !under_way.empty() && std::ranges::all_of(under_way, &FrameTask::Turn::large);
+  const auto may_go_before = [&](const FrameTask& task) {
+    return task.request.changed.has_value() || (only_large && !task.request.large);
+  };
   return take_if([&](const FrameTask& task, const FrameTask::Turn& its) {
-    if (!task.request.changed || is_under_way(task)) return false;
+    if (is_under_way(task) || !may_go_before(task)) return false;
     const auto &own = next[its.acting ? 0 : 1], &other = next[its.acting ? 1 : 0];
     if (other && is_before(*other, its)) return false;
     return std::ranges::all_of(under_way, [&](const FrameTask::Turn& one) {
@@ -200,6 +211,7 @@ void FrameQueue::finished(const FrameTask& task, double took_ms) {
   rests(task.request.view, 0);
   Half& its = half(task.turn.acting);
   if (its.under_way == 0) return;  // `take_all` came between
+  large_under_way_ -= task.request.large;
   its.served_ms += took_ms;
   --its.under_way;
 }
@@ -220,6 +232,7 @@ std::vector<FrameTask> FrameQueue::take_all() {
   waiting_.clear();
   views_.clear();
   halves_ = {};
+  large_under_way_ = 0;
   now_ms_ = 0;
   askers_ = 0;
   return tasks;

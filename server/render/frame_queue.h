@@ -23,6 +23,7 @@ struct FrameTask {
   struct Turn {
     bool acting = false;
     double ms = 0;  // what its asker had been served when its turn came
+    bool large = false;
   } turn;
 };
 
@@ -35,6 +36,8 @@ struct FrameTask {
 //    the next whole picture of someone who turns the model, and nobody waits for ever.
 // 4. Those who act and those who look on (`FrameRequest::acting`) have half of the time each, where both wait, by the same rule: a
 //    hundred onlookers do not hold up one who paints, and see what is painted nevertheless.
+// 5. Bands of large pictures (`FrameRequest::large`) wait as all others do, a few are under way at a time, and what is smaller and whose turn
+//    it is goes before them at each of their steps.
 class FrameQueue {
  public:
   explicit FrameQueue(std::size_t max_askers) : max_askers_(max_askers) {}
@@ -46,7 +49,8 @@ class FrameQueue {
   Pushed push(FrameRequest request, Renderer::Done<SharedFrame> done);
   // What is next, except for views with a frame under way; its views are then under way until `finished`.
   std::optional<FrameTask> take();
-  // The same, of rectangles only, whose turn is before all of these: they may go before whole pictures that are half done.
+  // The same, of rectangles only, whose turn is before all of these: they may go before whole pictures that are half done. Before bands of
+  // large pictures alone any smaller picture may.
   std::optional<FrameTask> take_part(std::span<const FrameTask::Turn> under_way);
   void finished(const FrameTask& task, double took_ms);
   void forget(ViewHandle view);       // it is removed
@@ -86,6 +90,7 @@ class FrameQueue {
   std::unordered_map<ViewHandle, View> views_;
   std::size_t askers_ = 0;  // of `waiting_`
   std::array<Half, 2> halves_;
+  std::size_t large_under_way_ = 0;
   double now_ms_ = 0;  // what the half whose turn was last had been served
 };
 

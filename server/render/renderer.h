@@ -107,8 +107,9 @@ struct FrameRequest {
   // Of the view. Given: views of this model that ask for the same picture are served with one, which any of them may draw.
   ModelHandle model = 0;
   Camera camera;
-  bool moving = false;        // a coarser copy of the model may be shown, so that the picture comes in time
-  bool acting = false;        // for someone who is doing something, so that onlookers do not hold it up
+  bool moving = false;  // a coarser copy of the model may be shown, so that the picture comes in time
+  bool large = false;   // a band of a large picture: others' smaller pictures go before it, also when it is half done
+  bool acting = false;  // for someone who is doing something, so that onlookers do not hold it up
   int width = 0, height = 0;  // pixels of the picture (the camera's window scaled to this size)
   std::vector<LayerStyle> layers;
   std::vector<LookStyle> looks;  // kMaxLooksShown at most
@@ -123,6 +124,8 @@ struct FrameRequest {
   };
   std::optional<std::vector<Box>> changed;
   Background background;
+  // The part of the background's height that the picture has, from the top: 0 … 1 but for a band.
+  glm::vec2 background_rows{0, 1};
   bool align_to_16 = true;  // grow the rectangles to multiples of 16 for JPEG parts
 };
 struct Frame {

@@ -178,8 +178,9 @@ Result<void> ShadePass::draw(const ShadeInput& input, const gl::Program& program
 
 Result<void> ShadePass::draw_background(const ShadeInput& input) {
   shader::ShadeUniforms uniforms{};
-  uniforms.background_top = color(input.background.top);
-  uniforms.background_bottom = color(input.background.bottom);
+  const glm::vec4 top = color(input.background.top), bottom = color(input.background.bottom);
+  uniforms.background_top = glm::mix(top, bottom, input.background_rows.x);
+  uniforms.background_bottom = glm::mix(top, bottom, input.background_rows.y);
   uniforms.picture_height = static_cast<std::uint32_t>(input.uv.height());
   return draw(input, background_, input.rect, uniforms);
 }

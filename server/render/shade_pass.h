@@ -36,7 +36,8 @@ struct ShadeInput {
   PixelRect rect;                 // origin top left, as all rectangles of pictures
   PixelRect surface_rect;         // holds all pixels of `rect` that may show surface
   Background background;
-  std::vector<Layer> layers;  // bottom to top
+  glm::vec2 background_rows{0, 1};  // FrameRequest::background_rows
+  std::vector<Layer> layers;        // bottom to top
   Patterns patterns{};
 };
 

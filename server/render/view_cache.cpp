@@ -18,7 +18,7 @@ void View::drop_buffers() {
 
 bool View::shows(const FrameRequest& request) const {
   return picture_complete && unit_mm == request.unit_mm && background == request.background &&
-         layers == request.layers && marks == request.marks;
+         background_rows == request.background_rows && layers == request.layers && marks == request.marks;
 }
 
 Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths, GpuMemory& memory) {

@@ -28,6 +28,7 @@ struct View {
   bool picture_complete = false;
   std::vector<LayerStyle> layers;  // of the picture
   Background background;
+  glm::vec2 background_rows{0, 1};
   double unit_mm = 0;
   MarksShown marks;
   MarkBuffer seen_marks;  // the marks, as the camera of the g-buffer sees them

@@ -174,6 +174,9 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   // queries.cpp
   Result<TileMirror::Snapshot> tiles_at(const LayerState& state, At at) const;
   Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs, At at) const;
+  // `request` has all but the camera and the size.
+  Result<void> draw_in_bands(render::FrameRequest request, const PicturePart& part, std::size_t number,
+                             const SeePicture& see);
   Result<std::optional<query::TexelSelection>> texels_within(const Selection& selection, const mesh::SurfaceMap& map);
   Result<std::optional<query::TexelSelection>> select_texels(const Selection& selection, const mesh::SurfaceMap& map);
   // `within` is null where the whole surface is meant; `is_now`: the view is the newest, whose sums are kept.

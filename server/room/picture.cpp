@@ -1,6 +1,10 @@
 // Rendered pictures for a script: a view of their own, drawn once each.
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "core/picture_writer.h"
+#include "core/question.h"
 #include "room/await.h"
 #include "room/gpu_problem.h"
 #include "room/open_room.h"
@@ -8,6 +12,13 @@
 
 namespace strata::room {
 namespace {
+
+// Pictures with more pixels are drawn in bands, which have as many: a tenth of a second on a CPU, 32 MB of a view's buffers.
+constexpr int kPixelsOfBand = 1 << 21;
+// Rows of the window above and below a band that are drawn with it and left out: what a pixel shows depends on its neighbours (outlines), and marks
+// are wider than their line.
+constexpr int kRowsAround = 16;
+constexpr int kRowsEncoded = 32;
 
 // Removes what a picture put on the GPU, however it ends.
 struct Borrowed {
@@ -23,14 +34,37 @@ struct Borrowed {
 }  // namespace
 
 Result<render::Frame> Room::picture(const PictureRequest& request, const Camera& camera) {
-  render::Frame only;
+  render::Frame whole;
   const PicturePart part{camera};
-  auto seen = pictures(request, {&part, 1}, [&](std::size_t, const render::Frame& picture) -> Result<void> {
-    only = picture;
+  auto seen = pictures(request, {&part, 1}, [&](std::size_t, const PictureBand& band) -> Result<void> {
+    whole.width = band.width;
+    whole.height = band.height;
+    whole.pixels.insert(whole.pixels.end(), band.rgba.begin(), band.rgba.end());
     return {};
   });
   if (!seen) return tl::unexpected(seen.error());
-  return only;
+  whole.rects = {{0, 0, whole.width, whole.height}};
+  return whole;
+}
+
+Result<std::vector<std::uint8_t>> Room::picture_file(const PictureRequest& request, const Camera& camera,
+                                                     PictureFormat format, JpegSettings jpeg) {
+  std::optional<PictureWriter> writer;
+  const PicturePart part{camera};
+  auto seen = pictures(request, {&part, 1}, [&](std::size_t, const PictureBand& band) -> Result<void> {
+    if (!writer) writer.emplace(format, band.width, band.height, jpeg);
+    // A few rows at a time: who else asks something computes between them.
+    const std::size_t row = band.rgba.size() / static_cast<std::size_t>(band.rows);
+    const QuestionTurn turn;
+    for (int top = 0; top < band.rows; top += kRowsEncoded) {
+      turn.check();
+      const auto rows = static_cast<std::size_t>(std::min(kRowsEncoded, band.rows - top));
+      writer->put(band.rgba.subspan(row * static_cast<std::size_t>(top), row * rows));
+    }
+    return {};
+  });
+  if (!seen) return tl::unexpected(seen.error());
+  return writer->finish();
 }
 
 Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const PicturePart> parts,
@@ -107,14 +141,45 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
   request.background = asked.shown.background;
   request.marks = show_marks(marked);
   request.unit_mm = this->model().metres() * 1000;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (auto drawn = draw_in_bands(request, parts[i], i, see); !drawn) return drawn;
+  return {};
+}
+
+Result<void> OpenRoom::draw_in_bands(render::FrameRequest request, const PicturePart& part, std::size_t number,
+                                     const SeePicture& see) {
+  const Camera& camera = part.camera;
+  if (auto valid = validate(camera); !valid) return valid;
+  const auto pixels = [&](int window) { return static_cast<int>(std::lround(window * part.pixels)); };
+  const int width = pixels(camera.width), height = pixels(camera.height);
+  if (width < 1 || height < 1 || width > kMaxViewSize || height > kMaxViewSize)
+    return fail(422, "Size out of range", "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.",
+                "width");
+  // Bands are whole rows of the camera's window, so that their own windows are.
+  const bool is_large = static_cast<std::int64_t>(width) * height > kPixelsOfBand;
+  const int most = static_cast<int>(kPixelsOfBand / (width * std::max(part.pixels, 1e-3)));
+  const int step = is_large ? std::clamp(most, 1, camera.height) : camera.height;
+  for (int top = 0; top < camera.height; top += step) {
     touch();
-    request.camera = parts[i].camera;
-    request.width = static_cast<int>(std::lround(parts[i].camera.width * parts[i].pixels));
-    request.height = static_cast<int>(std::lround(parts[i].camera.height * parts[i].pixels));
-    auto frame = await<render::SharedFrame>([&](auto done) { parts_.renderer.draw(request, std::move(done)); });
+    check_question();
+    const int end = std::min(top + step, camera.height);
+    const int first = is_large ? std::max(0, top - kRowsAround) : 0;
+    const int last = is_large ? std::min(camera.height, end + kRowsAround) : camera.height;
+    request.large = is_large;
+    request.camera = is_large ? camera_of_rows(camera, first, last - first) : camera;
+    request.width = width;
+    request.height = pixels(last) - pixels(first);
+    request.background_rows = glm::vec2(first, last) / static_cast<float>(camera.height);
+    const auto frame =
+        await_for_question<render::SharedFrame>([&](auto done) { parts_.renderer.draw(request, std::move(done)); });
     if (!frame) return tl::unexpected(gpu_problem(frame.error()));
-    if (auto seen = see(i, **frame); !seen) return seen;
+    const std::size_t row = std::size_t{4} * static_cast<std::size_t>(width);
+    const int rows = pixels(end) - pixels(top);
+    const std::span<const std::uint8_t> all((*frame)->pixels);
+    const auto band =
+        all.subspan(row * static_cast<std::size_t>(pixels(top) - pixels(first)), row * static_cast<std::size_t>(rows));
+    if (rows == 0) continue;
+    if (auto seen = see(number, {width, height, pixels(top), rows, band}); !seen) return seen;
   }
   return {};
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/memory_ledger.h"
+#include "core/picture.h"
 #include "query/cross_table.h"
 #include "query/key_areas.h"
 #include "query/profile.h"
@@ -278,12 +279,21 @@ class Room {
   virtual std::shared_ptr<const mesh::Geometry> geometry() const = 0;
   virtual std::shared_ptr<const mesh::SearchTree> search_tree() = 0;
   virtual Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution) = 0;
-  // Pictures, RGBA8, top row first; waits for them and for the looks they show. `see` gets each in turn and may end it with a Problem.
-  // With `at` all show one state, also while others paint.
-  using SeePicture = std::function<Result<void>(std::size_t part, const render::Frame& picture)>;
+  // Pictures, RGBA8, top row first; waits for them and for the looks they show. `see` gets each in turn, in bands of its whole width from the top,
+  // and may end it with a Problem: a large picture is nowhere as a whole, and between its bands others have theirs. With `at` all
+  // show one state, also while others paint.
+  struct PictureBand {
+    int width = 0, height = 0;  // of the whole picture
+    int top = 0, rows = 0;      // of the band
+    std::span<const std::uint8_t> rgba;
+  };
+  using SeePicture = std::function<Result<void>(std::size_t part, const PictureBand& band)>;
   virtual Result<void> pictures(const PictureRequest& request, std::span<const PicturePart> parts,
                                 const SeePicture& see) = 0;
+  // One, as a whole; as a file.
   Result<render::Frame> picture(const PictureRequest& request, const Camera& camera);
+  Result<std::vector<std::uint8_t>> picture_file(const PictureRequest& request, const Camera& camera,
+                                                 PictureFormat format, JpegSettings jpeg);
   // What a layer of whole numbers has where it is seen: in the middle of each cell of a grid over the camera's window, row by row from the
   // top left. Nothing: no surface, or nothing painted there.
   virtual Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string& layer, const Camera& camera,

@@ -32,6 +32,10 @@ class FrameTurns : public testing::Test {
     request.changed = std::move(boxes);
     return request;
   }
+  static FrameRequest large(FrameRequest request) {
+    request.large = true;
+    return request;
+  }
   static FrameRequest acting(FrameRequest request) {
     request.acting = true;
     return request;
@@ -131,6 +135,51 @@ TEST_F(FrameTurns, only_a_rectangle_whose_turn_it_is_goes_before_a_picture_that_
   const auto part = queue.take_part(half_done(5));
   ASSERT_TRUE(part);
   EXPECT_EQ(part->request.view, 3u);
+}
+
+TEST_F(FrameTurns, any_smaller_picture_whose_turn_it_is_goes_before_a_band_of_a_large_one) {
+  FrameQueue queue(8);
+  push(queue, large(whole(1)));
+  const auto band = queue.take();
+  ASSERT_TRUE(band);
+  EXPECT_TRUE(band->turn.large);
+  const auto half_done = [&](double ms) { return std::vector{FrameTask::Turn{false, band->turn.ms + ms, true}}; };
+  push(queue, large(whole(2)));
+  EXPECT_FALSE(queue.take_part(half_done(5))) << "of large ones each is done when it has begun";
+  push(queue, whole(3));
+  EXPECT_FALSE(queue.take_part(half_done(0))) << "no one was served more";
+  const auto small = queue.take_part(half_done(5));
+  ASSERT_TRUE(small);
+  EXPECT_EQ(small->request.view, 3u);
+  // Beside a picture that is not large they wait as ever.
+  push(queue, whole(4));
+  EXPECT_FALSE(queue.take_part(std::vector{FrameTask::Turn{false, 100, false}, FrameTask::Turn{false, 100, true}}));
+}
+
+TEST_F(FrameTurns, bands_of_large_pictures_take_turns_with_live_views_and_leave_them_room) {
+  FrameQueue queue(16);
+  for (const ViewHandle view : {1, 2, 3}) push(queue, large(whole(view)));
+  const auto first = queue.take(), second = queue.take();
+  ASSERT_TRUE(first && second);
+  EXPECT_FALSE(queue.take()) << "two bands are enough to keep the GPU at work";
+  push(queue, whole(4));
+  EXPECT_EQ(draw(queue), 4u);
+  queue.finished(*first, 50);
+  queue.finished(*second, 50);
+  // Large ones of three and a view that always wants more: by time all have the same.
+  std::map<ViewHandle, int> drawn;
+  push(queue, large(whole(1)));
+  push(queue, large(whole(2)));
+  push(queue, whole(4));
+  for (int i = 0; i < 120; ++i) {
+    const auto task = queue.take();
+    ASSERT_TRUE(task);
+    const ViewHandle view = task->askers.front().view;
+    drawn[view] += view == 4 ? 10 : 50;
+    queue.finished(*task, view == 4 ? 10 : 50);
+    push(queue, view == 4 ? whole(view) : large(whole(view)));
+  }
+  for (const ViewHandle view : {1, 2, 3}) EXPECT_NEAR(drawn[view], drawn[4], 110) << view;
 }
 
 TEST_F(FrameTurns, a_hundred_onlookers_and_one_who_acts_have_half_of_the_time_each) {

@@ -4,7 +4,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/camera.h"
 #include "core/picture.h"
+#include "core/picture_writer.h"
 #include "support/gradient.h"
 
 namespace strata {
@@ -27,6 +29,53 @@ TEST(Picture, a_jpeg_shows_what_was_drawn_top_row_first) {
 TEST(Picture, higher_quality_costs_more_bytes) {
   const auto rgba = gradient(256, 256);
   EXPECT_LT(encode_jpeg(rgba, 256, 256, {40, false}).size(), encode_jpeg(rgba, 256, 256, {95, true}).size());
+}
+
+TEST(PictureWriter, writes_what_the_whole_picture_would_be_however_its_rows_come) {
+  const int width = 61, height = 133;
+  auto rgba = gradient(width, height);
+  rgba[3] = 128;
+  for (const std::size_t rows : {std::size_t{1}, std::size_t{40}, std::size_t{133}}) {
+    const auto write = [&](PictureFormat format, JpegSettings jpeg) {
+      PictureWriter writer(format, width, height, jpeg);
+      const std::span<const std::uint8_t> all(rgba);
+      for (std::size_t top = 0; top < height; top += rows)
+        writer.put(all.subspan(4 * width * top, 4 * width * std::min(rows, height - top)));
+      return writer.finish();
+    };
+    const auto png = decode_picture(write(PictureFormat::png, {}));
+    ASSERT_TRUE(png);
+    EXPECT_EQ(png->rgba, rgba);
+    for (const JpegSettings settings : {JpegSettings{90, true}, JpegSettings{60, false}}) {
+      const auto jpeg = decode_picture(write(PictureFormat::jpeg, settings));
+      ASSERT_TRUE(jpeg);
+      EXPECT_EQ(jpeg->rgba, decode_picture(encode_jpeg(rgba, width, height, settings))->rgba);
+    }
+  }
+}
+
+TEST(PictureWriter, fails_where_rows_are_missing_or_are_no_rows) {
+  PictureWriter writer(PictureFormat::jpeg, 8, 8);
+  EXPECT_THROW(writer.put(std::vector<std::uint8_t>(31)), std::invalid_argument);
+  EXPECT_THROW(writer.finish(), std::runtime_error);
+  EXPECT_THROW(PictureWriter(PictureFormat::png, 0, 8), std::invalid_argument);
+}
+
+TEST(Camera, of_some_rows_sees_there_what_the_whole_one_sees) {
+  Camera camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.projection = glm::dmat4(1.5, 0, 0, 0, 0, 2, 0, 0, 0.1, 0.2, -1.02, -1, 0, 0, -0.2, 0);
+  camera.view[3] = glm::dvec4(0.1, -0.3, -5, 1);
+  for (const auto& [top, rows] : {std::pair(0, 480), std::pair(0, 32), std::pair(100, 7), std::pair(448, 32)}) {
+    const Camera part = camera_of_rows(camera, top, rows);
+    EXPECT_EQ(part.height, rows);
+    for (const double y : {0.0, 0.5, 6.25}) {
+      const Ray whole = ray_through_pixel(camera, 123.5, top + y), own = ray_through_pixel(part, 123.5, y);
+      EXPECT_LT(glm::distance(whole.origin, own.origin), 1e-9);
+      EXPECT_LT(glm::distance(whole.direction, own.direction), 1e-9);
+    }
+  }
 }
 
 TEST(Picture, a_png_keeps_every_pixel) {
