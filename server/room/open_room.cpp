@@ -703,6 +703,17 @@ bool OpenRoom::drop_map() {
   return surface_->drop_graphs() || on_strand([&] { return pipeline_->is_still() && maps_->drop_oldest(); });
 }
 
+bool OpenRoom::drop_large_unused_maps(std::chrono::steady_clock::time_point now) {
+  constexpr std::uint64_t kLarge = 512u << 20;  // others are back within a second
+  constexpr std::chrono::minutes kKept{2};
+  const auto since = now - kKept;
+  const auto oldest = maps_->oldest_use();
+  if (!oldest || *oldest >= since) return false;
+  const bool dropped = on_strand([&] { return pipeline_->is_still() && maps_->drop_unused(since, kLarge); });
+  if (dropped) surface_->drop_graphs();
+  return dropped;
+}
+
 bool OpenRoom::deserted(std::chrono::steady_clock::time_point now) const {
   if (people() > 0) return false;
   std::lock_guard lock(mutex_);

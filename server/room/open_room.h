@@ -138,6 +138,10 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   std::size_t take_departed();  // who have left it since this was asked
   const SurfaceMaps& maps() const { return *maps_; }
   bool drop_map();
+  // Lets go of what a question about a very fine layer has left, and nobody used for a while.
+  bool drop_large_unused_maps(
+      std::chrono::steady_clock::time_point
+          now);  // the one that was not used for the longest time, where nothing is being painted. Blocks
   void take_no_edits() { takes_edits_ = false; }  // new ones are refused
   bool idle() const { return unanswered_ == 0; }  // every edit is durable or refused
   void shut(const Problem& why);                  // refuses what waits and what comes, lets go of the GPU; blocks

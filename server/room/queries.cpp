@@ -32,6 +32,18 @@ query::TexelSelection as_selection(const TileMasks& masks, const mesh::SurfaceMa
   return selection;
 }
 
+// Whether nothing is painted on it: then nothing need be known of the surface to say so.
+bool is_empty(const query::LayerView& view) {
+  return std::ranges::none_of(view.snapshot.tiles, [](const auto& tile) { return tile.second != nullptr; });
+}
+
+query::Statistics nothing_painted(StatisticsWanted wanted) {
+  query::Statistics none;
+  if (wanted.pieces) none.pieces = 0;
+  if (wanted.perimeter) none.perimeter_m = 0;
+  return none;
+}
+
 }  // namespace
 
 Result<TileMirror::Snapshot> OpenRoom::tiles_at(const LayerState& state, At at) const {
@@ -163,6 +175,7 @@ Result<query::Statistics> OpenRoom::statistics(const std::string& layer, const S
   touch();
   const auto views = layer_views({layer}, selection.at);
   if (!views) return tl::unexpected(views.error());
+  if (is_empty(views->front()) && selection.whole()) return nothing_painted(wanted);
   const auto map = surface_map(views->front().layer.resolution);
   if (!map) return tl::unexpected(map.error());
   const auto selected = select_texels(selection, **map);

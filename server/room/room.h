@@ -142,6 +142,7 @@ struct Selection {
   std::optional<std::variant<Around, Outline>> within{};
   std::optional<std::int64_t> at{};  // layers as they were after that sequence; absent: as they are
   Role seen_by = Role::owner;        // what this role does not see `where` cannot name
+  bool whole() const { return !where && !within; }
 };
 struct StatisticsWanted {  // that takes longer
   bool quantiles = false, pieces = false, perimeter = false;

@@ -95,7 +95,8 @@ struct Rooms::Impl {
         if (changed.wait_for(lock, kSweepEvery, [&] { return stopping; })) return;
       }
       const auto now = std::chrono::steady_clock::now();
-      const bool closed = close_rooms([&](const OpenRoom& room) { return room.deserted(now); }, "nobody is looking");
+      bool closed = close_rooms([&](const OpenRoom& room) { return room.deserted(now); }, "nobody is looking");
+      for (const auto& room : open_ones()) closed |= room->drop_large_unused_maps(now);
       if (std::exchange(due, false)) give_back_memory();
       std::size_t here = 0;
       for (const auto& room : open_ones()) {

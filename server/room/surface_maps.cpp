@@ -67,6 +67,17 @@ bool SurfaceMaps::drop_oldest() {
   return true;
 }
 
+bool SurfaceMaps::drop_unused(Clock::time_point since, std::uint64_t at_least_bytes) {
+  std::lock_guard lock(mutex_);
+  return std::erase_if(entries_, [&](const auto& each) {
+           const auto& [resolution, entry] = each;
+           if (!entry.baked || entry.working || entry.last_use >= since || entry.share.bytes() < at_least_bytes)
+             return false;
+           renderer_.remove_surface_map(model_, resolution);
+           return true;
+         }) > 0;
+}
+
 void SurfaceMaps::start(int resolution) {
   Entry& entry = entries_[resolution];
   entry.working = true;

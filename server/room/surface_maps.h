@@ -41,6 +41,8 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
   std::optional<Clock::time_point> oldest_use() const;  // of the map that was not used for the longest time
   // Drops it; false when there is none. Only while nothing is being painted, which would miss it on the GPU.
   bool drop_oldest();
+  // Drops those of at least so many bytes that were not used since; false when there is none. As above.
+  bool drop_unused(Clock::time_point since, std::uint64_t at_least_bytes);
   void stop() { progress_.cancel(); }
 
  private:
