@@ -213,6 +213,31 @@ TEST(ProtocolMessages, beside_a_long_list_all_else_is_held_to_the_schema) {
   EXPECT_EQ(field_of(request), "points");
 }
 
+TEST(ProtocolMessages, a_list_that_is_too_long_is_refused_before_its_items_are_built) {
+  std::string points;
+  for (int i = 0; i <= 100'000; ++i) points += "[1,2,3],";
+  const auto problem_of = [](const std::string& text) {
+    const auto read = parse<PositionsRequest>(text, {16u << 20, 32});
+    EXPECT_FALSE(read);
+    return read ? Problem{} : read.error();
+  };
+  const std::string bom = "\xEF\xBB\xBF";  // which the careful reader alone takes
+  const Problem expected = from_json<PositionsRequest>(json{{"points", json(100'001, {1, 2, 3})}}).error();
+  for (const std::string& before : {std::string(), bom}) {
+    const Problem problem = problem_of(before + R"({"points":[)" + points + R"([1,2,3]]})");
+    EXPECT_EQ(problem.status, 422);
+    EXPECT_EQ(problem.field, "points");
+    EXPECT_EQ(problem.title, expected.title);
+    EXPECT_EQ(problem.detail, expected.detail);
+    EXPECT_EQ(problem_of(before + R"({"points":[[1,2,3],[1,2,3,4]]})").field, "points[1]");
+  }
+  // What follows is not built, so it is not seen either: of the careful reader not even that it is no JSON.
+  EXPECT_EQ(problem_of(bom + R"({"points":[)" + points + "no JSON").field, "points");
+  const auto within = parse<PositionsRequest>(R"({"points":[[1,2,3]],"layers":["a","b"]})");
+  ASSERT_TRUE(within) << within.error().detail;
+  EXPECT_EQ(within->points.size(), 1u);
+}
+
 TEST(ProtocolMessages, a_stroke_arrives_as_it_was_sent) {
   const auto message = parse_client_message(R"({"op":"stroke.begin","id":")" + std::string(kId) + R"(","stroke":")" +
                                             kId + R"(","layer":"cracks","value":7,"radius_mm":2.5,"shape":"square",

@@ -25,7 +25,9 @@ Result<T> from_json(const nlohmann::json& json, const std::string& field = {}) {
 // The body of an HTTP request.
 template <class T>
 Result<T> parse(std::string_view text, const JsonLimits& limits = {}) {
-  auto json = parse_json(text, limits);
+  JsonLimits bounded = limits;
+  bounded.lists = &list_limits(kSchemaOf<T>);
+  auto json = parse_json(text, bounded);
   if (!json) return tl::unexpected<Problem>(json.error());
   return from_json<T>(*json);
 }

@@ -15,7 +15,7 @@ using nlohmann::json;
 // Builds the value event by event, so that depth and duplicates are seen before memory is spent on them.
 class StrictBuilder : public nlohmann::json_sax<json> {
  public:
-  explicit StrictBuilder(int max_depth) : max_depth_(max_depth) {}
+  StrictBuilder(int max_depth, const ListLimits* lists) : max_depth_(max_depth), root_lists_(lists) {}
 
   json take() { return std::move(root_); }
   Problem take_problem() { return std::move(problem_); }
@@ -35,7 +35,7 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   }
   bool binary(binary_t&) override { return false; }  // never comes from text
 
-  bool start_object(std::size_t) override { return open(json::object()); }
+  bool start_object(std::size_t) override { return has_room() && open(json::object()); }
   bool key(string_t& name) override {
     if (has_nul(name)) return false;
     if (open_.back()->contains(name))
@@ -46,6 +46,7 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   }
   bool end_object() override { return close(); }
   bool start_array(std::size_t) override {
+    if (!has_room()) return false;
     json list = json::array();
     list.get_ref<json::array_t&>().reserve(4);  // points, colours: most lists are short
     return open(std::move(list));
@@ -69,19 +70,46 @@ class StrictBuilder : public nlohmann::json_sax<json> {
     return &(parent[key_] = std::move(value));
   }
   bool put(json&& value) {
+    if (!has_room()) return false;
     add(std::move(value));
     return true;
+  }
+  // Whether the list that is open, if it is one, may have an item more.
+  bool has_room() {
+    if (open_.empty() || !open_.back()->is_array()) return true;
+    const ListLimits* limits = lists_.back();
+    if (!limits || !limits->most || open_.back()->size() < *limits->most) return true;
+    refuse(422, "Value not allowed", "It must be " + limits->wanted + ".");
+    for (std::size_t i = 1; i < steps_.size(); ++i)
+      problem_.field += (steps_[i].starts_with('[') || problem_.field.empty() ? "" : ".") + steps_[i];
+    return false;
+  }
+  // Of what is opened next.
+  const ListLimits* next_lists() const {
+    if (open_.empty()) return root_lists_;
+    const ListLimits* limits = lists_.back();
+    if (!limits) return nullptr;
+    if (open_.back()->is_array()) return limits->items.get();
+    const auto member = limits->members.find(key_);
+    return member == limits->members.end() ? nullptr : member->second.get();
   }
   // A pointer to an open value stays good: while it is open, only its own children grow.
   bool open(json&& container) {
     if (static_cast<int>(open_.size()) >= max_depth_)
       return refuse(422, "Nested too deeply",
                     "At most " + std::to_string(max_depth_) + " objects and lists may lie in each other.");
+    lists_.push_back(next_lists());
+    if (open_.empty())
+      steps_.emplace_back("-");
+    else
+      steps_.push_back(open_.back()->is_array() ? "[" + std::to_string(open_.back()->size()) + "]" : key_);
     open_.push_back(add(std::move(container)));
     return true;
   }
   bool close() {
     open_.pop_back();
+    lists_.pop_back();
+    steps_.pop_back();
     return true;
   }
   bool has_nul(const std::string& text) {
@@ -96,7 +124,10 @@ class StrictBuilder : public nlohmann::json_sax<json> {
 
   int max_depth_;
   json root_;
+  const ListLimits* root_lists_;
   std::vector<json*> open_;
+  std::vector<const ListLimits*> lists_;  // of each that is open; null: none
+  std::vector<std::string> steps_;        // from the one before to each that is open
   std::string key_;
   Problem problem_;
 };
@@ -108,8 +139,10 @@ Result<json> parse_json(std::string_view text, const JsonLimits& limits) {
     return fail(413, "Too much at once",
                 "At most " + std::to_string(limits.max_bytes) + " bytes of JSON are taken; these are " +
                     std::to_string(text.size()) + ".");
-  if (auto value = read_json_fast(text, limits.max_depth)) return std::move(*value);
-  StrictBuilder builder(limits.max_depth);
+  std::optional<ListTooLong> too_long;
+  if (auto value = read_json_fast(text, limits.max_depth, limits.lists, &too_long)) return std::move(*value);
+  if (too_long) return fail(422, "Value not allowed", "It must be " + too_long->wanted + ".", too_long->path);
+  StrictBuilder builder(limits.max_depth, limits.lists);
   if (!json::sax_parse(text.begin(), text.end(), &builder)) return tl::unexpected<Problem>(builder.take_problem());
   return builder.take();
 }

@@ -5,16 +5,19 @@
 #include <string_view>
 
 #include "core/problem.h"
+#include "protocol/list_limits.h"
 
 namespace strata::protocol {
 
 struct JsonLimits {
   std::size_t max_bytes = 256 * 1024;
-  int max_depth = 32;  // nested objects and arrays
+  int max_depth = 32;                 // nested objects and arrays
+  const ListLimits* lists = nullptr;  // null: lists have any length
 };
 
 // JSON text from outside, parsed strictly: valid UTF-8, no duplicate member, no NUL in a text, no number beyond double,
 // nothing after the value. Problems: 413 when it is too long, 400 when it is not JSON, 422 for the rest.
+// A list that is longer than it may be is refused before its items are built, whatever follows it.
 Result<nlohmann::json> parse_json(std::string_view text, const JsonLimits& limits = {});
 
 }  // namespace strata::protocol

@@ -15,6 +15,8 @@
 #include <valijson/validator.hpp>
 #include <vector>
 
+#include "protocol/list_limits.h"
+
 namespace strata::protocol {
 namespace {
 
@@ -165,6 +167,25 @@ std::string expectation(const json& schema) {
   return type;
 }
 
+// Deeper lists are bounded by what holds them.
+constexpr int kLimitsDeep = 6;
+
+std::shared_ptr<const ListLimits> limits_of(const json& schema, int deep) {
+  const json& node = resolve(schema);
+  auto limits = std::make_shared<ListLimits>();
+  if (deep == 0) return limits;
+  if (node.value("type", json()) == "array" && node.contains("maxItems") && node.contains("minItems") &&
+      node.contains("items")) {
+    limits->most = node["maxItems"].get<std::size_t>();
+    limits->wanted = expectation(node);
+  }
+  if (const auto items = node.find("items"); items != node.end() && items->is_object())
+    limits->items = limits_of(*items, deep - 1);
+  if (const auto properties = node.find("properties"); properties != node.end())
+    for (const auto& [member, said] : properties->items()) limits->members[member] = limits_of(said, deep - 1);
+  return limits;
+}
+
 // The member that valijson names at the end of a description: everything after `before`, less the closing "'.".
 std::string member_named(const std::string& description, std::string_view before) {
   const auto begin = description.find(before);
@@ -281,6 +302,15 @@ tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::str
 }
 
 }  // namespace
+
+const ListLimits& list_limits(Schema schema) {
+  static std::array<std::once_flag, kSchemaCount> once;
+  static std::array<std::shared_ptr<const ListLimits>, kSchemaCount> limits;
+  const auto index = static_cast<std::size_t>(schema);
+  std::call_once(once[index],
+                 [&] { limits[index] = limits_of(definitions().at(std::string(name(schema))), kLimitsDeep); });
+  return *limits[index];
+}
 
 Result<void> validate(Schema schema, const json& json, const std::string& field) {
   thread_local valijson::Validator validator;  // keeps the compiled patterns
