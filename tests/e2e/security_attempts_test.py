@@ -6,7 +6,7 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from attempts import bodies, coming_in, files, foreign_pages, guessing, hidden, live, owner_token, waiting
+from attempts import bodies, coming_in, files, foreign_pages, guessing, hidden, live, owner_token, readers, waiting
 from support.attempt_table import AttemptTable
 from support.meshes import folded_grid
 from support.strata_server import StrataServer
@@ -33,7 +33,7 @@ def at_one_server(*attempted):
 
 
 # Each with servers of its own: most of the time of some is waiting.
-GROUPS = {"people": at_one_server(coming_in, guessing), "owner": lambda table: owner_token.attempts(table, site), "requests": at_one_server(foreign_pages, live, bodies, files), "private": hidden.private, "kiosk": hidden.kiosk, "projects": hidden.projects, "waiting": waiting.plain, "https": waiting.tls}
+GROUPS = {"people": at_one_server(coming_in, guessing), "owner": lambda table: owner_token.attempts(table, site), "requests": at_one_server(foreign_pages, live, bodies, files), "private": hidden.private, "kiosk": hidden.kiosk, "projects": hidden.projects, "readers": readers.attempts, "waiting": waiting.plain, "https": waiting.tls}
 
 
 def main():
