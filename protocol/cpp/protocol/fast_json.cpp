@@ -14,42 +14,17 @@ using simdjson::dom::element_type;
 
 bool has_nul(std::string_view text) { return text.find('\0') != std::string_view::npos; }
 
-struct Limits {
-  const ListLimits* lists;  // of this value; null: none
-  std::optional<ListTooLong>* too_long;
-
-  Limits of_item() const { return {lists ? lists->items.get() : nullptr, too_long}; }
-  Limits of_member(std::string_view name) const {
-    if (!lists) return *this;
-    const auto member = lists->members.find(name);
-    return {member == lists->members.end() ? nullptr : member->second.get(), too_long};
-  }
-  // Where something below was too long: says that it stands at this step.
-  void put_before(const std::string& step) const {
-    if (!too_long || !*too_long) return;
-    std::string& path = (*too_long)->path;
-    path = step + (path.empty() || path.front() == '[' ? "" : ".") + path;
-  }
-};
-
-// False where the careful reader has to say why, or a list is too long. `depth`: how many objects and lists may still be opened.
-bool convert(const element& from, int depth, const Limits& limits, json& to) {
+// False where the careful reader has to say why. `depth`: how many objects and lists may still be opened.
+bool convert(const element& from, int depth, json& to) {
   switch (from.type()) {
     case element_type::ARRAY: {
       if (depth == 0) return false;
       const simdjson::dom::array values = from;
-      if (limits.lists && limits.lists->most && values.size() > *limits.lists->most) {
-        if (limits.too_long) limits.too_long->emplace(ListTooLong{{}, limits.lists->wanted});
-        return false;
-      }
       to = json::array();
       auto& list = to.get_ref<json::array_t&>();
       list.reserve(values.size());
       for (const element value : values)
-        if (!convert(value, depth - 1, limits.of_item(), list.emplace_back())) {
-          limits.put_before("[" + std::to_string(list.size() - 1) + "]");
-          return false;
-        }
+        if (!convert(value, depth - 1, list.emplace_back())) return false;
       return true;
     }
     case element_type::OBJECT: {
@@ -58,11 +33,7 @@ bool convert(const element& from, int depth, const Limits& limits, json& to) {
       to = json::object();
       for (const auto& [name, value] : members) {
         const auto [place, is_new] = to.emplace(std::string(name), nullptr);
-        if (!is_new || has_nul(name)) return false;
-        if (!convert(value, depth - 1, limits.of_member(name), *place)) {
-          limits.put_before(std::string(name));
-          return false;
-        }
+        if (!is_new || has_nul(name) || !convert(value, depth - 1, *place)) return false;
       }
       return true;
     }
@@ -88,15 +59,71 @@ bool convert(const element& from, int depth, const Limits& limits, json& to) {
   return false;
 }
 
+bool says_something(const ListLimits& limits) { return limits.most || limits.items || !limits.members.empty(); }
+
+// False: something was found, or this is no JSON.
+bool scan(simdjson::ondemand::value value, const ListLimits& limits, std::optional<ListTooLong>& found) {
+  simdjson::ondemand::json_type type;
+  if (value.type().get(type)) return false;
+  // What was found below stands at this step.
+  const auto put_before = [&](const std::string& step) {
+    if (!found) return;
+    const bool joins = found->path.empty() || found->path.front() == '[';
+    found->path = step + (joins ? "" : ".") + found->path;
+  };
+  if (type == simdjson::ondemand::json_type::array) {
+    simdjson::ondemand::array items;
+    if (value.get_array().get(items)) return false;
+    std::size_t count = 0;
+    for (auto each : items) {
+      simdjson::ondemand::value item;
+      if (each.get(item)) return false;
+      if (limits.most && ++count > *limits.most) {
+        found = ListTooLong{{}, limits.wanted};
+        return false;
+      }
+      if (limits.items && says_something(*limits.items) && !scan(item, *limits.items, found)) {
+        put_before("[" + std::to_string(count - 1) + "]");
+        return false;
+      }
+    }
+  } else if (type == simdjson::ondemand::json_type::object) {
+    simdjson::ondemand::object members;
+    if (value.get_object().get(members)) return false;
+    for (auto each : members) {
+      simdjson::ondemand::field field;
+      std::string_view name;
+      if (each.get(field) || field.unescaped_key().get(name)) return false;
+      const auto member = limits.members.find(name);
+      if (member == limits.members.end() || !says_something(*member->second)) continue;
+      const std::string step(name);
+      if (!scan(field.value(), *member->second, found)) {
+        put_before(step);
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
-std::optional<json> read_json_fast(std::string_view text, int max_depth, const ListLimits* lists,
-                                   std::optional<ListTooLong>* too_long) {
+std::optional<ListTooLong> find_long_list(std::string_view text, const ListLimits& lists) {
+  simdjson::ondemand::parser parser;
+  const simdjson::padded_string padded(text);
+  simdjson::ondemand::document document;
+  simdjson::ondemand::value root;
+  std::optional<ListTooLong> found;
+  if (!parser.iterate(padded).get(document) && !document.get_value().get(root)) scan(root, lists, found);
+  return found;
+}
+
+std::optional<json> read_json_fast(std::string_view text, int max_depth) {
   simdjson::dom::parser parser;
   element root;
   if (parser.parse(text.data(), text.size()).get(root)) return std::nullopt;
   json value;
-  if (!convert(root, max_depth, {lists, too_long}, value)) return std::nullopt;
+  if (!convert(root, max_depth, value)) return std::nullopt;
   return value;
 }
 
