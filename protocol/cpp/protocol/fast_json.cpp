@@ -93,7 +93,7 @@ bool scan(simdjson::ondemand::value value, const ListLimits& limits, std::option
     for (auto each : members) {
       simdjson::ondemand::field field;
       std::string_view name;
-      if (each.get(field) || field.unescaped_key().get(name)) return false;
+      if (std::move(each).get(field) || field.unescaped_key().get(name)) return false;
       const auto member = limits.members.find(name);
       if (member == limits.members.end() || !says_something(*member->second)) continue;
       const std::string step(name);
