@@ -1,7 +1,7 @@
 import { beforeEach, describe, expect, it } from "vitest";
 
 import { describe_value } from "../src/app/brush-settings";
-import { folded_at_first, path_to, rows_of, tree_step, type TermRow } from "../src/app/term-rows";
+import { folded_at_first, path_to, rows_of, terms_with, tree_step, type TermRow } from "../src/app/term-rows";
 import { kTermsEndings, terms_type } from "../src/app/terms-files";
 import { kMostTerms, TermTree } from "../src/app/term-tree";
 import { Api } from "../src/core/api";
@@ -167,6 +167,20 @@ describe("the terms of a list", () => {
     await answer_all();
     expect((await found).total).toBe(3);
     expect(asked).toEqual(["saltes-MX0"]);
+  });
+});
+
+describe("a tree that is looked through", () => {
+  const term = (key: number, depth: number, name: string): ListedTerm => ({ key, depth, name }) as ListedTerm;
+  const all = [term(1, 0, "Verlust"), term(2, 1, "Abrieb"), term(3, 2, "Ölfleck"), term(4, 1, "Riss"), term(5, 0, "Auflage"), term(6, 1, "Salz")];
+  const found = (words: string): unknown[] => terms_with(all, words).map(({ key, match }) => [key, match]);
+
+  it("has what holds all words, whatever the accents, with what is above it", () => {
+    expect(found("olf")).toEqual([[1, false], [2, false], [3, true]]); // prettier-ignore
+    expect(found("A")).toEqual([[1, false], [2, true], [5, true], [6, true]]); // prettier-ignore
+    expect(found("ris s")).toEqual([[1, false], [4, true]]); // prettier-ignore
+    expect(found("")).toHaveLength(6);
+    expect(found("nothing")).toEqual([]);
   });
 });
 

@@ -10,8 +10,7 @@ import "./files-field";
 import type { StrataFilesField } from "./files-field";
 import "./marks-field";
 import type { StrataMarksField } from "./marks-field";
-import "./record-chooser";
-import type { StrataRecordChooser } from "./record-chooser";
+import { StrataRecordChooser } from "./record-chooser";
 import { number_field_styles, shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -135,6 +134,7 @@ export class StrataCellInput extends LitElement {
     this.focus({ preventScroll: true });
     const control = this.control_;
     const is_text = control instanceof HTMLTextAreaElement || (control instanceof HTMLInputElement && control.type === "text");
+    if (control instanceof StrataRecordChooser) control.open();
     if (is_text) control.setSelectionRange(this.typed === null ? 0 : control.value.length, control.value.length);
   }
 

@@ -1,4 +1,4 @@
-// <strata-record-chooser>: one or several records of a table, found by what they are called.
+// <strata-record-chooser>: one or several records of a table, found by what they are called. Terms stand as in their list, each below the one above it.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -8,7 +8,20 @@ import { icon } from "./icons";
 import { arrow_step } from "./keyboard";
 import type { ModelSession } from "./model-session";
 import { shared_styles } from "./styles";
+import { styled } from "./styled";
+import { terms_with } from "./term-rows";
+import type { TermTree } from "./term-tree";
 import { texts } from "./texts";
+
+/** One that may be chosen. */
+interface Option {
+  key: number;
+  label: string;
+  depth: number; // in a tree
+  match: boolean; // false: it is shown for what is below it
+}
+
+const kIndent_px = 16;
 
 @customElement("strata-record-chooser")
 export class StrataRecordChooser extends LitElement {
@@ -82,9 +95,16 @@ export class StrataRecordChooser extends LitElement {
         background: var(--accent-soft);
         font-size: 0.86rem;
       }
+      .chip .ellipsis {
+        min-width: 0;
+      }
       .chip button {
+        display: grid;
+        place-items: center;
+        flex: none;
         width: 24px;
         min-height: 24px;
+        padding: 0;
         border: 0;
         background: none;
       }
@@ -123,6 +143,9 @@ export class StrataRecordChooser extends LitElement {
         color: var(--ink-soft);
         font-size: 0.82rem;
       }
+      .option.above-found {
+        color: var(--ink-soft);
+      }
       .option svg.glyph {
         width: 15px;
         height: 15px;
@@ -134,15 +157,27 @@ export class StrataRecordChooser extends LitElement {
     `,
   ];
 
-  private get found(): { key: number; label: string }[] {
-    return (this.session.tables.names(this.table)?.search(this.text_) ?? []).filter(({ key }) => key !== this.without);
+  /** Null: the table is no list of terms, or its terms are too many to be here. */
+  private get terms(): TermTree | null {
+    const terms = this.session.tables.terms(this.table);
+    terms?.want();
+    return terms?.loaded && terms.terms.length === terms.total ? terms : null;
+  }
+
+  private get found(): Option[] {
+    const terms = this.terms;
+    const found = terms
+      ? terms_with(terms.terms, this.text_).map(({ key, name, depth, match }) => ({ key, label: name, depth, match }))
+      : (this.session.tables.names(this.table)?.search(this.text_) ?? []).map((named) => ({ ...named, depth: 0, match: true }));
+    return found.filter(({ key }) => key !== this.without);
   }
 
   override render(): TemplateResult {
     const words = texts.tables;
     const found = this.open_ ? this.found : [];
     const names = this.session.tables.names(this.table);
-    return html`<div class="field ${this.invalid ? "invalid" : ""}" @click=${() => this.input_.focus()}>
+    const tree = this.terms !== null;
+    return html`<div class="field ${this.invalid ? "invalid" : ""}" @click=${this.on_field}>
         ${this.chosen.map(
           (key) =>
             html`<span class="chip"
@@ -159,27 +194,26 @@ export class StrataRecordChooser extends LitElement {
           aria-autocomplete="list"
           aria-activedescendant=${this.at_ >= 0 && found[this.at_] ? `option-${this.at_}` : nothing}
           autocomplete="off"
-          placeholder=${this.chosen.length === 0 ? words.search_records : ""}
+          placeholder=${this.chosen.length > 0 ? "" : this.session.tables.terms(this.table) ? texts.terms.search : words.search_records}
           .value=${live(this.text_)}
           @input=${this.on_input}
-          @focus=${this.show}
-          @click=${this.show}
           @blur=${this.hide}
           @keydown=${this.on_key}
         />
       </div>
       <div class="list" id="list" popover="manual" role="listbox" aria-label=${this.label} aria-multiselectable=${this.multiple} @pointerdown=${keep_focus}>
         ${found.map(
-          ({ key, label }, index) =>
+          ({ key, label, depth, match }, index) =>
             html`<div
-              class="option ${index === this.at_ ? "at" : ""}"
+              class="option ${index === this.at_ ? "at" : ""} ${match ? "" : "above-found"}"
               id="option-${index}"
               role="option"
               aria-selected=${this.chosen.includes(key)}
+              ${styled({ "padding-left": depth > 0 ? `${8 + depth * kIndent_px}px` : null })}
               @click=${() => this.take(key)}
             >
               <span class="ellipsis">${label || words.record(key)}</span>
-              ${this.chosen.includes(key) ? icon("check") : nothing}<span class="key numeric">${key}</span>
+              ${this.chosen.includes(key) ? icon("check") : nothing}${tree ? nothing : html`<span class="key numeric">${key}</span>`}
             </div>`,
         )}
         ${found.length === 0 ? html`<p class="hint">${names && !names.loading ? words.none_found : texts.loading}</p>` : nothing}
@@ -192,7 +226,19 @@ export class StrataRecordChooser extends LitElement {
 
   private on_input(): void {
     this.text_ = this.input_.value;
-    this.at_ = this.text_ === "" ? -1 : 0;
+    this.at_ = this.text_ === "" ? -1 : this.found.findIndex(({ match }) => match);
+    this.show();
+  }
+
+  /** The list opens where somebody asks for it, and not because the form begins here. */
+  private on_field(event: Event): void {
+    const on_chip = event.composedPath().some((each) => each instanceof HTMLButtonElement);
+    this.input_.focus();
+    if (!on_chip) this.show();
+  }
+
+  /** Somebody begins to choose. */
+  open(): void {
     this.show();
   }
 

@@ -39,6 +39,26 @@ export function path_to(terms: readonly ListedTerm[], key: number): ListedTerm[]
   return path;
 }
 
+const plain = (text: string): string => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
+
+/** Those that have all of the words in their names, whatever the case and the accents, with those above them, which do not `match`. */
+export function terms_with(terms: readonly ListedTerm[], words: string): ListedTerm[] {
+  const wanted = plain(words).split(/\s+/).filter((word) => word !== "");
+  const matches = terms.map(({ name }) => wanted.every((word) => plain(name).includes(word)));
+  const shown = new Set<number>();
+  let depth = 0; // of what was shown below: who is above it is less deep
+  for (let index = terms.length - 1; index >= 0; --index) {
+    const term = terms[index]!;
+    if (matches[index] || term.depth < depth) {
+      shown.add(index);
+      depth = term.depth;
+    } else {
+      depth = Math.min(depth, term.depth);
+    }
+  }
+  return terms.flatMap((term, index) => (shown.has(index) ? { ...term, match: matches[index]! } : []));
+}
+
 /** `terms`: each before those below it. */
 export function rows_of(terms: readonly ListedTerm[], folded: ReadonlySet<number>): TermRow[] {
   const rows: TermRow[] = [];
