@@ -759,6 +759,7 @@ CREATE TABLE public.record_tables (
     records bigint DEFAULT 0 NOT NULL,
     sequence bigint DEFAULT 0 NOT NULL,
     version bigint DEFAULT 1 NOT NULL,
+    title_column bigint,
     CONSTRAINT record_tables_name_check CHECK ((name <> ''::text))
 );
 
@@ -989,6 +990,13 @@ CREATE TABLE public.layer_inputs (
     table_sequence bigint DEFAULT 0 NOT NULL
 );
 
+CREATE TABLE public.layer_origins (
+    layer_id bigint NOT NULL,
+    origin text NOT NULL,
+    edited_by_hand boolean DEFAULT false NOT NULL,
+    CONSTRAINT layer_origins_origin_check CHECK ((origin = ANY (ARRAY['expression'::text, 'shape'::text])))
+);
+
 ALTER TABLE public.all_layers ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     SEQUENCE NAME public.layers_id_seq
     START WITH 1
@@ -1042,6 +1050,13 @@ ALTER TABLE public.all_models ALTER COLUMN id ADD GENERATED ALWAYS AS IDENTITY (
     NO MINVALUE
     NO MAXVALUE
     CACHE 1
+);
+
+CREATE TABLE public.personal_views (
+    user_id bigint NOT NULL,
+    model_id bigint NOT NULL,
+    content jsonb NOT NULL,
+    CONSTRAINT personal_views_content_check CHECK ((octet_length((content)::text) <= 1048576))
 );
 
 CREATE TABLE public.project_groups (
@@ -1289,6 +1304,9 @@ ALTER TABLE ONLY public.kiosks
 ALTER TABLE ONLY public.layer_inputs
     ADD CONSTRAINT layer_inputs_pkey PRIMARY KEY (layer_id, slug);
 
+ALTER TABLE ONLY public.layer_origins
+    ADD CONSTRAINT layer_origins_pkey PRIMARY KEY (layer_id);
+
 ALTER TABLE ONLY public.all_layers
     ADD CONSTRAINT layers_pkey PRIMARY KEY (id);
 
@@ -1303,6 +1321,9 @@ ALTER TABLE ONLY public.model_sources
 
 ALTER TABLE ONLY public.all_models
     ADD CONSTRAINT models_pkey PRIMARY KEY (id);
+
+ALTER TABLE ONLY public.personal_views
+    ADD CONSTRAINT personal_views_pkey PRIMARY KEY (user_id, model_id);
 
 ALTER TABLE ONLY public.project_groups
     ADD CONSTRAINT project_groups_pkey PRIMARY KEY (group_id, project_id);
@@ -1451,6 +1472,8 @@ CREATE INDEX models_project ON public.all_models USING btree (project_id);
 
 CREATE UNIQUE INDEX models_slug ON public.all_models USING btree (slug) WHERE (binned IS NULL);
 
+CREATE INDEX personal_views_model ON public.personal_views USING btree (model_id);
+
 CREATE INDEX project_groups_project ON public.project_groups USING btree (project_id);
 
 CREATE INDEX project_members_project ON public.project_members USING btree (project_id);
@@ -1580,6 +1603,9 @@ ALTER TABLE ONLY public.layer_inputs
 ALTER TABLE ONLY public.layer_inputs
     ADD CONSTRAINT layer_inputs_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE SET NULL;
 
+ALTER TABLE ONLY public.layer_origins
+    ADD CONSTRAINT layer_origins_layer_id_fkey FOREIGN KEY (layer_id) REFERENCES public.all_layers(id) ON DELETE CASCADE;
+
 ALTER TABLE ONLY public.all_layers
     ADD CONSTRAINT layers_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
 
@@ -1604,6 +1630,12 @@ ALTER TABLE ONLY public.all_models
 ALTER TABLE ONLY public.all_models
     ADD CONSTRAINT models_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id);
 
+ALTER TABLE ONLY public.personal_views
+    ADD CONSTRAINT personal_views_model_id_fkey FOREIGN KEY (model_id) REFERENCES public.all_models(id) ON DELETE CASCADE;
+
+ALTER TABLE ONLY public.personal_views
+    ADD CONSTRAINT personal_views_user_id_fkey FOREIGN KEY (user_id) REFERENCES public.users(id) ON DELETE CASCADE;
+
 ALTER TABLE ONLY public.project_groups
     ADD CONSTRAINT project_groups_group_id_fkey FOREIGN KEY (group_id) REFERENCES public.groups(id) ON DELETE CASCADE;
 
@@ -1624,6 +1656,9 @@ ALTER TABLE ONLY public.record_columns
 
 ALTER TABLE ONLY public.record_tables
     ADD CONSTRAINT record_tables_project_id_fkey FOREIGN KEY (project_id) REFERENCES public.projects(id);
+
+ALTER TABLE ONLY public.record_tables
+    ADD CONSTRAINT record_tables_title_column_fkey FOREIGN KEY (title_column) REFERENCES public.record_columns(id) ON DELETE SET NULL;
 
 ALTER TABLE ONLY public.record_views
     ADD CONSTRAINT record_views_table_id_fkey FOREIGN KEY (table_id) REFERENCES public.record_tables(id) ON DELETE CASCADE;

@@ -24,6 +24,10 @@ nlohmann::json to_json(const Layer& layer) {
                       {"visibility", name(layer.visibility)},
                       {"order", layer.order},
                       {"sequence", layer.sequence}};
+  if (layer.origin) {
+    json["computed"] = *layer.origin == LayerOrigin::shape ? "shape" : "expression";
+    json["edited_by_hand"] = layer.edited_by_hand;
+  }
   if (layer.table) json["table"] = *layer.table;
   if (layer.formula) {
     nlohmann::json inputs = nlohmann::json::array();

@@ -30,6 +30,9 @@ struct LayerFormula {
   bool stale = true;          // as far as it is known here
 };
 
+// What computed a layer's values, where nobody painted them.
+enum class LayerOrigin { expression, shape };
+
 struct Layer {
   std::int64_t id = 0;
   std::int64_t model_id = 0;
@@ -52,9 +55,15 @@ struct Layer {
   int order = 0;                      // drawn ascending: higher is on top
   std::optional<std::int64_t> table;  // database: the project's table whose keys the texels hold
   std::optional<LayerFormula> formula;
+  std::optional<LayerOrigin> origin;
+  bool edited_by_hand =
+      false;  // with an origin: it was unlocked since, so that its values need not be those that were computed
   std::int64_t sequence = 0;  // of the last edit in it
   std::int64_t version = 1;   // of the metadata, for ETag and If-Match
 };
+
+// Its values are what was computed, and nobody may change them until it is unlocked to be edited by hand.
+inline bool is_as_computed(const Layer& layer) { return layer.origin && layer.locked && !layer.edited_by_hand; }
 
 nlohmann::json to_json(const Layer& layer);
 

@@ -152,16 +152,20 @@ Table seen_by(Table table, Role role) {
 nlohmann::json to_json(const Table& table) {
   nlohmann::json columns = nlohmann::json::array();
   for (const Column& column : table.columns) columns.push_back(to_json(column));
-  return {{"id", table.id},
-          {"project", table.project_id},
-          {"name", table.name},
-          {"slug", table.slug},
-          {"kind", term_columns(table) ? "terms" : "records"},
-          {"labels", table.labels},
-          {"description", table.description},
-          {"columns", std::move(columns)},
-          {"records", table.records},
-          {"sequence", table.sequence}};
+  nlohmann::json json{{"id", table.id},
+                      {"project", table.project_id},
+                      {"name", table.name},
+                      {"slug", table.slug},
+                      {"kind", term_columns(table) ? "terms" : "records"},
+                      {"labels", table.labels},
+                      {"description", table.description},
+                      {"columns", std::move(columns)},
+                      {"records", table.records},
+                      {"sequence", table.sequence}};
+  // One that is not seen, or was dropped, is not told.
+  if (table.title_column && std::ranges::find(table.columns, *table.title_column, &Column::id) != table.columns.end())
+    json["title_column"] = *table.title_column;
+  return json;
 }
 
 nlohmann::json to_json(const Record& record, const std::vector<Column>& columns) {
@@ -173,7 +177,16 @@ nlohmann::json to_json(const Record& record, const std::vector<Column>& columns)
   return {{"key", record.key}, {"version", record.version}, {"values", std::move(values)}};
 }
 
-const Column* name_column(const std::vector<Column>& columns) {
+bool can_be_title(const Column& column) {
+  return !holds_lists(column.kind) && column.kind != ColumnKind::boolean && !column.hidden;
+}
+
+const Column* name_column(const Table& table) {
+  const std::vector<Column>& columns = table.columns;
+  if (table.title_column) {
+    const auto chosen = std::ranges::find(columns, *table.title_column, &Column::id);
+    if (chosen != columns.end() && can_be_title(*chosen)) return &*chosen;
+  }
   const auto first = [&](auto fits) {
     const auto found = std::ranges::find_if(columns, fits);
     return found == columns.end() ? nullptr : &*found;
@@ -186,8 +199,8 @@ const Column* name_column(const std::vector<Column>& columns) {
   return found;
 }
 
-std::string record_name(const Record& record, const std::vector<Column>& columns) {
-  const Column* column = name_column(columns);
+std::string record_name(const Record& record, const Table& table) {
+  const Column* column = name_column(table);
   const auto found = column ? record.values.find(column->id) : record.values.end();
   if (found == record.values.end() || found->second.is_null()) return {};
   return found->second.is_string() ? found->second.get<std::string>() : found->second.dump();

@@ -68,10 +68,11 @@ struct Table {
   Labels labels;
   std::string description;
   std::vector<Column>
-      columns;                // those that are not hidden, by order; where it is read for somebody, those that they see
-  std::int64_t records = 0;   // how many
-  std::int64_t sequence = 0;  // of the last change of records or columns
-  std::int64_t version = 1;   // of everything but the records, for ETag and If-Match
+      columns;  // those that are not hidden, by order; where it is read for somebody, those that they see
+  std::optional<std::int64_t> title_column;  // id of the column that says what a record is called, as people chose it
+  std::int64_t records = 0;                  // how many
+  std::int64_t sequence = 0;                 // of the last change of records or columns
+  std::int64_t version = 1;                  // of everything but the records, for ETag and If-Match
 };
 
 inline constexpr std::int64_t kHighestKey = 0xffffffff;
@@ -101,11 +102,13 @@ Table seen_by(Table table, Role role);
 // `{key, version, values: {slug: value}}`, with every column of `columns`.
 nlohmann::json to_json(const Record& record, const std::vector<Column>& columns);
 
-// The column that tells people which record it is: the first text that is required and unique, otherwise one that is either,
-// otherwise any text, otherwise what is unique and no relation; null: records have no names.
-const Column* name_column(const std::vector<Column>& columns);
-// What the record is called; empty where it has no name.
-std::string record_name(const Record& record, const std::vector<Column>& columns);
+// Whether what a record has in the column can be what it is called.
+bool can_be_title(const Column& column);
+// The column that tells people which record it is: the one that they chose, where it is among `columns`; otherwise the first text that is required
+// and unique, otherwise one that is either, otherwise any text, otherwise what is unique and no relation; null: records have no names.
+const Column* name_column(const Table& table);
+// What the record is called; empty where it has no name. The key of a record of another table where that is what the column has.
+std::string record_name(const Record& record, const Table& table);
 
 // By id or slug; null: there is none.
 const Column* find_column(const std::vector<Column>& columns, const std::string& ref);

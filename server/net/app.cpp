@@ -7,6 +7,8 @@
 #include "net/compression.h"
 #include "net/kiosk_gate.h"
 #include "net/origin.h"
+#include "net/people_wire.h"
+#include "net/personal_view.h"
 #include "net/project_gate.h"
 #include "net/still_welcome.h"
 
@@ -88,6 +90,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
   add_people_routes(router_, context_);
+  add_personal_view_routes(router_, context_);
   add_project_routes(router_, context_);
   add_member_routes(router_, context_);
   add_group_routes(router_, context_);
@@ -273,8 +276,17 @@ Result<App::LiveEntry> App::admit_live(Request& request) {
   // What the others read of them. A person who is gone will be sent out anyway.
   auto person = store_.person(request.user());
   if (!person && person.error().status != 404) return tl::unexpected(person.error());
-  return LiveEntry{std::move(*room), project->slug, *request.principal, person ? person->full_name : std::string(),
-                   Authenticator::secret_of(request)};
+  std::optional<protocol::PersonalView> view;
+  if (person && !request.principal->kiosk) {
+    auto kept = personal_view(store_, person->name, request.role(), **room);
+    if (!kept) return tl::unexpected(kept.error());
+    auto told = protocol::from_json<protocol::PersonalView>(*kept);
+    if (!told) return tl::unexpected(told.error());
+    view = std::move(*told);
+  }
+  return LiveEntry{std::move(*room),   project->slug,
+                   *request.principal, person ? portrait_of(*person) : room::Portrait(),
+                   std::move(view),    Authenticator::secret_of(request)};
 }
 
 bool App::is_still_welcome(const std::string& secret, std::int64_t project_id, Role role) {
@@ -283,7 +295,8 @@ bool App::is_still_welcome(const std::string& secret, std::int64_t project_id, R
 
 std::shared_ptr<LiveSession> App::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) {
   auto session = std::make_shared<LiveSession>(shared_, std::move(entry.room), std::move(entry.project_slug),
-                                               std::move(entry.principal), std::move(entry.full_name), socket);
+                                               std::move(entry.principal), std::move(entry.portrait),
+                                               std::move(entry.personal_view), socket);
   live_sockets().add(std::move(socket), session, std::move(entry.secret));
   return session;
 }

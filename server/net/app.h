@@ -16,6 +16,7 @@
 #include "net/server_options.h"
 #include "net/static_files.h"
 #include "net/worker_pool.h"
+#include "protocol/messages.h"
 #include "render/renderer.h"
 #include "room/room.h"
 #include "store/store.h"
@@ -49,8 +50,9 @@ class App {
     std::shared_ptr<room::Room> room;
     std::string project_slug;
     Principal principal;
-    std::string full_name;
-    std::string secret;  // that the person showed
+    room::Portrait portrait;
+    std::optional<protocol::PersonalView> personal_view;  // a kiosk has none
+    std::string secret;                                   // that the person showed
   };
   Result<LiveEntry> admit_live(Request& request);
   std::shared_ptr<LiveSession> make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket);

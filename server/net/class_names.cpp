@@ -2,6 +2,7 @@
 
 #include "core/csv.h"
 #include "core/term_list.h"
+#include "net/record_words.h"
 
 namespace strata::net {
 
@@ -19,7 +20,18 @@ Result<RecordNames> record_names(const RouteContext& context, std::int64_t table
       names[listed.key] = label_in(listed.term, language);
     return names;
   }
-  for (const Record& record : page->records) names[record.key] = record_name(record, page->table.columns);
+  const Column* title = name_column(page->table);
+  if (!title || title->kind != ColumnKind::term) {
+    for (const Record& record : page->records) names[record.key] = record_name(record, page->table);
+    return names;
+  }
+  const auto words = RecordWords::load(context.store, *title->target, seen_by, language);
+  if (!words) return tl::unexpected(words.error());
+  for (const Record& record : page->records) {
+    const auto value = record.values.find(title->id);
+    const bool has_title = value != record.values.end() && !value->second.is_null();
+    names[record.key] = has_title ? words->name(value->second.get<std::int64_t>()) : std::string();
+  }
   return names;
 }
 

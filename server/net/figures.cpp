@@ -304,7 +304,7 @@ Result<FigureWish> figure_wish(const RouteContext& context, const Request& reque
   // Which layers it shows is settled before what of them waits: one that others see only later is not on it, unmarked.
   for (Layer& layer : wish.room->layers())
     if (wish.shown.shown.of(layer.id).visible.value_or(layer.visible)) wish.layers.push_back(layer);
-  std::ranges::stable_sort(wish.layers, {}, &Layer::order);
+  room::sort_as_shown(wish.layers, wish.shown.shown);
   wish.shown.layers.emplace();
   for (const Layer& layer : wish.layers) wish.shown.layers->push_back(std::to_string(layer.id));
   if (*at) {

@@ -58,8 +58,14 @@ Result<std::vector<query::LayerView>> shape_views(const RouteContext& context, c
   return views;
 }
 
-// Colours over most of the values.
+bool is_condition(const Layer& layer) {
+  const auto expression = layer.formula ? parse_formula(layer.formula->expression) : fail(0, {}, {});
+  return expression && expression->is_condition();
+}
+
+// Colours over most of the values; those of a condition are as they were made.
 Result<Layer> with_colors(room::Room& room, Layer layer) {
+  if (is_condition(layer)) return layer;
   const auto values = room.statistics(layer.slug, {}, {.quantiles = true});
   if (!values) return tl::unexpected(values.error());
   if (!values->quantiles || !(values->max > values->min)) return layer;
@@ -103,7 +109,7 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
 }
 
 Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<room::Room>& room, const Layer& layer,
-                            const Author& author, Progress& progress) {
+                            const Author& author, Progress& progress, bool overwrites) {
   if (!layer.formula)
     return fail(409, "No expression", "This layer has no expression that it could be computed from.", "layer");
   for (const auto& input : layer.formula->inputs)
@@ -121,7 +127,7 @@ Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<r
   if (!tables) return tl::unexpected(tables.error());
   room::EditRequest edit{random_uuid(), author, layer.id};
   edit.record = {{"op", "compute"}, {"expression", layer.formula->expression}};
-  edit.edit = room::ComputeEdit{*expression, std::move(*shapes)};
+  edit.edit = room::ComputeEdit{*expression, std::move(*shapes), overwrites};
   auto done = room::await<room::EditAnswer>([&](auto saved) {
     room->edit(
         std::move(edit), [&context](const room::EditAnswer&) { ++context.metrics.edits_applied; }, std::move(saved));
@@ -139,9 +145,14 @@ Result<Response> create_formula_layer(const RouteContext& context, JobBook& book
                                       const std::function<Response(const Layer&)>& answer) {
   const auto expression = parse_formula(layer.formula->expression);
   if (!expression) return tl::unexpected(expression.error());
-  const auto compute = [&context, room, author = request.author(), has_palette](const Layer& made, Progress& progress) {
+  const auto compute = [&context, room, author = request.author(), has_palette](const Layer& made,
+                                                                                Progress& progress) -> Result<Layer> {
     auto computed = compute_layer(context, room, made, author, progress);
-    return computed && !has_palette ? with_colors(*room, std::move(*computed)) : computed;
+    if (!computed) return computed;
+    // Others see it once they want to.
+    if (auto shown = context.store.show_layer_to(author.user, made.model_id, made.id); !shown)
+      return tl::unexpected(shown.error());
+    return has_palette ? computed : with_colors(*room, std::move(*computed));
   };
   if (!room::shapes_read(*expression, views_of(room->layers())).empty())
     return start_layer_job(

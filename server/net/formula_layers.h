@@ -16,10 +16,10 @@ Result<Expression> parse_formula(const std::string& text);
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
                                   Visibility visibility, std::optional<std::int64_t> self = {});
 
-// Computes the layer's content anew, as one edit of the author, and tells who looks. Returns it as it is then. The normals, the height,
+// Computes the layer's content anew, as one edit of the author, and tells who looks. `overwrites`: also where it was edited by hand since (409 without). Returns it as it is then. The normals, the height,
 // the slope and the curvature that an expression reads are worked out first, which takes as long as their layers do.
 Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<room::Room>& room, const Layer& layer,
-                            const Author& author, Progress& progress);
+                            const Author& author, Progress& progress, bool overwrites = false);
 
 // POST …/layers with `expression`: makes the layer and computes it; nothing is left of one that cannot be computed. 201, or 202
 // with a job where the surface's shape has to be worked out. Without a palette of its own its colours run over the values it has.

@@ -36,13 +36,14 @@ std::vector<protocol::RecordEditors> editor_messages(const std::vector<EditorBoo
 }  // namespace
 
 LiveSession::LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room,
-                         std::string project_slug, Principal principal, std::string full_name,
-                         std::weak_ptr<LiveSocket> socket)
+                         std::string project_slug, Principal principal, room::Portrait portrait,
+                         std::optional<protocol::PersonalView> personal_view, std::weak_ptr<LiveSocket> socket)
     : shared_(std::move(shared)),
       room_(std::move(room)),
       project_slug_(std::move(project_slug)),
       principal_(std::move(principal)),
-      full_name_(std::move(full_name)),
+      portrait_(std::move(portrait)),
+      personal_view_(std::move(personal_view)),
       owner_{room_->model().id, principal_.user},
       socket_(std::move(socket)),
       bucket_(shared_->limits.messages_per_second, shared_->limits.burst) {}
@@ -111,7 +112,7 @@ void LiveSession::on(const protocol::Hello& message) {
     return refuse({406, "No common picture format", "Pictures are sent as jpeg.", "accept"}, std::string());
 
   std::shared_ptr<room::Member> joined = room_->join(
-      author(), full_name_, this, [socket = socket_, metrics = shared_->metrics](const stream::FrameMessages& frame) {
+      author(), portrait_, this, [socket = socket_, metrics = shared_->metrics](const stream::FrameMessages& frame) {
         ++metrics->frames_sent;
         for (const stream::FrameBytes& part : frame) metrics->frame_bytes_sent += part->size();
         if (auto open = socket.lock())
@@ -125,6 +126,7 @@ void LiveSession::on(const protocol::Hello& message) {
   welcome.model = to_json(model, project_slug_);
   for (const auto& layer : room_->layers()) welcome.layers.push_back(to_json(layer));
   for (const auto& look : room_->looks()) welcome.looks.push_back(to_json(look));
+  welcome.personal_view = personal_view_;
   const LiveLimits& limits = shared_->limits;
   welcome.limits.message_bytes = static_cast<int>(limits.message_bytes);
   welcome.limits.path_points = static_cast<int>(StrokeBook::kMaxPath - 1);

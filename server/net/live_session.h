@@ -17,6 +17,7 @@
 #include "net/token_bucket.h"
 #include "net/wire.h"
 #include "net/worker_pool.h"
+#include "protocol/messages.h"
 #include "protocol/parse.h"
 #include "room/room.h"
 
@@ -69,9 +70,10 @@ constexpr int kCloseTryAgain = 1013;
 // strand; what the room tells arrives on the room's.
 class LiveSession final : public room::Listener, public std::enable_shared_from_this<LiveSession> {
  public:
-  // `full_name` of who it is may be empty.
+  // `personal_view`: what they keep of how they show the layers (net/personal_view.h).
   LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room, std::string project_slug,
-              Principal principal, std::string full_name, std::weak_ptr<LiveSocket> socket);
+              Principal principal, room::Portrait portrait, std::optional<protocol::PersonalView> personal_view,
+              std::weak_ptr<LiveSocket> socket);
   ~LiveSession() override;
 
   // Work that is returned must run on a worker, and end, before the next message is given.
@@ -143,7 +145,8 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   const std::shared_ptr<room::Room> room_;
   const std::string project_slug_;
   const Principal principal_;
-  const std::string full_name_;
+  const room::Portrait portrait_;
+  const std::optional<protocol::PersonalView> personal_view_;
   const StrokeBook::Owner owner_;
   const std::weak_ptr<LiveSocket> socket_;
 

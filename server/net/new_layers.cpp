@@ -27,7 +27,7 @@ Result<Layer> NewLayers::add(Layer layer, TileMap tiles, nlohmann::json recipe) 
 Result<Layer> NewLayers::paint(const Layer& created, TileMap tiles, nlohmann::json recipe) {
   room::EditRequest edit{random_uuid(), author_, created.id};
   edit.record = {{"op", "import"}, {"recipe", std::move(recipe)}};
-  edit.edit = room::ImportEdit{std::move(tiles)};
+  edit.edit = room::ImportEdit{.tiles = std::move(tiles), .computed = true};
   auto painted = room::await<room::EditAnswer>([&](auto saved) {
     room_->edit(
         std::move(edit), [this](const room::EditAnswer&) { ++metrics_.edits_applied; }, std::move(saved));

@@ -66,15 +66,24 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, const Table& table) {
 
 }  // namespace
 
-std::string record_cell(const Record& record, const Column& column, char separator) {
+std::optional<std::string> term_word(const Record& record, const Column& column, const WordsOfTables& words) {
+  if (column.kind != ColumnKind::term || !column.target) return std::nullopt;
+  const auto known = words.find(*column.target);
+  const auto value = record.values.find(column.id);
+  if (known == words.end() || value == record.values.end() || value->second.is_null()) return std::nullopt;
+  return known->second.word(value->second.get<std::int64_t>());
+}
+
+std::string record_cell(const Record& record, const Column& column, char separator, const WordsOfTables& words) {
   const auto value = record.values.find(column.id);
   if (value == record.values.end()) return {};
+  if (auto word = term_word(record, column, words)) return guard_formula(std::move(*word));
   std::string cell = print_value(column, value->second);
   return separator == ';' && column.kind == ColumnKind::numeric ? with_comma(std::move(cell)) : cell;
 }
 
 std::string records_csv(const std::vector<Record>& records, const std::vector<Column>& columns,
-                        const MeasuredRecords& measured, char separator) {
+                        const MeasuredRecords& measured, char separator, const WordsOfTables& words) {
   std::string text(kUtf8Mark);
   std::vector<std::string> cells{kKey};
   for (const Column& column : columns) cells.push_back(column.slug);
@@ -82,7 +91,7 @@ std::string records_csv(const std::vector<Record>& records, const std::vector<Co
   text += csv_line(cells, separator);
   for (std::size_t i = 0; i < records.size(); ++i) {
     cells = {std::to_string(records[i].key)};
-    for (const Column& column : columns) cells.push_back(record_cell(records[i], column, separator));
+    for (const Column& column : columns) cells.push_back(record_cell(records[i], column, separator, words));
     if (!measured.names.empty())
       for (const double value : measured.values[i]) cells.push_back(csv_number(value, separator));
     text += csv_line(cells, separator);
@@ -90,7 +99,20 @@ std::string records_csv(const std::vector<Record>& records, const std::vector<Co
   return text;
 }
 
-Result<RecordRows> read_records_csv(std::string_view text, const Table& table) {
+namespace {
+
+Result<nlohmann::json> read_cell(const Column& column, const std::string& cell, bool comma, const std::string& field,
+                                 const WordsOfTables& words) {
+  const auto known = column.kind == ColumnKind::term && column.target ? words.find(*column.target) : words.end();
+  if (known == words.end() || trimmed(cell).empty()) return parse_value(column, cell, comma, field);
+  const auto key = known->second.key_of(unguard_formula(std::string(trimmed(cell))), field);
+  if (!key) return tl::unexpected(key.error());
+  return check_value(column, *key, field);
+}
+
+}  // namespace
+
+Result<RecordRows> read_records_csv(std::string_view text, const Table& table, const WordsOfTables& words) {
   auto csv = parse_csv(text, {store::kMostRecordsAtOnce + 1, static_cast<std::size_t>(kMostColumns) + 3});
   if (!csv) return tl::unexpected(csv.error());
   if (csv->rows.empty()) return fail(422, "Empty table", "The first row names the columns.", "body");
@@ -117,7 +139,7 @@ Result<RecordRows> read_records_csv(std::string_view text, const Table& table) {
       const Head& head = (*heads)[c];
       const std::string& cell = row.cells[c];
       if (head.column) {
-        auto value = parse_value(*head.column, cell, comma, head.text);
+        auto value = read_cell(*head.column, cell, comma, head.text, words);
         if (!value)
           mistakes.push_back({row.line, head.text, value.error()});
         else

@@ -43,6 +43,7 @@ struct RouteContext {
 void add_system_routes(Router& router, const RouteContext& context);
 void add_auth_routes(Router& router, const RouteContext& context);
 void add_people_routes(Router& router, const RouteContext& context);
+void add_personal_view_routes(Router& router, const RouteContext& context);
 void add_project_routes(Router& router, const RouteContext& context);
 void add_member_routes(Router& router, const RouteContext& context);
 void add_group_routes(Router& router, const RouteContext& context);

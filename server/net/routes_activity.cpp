@@ -1,6 +1,7 @@
 // What was done in a project.
 #include "net/activity_wire.h"
 #include "net/model_events.h"
+#include "net/people_wire.h"
 
 namespace strata::net {
 namespace {
@@ -33,6 +34,7 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
   for (const Activity& line : found->lines) lines.push_back(to_json(line));
   nlohmann::json answer{{"activity", std::move(lines)}};
   if (found->next) answer["next"] = to_text(*found->next);
+  if (auto named = People::add_to(context.store, answer); !named) return tl::unexpected(named.error());
   return json_response(std::move(answer));
 }
 

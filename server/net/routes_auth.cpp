@@ -3,6 +3,7 @@
 
 #include "core/utf8.h"
 #include "net/origin.h"
+#include "net/people_wire.h"
 #include "net/project_gate.h"
 #include "net/routes.h"
 #include "net/sign_in_gate.h"
@@ -15,10 +16,12 @@ Result<Response> who_is_signed_in(const RouteContext& context, const std::string
   const auto person = context.store.person(user);
   if (!person && person.error().status == 404) return fail(401, "Not signed in", "This account was closed meanwhile.");
   if (!person) return tl::unexpected(person.error());
-  return json_response({{"user", person->name},
-                        {"full_name", person->full_name},
-                        {"role", std::string(name(role))},
-                        {"has_password", person->has_password}});
+  nlohmann::json me{{"user", person->name},
+                    {"full_name", person->full_name},
+                    {"role", std::string(name(role))},
+                    {"has_password", person->has_password}};
+  add_color(me, *person);
+  return json_response(std::move(me));
 }
 
 Result<Response> signed_in(const RouteContext& context, const Request& request, const std::string& session) {

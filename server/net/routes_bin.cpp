@@ -2,6 +2,7 @@
 #include <charconv>
 
 #include "net/answer_book.h"
+#include "net/people_wire.h"
 #include "net/routes.h"
 #include "net/table_events.h"
 #include "net/wire.h"
@@ -62,6 +63,7 @@ Result<Response> list_bin(const RouteContext& context, const Request& request) {
   const std::chrono::days keep(context.options.bin_days);
   nlohmann::json entries = nlohmann::json::array();
   for (const BinEntry& entry : found->entries) entries.push_back(to_json(entry, keep));
+  if (auto named = People::add_to(context.store, entries); !named) return tl::unexpected(named.error());
   Response response =
       json_response({{"entries", std::move(entries)}, {"total", found->total}, {"days", context.options.bin_days}});
   add_page_links(response, request, *page, found->total);

@@ -6,6 +6,7 @@
 #include "net/annotated_routes.h"
 #include "net/answer_book.h"
 #include "net/comment_events.h"
+#include "net/people_wire.h"
 #include "net/routes.h"
 #include "net/wire.h"
 #include "store/comments.h"
@@ -42,19 +43,35 @@ nlohmann::json to_json(const Comment& comment) {
   return json;
 }
 
-Response page_response(const Request& request, const char* list, const Comments::Page& found, const Page& page) {
+// Those whom a comment, and what is done to it now, may name.
+Result<People> people_of(const RouteContext& context, const Comment& comment, const std::string& asking) {
+  std::vector<std::string> names{comment.user, asking};
+  if (comment.resolved) names.push_back(comment.resolved->user);
+  return People::load(context.store, names);
+}
+
+nlohmann::json to_json(const Comment& comment, const People& people) {
+  nlohmann::json json = to_json(comment);
+  people.add(json);
+  return json;
+}
+
+Result<Response> page_response(const RouteContext& context, const Request& request, const char* list,
+                               const Comments::Page& found, const Page& page) {
   nlohmann::json comments = nlohmann::json::array();
   for (const Comment& comment : found.comments) comments.push_back(to_json(comment));
+  if (auto named = People::add_to(context.store, comments); !named) return tl::unexpected(named.error());
   Response response = json_response({{list, std::move(comments)}, {"total", found.total}});
   add_page_links(response, request, page, found.total);
   return response;
 }
 
-void tell(const RouteContext& context, CommentEventEvent event, const Comment& comment, const std::string& user) {
+void tell(const RouteContext& context, CommentEventEvent event, const Comment& comment, const People& people,
+          const std::string& user) {
   protocol::CommentEvent message;
   message.event = event;
   message.comment_id = comment.id;
-  message.comment = to_json(comment);
+  message.comment = to_json(comment, people);
   message.user = user;
   context.live_sockets.tell_model(comment.model_id, comment.visibility, message);
 }
@@ -85,7 +102,7 @@ Result<Response> list_comments(const RouteContext& context, const Request& reque
   if (!model) return tl::unexpected(model.error());
   const auto found = context.store.comments().of_model(model->id, request.role(), query);
   if (!found) return tl::unexpected(found.error());
-  return page_response(request, "comments", *found, *page);
+  return page_response(context, request, "comments", *found, *page);
 }
 
 Result<Response> list_replies(const RouteContext& context, const Request& request) {
@@ -95,7 +112,7 @@ Result<Response> list_replies(const RouteContext& context, const Request& reques
   if (!thread) return tl::unexpected(thread.error());
   const auto found = context.store.comments().replies(thread->id, request.role(), page->limit, page->offset);
   if (!found) return tl::unexpected(found.error());
-  return page_response(request, "replies", *found, *page);
+  return page_response(context, request, "replies", *found, *page);
 }
 
 Result<Comment::Place> place_on(room::Room& room, const glm::dvec3& world) {
@@ -136,14 +153,16 @@ Result<void> put_subject(const RouteContext& context, const room::Room& room, co
 }
 
 Result<Response> write(const RouteContext& context, const Request& request, const Comment& comment) {
-  const auto answer = [](const Comment& made) {
-    return json_response(to_json(made), 201)
+  const auto people = people_of(context, comment, request.user());
+  if (!people) return tl::unexpected(people.error());
+  const auto answer = [&people](const Comment& made) {
+    return json_response(to_json(made, *people), 201)
         .with("Location", "/api/v1/comments/" + std::to_string(made.id))
         .with("ETag", etag_of(made.version));
   };
   const auto written = context.store.comments().create(comment, first_answer<Comment>(request, answer));
   if (!written) return tl::unexpected(written.error());
-  tell(context, CommentEventEvent::created, *written, request.user());
+  tell(context, CommentEventEvent::created, *written, *people, request.user());
   return answer(*written);
 }
 
@@ -198,10 +217,14 @@ Result<Response> change_comment(const RouteContext& context, const Request& requ
     else if (!comment->resolved)
       comment->resolved = Comment::Resolution{request.user(), {}};
   }
-  const auto answer = [](const Comment& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
+  const auto people = people_of(context, *comment, request.user());
+  if (!people) return tl::unexpected(people.error());
+  const auto answer = [&people](const Comment& now) {
+    return json_response(to_json(now, *people)).with("ETag", etag_of(now.version));
+  };
   const auto changed = context.store.comments().update(*comment, first_answer<Comment>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
-  tell(context, CommentEventEvent::changed, *changed, request.user());
+  tell(context, CommentEventEvent::changed, *changed, *people, request.user());
   return answer(*changed);
 }
 
@@ -214,7 +237,10 @@ Result<Response> delete_comment(const RouteContext& context, const Request& requ
   const auto answer = [](const Comments::Removal&) { return empty_response(204); };
   const auto removal = context.store.comments().remove(*comment, first_answer<Comments::Removal>(request, answer));
   if (!removal) return tl::unexpected(removal.error());
-  if (removal->left) tell(context, CommentEventEvent::changed, *removal->left, request.user());
+  if (removal->left) {
+    const auto people = people_of(context, *removal->left, request.user());
+    tell(context, CommentEventEvent::changed, *removal->left, people.value_or(People()), request.user());
+  }
   for (const auto id : removal->gone) {
     protocol::CommentEvent message;
     message.event = CommentEventEvent::deleted;
@@ -236,6 +262,13 @@ void tell_threads(const RouteContext& context, const Layer& layer, Visibility be
   std::set<std::int64_t> threads;
   for (const Comment& comment : found->comments)
     if (comment.layer_id == layer.id) threads.insert(comment.id);
+  std::vector<std::string> names;
+  for (const Comment& comment : found->comments) {
+    names.push_back(comment.user);
+    if (comment.resolved) names.push_back(comment.resolved->user);
+  }
+  const auto people = People::load(context.store, names);
+  if (!people) return log::warning("threads about layer " + std::to_string(layer.id) + ": " + people.error().detail);
   for (const Comment& comment : found->comments) {
     if (!threads.contains(comment.thread.value_or(comment.id))) continue;
     protocol::CommentEvent message;
@@ -243,7 +276,7 @@ void tell_threads(const RouteContext& context, const Layer& layer, Visibility be
     message.user = user;
     const bool is_seen_by_more = layer.visibility < before;
     message.event = is_seen_by_more ? CommentEventEvent::changed : CommentEventEvent::deleted;
-    if (is_seen_by_more) message.comment = to_json(comment);
+    if (is_seen_by_more) message.comment = to_json(comment, *people);
     const auto is_meant = [&](Role role) { return sees(role, before) != sees(role, layer.visibility); };
     for (const Visibility sight : {Visibility::everyone, Visibility::team, Visibility::curators})
       if (is_meant(least_role(sight))) context.live_sockets.tell_sight(layer.model_id, sight, message);
@@ -258,7 +291,9 @@ void add_comment_routes(Router& router, const RouteContext& context) {
   routes.read(comment, [](const RouteContext& of, const Request& request) -> Result<Response> {
     const auto found = stored_comment(of, request);
     if (!found) return tl::unexpected(found.error());
-    return with_etag(json_response(to_json(*found)), request, found->version);
+    nlohmann::json answer = to_json(*found);
+    if (auto named = People::add_to(of.store, answer); !named) return tl::unexpected(named.error());
+    return with_etag(json_response(std::move(answer)), request, found->version);
   });
   routes.change(Method::patch, comment, change_comment);
   routes.change(Method::remove, comment, delete_comment);

@@ -1,3 +1,4 @@
+#include "net/people_wire.h"
 #include "net/routes.h"
 #include "net/show_through.h"
 #include "net/wire.h"
@@ -39,7 +40,9 @@ Result<Response> list_review(const RouteContext& context, const Request& request
     return fail(422, "Bad name", "`user` is the name of a person.", "user");
   auto queue = context.store.review_queue(layer->id, user, page->limit, page->offset);
   if (!queue) return tl::unexpected(queue.error());
-  Response response = json_response(to_json(*queue));
+  nlohmann::json answer = to_json(*queue);
+  if (auto named = People::add_to(context.store, answer); !named) return tl::unexpected(named.error());
+  Response response = json_response(std::move(answer));
   add_page_links(response, request, *page, queue->total);
   return response;
 }

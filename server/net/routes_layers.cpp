@@ -35,6 +35,28 @@ Result<Palette> palette_of(const std::optional<nlohmann::json>& asked, ValueType
   return palette_from_json(*asked);
 }
 
+// A condition is told by one value, where it holds.
+bool computes_numbers(const protocol::LayerCreate& asked) {
+  if (!asked.expression) return asked.compute.has_value();
+  const auto expression = parse_formula(*asked.expression);
+  return !expression || !expression->is_condition();
+}
+
+// One class, painted where the condition holds.
+Palette palette_of_condition(const std::string& label) {
+  Palette palette;
+  palette.mode = PaletteMode::categorical;
+  palette.min = palette.max = 1;
+  palette.points.push_back({1, {213, 94, 0, 255}, label});
+  return palette;
+}
+
+int order_at_bottom(const std::vector<Layer>& others) {
+  int bottom = 1;
+  for (const Layer& other : others) bottom = std::min(bottom, other.order);
+  return bottom - 1;
+}
+
 Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, const std::vector<Layer>& others) {
   if ((asked.compute || asked.expression) && asked.kind != LayerKind::numeric)
     return fail(422, "Kind not usable", "What is computed is numeric.", "kind");
@@ -49,7 +71,7 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
   if (!slug) return tl::unexpected(slug.error());
   layer.slug = *slug;
   layer.kind = asked.kind;
-  layer.type = asked.type.value_or(asked.compute || asked.expression ? ValueType::f32 : ValueType::u8);
+  layer.type = asked.type.value_or(computes_numbers(asked) ? ValueType::f32 : ValueType::u8);
   const bool is_key = layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
   if (layer.kind == LayerKind::database && !is_key)
     return fail(422, "Type not usable", "A database layer holds keys: its type is u8, u16 or u32.", "type");
@@ -68,15 +90,23 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
   layer.description = asked.description;
   layer.labels = asked.labels.value_or(Labels());
   layer.descriptions = asked.descriptions.value_or(Labels());
-  auto palette = palette_of(asked.palette, layer.type, layer.kind == LayerKind::database);
+  const bool is_computed = asked.compute || asked.expression;
+  if (is_computed && asked.locked == false)
+    return fail(422, "Locked at first",
+                "A computed layer is locked when it is made. Unlock it afterwards to edit it by hand.", "locked");
+  const bool is_condition = asked.expression && !computes_numbers(asked);
+  auto palette = is_condition && !asked.palette
+                     ? Result<Palette>(palette_of_condition(asked.name))
+                     : palette_of(asked.palette, layer.type, layer.kind == LayerKind::database);
   if (!palette) return tl::unexpected(palette.error());
   layer.palette = std::move(*palette);
   layer.opacity = asked.opacity;
-  layer.visible = asked.visible;
-  layer.locked = asked.locked;
+  // It must not cover what others look at.
+  layer.visible = asked.visible.value_or(!is_computed);
+  layer.locked = asked.locked.value_or(is_computed);
   layer.review = asked.review;
   layer.visibility = asked.visibility.value_or(Visibility::everyone);
-  layer.order = asked.order.value_or(order_on_top(others));
+  layer.order = asked.order.value_or(is_computed ? order_at_bottom(others) : order_on_top(others));
   return layer;
 }
 
@@ -104,6 +134,7 @@ Result<Response> create_layer(const RouteContext& context, JobBook& book, const 
     auto formula = read_formula(**room, *asked->expression, is_automatic(asked->recompute), layer->visibility);
     if (!formula) return tl::unexpected(formula.error());
     layer->formula = std::move(*formula);
+    layer->origin = LayerOrigin::expression;
   }
   if (auto good = check_shows_nothing(context, *layer, {}); !good) return tl::unexpected(good.error());
   const auto answer = [model_slug = model.slug](const Layer& made) {
@@ -126,7 +157,10 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& ask
   if (layer.kind != LayerKind::numeric)
     return fail(422, "Kind not usable", "What is computed is numeric.", "expression");
   if (asked.expression && asked.expression->empty()) {
+    if (!layer.formula) return {};
     layer.formula.reset();
+    layer.locked = asked.locked.value_or(false);
+    layer.edited_by_hand = true;
     return {};
   }
   if (!asked.expression && !layer.formula)
@@ -135,7 +169,14 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& ask
   auto formula = read_formula(room, asked.expression ? *asked.expression : layer.formula->expression, automatic,
                               layer.visibility, layer.id);
   if (!formula) return tl::unexpected(formula.error());
+  // Another expression: what was painted is going to be overwritten.
+  const bool is_other = !layer.formula || layer.formula->expression != formula->expression;
   layer.formula = std::move(*formula);
+  if (is_other) {
+    layer.origin = LayerOrigin::expression;
+    layer.locked = true;
+    layer.edited_by_hand = false;
+  }
   return {};
 }
 
@@ -144,8 +185,13 @@ Result<Response> compute(const RouteContext& context, const Request& request) {
   if (!room) return tl::unexpected(room.error());
   auto layer = context.store.layer((*room)->model().id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());
+  const std::string overwrite = request.query_or("overwrite", "false");
+  if (overwrite != "true" && overwrite != "false")
+    return fail(422, "Bad value", "`overwrite` is true or false.", "overwrite");
+  if (overwrite == "true" && layer->edited_by_hand && request.role() < Role::curator)
+    return fail(403, "Not allowed", "Only curators have what was edited by hand computed again.", "overwrite");
   Progress progress;
-  auto computed = compute_layer(context, *room, *layer, request.author(), progress);
+  auto computed = compute_layer(context, *room, *layer, request.author(), progress, overwrite == "true");
   if (!computed) return tl::unexpected(computed.error());
   return json_response(to_json(*computed)).with("ETag", etag_of(computed->version));
 }
@@ -181,6 +227,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   }
   if (asked->opacity) layer->opacity = *asked->opacity;
   if (asked->visible) layer->visible = *asked->visible;
+  if (asked->locked == false && is_as_computed(*layer)) layer->edited_by_hand = true;
   if (asked->locked) layer->locked = *asked->locked;
   if (asked->review) layer->review = *asked->review;
   const Visibility before = layer->visibility;
@@ -256,7 +303,8 @@ void add_layer_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::post,
               .pattern = layers + "/{layer}/compute",
               .handler = answering([&context](const Request& request) { return compute(context, request); }),
-              .role = Role::annotator});
+              .role = Role::annotator,
+              .query = {"overwrite"}});
 }
 
 }  // namespace strata::net

@@ -1,6 +1,7 @@
 // Who may do more in a project than everywhere, and who sees it.
 #include <set>
 
+#include "net/people_wire.h"
 #include "net/routes.h"
 #include "net/wire.h"
 #include "store/groups.h"
@@ -9,8 +10,10 @@ namespace strata::net {
 namespace {
 
 nlohmann::json to_json(const store::Membership& member) {
-  return {
+  nlohmann::json json{
       {"user", member.person.name}, {"full_name", member.person.full_name}, {"role", std::string(name(member.role))}};
+  add_color(json, member.person);
+  return json;
 }
 
 Result<Project> project_of(const RouteContext& context, const Request& request) {
@@ -50,8 +53,10 @@ Result<Response> list_people(const RouteContext& context, const Request& request
   int total = 0;
   for (const store::Person& person : *people) {
     if (person.disabled || (person.role < Role::viewer && !with_role.contains(person.id))) continue;
-    if (total >= page->offset && total < page->offset + page->limit)
+    if (total >= page->offset && total < page->offset + page->limit) {
       list.push_back({{"user", person.name}, {"full_name", person.full_name}});
+      add_color(list.back(), person);
+    }
     ++total;
   }
   Response response = json_response({{"people", std::move(list)}, {"total", total}});

@@ -1,5 +1,6 @@
 // Accounts: who there is, what they may do, and how they come in.
 #include "net/origin.h"
+#include "net/people_wire.h"
 #include "net/routes.h"
 #include "net/wire.h"
 #include "store/password.h"
@@ -20,6 +21,7 @@ nlohmann::json to_json(const Person& person) {
                                                       : "invited"},
                       {"created", utc_text(person.created)},
                       {"groups", person.groups}};
+  add_color(json, person);
   if (person.last_seen) json["last_seen"] = utc_text(*person.last_seen);
   return json;
 }

@@ -64,7 +64,7 @@ Result<store::Store::RecordPage> page_by_measure(const RouteContext& context, co
 
 // The columns of `records_csv`, with values of their own types.
 Result<Response> records_book(const RouteContext& context, const store::Store::RecordPage& page,
-                              const RecordMeasures& measures) {
+                              const RecordMeasures& measures, const WordsOfTables& words) {
   std::vector<std::string> heads{"key"};
   for (const Column& column : page.table.columns) heads.push_back(column.slug);
   heads.insert(heads.end(), measures.names().begin(), measures.names().end());
@@ -72,7 +72,12 @@ Result<Response> records_book(const RouteContext& context, const store::Store::R
   std::vector<BookCell> cells;
   for (const Record& record : page.records) {
     cells.assign(1, double(record.key));
-    for (const Column& column : page.table.columns) cells.push_back(book_cell(record, column));
+    for (const Column& column : page.table.columns) {
+      if (auto word = term_word(record, column, words))
+        cells.emplace_back(std::move(*word));
+      else
+        cells.push_back(book_cell(record, column));
+    }
     for (const double value : measures.of(record)) cells.emplace_back(value);
     book.add_row(cells);
   }
@@ -90,6 +95,11 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   if (!place) return tl::unexpected(place.error());
   store::Store::RecordQuery query;
   query.order = order_of(request.query_or("sortby", {}));
+  const auto language = asked_language(request);
+  if (!language) return tl::unexpected(language.error());
+  query.language = *language;
+  const std::string terms = request.query_or("terms", "words");
+  if (terms != "words" && terms != "keys") return fail(422, "Unknown choice", "`terms` is words or keys.", "terms");
   if (auto filter = request.query.find("filter"); filter != request.query.end() && !filter->second.empty()) {
     auto condition = query::parse_condition(filter->second, "filter", query::Names::columns);
     if (!condition) return tl::unexpected(condition.error());
@@ -114,17 +124,23 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
                      : page_by_measure(context, *place, *measures, static_cast<std::size_t>(measure - names.begin()),
                                        request.role(), query);
   if (!records) return tl::unexpected(records.error());
+  WordsOfTables words;
+  if (*format != SheetFormat::json && terms == "words") {
+    auto known = words_of(context.store, records->table.columns, request.role(), *language);
+    if (!known) return tl::unexpected(known.error());
+    words = std::move(*known);
+  }
   Response response;
   if (*format == SheetFormat::xlsx) {
-    auto book = records_book(context, *records, *measures);
+    auto book = records_book(context, *records, *measures, words);
     if (!book) return book;
     response = std::move(*book);
   } else if (*format == SheetFormat::csv) {
     std::vector<std::vector<double>> values;
     for (const Record& record : records->records) values.push_back(measures->of(record));
-    response = text_response(
-        records_csv(records->records, records->table.columns, {measures->names(), std::move(values)}, *separator),
-        kCsvType);
+    response = text_response(records_csv(records->records, records->table.columns,
+                                         {measures->names(), std::move(values)}, *separator, words),
+                             kCsvType);
     name_download(response, place->table.slug + ".csv");
   } else {
     nlohmann::json list = nlohmann::json::array();
@@ -243,7 +259,9 @@ nlohmann::json report_of(const RecordRows& rows, const TableChange& change, bool
 Result<Response> import_csv(const RouteContext& context, const Request& request, const RecordPlace& place) {
   const std::string tried = request.query_or("dry_run", "false");
   if (tried != "true" && tried != "false") return fail(422, "Bad value", "`dry_run` is true or false.", "dry_run");
-  auto rows = read_records_csv(request.body, place.table);
+  const auto words = words_of(context.store, place.table.columns, request.role(), {});
+  if (!words) return tl::unexpected(words.error());
+  auto rows = read_records_csv(request.body, place.table, *words);
   if (!rows) return tl::unexpected(rows.error());
   store::WriteRecords write;
   write.records = rows->records;
@@ -390,7 +408,8 @@ void add_record_routes(Router& router, const RouteContext& context) {
   };
   for (const std::string parent : {"/api/v1/tables/{table}", "/api/v1/models/{model}/layers/{layer}"}) {
     const std::string records = parent + "/records", record = records + "/{key}";
-    add(Method::get, records, list_records, {"f", "separator", "filter", "sortby", "limit", "offset", "at"});
+    add(Method::get, records, list_records,
+        {"f", "separator", "filter", "sortby", "lang", "terms", "limit", "offset", "at"});
     add(Method::post, records, create_records, {"dry_run"}, BodyKind::memory, kMaxRecordsBytes);
     add(Method::get, record, read_record, {"at"});
     add(Method::patch, record, change_record, {}, BodyKind::memory, context.options.max_json_bytes);

@@ -67,6 +67,8 @@ Layer copy_of(const Layer& from, int resolution, int order, const jobs::Transfer
   layer.order = order;
   layer.locked = false;   // work goes on here
   layer.formula.reset();  // its values are brought over, as they are
+  layer.origin.reset();
+  layer.edited_by_hand = false;
   layer.description += (layer.description.empty() ? "" : "\n\n") + std::string("Brought over from ") +
                        request.source.name + ", within " + short_number(request.tolerance_mm) + " mm.";
   return layer;

@@ -69,6 +69,13 @@ Result<Response> change_table(const RouteContext& context, const Request& reques
   if (asked->name) table->name = *asked->name;
   if (asked->labels) table->labels = *asked->labels;
   if (asked->description) table->description = *asked->description;
+  if (asked->title_column) {
+    const Column* title = asked->title_column->empty() ? nullptr : find_column(table->columns, *asked->title_column);
+    if (!title && !asked->title_column->empty())
+      return fail(422, "No such column", table->name + " has no column `" + *asked->title_column + "`.",
+                  "title_column");
+    table->title_column = title ? std::optional(title->id) : std::nullopt;
+  }
   const auto answer = [](const Table& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
   auto changed = context.store.update_table(*table, first_answer<Table>(request, answer));
   if (!changed) return tl::unexpected(changed.error());

@@ -22,14 +22,8 @@ Result<nlohmann::json> content_of(const room::Room& room, const Asked& asked, co
   const auto shown = asked.layers.value_or(std::vector<protocol::LayerOverride>{});
   const auto settings = shown_settings(room, asked);
   if (!settings) return tl::unexpected(settings.error());
-  nlohmann::json layers = nlohmann::json::array();
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    nlohmann::json kept = protocol::to_json(shown[i]);
-    kept["layer"] = settings->layers[i].layer_id;
-    layers.push_back(std::move(kept));
-  }
   nlohmann::json content{{"camera", protocol::write_core(camera)},
-                         {"layers", std::move(layers)},
+                         {"layers", kept_layers(shown, *settings)},
                          {"light", protocol::write_core(settings->light)}};
   if (settings->looks) {
     content["looks"] = nlohmann::json::array();

@@ -8,9 +8,9 @@ namespace strata::net {
 namespace {
 
 // Takes out what names columns that are not there for the role.
-void leave_out_columns(const RouteContext& context, Role role, std::int64_t table_id, nlohmann::json& shown) {
+void leave_out_columns(store::Store& store, Role role, std::int64_t table_id, nlohmann::json& shown) {
   if (const auto palette = shown.find("palette"); palette != shown.end() && palette->contains("column")) {
-    const auto table = context.store.table(std::to_string(table_id), role);
+    const auto table = store.table(std::to_string(table_id), role);
     if (!table || !find_column(table->columns, palette->at("column").get<std::string>())) shown.erase(palette);
   }
   if (const auto highlight = shown.find("highlight"); highlight != shown.end() && highlight->contains("filter")) {
@@ -18,29 +18,46 @@ void leave_out_columns(const RouteContext& context, Role role, std::int64_t tabl
     asked.limit = 1;
     auto filter = query::parse_condition(highlight->at("filter").get<std::string>(), "filter", query::Names::columns);
     if (filter) asked.filter = std::move(*filter);
-    if (!filter || !context.store.records(table_id, role, asked)) shown.erase(highlight);
+    if (!filter || !store.records(table_id, role, asked)) shown.erase(highlight);
   }
+}
+
+// Those that name, as `member`, none of what is there.
+template <class There>
+void leave_out(nlohmann::json& list, const char* member, const There& there) {
+  list.erase(std::remove_if(list.begin(), list.end(),
+                            [&](const nlohmann::json& entry) {
+                              const auto id = entry.at(member).template get<std::int64_t>();
+                              return std::ranges::none_of(there, [&](const auto& each) { return each.id == id; });
+                            }),
+             list.end());
 }
 
 }  // namespace
 
+void leave_out_unseen(store::Store& store, Role role, const room::Room& room, nlohmann::json& shown_layers) {
+  const auto layers = room.layers();
+  leave_out(shown_layers, "layer", layers);
+  for (nlohmann::json& shown : shown_layers)
+    for (const Layer& layer : layers)
+      if (layer.table && layer.id == shown.at("layer").get<std::int64_t>())
+        leave_out_columns(store, role, *layer.table, shown);
+}
+
+nlohmann::json kept_layers(const std::vector<protocol::LayerOverride>& asked, const room::ViewSettings& settings) {
+  nlohmann::json layers = nlohmann::json::array();
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    nlohmann::json kept = protocol::to_json(asked[i]);
+    kept["layer"] = settings.layers[i].layer_id;
+    layers.push_back(std::move(kept));
+  }
+  return layers;
+}
+
 nlohmann::json to_json(const RouteContext& context, const Request& request, const store::NamedPart& view,
                        const room::Room& room) {
   nlohmann::json json = view.content;
-  const auto leave_out = [](nlohmann::json& list, const char* member, const auto& there) {
-    list.erase(std::remove_if(list.begin(), list.end(),
-                              [&](const nlohmann::json& entry) {
-                                const auto id = entry.at(member).template get<std::int64_t>();
-                                return std::ranges::none_of(there, [&](const auto& each) { return each.id == id; });
-                              }),
-               list.end());
-  };
-  const auto layers = room.layers();
-  leave_out(json["layers"], "layer", layers);
-  for (nlohmann::json& shown : json["layers"])
-    for (const Layer& layer : layers)
-      if (layer.table && layer.id == shown.at("layer").get<std::int64_t>())
-        leave_out_columns(context, request.role(), *layer.table, shown);
+  leave_out_unseen(context.store, request.role(), room, json["layers"]);
   if (json.contains("looks")) leave_out(json["looks"], "look", room.looks());
   json.update({{"id", view.id},
                {"slug", view.slug},

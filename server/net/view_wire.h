@@ -8,6 +8,12 @@
 
 namespace strata::net {
 
+// Of how layers are shown, as it is kept (`layers` of a view): takes out what names a layer or column that is not there for the role. Blocks.
+void leave_out_unseen(store::Store& store, Role role, const room::Room& room, nlohmann::json& shown_layers);
+
+// What was asked for, as it is kept: with ids, since slugs change. `settings`: what `view_settings` made of it.
+nlohmann::json kept_layers(const std::vector<protocol::LayerOverride>& asked, const room::ViewSettings& settings);
+
 // A named view, for who asks: of what it names, what is there for them.
 nlohmann::json to_json(const RouteContext& context, const Request& request, const store::NamedPart& view,
                        const room::Room& room);

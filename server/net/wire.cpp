@@ -244,6 +244,7 @@ Result<room::ViewSettings> view_settings(const room::Room& room, const std::vect
       if (!highlight) return tl::unexpected(highlight.error());
       view.highlight = std::move(*highlight);
     }
+    if (asked.order) view.order = static_cast<int>(*asked.order);
     settings.layers.push_back(std::move(view));
   }
   if (looks) {

@@ -128,14 +128,12 @@ class Block {
     }
   }
 
-  // A condition is 1 or 0.
+  // A condition is 1 where it holds, and nothing elsewhere.
   Numbers any(const PlanNode& e) const {
     if (!e.is_condition()) return numbers(e);
-    const Truths truth = truths(e);
     Numbers result;
-    for (int i = 0; i < kTexels; ++i)
-      result.value[static_cast<std::size_t>(i)] = static_cast<double>((truth.holds >> i) & 1u);
-    result.known = truth.known;
+    result.value.fill(1);
+    result.known = truths(e).holds;
     return result;
   }
 

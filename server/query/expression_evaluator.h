@@ -31,7 +31,7 @@ Result<TexelSelection> select_where(const BoundExpression& condition, const std:
                                     const Frame& frame = {}, const TexelSelection* within = nullptr);
 
 // The content of a layer of `type` at the map's resolution: at each surface texel what the formula is there, nothing where it is
-// unknown; a condition is 1 or 0. Types of whole numbers get the nearest one. Gutter texels follow their owners. Refused as
+// unknown; a condition is 1 where it holds, and nothing elsewhere. Types of whole numbers get the nearest one. Gutter texels follow their owners. Refused as
 // above, and a number that the type does not hold (422, `type`).
 Result<TileMap> compute_tiles(const BoundExpression& expression, const std::vector<LayerView>& layers,
                               const mesh::SurfaceMap& map, const Frame& frame, ValueType type, const std::string& field,

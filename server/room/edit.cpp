@@ -49,7 +49,17 @@ bool waits_for_review(const Layer& layer, const EditRequest& edit) {
          !std::holds_alternative<ComputeEdit>(edit.edit);
 }
 
-Result<void> check_not_locked(const Layer& layer, Role role) {
+bool computes(const EditRequest& edit) {
+  const auto* import = std::get_if<ImportEdit>(&edit.edit);
+  return std::holds_alternative<ComputeEdit>(edit.edit) || (import && import->computed);
+}
+
+Result<void> check_not_locked(const Layer& layer, Role role, bool computing) {
+  if (is_as_computed(layer) && !computing)
+    return fail(
+        403, "Layer locked",
+        "The layer " + layer.name + " is locked: its values were computed. A curator can unlock it to edit it by hand.",
+        "layer");
   if (!layer.locked || role >= Role::curator) return {};
   return fail(403, "Layer locked", "The layer " + layer.name + " is locked: a curator can unlock it.", "layer");
 }

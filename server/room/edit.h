@@ -60,10 +60,12 @@ struct PolygonEdit {
 struct ImportEdit {
   TileMap tiles;
   bool over = false;  // what is valid in the tiles is painted over the layer; otherwise they replace its whole content
+  bool computed = false;  // what a layer is made with, from the shape
 };
 struct ComputeEdit {  // a computed layer's content, from the layers and records as they are when the edit's turn comes
   Expression expression;
   std::vector<query::LayerView> shapes;  // what it reads of the mesh (kShapeNames), as layers `surface.…`
+  bool overwrites = false;               // also what was edited by hand since
 };
 struct UndoEdit {};  // the author's newest stroke in force on the layer
 struct RedoEdit {};
@@ -94,9 +96,11 @@ bool paints(const EditRequest& edit);
 // Whether the edit is provisional until a curator has accepted or rejected it.
 bool waits_for_review(const Layer& layer, const EditRequest& edit);
 
-// Refused (403, `layer`): a locked layer, to who is no curator. The pipeline asks before it begins an edit; others only where they
+// Whether the edit writes what a layer's values are computed to be, and is no change by hand.
+bool computes(const EditRequest& edit);
+// Refused (403, `layer`): a locked layer, to who is no curator; one that is as it was computed, to everybody who is not `computing` it. The pipeline asks before it begins an edit; others only where they
 // would change something else before that.
-Result<void> check_not_locked(const Layer& layer, Role role);
+Result<void> check_not_locked(const Layer& layer, Role role, bool computing = false);
 
 struct EditAnswer {
   std::int64_t sequence = 0;

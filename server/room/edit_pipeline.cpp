@@ -67,6 +67,23 @@ Problem taken_id() {
           "id"};
 }
 
+// What a layer's expression says is written by computing alone, until the layer is unlocked to be edited by hand; from then on what was painted is
+// not computed away.
+Result<void> check_formula(const Layer& layer, const EditRequest& request) {
+  const auto* compute = std::get_if<ComputeEdit>(&request.edit);
+  if (compute && !layer.formula)
+    return fail(409, "No expression", "This layer has no expression that it could be computed from.", "layer");
+  if (compute && layer.edited_by_hand && !compute->overwrites)
+    return fail(409, "Edited by hand",
+                "This layer was unlocked and edited by hand. Computing it again would overwrite that; "
+                "ask for it with overwrite=true.",
+                "layer");
+  if (!compute && layer.formula && !layer.edited_by_hand)
+    return fail(409, "Computed layer",
+                "The values of this layer follow from its expression. Unlock it to edit them by hand.", "layer");
+  return {};
+}
+
 }  // namespace
 
 EditPipeline::EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_sequence)
@@ -223,20 +240,14 @@ bool EditPipeline::start_front() {
     refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
     return true;
   }
-  if (auto may = check_not_locked(layer->layer, front.request.author.role); !may) {
+  if (auto may = check_not_locked(layer->layer, front.request.author.role, computes(front.request)); !may) {
     Waiting item = take();
     refuse(item, may.error());
     return true;
   }
-  if (layer->layer.formula.has_value() != std::holds_alternative<ComputeEdit>(front.request.edit)) {
-    const bool computed = layer->layer.formula.has_value();
+  if (auto may = check_formula(layer->layer, front.request); !may) {
     Waiting item = take();
-    refuse(item,
-           {409, computed ? "Computed layer" : "No expression",
-            computed
-                ? "The values of this layer follow from its expression. Take the expression away to edit them by hand."
-                : "This layer has no expression that it could be computed from.",
-            "layer"});
+    refuse(item, may.error());
     return true;
   }
   if (!map_ready(layer->layer.resolution)) return false;

@@ -5,12 +5,11 @@
 
 namespace strata::room {
 
-RoomMember::RoomMember(std::shared_ptr<OpenRoom> room, Author who, std::string full_name, std::string color,
-                       Listener* listener, stream::Viewer::Send send)
+RoomMember::RoomMember(std::shared_ptr<OpenRoom> room, Author who, Portrait portrait, Listener* listener,
+                       stream::Viewer::Send send)
     : room_(std::move(room)),
       who_(std::move(who)),
-      full_name_(std::move(full_name)),
-      color_(std::move(color)),
+      portrait_(std::move(portrait)),
       listener_(listener),
       send_(std::move(send)) {}
 
@@ -42,7 +41,12 @@ render::ViewStyle RoomMember::style(std::uint32_t view_id, View& view) const {
   style.background = view.background;
   style.unit_mm = room_->model().metres() * 1000;
   std::vector<LayerMarks> marked;
-  for (const auto& state : room_->layer_states()) {
+  std::vector<LayerState> states = room_->layer_states();
+  sort_as_shown(states, [&](std::int64_t id) {
+    const auto own = view.overrides.find(id);
+    return own == view.overrides.end() ? nullptr : &own->second;
+  });
+  for (const auto& state : states) {
     if (!sees(role(), state.layer.visibility)) continue;
     auto own = view.overrides.find(state.layer.id);
     const LayerView none;
@@ -152,7 +156,7 @@ Result<void> RoomMember::look_together(bool leading, const std::optional<Uuid>& 
 
 Presence RoomMember::presence() const {
   std::lock_guard lock(mutex_);
-  return {session_, who_.user, full_name_, color_, pointer_, leading_, std::nullopt, camera_};
+  return {session_, who_.user, portrait_.full_name, portrait_.color, pointer_, leading_, std::nullopt, camera_};
 }
 
 void RoomMember::content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,

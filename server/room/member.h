@@ -17,7 +17,7 @@ struct LayerState;
 // A connection of one person: the views they look through and what they show in each.
 class RoomMember final : public Member {
  public:
-  RoomMember(std::shared_ptr<OpenRoom> room, Author who, std::string full_name, std::string color, Listener* listener,
+  RoomMember(std::shared_ptr<OpenRoom> room, Author who, Portrait portrait, Listener* listener,
              stream::Viewer::Send send);
   ~RoomMember() override;
 
@@ -32,8 +32,7 @@ class RoomMember final : public Member {
   Listener* listener() const { return listener_; }
   const std::string& user() const { return who_.user; }
   Role role() const { return who_.role; }  // what they see follows from it
-  const std::string& color() const { return color_; }
-  Presence presence() const;  // whom they follow is the room's to say
+  Presence presence() const;               // whom they follow is the room's to say
   // Called by the room.
   void content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,
                        std::int64_t sequence);
@@ -63,7 +62,7 @@ class RoomMember final : public Member {
   const std::shared_ptr<OpenRoom> room_;
   const Uuid session_ = random_uuid();
   const Author who_;
-  const std::string full_name_, color_;
+  const Portrait portrait_;
   Listener* const listener_;
   const stream::Viewer::Send send_;
   mutable std::mutex mutex_;

@@ -15,9 +15,6 @@
 namespace strata::room {
 namespace {
 
-constexpr std::array<const char*, 8> kColors{"#d55e00", "#0072b2", "#009e73", "#cc79a7",
-                                             "#e69f00", "#56b4e9", "#7b5ea7", "#5c7a29"};
-
 Result<void> check_layer(const Layer& layer, const Model& model) {
   const int lowest = model.atlas.lowest_resolution;
   if (layer.resolution < lowest || layer.resolution > 16384 || (layer.resolution & (layer.resolution - 1)) != 0)
@@ -577,28 +574,17 @@ void OpenRoom::edits_unsaved(const std::vector<Listener::Edit>& edits, const Pro
 
 // ------------------------------------------------------------------------------------------------------ people
 
-std::unique_ptr<Member> OpenRoom::join(Author who, std::string full_name, Listener* listener,
-                                       stream::Viewer::Send send) {
+std::unique_ptr<Member> OpenRoom::join(Author who, Portrait portrait, Listener* listener, stream::Viewer::Send send) {
   std::unique_ptr<RoomMember> member;
   {
     std::lock_guard lock(members_mutex_);
-    std::string color = color_for(who.user);
-    member = std::make_unique<RoomMember>(shared_from_this(), std::move(who), std::move(full_name), std::move(color),
-                                          listener, std::move(send));
+    member = std::make_unique<RoomMember>(shared_from_this(), std::move(who), std::move(portrait), listener,
+                                          std::move(send));
     members_.push_back(member.get());
   }
   touch();
   announce_presence();
   return member;
-}
-
-std::string OpenRoom::color_for(const std::string& user) const {
-  std::array<int, kColors.size()> bearers{};
-  for (const RoomMember* member : members_) {
-    if (member->user() == user) return member->color();
-    for (std::size_t i = 0; i < kColors.size(); ++i) bearers[i] += member->color() == kColors[i];
-  }
-  return kColors[std::min_element(bearers.begin(), bearers.end()) - bearers.begin()];
 }
 
 void OpenRoom::tell(const std::function<void(Listener&)>& tell) {

@@ -47,8 +47,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   std::int64_t durable_sequence() const override;
   DurableState durable_state() const override;
   void edit(EditRequest request, Applied applied, Saved saved) override;
-  std::unique_ptr<Member> join(Author who, std::string full_name, Listener* listener,
-                               stream::Viewer::Send send) override;
+  std::unique_ptr<Member> join(Author who, Portrait portrait, Listener* listener, stream::Viewer::Send send) override;
   std::vector<Presence> presence(const Uuid& receiver) const override;
   Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer,
                              std::vector<Column> columns) override;
@@ -155,7 +154,6 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   void tell_seen(const Layer& layer, const std::function<void(Listener&)>& tell);  // of who sees the layer
   // Who begins to see the layer hears that it was made, who ends that it was deleted. `before`: nothing, where it is new.
   void tell_layer(std::optional<Visibility> before, const Layer& layer);
-  std::string color_for(const std::string& user) const;  // their own, or the one that the fewest have
   // Runs `work` on a worker when every edit before it is durable. No edit starts meanwhile, and no recovery. Blocks.
   template <class T>
   Result<T> exclusively(std::function<Result<T>()> work);

@@ -82,6 +82,7 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
     for (auto& candidate : layer_states())
       if (asked.shown.of(candidate.layer.id).visible.value_or(candidate.layer.visible))
         shown.push_back(std::move(candidate));
+    sort_as_shown(shown, asked.shown);
   }
   if (asked.at && *asked.at > durable_)
     return fail(422, "Sequence not reached",

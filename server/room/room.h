@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/memory_ledger.h"
+#include "core/person_color.h"
 #include "core/picture.h"
 #include "query/cross_table.h"
 #include "query/key_areas.h"
@@ -73,6 +74,7 @@ struct LayerView {
   std::optional<double> opacity;
   std::optional<Palette> palette;
   std::optional<Highlight> highlight;  // database layers
+  std::optional<int> order{};          // drawn ascending, as Layer::order
 };
 
 struct LookView {
@@ -96,10 +98,36 @@ struct ViewSettings {
   }
 };
 
+// Layers, or what has one as `layer`, from bottom to top as somebody sees them; `of`: what they set of a layer, by id.
+template <class Layers, class Of>
+void sort_as_shown(Layers& layers, const Of& of) {
+  const auto place = [&](const auto& each) {
+    const Layer& layer = [&]() -> const Layer& {
+      if constexpr (requires { each.layer.order; })
+        return each.layer;
+      else
+        return each;
+    }();
+    const LayerView* own = of(layer.id);
+    return own && own->order ? *own->order : layer.order;
+  };
+  std::stable_sort(layers.begin(), layers.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
+}
+template <class Layers>
+void sort_as_shown(Layers& layers, const ViewSettings& shown) {
+  sort_as_shown(layers, [&](std::int64_t id) { return &shown.of(id); });
+}
+
 // Where somebody points on the surface.
 struct Pointing {
   glm::dvec3 position{0};        // world
   std::optional<double> radius;  // world, of the brush in hand
+};
+
+// How others see a person.
+struct Portrait {
+  std::string full_name{};  // empty: none was given
+  std::string color{kNobodysColor};
 };
 
 // What is known of one connection to the others; never stored.
@@ -204,8 +232,8 @@ class Room {
   using Saved = std::function<void(Result<EditAnswer>)>;
   virtual void edit(EditRequest request, Applied applied, Saved saved) = 0;
 
-  // Frames and what the listener hears are of layers and columns that they see, from one moment to the next. `full_name` may be empty.
-  virtual std::unique_ptr<Member> join(Author who, std::string full_name, Listener* listener,
+  // Frames and what the listener hears are of layers and columns that they see, from one moment to the next.
+  virtual std::unique_ptr<Member> join(Author who, Portrait portrait, Listener* listener,
                                        stream::Viewer::Send send) = 0;
   // Everyone, as told to one of the sessions: of all cameras only that of whom it follows.
   virtual std::vector<Presence> presence(const Uuid& receiver) const = 0;

@@ -21,9 +21,8 @@ class SeenRoom final : public Room {
     if (layer && !sees(role_, layer->visibility)) return no_such_layer(ref);
     return layer;
   }
-  std::unique_ptr<Member> join(Author who, std::string full_name, Listener* listener,
-                               stream::Viewer::Send send) override {
-    return room_->join({std::move(who.user), std::min(who.role, role_)}, std::move(full_name), listener,
+  std::unique_ptr<Member> join(Author who, Portrait portrait, Listener* listener, stream::Viewer::Send send) override {
+    return room_->join({std::move(who.user), std::min(who.role, role_)}, std::move(portrait), listener,
                        std::move(send));
   }
 
@@ -85,7 +84,9 @@ class SeenRoom final : public Room {
       if (auto known = check(*asked.layers); !known) return tl::unexpected(known.error());
     } else {
       seen.layers.emplace();
-      for (const Layer& layer : layers())
+      std::vector<Layer> in_order = layers();
+      sort_as_shown(in_order, asked.shown);
+      for (const Layer& layer : in_order)
         if (asked.shown.of(layer.id).visible.value_or(layer.visible)) seen.layers->push_back(std::to_string(layer.id));
     }
     return room_->pictures(seen, parts, see);

@@ -16,7 +16,10 @@ namespace {
   "(SELECT coalesce(jsonb_agg(jsonb_build_object('slug', i.slug, 'layer', "                                                                               \
   "(SELECT l.id FROM layers l WHERE l.id = i.input_id), 'table', i.table_id) ORDER BY i.slug), '[]') FROM layer_inputs i WHERE i.layer_id = layers.id), " \
   "EXISTS (SELECT 1 FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = layers.id AND "                                      \
-  "t.sequence > i.table_sequence), " STRATA_LAYER_STALE ", locked, visibility, review, labels, descriptions"
+  "t.sequence > i.table_sequence), " STRATA_LAYER_STALE                                                                                                   \
+  ", locked, visibility, review, labels, descriptions, "                                                                                                  \
+  "(SELECT o.origin FROM layer_origins o WHERE o.layer_id = layers.id), "                                                                                 \
+  "coalesce((SELECT o.edited_by_hand FROM layer_origins o WHERE o.layer_id = layers.id), false)"
 
 // A palette without points is that of the terms, where the layer's table is a list of such.
 Result<void> take_term_colors(PgConnection& connection, Layer& layer) {
@@ -61,6 +64,8 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.review = rows.boolean(i, 24);
   layer.labels = rows.json(i, 25).get<Labels>();
   layer.descriptions = rows.json(i, 26).get<Labels>();
+  if (!rows.null(i, 27)) layer.origin = rows.text(i, 27) == "shape" ? LayerOrigin::shape : LayerOrigin::expression;
+  layer.edited_by_hand = rows.boolean(i, 28);
   // What cannot be told is not shown.
   layer.visibility = parse_visibility(rows.text(i, 23)).value_or(Visibility::curators);
   if (rows.null(i, 16)) return layer;
@@ -120,6 +125,17 @@ Result<void> set_formula(PgConnection& connection, const Layer& layer) {
 }
 
 constexpr std::size_t kLongestDescription = 40000;  // bytes of 10000 characters
+Result<void> keep_origin(PgConnection& connection, std::int64_t layer_id, const Layer& layer) {
+  if (!layer.origin) return {};
+  auto kept = connection.query(
+      "INSERT INTO layer_origins (layer_id, origin, edited_by_hand) VALUES ($1, $2, $3) ON CONFLICT (layer_id) "
+      "DO UPDATE SET origin = excluded.origin, edited_by_hand = excluded.edited_by_hand",
+      Params()
+          .integer(layer_id)
+          .text(*layer.origin == LayerOrigin::shape ? "shape" : "expression")
+          .boolean(layer.edited_by_hand));
+  return kept ? Result<void>{} : tl::unexpected(kept.error());
+}
 
 Result<void> check(const Layer& layer) {
   if (auto good = check_name(layer.name); !good) return good;
@@ -233,8 +249,11 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
                   .json(layer.labels)
                   .json(layer.descriptions));
         });
-    if (!row || !layer.formula) return row ? read_layer(connection, *row, 0) : tl::unexpected(row.error());
+    if (!row || (!layer.formula && !layer.origin))
+      return row ? read_layer(connection, *row, 0) : tl::unexpected(row.error());
     layer.id = row->integer(0, 0);
+    if (auto kept = keep_origin(connection, layer.id, layer); !kept) return tl::unexpected(kept.error());
+    if (!layer.formula) return load_layer(connection, layer.id);
     if (auto set = set_formula(connection, layer); !set) return tl::unexpected(set.error());
     return load_layer(connection, layer.id);
   });
@@ -266,7 +285,12 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) {
       auto now = read_layer(connection, *row, 0);
-      if (!now || same_formula(now->formula, layer.formula)) return now;
+      if (!now) return now;
+      const bool same_origin = now->origin == layer.origin && now->edited_by_hand == layer.edited_by_hand;
+      const bool is_same_formula = same_formula(now->formula, layer.formula);
+      if (same_origin && is_same_formula) return now;
+      if (auto kept = keep_origin(connection, layer.id, layer); !kept) return tl::unexpected(kept.error());
+      if (is_same_formula) return load_layer(connection, layer.id);
       if (auto set = set_formula(connection, layer); !set) return tl::unexpected(set.error());
       return load_layer(connection, layer.id);
     }
@@ -295,6 +319,12 @@ Result<Layer> Store::layer_computed(std::int64_t layer_id, const std::string& ex
     auto done = connection.query("UPDATE layers SET computed_sequence = $3 WHERE id = $1 AND expression = $2",
                                  Params().integer(layer_id).text(expression).integer(sequence));
     if (!done) return tl::unexpected(done.error());
+    // What was edited by hand is overwritten, and as it was when it was made.
+    auto whole = connection.query(
+        "WITH whole AS (UPDATE layer_origins SET edited_by_hand = false WHERE layer_id = $1 AND edited_by_hand RETURNING layer_id) "
+        "UPDATE layers SET locked = true, version = version + 1 FROM whole WHERE id = whole.layer_id",
+        Params().integer(layer_id));
+    if (!whole) return tl::unexpected(whole.error());
     PgArray ids(oid::kInt8), sequences(oid::kInt8);
     for (const auto& [table, at] : tables) {
       ids.add(table);
@@ -312,7 +342,9 @@ Result<Layer> Store::layer_computed(std::int64_t layer_id, const std::string& ex
 Result<std::vector<Layer>> Store::layers_to_recompute() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
     auto rows =
-        connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE automatic AND " STRATA_LAYER_STALE
+        connection.query("SELECT " STRATA_LAYER_COLUMNS
+                         " FROM layers WHERE automatic AND NOT EXISTS (SELECT 1 FROM layer_origins o WHERE "
+                         "o.layer_id = layers.id AND o.edited_by_hand) AND " STRATA_LAYER_STALE
                          " AND NOT EXISTS (SELECT 1 FROM layer_inputs i WHERE i.layer_id = layers.id AND NOT EXISTS "
                          "(SELECT 1 FROM layers l WHERE l.id = i.input_id)) "
                          "ORDER BY computed_sequence, id LIMIT 100");

@@ -201,6 +201,20 @@ Result<Person> Store::person(const std::string& name) {
   return impl_->pool.read([&](PgConnection& connection) { return load_person(connection, name, false); });
 }
 
+Result<std::vector<Person>> Store::people_called(const std::vector<std::string>& names) {
+  PgArray asked(oid::kText);
+  for (const std::string& name : names)
+    if (check_text(name, "user")) asked.add(std::string_view(name));
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
+    auto rows =
+        connection.query("SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE name = any($1)", Params().array(asked));
+    if (!rows) return tl::unexpected(rows.error());
+    std::vector<Person> people;
+    for (int i = 0; i < rows->rows(); ++i) people.push_back(read_person(*rows, i));
+    return people;
+  });
+}
+
 Result<Person> Store::create_person(const std::string& name, const std::string& full_name, Role role,
                                     const std::vector<std::int64_t>& groups, const std::string& by) {
   const auto is_plain = [](char c) {
@@ -270,7 +284,8 @@ Result<void> Store::delete_person(const std::string& name) {
     auto ended = run(connection, "DELETE FROM tokens WHERE user_name = $1", Params().text(person->name));
     if (!ended) return ended;
     for (const char* sql :
-         {"DELETE FROM project_members WHERE user_id = $1", "DELETE FROM group_people WHERE user_id = $1"})
+         {"DELETE FROM project_members WHERE user_id = $1", "DELETE FROM group_people WHERE user_id = $1",
+          "DELETE FROM personal_views WHERE user_id = $1"})
       if (auto left = run(connection, sql, Params().integer(person->id)); !left) return left;
     const std::string former = std::string(kFormer) + std::to_string(person->id);
     for (const char* sql :

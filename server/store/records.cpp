@@ -293,6 +293,8 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by, co
     if (!past) return tl::unexpected(past.error());
     page.table = open->table;
     std::vector<RecordOrder> order;
+    auto collation = query.order.empty() ? Result<std::string>() : collation_of(connection, query.language);
+    if (!collation) return tl::unexpected(collation.error());
     for (const auto& [ref, descending] : query.order) {
       if (ref == "key") {
         order.push_back({0, descending});
@@ -301,7 +303,11 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by, co
       const Column* column = find_column(open->table.columns, ref);
       if (!column)
         return fail(422, "No such column", "The table has no column `" + ref.substr(0, 100) + "`.", "sortby");
-      order.push_back({column->id, descending});
+      order.push_back({column->id, descending, *collation});
+      if (column->kind != ColumnKind::term) continue;
+      auto keys = keys_in_order(connection, *column->target, seen_by, *collation);
+      if (!keys) return tl::unexpected(keys.error());
+      order.back().keys = std::move(*keys);
     }
     if (query.keys) {
       if (*past) {

@@ -197,6 +197,7 @@ class Store {
     std::optional<std::int64_t> at;                   // as after that sequence of the table
     std::int64_t limit = 100, offset = 0;
     std::optional<Expression> filter{};  // only those where this condition over columns holds
+    std::string language{};              // in whose alphabet texts are sorted ("de-at"); empty: in none in particular
   };
   struct RecordPage {
     Table table;  // with the columns of then
@@ -323,6 +324,8 @@ class Store {
   Result<std::vector<Person>> people();       // by name
   Result<bool> administrator_has_password();  // so that somebody can sign in who may let in others
   Result<Person> person(const std::string& name);
+  // Those of these names, exactly as written, whether they may sign in or not, and who is deleted. In no order.
+  Result<std::vector<Person>> people_called(const std::vector<std::string>& names);
   // 422: no name for signing in: 1 to 64 of letters, digits and `._@-`, a letter or digit first. 409: it is taken, in whatever case, or
   // of the form that is kept for who is deleted (`former-7`). They are in these groups at once (422: there is no such group; 409: it is
   // full), by whom the projects' activity tells; empty: it does not.
@@ -338,6 +341,13 @@ class Store {
   // `by`: who asked, for the project's activity; empty: it is not told there.
   Result<Membership> put_member(std::int64_t project_id, const std::string& user, Role role,
                                 const std::string& by = {});
+  // How the person shows the layers of a model: `layers` of the protocol's PersonalView, with layers by id, also those that are gone. Empty: as
+  // everybody sees them at first.
+  Result<nlohmann::json> personal_view(const std::string& user, std::int64_t model_id);
+  // In place of what was kept. 413: more than a MiB.
+  Result<void> keep_personal_view(const std::string& user, std::int64_t model_id, const nlohmann::json& layers);
+  // A layer that everybody else does not see at first: this person does.
+  Result<void> show_layer_to(const std::string& user, std::int64_t model_id, std::int64_t layer_id);
   // 404: the person has no role of their own there.
   Result<void> remove_member(std::int64_t project_id, const std::string& user, const std::string& by = {});
   // The hash (store/password.h); empty where there is none, or nobody of the name who may sign in. In whatever case.

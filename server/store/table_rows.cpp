@@ -1,7 +1,12 @@
 #include "store/table_rows.h"
 
+#include <algorithm>
+
 #include "core/column_value.h"
 #include "core/edtf.h"
+#include "core/term_list.h"
+#include "store/table_changes.h"
+#include "store/table_writer.h"
 
 namespace strata::store {
 namespace {
@@ -74,6 +79,21 @@ nlohmann::json rows_json(const std::vector<Column>& columns, std::span<const Rec
   return list;
 }
 
+// Where the records that a term names stand in their order, for `order_by`.
+std::string places_of(std::span<const RecordOrder> order, Params& params) {
+  std::string sql;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (!order[i].keys) continue;
+    PgArray keys(oid::kInt8);
+    for (const std::int64_t key : *order[i].keys) keys.add(key);
+    params.array(keys);
+    const std::string alias = "p" + std::to_string(i);
+    sql += " LEFT JOIN unnest($" + std::to_string(params.count()) + "::bigint[]) WITH ORDINALITY AS " + alias +
+           " (named, place) ON " + alias + ".named = t.c" + std::to_string(order[i].column);
+  }
+  return sql;
+}
+
 std::string order_by(const std::vector<Column>& columns, std::span<const RecordOrder> order) {
   std::string sql = " ORDER BY ";
   bool by_key = false;
@@ -87,10 +107,13 @@ std::string order_by(const std::vector<Column>& columns, std::span<const RecordO
     for (const Column& column : columns) {
       if (column.id != by.column) continue;
       const std::string name = column_name(column);
-      if (column.kind == ColumnKind::period)
+      if (by.keys)
+        sql += "p" + std::to_string(&by - order.data()) + ".place" + way + name + way;
+      else if (column.kind == ColumnKind::period)
         sql += name + "_first" + way + name + "_last" + way;
       else if (std::string_view(sql_type(column.kind)) == "text")
-        sql += "lower(" + name + ")" + way + name + way;
+        sql += (by.collation.empty() ? "lower(" + name + ")" : name + " COLLATE \"" + by.collation + "\"") + way +
+               name + " COLLATE \"C\"" + way;
       else
         sql += name + way;
     }
@@ -174,11 +197,12 @@ Result<std::vector<Record>> load_all_rows(PgConnection& connection, std::int64_t
 Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id, const std::vector<Column>& columns,
                            const std::optional<std::vector<Record>>& past, const std::string& where, Params params,
                            std::span<const RecordOrder> order, std::int64_t limit, std::int64_t offset) {
-  const std::string from = from_rows(table_id, columns, past, params) + (where.empty() ? "" : " WHERE " + where);
+  const std::string rows_of = from_rows(table_id, columns, past, params), only = where.empty() ? "" : " WHERE " + where;
   RowsPage page;
-  auto total = connection.query_once("SELECT count(*)" + from, params);
+  auto total = connection.query_once("SELECT count(*)" + rows_of + only, params);
   if (!total) return tl::unexpected(total.error());
   page.total = total->integer(0, 0);
+  const std::string from = rows_of + places_of(order, params) + only;
   params.integer(limit).integer(offset);
   const int count = params.count();
   auto rows = connection.query_once("SELECT key, version, to_jsonb(t)" + from + order_by(columns, order) + " LIMIT $" +
@@ -187,6 +211,51 @@ Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id, cons
   if (!rows) return tl::unexpected(rows.error());
   page.rows = read_rows(*rows, columns);
   return page;
+}
+
+Result<std::string> collation_of(PgConnection& connection, const std::string& language) {
+  PgArray wanted(oid::kText);
+  std::string tag = language;
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+  };
+  if (!std::ranges::all_of(tag, is_plain)) tag.clear();
+  for (; !tag.empty(); tag.resize(tag.rfind('-') == std::string::npos ? 0 : tag.rfind('-')))
+    wanted.add(std::string_view(tag + "-x-icu"));
+  wanted.add(std::string_view("und-x-icu"));
+  auto row = connection.query(
+      "SELECT c.collname FROM unnest($1::text[]) WITH ORDINALITY AS w (name, place) JOIN pg_collation c ON "
+      "lower(c.collname) = lower(w.name) AND c.collprovider = 'i' AND c.collnamespace = 'pg_catalog'::regnamespace "
+      "ORDER BY w.place LIMIT 1",
+      Params().array(wanted));
+  if (!row) return tl::unexpected(row.error());
+  return row->rows() == 0 ? std::string() : row->text(0, 0);
+}
+
+Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::int64_t table_id, Role seen_by,
+                                                const std::string& collation, int depth) {
+  constexpr int kDeepest = 3;  // a table may be called by the records of another, and so on, round in circles
+  auto open = read_table(connection, table_id, seen_by);
+  if (!open) return tl::unexpected(open.error());
+  std::vector<RecordOrder> order;
+  const auto terms = term_columns(open->table);
+  if (const Column* title = name_column(open->table); !terms && title) {
+    order.push_back({title->id, false, collation});
+    if (title->kind == ColumnKind::term) {
+      auto keys = depth == kDeepest ? Result<std::vector<std::int64_t>>(std::vector<std::int64_t>())
+                                    : keys_in_order(connection, *title->target, seen_by, collation, depth + 1);
+      if (!keys) return tl::unexpected(keys.error());
+      order.back().keys = std::move(*keys);
+    }
+  }
+  auto page = load_page(connection, table_id, open->table.columns, {}, {}, Params(), order, kMostRecords, 0);
+  if (!page) return tl::unexpected(page.error());
+  std::vector<std::int64_t> keys;
+  if (terms)
+    for (const ListedTerm& listed : list_terms(*terms, page->rows)) keys.push_back(listed.key);
+  else
+    for (const Record& row : page->rows) keys.push_back(row.key);
+  return keys;
 }
 
 Result<std::vector<KeyNumber>> load_numbers(PgConnection& connection, std::int64_t table_id,

@@ -20,7 +20,15 @@ namespace strata::store {
 struct RecordOrder {
   std::int64_t column = 0;
   bool descending = false;
+  std::string collation{};                          // of texts (collation_of); empty: without regard to case
+  std::optional<std::vector<std::int64_t>> keys{};  // of terms: what they name, in order
 };
+
+// PostgreSQL's collation for a language ("de-at"): of that, of the one that it is a kind of, or of all. Empty: it was built without ICU.
+Result<std::string> collation_of(PgConnection& connection, const std::string& language);
+// The keys of a table's records as people read them: of a list of terms its tree, of others by what they are called.
+Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::int64_t table_id, Role seen_by,
+                                                const std::string& collation, int depth = 0);
 
 Result<void> make_rows_table(PgConnection& connection, std::int64_t table_id);
 Result<void> drop_rows_table(PgConnection& connection, std::int64_t table_id);

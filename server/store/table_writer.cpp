@@ -453,7 +453,7 @@ void put_cells(OpenTable& open, const std::map<std::int64_t, Cells>& columns) {
 
 Result<OpenTable> read_table(PgConnection& connection, std::int64_t id, Role seen_by) {
   auto row = connection.query(
-      "SELECT id, project_id, name, slug::text, labels, description, records, sequence, version, next_key "
+      "SELECT id, project_id, name, slug::text, labels, description, records, sequence, version, next_key, title_column "
       "FROM record_tables WHERE id = $1",
       Params().integer(id));
   if (!row) return tl::unexpected(row.error());
@@ -470,6 +470,7 @@ Result<OpenTable> read_table(PgConnection& connection, std::int64_t id, Role see
   open.table.sequence = row->integer(0, 7);
   open.table.version = row->integer(0, 8);
   open.next_key = row->integer(0, 9);
+  if (!row->null(0, 10)) open.table.title_column = row->integer(0, 10);
   auto columns = connection.query(
       "SELECT id, kind, target, properties, hidden, visibility FROM record_columns WHERE table_id = $1 ORDER BY id",
       Params().integer(id));

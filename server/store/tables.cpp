@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <set>
 
 #include "core/column_value.h"
@@ -100,11 +101,28 @@ Result<Table> Store::update_table(const Table& table, const FirstAnswer<Table>& 
   if (auto good = check_labels(table.labels); !good) return tl::unexpected(good.error());
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Table> {
     // As for every other change: the analysts' view of the new name is made while nobody alters the rows that it reads.
-    if (auto open = lock_table(connection, table.id); !open) return tl::unexpected(open.error());
+    auto open = lock_table(connection, table.id);
+    if (!open) return tl::unexpected(open.error());
+    if (table.title_column && table.title_column != open->table.title_column) {
+      const auto title = std::ranges::find(open->table.columns, *table.title_column, &Column::id);
+      if (title == open->table.columns.end())
+        return fail(422, "No such column", "The table has no column " + std::to_string(*table.title_column) + ".",
+                    "title_column");
+      if (!can_be_title(*title))
+        return fail(422, "No title",
+                    "What '" + title->name + "' holds cannot name a record: it is yes or no, or several things.",
+                    "title_column");
+    }
     auto row = connection.query(
-        "UPDATE record_tables SET name = $3, labels = $4, description = $5, version = version + 1 "
+        "UPDATE record_tables SET name = $3, labels = $4, description = $5, title_column = $6, version = version + 1 "
         "WHERE id = $1 AND version = $2 RETURNING id",
-        Params().integer(table.id).integer(table.version).text(table.name).json(table.labels).text(table.description));
+        Params()
+            .integer(table.id)
+            .integer(table.version)
+            .text(table.name)
+            .json(table.labels)
+            .text(table.description)
+            .optional_integer(table.title_column));
     if (!row) return tl::unexpected(row.error());
     auto now = table_of(connection, table.id);
     if (!now) return now;

@@ -99,7 +99,7 @@ class Queries {
   void light_up() {
     make_parts();
     FrameClient viewer;
-    auto member = room_->join({"bench", Role::owner}, "", nullptr,
+    auto member = room_->join({"bench", Role::owner}, {}, nullptr,
                               [&](const stream::FrameMessages& frame) { viewer.receive(frame); });
     const auto show = [&](const char* filter) {
       room::LayerView parts{layers_.at("parts").id, true, {}, {}, {}};

@@ -182,7 +182,7 @@ TEST_F(RoomTest, edits_whose_commit_fails_are_taken_back_everywhere) {
   const auto saved = room()->tiles("layer", {});
   const auto picture = room()->picture({}, camera({0.3, -1, 0.4}));
   UnsavedEars ears;
-  auto member = room()->join({"anna", Role::owner}, "", &ears, [](const stream::FrameMessages&) {});
+  auto member = room()->join({"anna", Role::owner}, {}, &ears, [](const stream::FrameMessages&) {});
 
   // Reading goes on, writing does not.
   execute(dsn_, "alter table edits add constraint no_more check (sequence < 2) not valid");

@@ -165,7 +165,7 @@ TEST_F(RoomRecovery, what_was_erased_comes_back_when_other_paint_has_taken_its_p
   ASSERT_TRUE(send(request(a, room::FillEdit{false, 3})));
   const auto saved = room()->tiles("a", {});
   Ears ears;
-  auto member = room()->join({"anna", Role::owner}, "", &ears, [](const stream::FrameMessages&) {});
+  auto member = room()->join({"anna", Role::owner}, {}, &ears, [](const stream::FrameMessages&) {});
 
   Connection blocker(dsn_);
   blocker.execute("begin; lock table edits in exclusive mode");  // reading goes on, commits wait
@@ -330,7 +330,7 @@ TEST_F(RoomRecovery, a_database_that_hangs_holds_up_neither_the_room_nor_the_end
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
   Ears ears;
-  auto member = room()->join({"anna", Role::owner}, "", &ears, [](const stream::FrameMessages&) {});
+  auto member = room()->join({"anna", Role::owner}, {}, &ears, [](const stream::FrameMessages&) {});
   ears.wait_for_presence(1);
 
   std::vector<std::future<Answer>> answers;
@@ -394,7 +394,7 @@ TEST_F(RoomRecovery, people_in_a_deleted_model_are_told_and_their_edits_are_refu
   const Layer layer = make_layer(ValueType::u8);
   const auto held = room();
   Ears ears;
-  auto member = held->join({"anna", Role::owner}, "", &ears, [](const stream::FrameMessages&) {});
+  auto member = held->join({"anna", Role::owner}, {}, &ears, [](const stream::FrameMessages&) {});
   ASSERT_TRUE(store_->delete_model(model_.id));
   rooms_->forget(model_.id);
   EXPECT_EQ(ears.deleted(), 1);

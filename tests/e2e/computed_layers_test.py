@@ -64,7 +64,7 @@ def compute(server, name, expression, expect=201, **more):
 
 def check_computing(server):
     risk = compute(server, "Risk", "if(pieces.state = 'loose', 10, 1) * wet")
-    assert risk["expression"].startswith("if(") and risk["type"] == "f32" and risk["visible"], risk
+    assert risk["expression"].startswith("if(") and risk["type"] == "f32" and risk["locked"] and not risk["visible"], risk
     assert (risk["inputs"], risk["stale"], risk["recompute"]) == (["pieces", "wet"], False, "manual"), risk
     assert value(server, "risk", 30, 30) == {"valid": True, "value": 7.5}
     assert value(server, "risk", 90, 10)["valid"] is False
@@ -84,7 +84,7 @@ def check_computing(server):
     # Conditions, types, the surface.
     mask = compute(server, "Mask", "risk > 0.5", type="u8")
     assert mask["inputs"] == ["risk"] and value(server, "mask", 30, 38) == {"valid": True, "value": 1}
-    assert value(server, "mask", 30, 30) == {"valid": True, "value": 0} and not value(server, "mask", 90, 10)["valid"]
+    assert not value(server, "mask", 30, 30)["valid"] and not value(server, "mask", 90, 10)["valid"]
     compute(server, "Rounded", "x / 10", type="u8")
     assert value(server, "rounded", 47, 50)["value"] == 5 and value(server, "rounded", 44, 50)["value"] == 4
     total = server.get(M).json()["area_m2"]
@@ -99,7 +99,7 @@ def check_computing(server):
     # What is written by an expression is written by nothing else.
     for method, path, body in (("POST", "edits", {"op": "fill", "value": 1, "mode": "where", "where": "true"}), ("POST", "undo", None)):
         answer = server.request(method, f"{M}/layers/risk/{path}", body)
-        assert answer.status == 409 and answer.json()["title"] == "Computed layer", answer
+        assert answer.status == 403 and answer.json()["title"] == "Layer locked", answer
 
     # Circles and what names nothing.
     for name, body in (("risk", {"expression": "mask + 1"}), ("risk", {"expression": "risk + 1"}), ("mask", {"expression": "salt > 1"}),

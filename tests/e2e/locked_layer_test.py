@@ -150,7 +150,7 @@ def check_records(server, annotator, curator):
 
 def check_computed(server, annotator, curator):
     server.ok("POST", M + "/layers", {"name": "Twice", "expression": "cracks * 2"})
-    lock(server, "twice")
+    assert server.get(M + "/layers/twice").json()["locked"] is True, "what was computed is locked"
     change = lambda value: server.ok("POST", query(L + "/readings", radius_mm=4), f"x,y,z,value\n80,80,0,{value}\n", headers={"Content-Type": "text/csv"})
     change(30)
     then = texels(server, "twice")

@@ -33,7 +33,7 @@ def compute(server, at, kind, **more):
     job = run(server, at + "/layers", {"name": kind.replace("_", " "), "compute": {"kind": kind, **compute_members}, **more})
     (layer,) = job["layers"]
     meta = server.get(f"{at}/layers/{layer}").json()
-    assert meta["visible"] and meta["description"], meta
+    assert meta["locked"] and not meta["visible"] and meta["description"], meta
     return meta, server.get(f"{at}/layers/{layer}/statistics").json()
 
 

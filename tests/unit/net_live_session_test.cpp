@@ -89,11 +89,11 @@ class FakeRoom final : public room::Room {
   void edit(room::EditRequest request, Applied applied, Saved saved) override {
     edits.push_back({std::move(request), std::move(applied), std::move(saved)});
   }
-  std::unique_ptr<room::Member> join(Author, std::string full_name, room::Listener* listener,
+  std::unique_ptr<room::Member> join(Author, room::Portrait portrait, room::Listener* listener,
                                      stream::Viewer::Send send) override {
     listeners.push_back(listener);
     sends.push_back(std::move(send));
-    full_names.push_back(std::move(full_name));
+    portraits.push_back(std::move(portrait));
     auto joined = std::make_unique<FakeMember>(random_uuid());
     member = joined.get();
     return joined;
@@ -187,7 +187,7 @@ class FakeRoom final : public room::Room {
   std::vector<Held> edits;
   std::vector<room::Listener*> listeners;
   std::vector<stream::Viewer::Send> sends;
-  std::vector<std::string> full_names;
+  std::vector<room::Portrait> portraits;
   query::SurfacePoint found;
   FakeMember* member = nullptr;  // the newest
   std::vector<room::Presence> people{{random_uuid(), "anna", "", "#112233", room::Pointing{{1, 2, 3}, {}}}};
@@ -220,7 +220,8 @@ struct Live : testing::Test {
   void connect(Role role = Role::owner) {
     if (session) session->on_closed();
     socket = std::make_shared<FakeSocket>();
-    session = std::make_shared<LiveSession>(shared, room, "default", Principal{"anna", role, true}, "Anna Ost", socket);
+    session = std::make_shared<LiveSession>(shared, room, "default", Principal{"anna", role, true},
+                                            room::Portrait{"Anna Ost"}, std::nullopt, socket);
     shared->sockets->add(socket, session, "secret");
   }
   // Looks for the record on a worker, where it begins.
@@ -365,7 +366,8 @@ TEST_F(Live, a_kiosk_looks_and_hears_of_nobody_and_nobody_of_it) {
   const auto screens_socket = std::make_shared<FakeSocket>();
   Principal kiosk{kiosk_name(3), Role::viewer};
   kiosk.kiosk = KioskPass{3, 1, 2};
-  auto screen = std::make_shared<LiveSession>(shared, room, "default", kiosk, "", screens_socket);
+  auto screen =
+      std::make_shared<LiveSession>(shared, room, "default", kiosk, room::Portrait(), std::nullopt, screens_socket);
   shared->sockets->add(screens_socket, screen, "link");
   screen->on_text(json{{"op", "hello"}}.dump());
   ASSERT_EQ(screens_socket->of("welcome").size(), 1u);
@@ -411,8 +413,8 @@ TEST_F(Live, a_kiosk_looks_and_hears_of_nobody_and_nobody_of_it) {
 TEST_F(Live, who_writes_into_a_record_is_told_to_all_of_the_project) {
   hello();
   const auto others_socket = std::make_shared<FakeSocket>();
-  auto other =
-      std::make_shared<LiveSession>(shared, room, "default", Principal{"bea", Role::annotator}, "Bea", others_socket);
+  auto other = std::make_shared<LiveSession>(shared, room, "default", Principal{"bea", Role::annotator},
+                                             room::Portrait{"Bea"}, std::nullopt, others_socket);
   shared->sockets->add(others_socket, other, "other");
   edit_record(*session, 7, true);
   edit_record(*session, 8, true);
@@ -632,7 +634,8 @@ TEST_F(Live, presence_is_told_once_for_many_changes) {
 
 TEST_F(Live, presence_tells_of_each_what_the_room_knows_and_nothing_else) {
   hello();
-  EXPECT_EQ(room->full_names, std::vector<std::string>{"Anna Ost"});
+  ASSERT_EQ(room->portraits.size(), 1U);
+  EXPECT_EQ(room->portraits.front().full_name, "Anna Ost");
   const Uuid leader = random_uuid(), follower = room->member->session();
   Camera seen;
   seen.width = 640;

@@ -7,7 +7,7 @@ import { comment_of, hash_of_comment } from "../src/app/routes";
 import { Api } from "../src/core/api";
 import { OrbitCamera } from "../src/core/camera";
 import { mention_begun, people_like } from "../src/core/mentions";
-import { color_of_person, find_threads, is_unread, mentions, text_parts, threads_of, with_thread_read } from "../src/core/comments";
+import { find_threads, is_unread, mentions, text_parts, threads_of, with_thread_read } from "../src/core/comments";
 import type { Point } from "../src/core/connection";
 import type { Comment } from "../src/core/protocol.gen";
 import type { Vec3 } from "../src/core/vector";
@@ -87,11 +87,6 @@ describe("the text of a comment", () => {
   it("keeps every character", () => {
     const text = "a\n\n b\t@ada https://x.org. 😀 <script>";
     expect(text_parts(text, people).map((part) => part.text).join("")).toBe(text);
-  });
-
-  it("is in the same colour for a name always", () => {
-    expect(color_of_person("ada")).toBe(color_of_person("ada"));
-    expect(new Set(Array.from({ length: 100 }, (_, n) => color_of_person(`person-${n}`))).size).toBe(8);
   });
 });
 
@@ -213,10 +208,10 @@ class FakeStorage {
 
 describe("names behind an @", () => {
   const people = [
-    { user: "ada", full_name: "Ada Lovelace" },
-    { user: "Adam.B", full_name: "" },
-    { user: "bob", full_name: "Robert Ádám" },
-    { user: "carl", full_name: "" },
+    { user: "ada", full_name: "Ada Lovelace", color: "#aa3333" },
+    { user: "Adam.B", full_name: "", color: "#aa3333" },
+    { user: "bob", full_name: "Robert Ádám", color: "#aa3333" },
+    { user: "carl", full_name: "", color: "#aa3333" },
   ];
   const found = (word: string): string[] => people_like(people, word).map(({ user }) => user);
 
@@ -235,7 +230,7 @@ describe("names behind an @", () => {
     expect(found("love")).toEqual(["ada"]);
     expect(found("b")).toEqual(["bob", "Adam.B"]);
     expect(found("zoe")).toEqual([]);
-    const many = Array.from({ length: 50 }, (_, n) => ({ user: `p${n}`, full_name: "" }));
+    const many = Array.from({ length: 50 }, (_, n) => ({ user: `p${n}`, full_name: "", color: "#aa3333" }));
     expect(people_like(many, "p")).toHaveLength(6);
   });
 });
@@ -298,7 +293,7 @@ describe("the comments of a model", () => {
   it("may name the people of the project, who are asked for once, and again where that failed", async () => {
     expect(await comments.load_people()).toEqual([]);
     const dora = { user: "dora", full_name: "Dora D." };
-    answers.set("GET /api/v1/projects/7/people?limit=1000&offset=0", () => [200, { people: [{ user: "ada", full_name: "" }, dora], total: 2 }]);
+    answers.set("GET /api/v1/projects/7/people?limit=1000&offset=0", () => [200, { people: [{ user: "ada", full_name: "", color: "#aa3333" }, dora], total: 2 }]);
     const asked = (): number => calls.filter(({ call }) => call.includes("/people")).length;
     expect(asked()).toBe(1);
     expect(await Promise.all([comments.load_people(), comments.load_people()])).toEqual([[dora], [dora]]);

@@ -10,7 +10,7 @@ import type { Person } from "../src/core/protocol.gen";
 import { may_administer } from "../src/core/types";
 
 const person = (user: string, full_name = "", more: Partial<Person> = {}): Person => ({
-  id: 2, user, full_name, role: "annotator", state: "active", created: "2026-05-04T12:00:00.000Z", groups: [], ...more,
+  id: 2, user, full_name, role: "annotator", state: "active", created: "2026-05-04T12:00:00.000Z", groups: [], color: "#aa3333", ...more,
 }); // prettier-ignore
 const refusal = (status: number, more: { field?: string; detail?: string } = {}): ApiError => new ApiError({ status, title: "Refused", ...more });
 

@@ -10,7 +10,7 @@ const there = (key: number, session?: string, user?: string): void =>
 
 beforeEach(() => {
   said = [];
-  editors = new RecordEditors({ say: (what) => said.push(what), changed: () => {} });
+  editors = new RecordEditors({ say: (what) => said.push(what), name_of: (user) => (user === "bea" ? "Bea Ost" : user), changed: () => {} });
   editors.joined("me", "ada");
 });
 
@@ -31,7 +31,7 @@ describe("who writes into a record", () => {
     there(7, "other", "bea");
     there(8, "window", "ada");
     there(9, "me", "ada");
-    expect([7, 8, 9, 10].map((key) => editors.other(4, key))).toEqual([{ user: "bea", is_me: false }, { user: "ada", is_me: true }, null, null]);
+    expect([7, 8, 9, 10].map((key) => editors.other(4, key))).toEqual([{ user: "Bea Ost", is_me: false }, { user: "ada", is_me: true }, null, null]);
     expect(editors.other(5, 7)).toBe(null);
     there(7);
     expect(editors.other(4, 7)).toBe(null);
@@ -40,7 +40,7 @@ describe("who writes into a record", () => {
   it("whoever waits gets the record when it is left", () => {
     there(7, "other", "bea");
     const claim = editors.claim(4, 7);
-    expect([claim.other?.user, claim.lost]).toEqual(["bea", false]);
+    expect([claim.other?.user, claim.lost]).toEqual(["Bea Ost", false]);
     there(7);
     expect(said).toEqual([{ table: 4, key: 7, editing: true }, { table: 4, key: 7, editing: true }]); // prettier-ignore
     there(7, "me", "ada");

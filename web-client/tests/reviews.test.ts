@@ -56,6 +56,7 @@ function make(role: "annotator" | "curator") {
     view: {} as never,
     layers: list as never,
     me: () => "ada",
+    name_of: (user) => user,
     can_paint: () => true,
     can_curate: () => role === "curator",
     changed: () => {},

@@ -23,6 +23,7 @@ let answers: Map<string, [status: number, body: unknown]>; // by method and path
 let session: ModelSession;
 let told: string[];
 let unsubscribe: () => void;
+let kept: unknown[]; // of how layers are shown
 
 const socket = (): FakeSocket => sockets[sockets.length - 1]!;
 const settle = (): Promise<unknown> => vi.advanceTimersByTimeAsync(0);
@@ -50,8 +51,10 @@ beforeEach(() => {
   vi.stubGlobal("window", { location: { protocol: "http:", host: "here" }, devicePixelRatio: 1 });
   vi.stubGlobal("requestAnimationFrame", (callback: () => void) => setTimeout(callback, 16));
   sockets = [];
+  kept = [];
   answers = new Map([["GET /api/v1/models/1", [200, model]]]);
   const api = new Api(async (path, init) => {
+    if (path.startsWith("/api/v1/me/") && answers.has(`${init!.method} ${path}`)) kept.push(JSON.parse(init!.body as string));
     const [status, body] = answers.get(`${init!.method} ${path}`) ?? [500, { title: `no answer for ${init!.method} ${path}` }];
     return new Response(JSON.stringify(body), { status, headers: { ETag: '"1"' } });
   });
@@ -346,19 +349,70 @@ describe("roles", () => {
   });
 });
 
-describe("moving a layer", () => {
-  it("that fails half-way shows what the server has", async () => {
+describe("how a person shows the layers", () => {
+  const kKeep = "PUT /api/v1/me/models/1/view";
+  const shown = (): unknown[] => session.layers.all.map((layer) => [layer.id, session.layers.visible(layer), session.layers.opacity(layer)]);
+  const told_server = (): unknown => socket().of("layers").at(-1)?.layers;
+
+  it("is kept for them alone, and what is as everybody has it is not kept", async () => {
     await open();
-    answers.set("GET /api/v1/models/1/layers/8", [200, layer(8, 1)]);
-    answers.set("PATCH /api/v1/models/1/layers/8", [200, layer(8, 0)]);
-    answers.set("GET /api/v1/models/1/layers/7", [403, { status: 403, title: "Not allowed" }]);
-    answers.set("GET /api/v1/models/1/layers?limit=1000", [200, { layers: [layer(7, 0), layer(8, 0)], total: 2 }]);
-    await expect(session.layers.move(session.layers.all[0]!, 1)).rejects.toMatchObject({ status: 403 });
-    expect(session.layers.all.map(({ id, order }) => [id, order])).toEqual([[7, 0], [8, 0]]); // prettier-ignore
+    answers.set(kKeep, [200, { layers: [] }]);
+    session.layers.set_visible(session.layers.all[0]!, false);
+    session.layers.set_opacity(session.layers.all[1]!, 0.4);
+    expect(kept).toEqual([]);
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(kept).toEqual([{ layers: [{ layer: 7, visible: false }, { layer: 8, opacity: 0.4 }] }]); // prettier-ignore
+    session.layers.set_visible(session.layers.all[0]!, true);
+    session.layers.flush();
+    await settle();
+    expect(kept.at(-1)).toEqual({ layers: [{ layer: 8, opacity: 0.4 }] });
+    session.layers.reset_overrides();
+    session.close(); // at once
+    await settle();
+    expect(kept.at(-1)).toEqual({ layers: [] });
   });
-  it("that fails with the network is undone", async () => {
+
+  it("is there when the model is opened, and what this page has not sent yet is newer", async () => {
+    await session.open();
+    session.view.set_viewport(800, 600, 1);
+    const again = (): void => {
+      socket().open();
+      socket().receive({ ...welcome(), role: "viewer", model, layers: [layer(7, 0), layer(8, 1)], personal_view: { layers: [{ layer: 7, visible: false, order: 4 }, { layer: 99 }] } }); // prettier-ignore
+    };
+    again();
+    expect(shown()).toEqual([[8, true, 1], [7, false, 1]]); // prettier-ignore
+    expect(told_server()).toEqual([{ layer: 7, visible: false, order: 4 }]);
+    session.layers.set_visible(session.layers.find(7)!, true);
+    await vi.advanceTimersByTimeAsync(1000); // refused: the server is away
+    socket().lose();
+    await vi.advanceTimersByTimeAsync(1000);
+    answers.set(kKeep, [200, { layers: [] }]);
+    again();
+    await settle();
+    expect(session.layers.visible(session.layers.find(7)!)).toBe(true);
+    expect(kept.at(-1)).toEqual({ layers: [{ layer: 7, order: 4 }] });
+  });
+
+  it("has an order of their own, which changes no layer for others", async () => {
+    await open("viewer");
+    answers.set(kKeep, [200, { layers: [] }]);
+    session.layers.move(session.layers.all[0]!, 1);
+    expect(session.layers.all.map(({ id, order }) => [id, order])).toEqual([[8, 1], [7, 0]]); // prettier-ignore
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(kept).toEqual([{ layers: [{ layer: 8, order: 0 }, { layer: 7, order: 1 }] }]); // prettier-ignore
+    expect(session.layers.has_overrides).toBe(true);
+  });
+
+  it("is not what a named view shows, but for what they change there", async () => {
     await open();
-    await expect(session.layers.move(session.layers.all[0]!, 1)).rejects.toMatchObject({ status: 500 });
-    expect(session.layers.all.map(({ id, order }) => [id, order])).toEqual([[7, 0], [8, 1]]); // prettier-ignore
+    answers.set(kKeep, [200, { layers: [] }]);
+    const back = session.layers.show_view({ layers: [{ layer: 7, visible: false }, { layer: 8, opacity: 0.2 }] });
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(kept).toEqual([]);
+    session.layers.set_visible(session.layers.find(8)!, false);
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(kept).toEqual([{ layers: [{ layer: 8, visible: false }] }]);
+    back();
+    expect(shown()).toEqual([[7, true, 1], [8, false, 1]]); // prettier-ignore
   });
 });

@@ -53,6 +53,13 @@ describe("cells", () => {
     expect(label_column(table(column(1, "number", "integer", { unique: true })))?.slug).toBe("number");
     expect(label_column(table(column(1, "above", "relation", { unique: true })))).toBeNull();
     expect(label_of_record(table(code), record(1, { code: "SU 1" }))).toBe("SU 1");
+    const titled = { ...table(code, column(1, "note"), column(3, "damage", "term", { target: 9 })), title_column: 1 };
+    expect(label_column(titled)?.slug).toBe("note");
+    expect(label_of_record(titled, record(1, { code: "SU 1", note: null }))).toBe("SU 1"); // what has no title is called as before
+    expect(label_column({ ...titled, title_column: 77 })).toBe(code); // one that was dropped, or is not seen
+    const by_term = { ...titled, title_column: 3 };
+    expect(label_of_record(by_term, record(1, { code: "SU 1", damage: 4 }), ["en"], (of, key) => `${of}/${key}`)).toBe("9/4");
+    expect(label_of_record(by_term, record(1, { code: "SU 1", damage: 4 }))).toBe("SU 1");
     expect(label_of_record(table(), record(1))).toBe("");
   });
 });
@@ -311,6 +318,26 @@ describe("the names of records", () => {
     await settle();
     expect(offsets).toEqual(["0", "0", "1000"]);
     expect(names.label(1400)).toBe("SU 1400");
+  });
+
+  it("stand in the alphabet, or as the terms that they are called by stand in their list", async () => {
+    const called = ["Zinc", "äther", "Apple 10", "Apple 9", ""];
+    const many = new Api(async () => {
+      const records = called.map((code, key) => record(key, { code: code || null, damage: [5, 7, 7, 6, null][key]! }));
+      return new Response(JSON.stringify({ records, total: records.length }));
+    });
+    const damage = column(2, "damage", "term", { target: 9 });
+    const with_terms = { ...table(units.columns[0]!, damage), id: 3 };
+    let now: Table = with_terms;
+    const others = { name_of: (_: number, key: number) => ({ 5: "Salts", 6: "Cracks", 7: "Loss" })[key] ?? null, places: () => new Map([[7, 0], [5, 1], [6, 2]]) }; // prettier-ignore
+    const list = new RecordNames(many, () => now, () => {}, others);
+    list.search("");
+    await settle();
+    expect(list.search("").map(({ label }) => label)).toEqual(["Apple 9", "Apple 10", "äther", "Zinc", ""]);
+    now = { ...with_terms, title_column: 2 };
+    list.reorder();
+    expect(list.search("").map(({ key, label }) => [key, label])).toEqual([[1, "Loss"], [2, "Loss"], [0, "Salts"], [3, "Cracks"], [4, ""]]); // prettier-ignore
+    expect(list.label(3)).toBe("Cracks");
   });
 
   it("are searched by their beginning first, then anywhere, and by key", async () => {

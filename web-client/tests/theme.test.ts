@@ -3,7 +3,6 @@ import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
 import { theme_of } from "../src/app/preferences";
-import { color_of_person } from "../src/core/comments";
 
 const kApp = join(__dirname, "../src/app");
 const css = readFileSync(join(kApp, "theme.css"), "utf8");
@@ -56,12 +55,6 @@ describe("themes", () => {
     expect(ratio("--surface", "--ink-soft"), "on what is as dark as soft ink").toBeGreaterThanOrEqual(words);
     expect(ratio("--mark-light", "--mark-settled"), "on the pin of a resolved comment").toBeGreaterThanOrEqual(words);
     expect(ratio("--on-stage", "--stage"), "on the stage").toBeGreaterThanOrEqual(words);
-  });
-
-  it("leave people their colours, on which white stands out", () => {
-    const of_people = new Set(Array.from({ length: 200 }, (_, n) => color_of_person(`person${n}`)));
-    expect(of_people.size).toBe(8);
-    for (const color of of_people) expect(contrast(color, colors_of("light").get("--mark-light")!), color).toBeGreaterThanOrEqual(4.5);
   });
 
   it("are the only place of colours, beside those of data", () => {

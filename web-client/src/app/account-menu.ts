@@ -6,6 +6,7 @@ import { called, initials, name_with } from "../core/people";
 import { may_administer, type Me } from "../core/types";
 import { icon } from "./icons";
 import "./menu";
+import { styled } from "./styled";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -34,8 +35,7 @@ export class StrataAccountMenu extends LitElement {
         width: 1.875rem;
         height: 1.875rem;
         border-radius: 50%;
-        background: var(--calm);
-        color: var(--calm-ink);
+        color: var(--mark-light);
         font-size: 0.76rem;
         font-weight: 700;
         letter-spacing: 0.02em;
@@ -58,7 +58,7 @@ export class StrataAccountMenu extends LitElement {
     const words = texts.account;
     const role = texts.roles[me.role];
     return html`<strata-menu label=${name_with(words.menu(called(me)), initials(me))}>
-      <span class="face" slot="face">${initials(me)}</span>
+      <span class="face" slot="face" ${styled({ background: me.color })}>${initials(me)}</span>
       <div class="who"><b>${called(me)}</b><span>${me.full_name.trim() ? `${me.user} · ${role}` : role}</span></div>
       <hr />
       <button class="quiet" role="menuitem" @click=${() => ask_account(this, "account")}>${icon("person")}${words.open}</button>

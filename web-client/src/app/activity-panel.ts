@@ -6,6 +6,7 @@ import { repeat } from "lit/directives/repeat.js";
 import { by_day } from "../core/activity";
 import { format_list } from "../core/locale";
 import { format_area } from "../core/measure";
+import { called } from "../core/people";
 import type { Activity } from "../core/protocol.gen";
 import { FoldingPanel, folding_styles } from "./folding-panel";
 import { icon } from "./icons";
@@ -108,8 +109,8 @@ export class StrataActivityPanel extends FoldingPanel {
 
   private line(line: Activity): TemplateResult {
     const { activity } = this.session;
-    const content = html`${line.user === undefined ? html`<span class="server">${icon("cube")}</span>` : person_mark(line.user)}
-      <span class="what"><b>${line.user ?? words.server}</b> ${this.done(line)}</span>
+    const content = html`${line.user === undefined ? html`<span class="server">${icon("cube")}</span>` : person_mark({ ...line, user: line.user })}
+      <span class="what"><b>${line.user === undefined ? words.server : called({ ...line, user: line.user })}</b> ${this.done(line)}</span>
       <span class="hint numeric">${told_clock(line.time)}</span>
       <span class="more-of-it hint">${this.details(line)}</span>`;
     return activity.leads_somewhere(line)

@@ -5,6 +5,7 @@ import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../core/api";
 import { format_bytes } from "../core/measure";
+import { called } from "../core/people";
 import type { BinEntry, BinList, Project } from "../core/protocol.gen";
 import type { Model } from "../core/types";
 import { told_restored, type BinApi } from "./bin";
@@ -118,10 +119,10 @@ export class StrataBinDialog extends LitElement {
   }
 
   private row(entry: BinEntry): TemplateResult {
-    const { kind, name, user, deleted, erased, bytes } = entry;
+    const { kind, name, user, full_name, deleted, erased, bytes } = entry;
     const where = entry.model_name ?? entry.table_name;
     const facts = [
-      words.deleted_when(told_ago(deleted), user),
+      words.deleted_when(told_ago(deleted), user === undefined ? undefined : called({ user, ...(full_name ? { full_name } : {}) })),
       words.erased_on(told_date(erased)),
       bytes === undefined ? "" : format_bytes(bytes),
     ];

@@ -11,6 +11,7 @@ import { describe_value, kWidths, type WidthUnit } from "./brush-settings";
 import { ask } from "./dialog";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
+import { why_locked } from "./layer-lock";
 import type { ModelSession } from "./model-session";
 import { number_input } from "./number-input";
 import { radio_group } from "./radio-group";
@@ -97,7 +98,7 @@ export class StrataBrushPanel extends LitElement {
 
   private locked(layer: Layer): TemplateResult {
     return html`<h2>${texts.tools[this.session.tools.active]}</h2>
-      <p class="locked" role="status">${icon("lock")}<span>${texts.layers.locked_detail(label_of(layer))}</span></p>`;
+      <p class="locked" role="status">${icon("lock")}<span>${why_locked(layer)}</span></p>`;
   }
 
   private strokes(layer: Layer, erases: boolean): TemplateResult {

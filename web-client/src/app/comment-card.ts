@@ -7,6 +7,7 @@ import { label_of } from "../core/cells";
 import { ApiError } from "../core/api";
 import { beside } from "../core/beside";
 import { comments_in, type Thread } from "../core/comments";
+import { called } from "../core/people";
 import type { Comment } from "../core/protocol.gen";
 import { comment_text, comment_text_styles } from "./comment-text";
 import type { DraftOf } from "./comments";
@@ -312,7 +313,7 @@ export class StrataCommentCard extends LitElement {
     const { first } = thread;
     const resolved = first.state === "resolved";
     const reply: DraftOf = `reply ${first.id}`;
-    return html`<section role="dialog" aria-label=${words.thread(first.user)} tabindex="-1" @keydown=${this.on_key}>
+    return html`<section role="dialog" aria-label=${words.thread(called(first))} tabindex="-1" @keydown=${this.on_key}>
       <div class="row head">
         <h2 class="grow">${words.heading}</h2>
         ${session.can_paint
@@ -325,7 +326,7 @@ export class StrataCommentCard extends LitElement {
       </div>
       <div class="list">
         ${first.resolved
-          ? html`<div class="settled">${icon("check")}<span>${words.resolved_by(first.resolved.user, told_time(first.resolved.time))}</span></div>`
+          ? html`<div class="settled">${icon("check")}<span>${words.resolved_by(called(first.resolved), told_time(first.resolved.time))}</span></div>`
           : nothing}
         ${this.about(first)}
         ${repeat(
@@ -375,9 +376,9 @@ export class StrataCommentCard extends LitElement {
       ${is_own || session.can_curate ? html`<button class="link" ?disabled=${this.busy_} @click=${() => void this.delete_comment(comment)}>${words.delete}</button>` : nothing}
     </div>`;
     return html`<article data-comment=${id}>
-      ${person_mark(user)}
+      ${person_mark(comment)}
       <div class="by">
-        <b>${user}</b>
+        <b>${called(comment)}</b>
         <a class="hint" href=${link} title=${words.link}>${told_time(time)}</a>
         ${edited ? html`<span class="hint" title=${told_time(edited)}>${words.edited(told_time(edited))}</span>` : nothing}
       </div>

@@ -5,6 +5,7 @@ import { customElement, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import type { Thread, ThreadState } from "../core/comments";
 import { format_count } from "../core/locale";
+import { called } from "../core/people";
 import { FoldingPanel, folding_styles } from "./folding-panel";
 import { icon } from "./icons";
 import { panel_line_styles } from "./panel-styles";
@@ -147,8 +148,8 @@ export class StrataCommentPanel extends FoldingPanel {
     const newest = replies[replies.length - 1] ?? first;
     return html`<li>
       <button class="quiet line" data-comment=${first.id} aria-current=${comments.card === first.id} @click=${() => comments.go_to(first.id)}>
-        ${person_mark(first.user)}
-        <span><b>${first.user}</b> <span class="hint">${told_time(newest.time)}</span></span>
+        ${person_mark(first)}
+        <span><b>${called(first)}</b> <span class="hint">${told_time(newest.time)}</span></span>
         <span class="state">
           ${replies.length > 0 ? html`<span class="hint numeric" role="img" aria-label=${words.replies(replies.length)} title=${words.replies(replies.length)}>${format_count(replies.length)}</span>` : nothing}
           ${first.state === "resolved" ? html`<span role="img" aria-label=${words.resolved} title=${words.resolved}>${icon("check")}</span>` : nothing}

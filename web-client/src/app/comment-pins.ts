@@ -3,8 +3,8 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { color_of_person, type Thread } from "../core/comments";
-import { initials } from "../core/people";
+import type { Thread } from "../core/comments";
+import { called, initials } from "../core/people";
 import type { Vec3 } from "../core/vector";
 import { kPaintingTools } from "../tools/tool";
 import { follow_session } from "./follow-session";
@@ -135,7 +135,8 @@ export class StrataCommentPins extends LitElement {
 
   private pin({ thread, x, y }: Placed, order: number): TemplateResult {
     const { comments } = this.session;
-    const { id, user, text, state, deleted } = thread.first;
+    const { id, text, state, deleted, color = null } = thread.first;
+    const name = called(thread.first);
     const unread = comments.is_unread(thread);
     const resolved = state === "resolved";
     const about = deleted ? words.deleted_line : text.replace(/\s+/g, " ").slice(0, kMostSaid);
@@ -143,13 +144,13 @@ export class StrataCommentPins extends LitElement {
     return html`<button
       class="${resolved ? "resolved" : ""} ${comments.card === id ? "chosen" : ""}"
       data-comment=${id}
-      aria-label=${words.pin(user, about, states)}
-      title="${user}: ${about}"
+      aria-label=${words.pin(name, about, states)}
+      title="${name}: ${about}"
       aria-expanded=${comments.card === id}
-      ${styled({ ...tip_at(x, y), "z-index": comments.card === id ? kMostPins : order, background: resolved ? null : color_of_person(user) })}
+      ${styled({ ...tip_at(x, y), "z-index": comments.card === id ? kMostPins : order, background: resolved ? null : color })}
       @click=${() => comments.show(id)}
     >
-      ${resolved ? icon("check") : initials({ user, full_name: "" })}${unread ? html`<i></i>` : nothing}
+      ${resolved ? icon("check") : initials(thread.first)}${unread ? html`<i></i>` : nothing}
     </button>`;
   }
 

@@ -15,6 +15,7 @@ import {
   type Thread,
   type ThreadState,
 } from "../core/comments";
+import { called } from "../core/people";
 import type { Comment, CommentEvent, PresenceUser, ProjectPerson, SurfacePoint } from "../core/protocol.gen";
 import type { Layer, Model } from "../core/types";
 import type { Vec3 } from "../core/vector";
@@ -187,10 +188,10 @@ export class Comments {
     const is_new = this.known_.find(comment.id) === null;
     this.put(comment);
     if (event !== "created" || !is_new || user === this.me_) return;
-    this.said = words.said(comment.user, comment.text);
+    this.said = words.said(called(comment), comment.text);
     if (!mentions(comment.text, this.me_) || this.card === comment.thread) return; // who reads the thread sees it there
     const act = (): void => this.go_to(comment.id);
-    notices.show("info", words.mentioned(comment.user), comment.text.slice(0, 200), { label: words.show, act });
+    notices.show("info", words.mentioned(called(comment)), comment.text.slice(0, 200), { label: words.show, act });
   }
 
   private put(comment: Comment): void {

@@ -5,7 +5,7 @@ import { html, LitElement, nothing, type PropertyValues, type TemplateResult } f
 import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
 import type { CameraMessage } from "../core/camera";
-import { holds_files, label_of } from "../core/cells";
+import { holds_files, label_column, label_of } from "../core/cells";
 import {
   figure_choices, figure_request, is_dpi, kDirections, kDpiRange, kFormats, kOrientations, kPapers, kResolutions, kScales, read_scale, scale_text,
   type FigureChoices, type FigureFrom, type FigureWords,
@@ -405,8 +405,11 @@ export class StrataFigureDialog extends LitElement {
 
   /** What can be written beside a place. */
   private columns(layer: Layer): Column[] {
-    const { columns = [] } = this.session.tables.find(layer.table!) ?? {};
-    return columns.filter((column) => !holds_files(column) && !holds_marks(column));
+    const table = this.session.tables.find(layer.table!);
+    if (!table) return [];
+    const title = label_column(table); // what records are called comes first
+    const words = table.columns.filter((column) => !holds_files(column) && !holds_marks(column));
+    return words.sort((a, b) => Number(b === title) - Number(a === title));
   }
 
   /** Without a column: the first that there is. */

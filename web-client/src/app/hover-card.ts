@@ -4,7 +4,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
 import { beside } from "../core/beside";
-import { first_picture, label_of, label_of_record, telling_columns } from "../core/cells";
+import { first_picture, label_of, telling_columns } from "../core/cells";
 import { css_color, record_color } from "../core/palette";
 import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
@@ -120,7 +120,7 @@ export class StrataHoverCard extends LitElement {
     return html`<section>
       <div class="row">
         ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
-        <b class="ellipsis">${label_of_record(table, record) || texts.tables.record(record.key)}</b>
+        <b class="ellipsis">${session.tables.title(table, record) || texts.tables.record(record.key)}</b>
       </div>
       ${picture === null ? nothing : html`<img src=${session.api.attachment_url(picture, 256)} alt="" />`}
       ${told.length === 0

@@ -4,7 +4,7 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { description_in, label_of } from "../core/cells";
-import { value_range, type Layer, type LayerPatch } from "../core/types";
+import { is_as_computed, value_range, type Layer, type LayerPatch } from "../core/types";
 import { ask_to_bin, tell_binned } from "./bin";
 import { open_bin_of } from "./bin-dialog";
 import { ask } from "./dialog";
@@ -260,7 +260,7 @@ export class StrataLayerPanel extends LitElement {
       @dragover=${(event: DragEvent) => this.drag_.over_row(event, index)}
     >
       <div class="line">
-        ${session.can_curate && count > 1
+        ${count > 1
           ? html`<span
               class="grip"
               draggable="true"
@@ -296,7 +296,7 @@ export class StrataLayerPanel extends LitElement {
                   ${icon("edit")}${words.edit}
                 </button>
                 <button class="quiet" role="menuitem" @click=${() => void this.change(layer, { locked: !layer.locked })}>
-                  ${icon(layer.locked ? "unlock" : "lock")}${layer.locked ? words.unlock : words.lock}
+                  ${icon(layer.locked ? "unlock" : "lock")}${is_as_computed(layer) ? words.unlock_computed : layer.locked ? words.unlock : words.lock}
                 </button>
                 ${layer.expression === undefined
                   ? html`<button class="quiet" role="menuitem" @click=${() => void this.change(layer, { review: !layer.review })}>
@@ -331,25 +331,15 @@ export class StrataLayerPanel extends LitElement {
                   ${icon("upload")}${texts.maps.menu}
                 </button>`
             : nothing}
-          ${session.can_curate ? html`<hr />` : nothing}
+          <hr />
+          <button class="quiet" role="menuitem" ?disabled=${index === 0} @click=${() => this.move(layer, index - 1)}>
+            ${icon("up")}${words.up}
+          </button>
+          <button class="quiet" role="menuitem" ?disabled=${index === count - 1} @click=${() => this.move(layer, index + 1)}>
+            ${icon("down")}${words.down}
+          </button>
           ${session.can_curate
-            ? html`<button
-                  class="quiet"
-                  role="menuitem"
-                  ?disabled=${index === 0}
-                  @click=${() => this.move(layer, index - 1)}
-                >
-                  ${icon("up")}${words.up}
-                </button>
-                <button
-                  class="quiet"
-                  role="menuitem"
-                  ?disabled=${index === count - 1}
-                  @click=${() => this.move(layer, index + 1)}
-                >
-                  ${icon("down")}${words.down}
-                </button>
-                <hr />
+            ? html`<hr />
                 <button class="quiet" role="menuitem" @click=${() => void this.delete_layer(layer)}>
                   ${icon("trash")}${words.delete}
                 </button>`
@@ -364,7 +354,7 @@ export class StrataLayerPanel extends LitElement {
     const { session } = this;
     const opacity = session.layers.opacity(layer);
     return html`<div class="more">
-      ${layer.locked ? this.lock_told(layer) : nothing} ${layer.review ? this.review_told(layer) : nothing}
+      ${layer.locked ? this.lock_told(layer) : nothing} ${layer.edited_by_hand === true ? this.hand_told(layer) : nothing} ${layer.review ? this.review_told(layer) : nothing}
       ${description_in(layer) ? html`<p class="description">${description_in(layer)}</p>` : nothing} ${legend(layer, session.layers.palette(layer), session.tables)}
       ${layer.expression === undefined ? nothing : this.formula(layer)}
       ${layer.table === undefined
@@ -388,6 +378,7 @@ export class StrataLayerPanel extends LitElement {
   }
 
   private who_is_locked(layer: Layer): string {
+    if (is_as_computed(layer)) return texts.layers.locked_computed;
     return this.session.is_locked(layer) ? texts.layers.locked_to_you : texts.layers.locked_to_others;
   }
 
@@ -395,7 +386,13 @@ export class StrataLayerPanel extends LitElement {
     const unlock = (): void => void this.change(layer, { locked: false });
     return html`<p class="locked">
       ${icon("lock")}<span>${this.who_is_locked(layer)}</span>
-      ${this.session.can_curate ? html`<button class="link" @click=${unlock}>${texts.layers.unlock}</button>` : nothing}
+      ${this.session.can_curate ? html`<button class="link" @click=${unlock}>${is_as_computed(layer) ? texts.layers.unlock_computed : texts.layers.unlock}</button>` : nothing}
+    </p>`;
+  }
+
+  private hand_told(layer: Layer): TemplateResult {
+    return html`<p class="locked by-hand">
+      ${icon("edit")}<span>${layer.expression === undefined ? texts.layers.by_hand : `${texts.layers.by_hand} ${texts.layers.by_hand_formula}`}</span>
     </p>`;
   }
 
@@ -412,23 +409,31 @@ export class StrataLayerPanel extends LitElement {
   }
 
   private formula(layer: Layer): TemplateResult {
-    const { session } = this;
     return html`<div class="formula">
       <code>${layer.expression}</code>
-      ${layer.stale === true
+      ${layer.stale === true && layer.edited_by_hand !== true
         ? html`<span class="hint" role="status">${layer.recompute === "automatic" ? texts.layers.stale_automatic : texts.layers.stale}</span>`
         : nothing}
-      ${session.can_paint && !session.is_locked(layer) && layer.recompute !== "automatic"
+      ${this.may_recompute(layer)
         ? html`<button ?disabled=${this.computing_ === layer.id} @click=${() => void this.recompute(layer)}>${icon("redo")}${texts.layers.recompute}</button>`
         : nothing}
     </div>`;
   }
 
+  /** Whoever may change it may have it computed: its lock is against hands. */
+  private may_recompute(layer: Layer): boolean {
+    const { can_paint, can_curate } = this.session;
+    return (layer.locked || layer.edited_by_hand === true ? can_curate : can_paint) && (layer.recompute !== "automatic" || layer.edited_by_hand === true);
+  }
+
   private async recompute(layer: Layer): Promise<void> {
     const { session } = this;
+    const words = texts.layers;
+    const by_hand = layer.edited_by_hand === true;
+    if (by_hand && !(await ask({ heading: words.overwrite_title(layer.name), lead: words.overwrite_lead, yes: words.recompute }))) return;
     this.computing_ = layer.id;
     try {
-      session.layers.put(await session.api.recompute_layer(session.model_id, layer.id));
+      session.layers.put(await session.api.recompute_layer(session.model_id, layer.id, by_hand));
     } catch (error) {
       notices.error(error);
     } finally {
@@ -443,7 +448,7 @@ export class StrataLayerPanel extends LitElement {
   /** `index` counts from the top of the shown list, without the layer itself. */
   private move(layer: Layer, index: number): void {
     const last = this.session.layers.all.length - 1;
-    this.session.layers.move(layer, last - index).catch((error: unknown) => notices.error(error));
+    this.session.layers.move(layer, last - index);
   }
 
   private async save_default(): Promise<void> {

@@ -5,13 +5,12 @@
 // curators make of views, `measuring` what is measured, `figures` what is drawn to scale, `face` the one that is asked for. Elements subscribe and draw themselves from their state; they change it
 // only through their methods.
 
-import { label_of } from "../core/cells";
 import { Api, ApiError, type Versioned } from "../core/api";
 import { Connection, type ConnectionState, type Point, type SavingState, type SocketLike } from "../core/connection";
 import type { FrameMessage } from "../core/frame-header";
 import type { GestureHandler, PointerSample } from "../core/input";
 import type { Background, LayerEvent, ModelEvent, Picked, ProblemMessage, Welcome } from "../core/protocol.gen";
-import { complete_layer, may_curate, may_paint, type Column, type Layer, type Model, type ModelPatch, type Role } from "../core/types";
+import { complete_layer, is_as_computed, may_curate, may_paint, type Column, type Layer, type Model, type ModelPatch, type Role } from "../core/types";
 import { UnsavedShelf } from "../core/unsaved-shelf";
 import { BrushTool } from "../tools/brush";
 import { BucketTool } from "../tools/bucket";
@@ -31,6 +30,7 @@ import { Comments } from "./comments";
 import { FacePick } from "./face-pick";
 import { Figures } from "./figures";
 import { LayerJobs } from "./layer-jobs";
+import { why_locked } from "./layer-lock";
 import { LayerList } from "./layer-list";
 import { MarkDrawing } from "./mark-drawing";
 import { Measuring } from "./measuring";
@@ -168,7 +168,7 @@ export class ModelSession {
       fly_to: (bounds) => this.view.fly_to(bounds),
       changed,
     });
-    this.editors = new RecordEditors({ say: (what) => this.connection_.edit_record(what), changed });
+    this.editors = new RecordEditors({ say: (what) => this.connection_.edit_record(what), name_of: (user) => this.together.name_of(user), changed });
     this.marks = new MarkDrawing(api, {
       view: this.view,
       layers: this.layers,
@@ -199,6 +199,7 @@ export class ModelSession {
       view: this.view,
       layers: this.layers,
       me: () => this.user,
+      name_of: (user) => this.together.name_of(user),
       can_paint: () => this.can_paint,
       can_curate: () => this.can_curate,
       changed,
@@ -407,6 +408,7 @@ export class ModelSession {
   /** Its page is gone. What was painted still goes to the server: the connection lingers until all of it is saved. */
   close(): void {
     this.closed_ = true;
+    this.layers.flush();
     this.tools.stop();
     this.view.stop();
     this.pointer.stop();
@@ -445,9 +447,9 @@ export class ModelSession {
     return may_curate(this.role);
   }
 
-  /** To this person: curators change locked layers, too. */
+  /** To this person: curators change locked layers, too, but for those that are as they were computed. */
   is_locked(layer: Layer): boolean {
-    return layer.locked && !this.can_curate;
+    return layer.locked && (!this.can_curate || is_as_computed(layer));
   }
 
   /** The chosen layer, where a tool is in hand that would change its texels but may not. */
@@ -553,13 +555,23 @@ export class ModelSession {
   add_created(layer: Layer): void {
     this.layers.put(layer);
     this.layers.select(layer);
-    if (this.tools.active !== "brush") this.tools.choose("brush");
+    this.show_to_maker(layer);
+    if (this.tools.active !== "brush" && !this.is_locked(layer)) this.tools.choose("brush");
+  }
+
+  /** What was computed does not cover what others look at: who made it sees it at once. */
+  private show_to_maker(layer: Layer): void {
+    if (!this.layers.visible(layer)) this.layers.set_visible(layer, true);
   }
 
   /** Layers that work made for this person: the first is what they look at next. */
   show_made(ids: readonly number[]): void {
     const layer = this.layers.find(ids[0] ?? null);
     if (layer) this.layers.select(layer);
+    for (const id of ids) {
+      const made = this.layers.find(id);
+      if (made) this.show_to_maker(made);
+    }
   }
 
   async change_model(change: ModelPatch): Promise<void> {
@@ -667,7 +679,7 @@ export class ModelSession {
     this.session = message.session;
     this.editors.joined(message.session, message.user);
     this.put_model(message.model);
-    this.layers.take_all(message.layers.map(complete_layer));
+    this.layers.take_all(message.layers.map(complete_layer), message.personal_view);
     this.appearance.take_looks(message.looks);
     this.shapes.refresh();
     this.tables.refresh();
@@ -721,7 +733,7 @@ export class ModelSession {
 
   /** In the words that the page has for it, whoever noticed: one notice stands for all. */
   private tell_locked(layer: Layer): void {
-    notices.show("problem", texts.layers.locked, texts.layers.locked_detail(label_of(layer)));
+    notices.show("problem", texts.layers.locked, why_locked(layer));
   }
 }
 

@@ -91,7 +91,7 @@ export class NameCompletion {
   list(): TemplateResult {
     return html`<ul id="names" class="names" role="listbox" aria-label=${texts.comments.names}>
       ${this.people_.map(
-        ({ user, full_name }, index) =>
+        (person, index) =>
           html`<li
             id="name-${index}"
             role="option"
@@ -101,7 +101,7 @@ export class NameCompletion {
               this.take(index);
             }}
           >
-            ${person_mark(user)}<span><b>${user}</b>${full_name ? html` <span class="hint">${full_name}</span>` : nothing}</span>
+            ${person_mark(person)}<span><b>${person.user}</b>${person.full_name ? html` <span class="hint">${person.full_name}</span>` : nothing}</span>
           </li>`,
       )}
     </ul>`;

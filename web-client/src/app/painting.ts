@@ -7,6 +7,7 @@ import type { PointerSample } from "../core/input";
 import { format_area, metres_per } from "../core/measure";
 import type { Applied, Edit, Picked } from "../core/protocol.gen";
 import type { Layer, Model } from "../core/types";
+import { why_locked } from "./layer-lock";
 import { BrushSettings, describe_value, type RecordLabels, value_problem } from "./brush-settings";
 import type { LayerList } from "./layer-list";
 import { notices } from "./notices";
@@ -213,7 +214,7 @@ export class Painting {
 
   private refuses(layer: Layer): boolean {
     const locked = this.host_.is_locked(layer);
-    if (locked) notices.show("problem", texts.layers.locked, texts.layers.locked_detail(label_of(layer)));
+    if (locked) notices.show("problem", texts.layers.locked, why_locked(layer));
     return locked;
   }
 

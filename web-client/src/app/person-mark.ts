@@ -1,8 +1,7 @@
 // The initials of a person, in their colour.
 
 import { css, html, type TemplateResult } from "lit";
-import { color_of_person } from "../core/comments";
-import { initials } from "../core/people";
+import { initials, type Named } from "../core/people";
 import { styled } from "./styled";
 
 export const person_mark_styles = css`
@@ -13,6 +12,7 @@ export const person_mark_styles = css`
     width: 26px;
     height: 26px;
     border-radius: 50%;
+    background: var(--mark-settled);
     color: var(--mark-light);
     font-size: 0.72rem;
     font-weight: 700;
@@ -20,5 +20,5 @@ export const person_mark_styles = css`
   }
 `;
 
-export const person_mark = (user: string): TemplateResult =>
-  html`<span class="person-mark" aria-hidden="true" ${styled({ background: color_of_person(user) })}>${initials({ user, full_name: "" })}</span>`;
+export const person_mark = (person: Named): TemplateResult =>
+  html`<span class="person-mark" aria-hidden="true" ${styled({ background: person.color ?? null })}>${initials(person)}</span>`;

@@ -77,7 +77,8 @@ export class StrataPhotosDialog extends LitElement {
     super.connectedCallback();
     const columns = this.columns;
     const table = this.session.tables.find(this.table);
-    this.column_ = (table ? label_column(table)?.slug : undefined) ?? "key";
+    const title = table ? label_column(table) : null;
+    this.column_ = title && title.kind !== "term" ? title.slug : "key"; // files are not called by terms
     this.target_ = (columns.find(({ kind }) => kind === "picture") ?? columns[0])?.slug ?? "";
     this.pattern_ = likely_pattern(this.names, this.column_);
     this.problem_ = this.target_ === "" ? words.no_column : "";

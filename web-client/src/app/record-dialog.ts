@@ -3,7 +3,7 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
-import { cell_text, holds_files, label_of, label_of_record, same_value } from "../core/cells";
+import { cell_text, holds_files, label_of, same_value } from "../core/cells";
 import { format_area } from "../core/measure";
 import { css_color, record_color } from "../core/palette";
 import type { CellValues, Column, Table, TableRecord } from "../core/protocol.gen";
@@ -119,7 +119,7 @@ export class StrataRecordDialog extends LitElement {
   override render(): TemplateResult {
     const { table, record_: record, key } = this;
     const ready = table !== null && (key === null || record !== null);
-    const name = table && record ? label_of_record(table, record) || words.record(record.key) : "";
+    const name = table && record ? this.session.tables.title(table, record) || words.record(record.key) : "";
     return html`<strata-dialog
       heading=${key === null ? words.new_record_of(table ? label_of(table) : "") : name}
       way_out=${texts.cancel}

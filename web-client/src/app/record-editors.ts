@@ -6,10 +6,12 @@ import type { RecordEditor, RecordEditors as EditorsMessage } from "../core/prot
 export interface RecordEditorsHost {
   /** Nothing is sent while there is no connection. */
   say(what: { table: number; key: number; editing: boolean; take_over?: boolean }): void;
+  /** What somebody is called. */
+  name_of(user: string): string;
   changed(): void;
 }
 
-/** Somebody else, or this person in another window. */
+/** Somebody else, by what they are called, or this person in another window. */
 export interface OtherEditor {
   user: string;
   is_me: boolean;
@@ -53,7 +55,7 @@ export class RecordEditors {
 
   other(table: number, key: number): OtherEditor | null {
     const there = this.there_.get(id_of(table, key));
-    return there && there.session !== this.me_.session ? { user: there.user, is_me: there.user === this.me_.user } : null;
+    return there && there.session !== this.me_.session ? { user: this.host_.name_of(there.user), is_me: there.user === this.me_.user } : null;
   }
 
   claim(table: number, key: number): RecordClaim {

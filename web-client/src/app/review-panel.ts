@@ -6,6 +6,7 @@ import { repeat } from "lit/directives/repeat.js";
 import { label_of } from "../core/cells";
 import { format_count } from "../core/locale";
 import { format_area } from "../core/measure";
+import { called } from "../core/people";
 import type { Review, WaitingStroke } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 import { FoldingPanel, folding_styles } from "./folding-panel";
@@ -121,7 +122,7 @@ export class StrataReviewPanel extends FoldingPanel {
             ${queue.people.map(
               (person) =>
                 html`<button class="link" ?disabled=${this.busy_} @click=${() => void this.decide(layer, { decision: "accept", user: person.user })}>
-                  ${words.accept_person(person.user, person.strokes)}
+                  ${words.accept_person(called(person), person.strokes)}
                 </button>`,
             )}
           </div>`
@@ -139,11 +140,11 @@ export class StrataReviewPanel extends FoldingPanel {
   private stroke(layer: Layer, stroke: WaitingStroke): TemplateResult {
     const { reviews, can_curate } = this.session;
     const what: Rejecting["what"] = { edits: [stroke.sequence] };
-    const named = words.stroke(words.ops[stroke.op], stroke.user);
+    const named = words.stroke(words.ops[stroke.op], called(stroke));
     return html`<li>
       <button class="quiet line" title=${words.look} data-waiting=${stroke.sequence} @click=${() => reviews.go_to(layer, stroke)}>
-        ${person_mark(stroke.user)}
-        <span class="what"><b>${stroke.user}</b> ${words.ops[stroke.op]}</span>
+        ${person_mark(stroke)}
+        <span class="what"><b>${called(stroke)}</b> ${words.ops[stroke.op]}</span>
         <span></span>
         <span class="more-of-it hint">${[told_time(stroke.time), format_area(stroke.area_m2)].join(" · ")}</span>
       </button>

@@ -18,6 +18,8 @@ export interface ReviewsHost {
   readonly view: ViewControl;
   readonly layers: LayerList;
   me(): string;
+  /** What somebody is called. */
+  name_of(user: string): string;
   can_paint(): boolean;
   can_curate(): boolean;
   changed(): void;
@@ -77,7 +79,7 @@ export class Reviews {
     const me = this.host_.me();
     const layer = this.host_.layers.find(layer_id);
     if (!review || !layer || user === undefined || user === me || !review.authors.includes(me)) return;
-    notices.show(review.decision === "reject" ? "problem" : "info", words.told[review.decision](user, label_of(layer)), review.reason ?? "");
+    notices.show(review.decision === "reject" ? "problem" : "info", words.told[review.decision](this.host_.name_of(user), label_of(layer)), review.reason ?? "");
   }
 
   /** This person changed something, somewhere. */

@@ -21,3 +21,8 @@ export function discard_unsaved(): number {
   for (const session of [...sessions]) session.discard();
   return lost;
 }
+
+/** The page may be gone in a moment: how this person shows layers is told now. */
+export function keep_views(): void {
+  for (const session of sessions) session.layers.flush();
+}

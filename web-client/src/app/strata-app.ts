@@ -19,7 +19,7 @@ import "./notices-view";
 import { load_part, load_part_later } from "./page-parts";
 import { curates, kDefaultProject } from "./project-list";
 import { may_leave_page, navigate, on_navigate, path_now, path_of_model, replace_address, route_of, type Route } from "./routes";
-import { check_connections, discard_unsaved, unsaved_changes } from "./sessions";
+import { check_connections, discard_unsaved, keep_views, unsaved_changes } from "./sessions";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -75,10 +75,11 @@ export class StrataApp extends LitElement {
     addEventListener("unhandledrejection", (event) => notices.error(event.reason));
     addEventListener("online", check_connections);
     document.addEventListener("visibilitychange", () => {
-      if (document.visibilityState !== "visible") return;
+      if (document.visibilityState !== "visible") return keep_views();
       check_connections();
       void this.refresh_me();
     });
+    addEventListener("pagehide", keep_views);
     addEventListener("beforeunload", (event) => {
       if (unsaved_changes() > 0) event.preventDefault();
     });

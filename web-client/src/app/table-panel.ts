@@ -3,7 +3,7 @@
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { holds_files, is_number, label_of } from "../core/cells";
+import { can_be_title, holds_files, is_number, label_column, label_of } from "../core/cells";
 import { chosen_in } from "../core/column-filter";
 import { holds_marks } from "../core/marks";
 import { format_area } from "../core/measure";
@@ -411,6 +411,7 @@ export class StrataTablePanel extends LitElement {
             <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "column", table: this.view.table_id, column })}>
               ${icon("edit")}${words.change_column}
             </button>
+            ${this.title_button(column)}
             <button class="quiet" role="menuitem" @click=${() => this.dispatchEvent(new CustomEvent("drop-column", { detail: column }))}>
               ${icon("trash")}${words.drop_column}
             </button>
@@ -427,6 +428,33 @@ export class StrataTablePanel extends LitElement {
     return html`<button class="icon quiet by-column ${is_on ? "on" : ""}" aria-haspopup="dialog" aria-label=${told} title=${told} @click=${(event: Event) => this.open_filter(column, event)}>
       ${icon("filter")}
     </button>`;
+  }
+
+  /** Records are called by what they have in the column. */
+  private title_button(column: Column): TemplateResult | typeof nothing {
+    const words = texts.tables;
+    const { table } = this.view;
+    if (!table || table.kind === "terms" || !can_be_title(column)) return nothing;
+    const is_title = label_column(table)?.id === column.id;
+    return html`<button
+      class="quiet"
+      role="menuitemcheckbox"
+      aria-checked=${is_title}
+      ?disabled=${is_title && table.title_column !== column.id}
+      title=${words.title_hint}
+      @click=${() => void this.set_title(table.id, is_title ? null : column.id)}
+    >
+      ${icon(is_title ? "check" : "edit")}${words.title_column}
+    </button>`;
+  }
+
+  private async set_title(table: number, column: number | null): Promise<void> {
+    try {
+      await this.session.api.set_title_column(table, column);
+      await this.session.tables.reload(table);
+    } catch (error) {
+      notices.error(error);
+    }
   }
 
   private sort(name: string): void {

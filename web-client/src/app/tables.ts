@@ -1,10 +1,11 @@
 // The tables of the project that this page has needed so far: their columns, and what their records are called.
 
 import { ApiError, type Api } from "../core/api";
+import { label_of_record } from "../core/cells";
 import type { Bounds, Highlight, Picked, RecordEvent, Table, TableEvent, TableRecord } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 import { notices } from "./notices";
-import { RecordNames } from "./record-names";
+import { RecordNames, type OtherNames } from "./record-names";
 import { RecordShelf } from "./record-shelf";
 import { TableView } from "./table-view";
 import { TermTree } from "./term-tree";
@@ -30,6 +31,11 @@ export class Tables {
   private readonly terms_ = new Map<number, TermTree>();
   private readonly records_: RecordShelf;
 
+  private readonly others_: OtherNames = {
+    name_of: (table, key) => this.label(table, key),
+    places: (table) => this.terms(table)?.places ?? null,
+  };
+
   constructor(
     private readonly api_: Api,
     private readonly host_: TablesHost,
@@ -50,7 +56,7 @@ export class Tables {
     if (!table) return null;
     let names = this.names_.get(id);
     if (!names) {
-      names = new RecordNames(this.api_, () => this.find(id) ?? table, this.host_.changed);
+      names = new RecordNames(this.api_, () => this.find(id) ?? table, this.host_.changed, this.others_);
       this.names_.set(id, names);
     }
     return names;
@@ -71,6 +77,11 @@ export class Tables {
     return this.names(id)?.lacks(key) ?? false;
   }
 
+  /** What a record that is here is called; empty where it has no name. */
+  title(table: Table, record: Pick<TableRecord, "values">): string {
+    return label_of_record(table, record, undefined, this.others_.name_of);
+  }
+
   /** What a term is called; null where the table is no list of terms, or its name is not known. */
   term(id: number, key: number): string | null {
     return this.find(id)?.kind === "terms" ? this.label(id, key) : null;
@@ -81,7 +92,10 @@ export class Tables {
     if (this.find(id)?.kind !== "terms") return null;
     let terms = this.terms_.get(id);
     if (!terms) {
-      terms = new TermTree(this.api_, id, this.host_.changed);
+      terms = new TermTree(this.api_, id, () => {
+        for (const names of this.names_.values()) names.reorder();
+        this.host_.changed();
+      });
       this.terms_.set(id, terms);
     }
     return terms;

@@ -17,6 +17,8 @@ export class TermTree {
   generation = 0;
   private state_: "unasked" | "loading" | "loaded" = "unasked";
   private again_ = false;
+  private places_: ReadonlyMap<number, number> = new Map();
+  private placed_ = 0; // generation of `places_`
 
   constructor(
     private readonly api_: Api,
@@ -24,6 +26,16 @@ export class TermTree {
     private readonly changed_: () => void,
     private readonly language_ = person_languages()[0]!,
   ) {}
+
+  /** Where each stands in the tree, by key; asks for the terms. */
+  get places(): ReadonlyMap<number, number> {
+    this.want();
+    if (this.placed_ !== this.generation) {
+      this.placed_ = this.generation;
+      this.places_ = new Map(this.terms.map(({ key }, place) => [key, place]));
+    }
+    return this.places_;
+  }
 
   /** To be called by who shows them. */
   want(): void {

@@ -43,6 +43,12 @@ export class Together {
     });
   }
 
+  /** What somebody is called who is here, or was: by their account's name where nothing else is known. */
+  name_of(user: string): string {
+    const here = this.people.find((person) => person.user === user);
+    return called(here ?? { user });
+  }
+
   get followers(): PersonHere[] {
     return followers_of(this.people, this.host_.session());
   }

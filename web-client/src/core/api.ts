@@ -2,6 +2,7 @@
 // problem a person can read.
 
 import type { CameraMessage } from "./camera";
+import { person_languages } from "./locale";
 import { own_problems } from "./own-problems";
 import type * as wire from "./protocol.gen";
 import {
@@ -111,6 +112,12 @@ export class Api {
   }
   async change_me(change: wire.MePatch): Promise<Me> {
     return this.json("PATCH", "/me", change);
+  }
+  /** How this person shows the layers of a model, for them alone. Goes on when the page is left. */
+  async keep_personal_view(model: Id, view: wire.PersonalView): Promise<void> {
+    const body = JSON.stringify(view);
+    const path = `/me/models/${encodeURIComponent(model)}/view`;
+    await this.request_raw("PUT", path, body, { "Content-Type": "application/json" }, undefined, body.length < kMostKeptAlive);
   }
   /** Ends all other sessions. */
   async change_password(change: wire.PasswordChange): Promise<void> {
@@ -289,8 +296,8 @@ export class Api {
     return complete_layer((await this.versioned<wire.Layer>("PATCH", layer_path(model, layer), change, version)).value);
   }
   /** The layer of an expression, from what it reads as it is now. */
-  async recompute_layer(model: Id, layer: Id): Promise<Layer> {
-    return complete_layer(await this.json<wire.Layer>("POST", `${layer_path(model, layer)}/compute`));
+  async recompute_layer(model: Id, layer: Id, overwrite = false): Promise<Layer> {
+    return complete_layer(await this.json<wire.Layer>("POST", `${layer_path(model, layer)}/compute${overwrite ? "?overwrite=true" : ""}`));
   }
   /** How much of the surface a condition holds for. */
   async select(model: Id, where: string): Promise<wire.SelectResponse> {
@@ -460,6 +467,10 @@ export class Api {
     const { etag } = await this.versioned<wire.Table>("GET", table_path(table));
     await this.request("DELETE", table_path(table), undefined, { "If-Match": etag });
   }
+  /** The column that says what a record is called, by its id; null: the best one by rule. */
+  async set_title_column(table: Id, column: number | null): Promise<wire.Table> {
+    return this.json("PATCH", table_path(table), { title_column: column === null ? "" : `${column}` });
+  }
   async create_column(table: Id, column: wire.ColumnCreate): Promise<wire.ColumnChanged> {
     return this.json("POST", `${table_path(table)}/columns`, column);
   }
@@ -488,6 +499,7 @@ export class Api {
   async records(place: RecordPlace, { sortby = "", filter = "", limit, offset }: RecordQuery): Promise<wire.RecordList> {
     const query = new URLSearchParams({ limit: `${limit}`, offset: `${offset}` });
     if (sortby !== "") query.set("sortby", sortby);
+    if (sortby !== "" && sortby !== "key" && sortby !== "-key") query.set("lang", person_languages()[0]!); // in whose alphabet
     if (filter !== "") query.set("filter", filter);
     return this.json("GET", `${records_path(place)}?${query}`);
   }
@@ -756,6 +768,7 @@ export class Api {
     body: BodyInit | null,
     headers: Record<string, string> = {},
     signal?: AbortSignal,
+    keepalive = false,
   ): Promise<Response> {
     const all: Record<string, string> = { Accept: "application/json", ...headers };
     if (method === "POST" && !kWithSecrets.test(path)) all["Idempotency-Key"] ??= new_id();
@@ -767,6 +780,7 @@ export class Api {
         credentials: "same-origin",
         ...(body === null ? {} : { body }),
         ...(signal ? { signal } : {}),
+        ...(keepalive ? { keepalive } : {}),
       });
     } catch {
       throw signal?.aborted ? cancelled() : unreachable();
@@ -775,6 +789,8 @@ export class Api {
     return response;
   }
 }
+
+const kMostKeptAlive = 60_000; // characters of a body that browsers send after its page
 
 /** What is sent or answered there is not for the server to keep, as it does for an `Idempotency-Key`. */
 const kWithSecrets = /^\/(login|auth\/.+|invitations\/.+|me\/.+|users|users\/.+|models\/[^/]+\/tours\/[^/]+\/kiosks)$/;

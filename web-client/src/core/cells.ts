@@ -73,8 +73,21 @@ export function parse_cell(column: Pick<Column, "kind">, text: string): Parsed {
   }
 }
 
-/** The column that tells records apart for people; null where no column does. */
-export function label_column(table: Pick<Table, "columns">): Column | null {
+type Naming = Pick<Table, "columns" | "kind" | "title_column">;
+/** What a record of another table is called; null: it is not known, or not yet. */
+export type NameOfKey = (table: number, key: number) => string | null;
+
+/** Whether what a record has in the column can be what it is called. */
+export const can_be_title = ({ kind }: Pick<Column, "kind">): boolean =>
+  kind !== "relation" && kind !== "picture" && kind !== "document" && kind !== "line" && kind !== "point" && kind !== "boolean";
+
+/** The column that tells records apart for people: the one that they chose, or the best one; null where no column does. */
+export function label_column(table: Pick<Table, "columns" | "title_column">): Column | null {
+  const chosen = table.columns.find(({ id }) => id === table.title_column);
+  return chosen && can_be_title(chosen) ? chosen : best_label_column(table);
+}
+
+function best_label_column(table: Pick<Table, "columns">): Column | null {
   const texts = table.columns.filter((column) => column.kind === "text");
   return (
     texts.find((column) => column.required && column.unique) ??
@@ -85,21 +98,20 @@ export function label_column(table: Pick<Table, "columns">): Column | null {
   );
 }
 
-type Naming = Pick<Table, "columns" | "kind">;
-
 /** The columns that may name a record, the best first: of terms their labels in the person's languages, the label of none, and the code. */
 export function naming_columns(table: Naming, languages?: readonly string[]): Column[] {
-  const last = label_column(table) ?? [];
-  if (table.kind !== "terms") return [last].flat();
+  const last = [label_column(table) ?? [], best_label_column(table) ?? []].flat();
+  if (table.kind !== "terms") return [...new Set(last)];
   const slugs = (languages ?? person_languages()).flatMap(kinds_of_language).map((tag) => `label-${tag}`);
   const labels = [...slugs, "label"].map((slug) => table.columns.find((column) => column.kind === "text" && column.slug === slug) ?? []);
   return [...new Set([...labels, last].flat())];
 }
 
-/** What the record is called; empty where it has no name. */
-export function label_of_record(table: Naming, record: Pick<TableRecord, "values">, languages?: readonly string[]): string {
+/** What the record is called; empty where it has no name. `name_of`: of what a term names; without it another column says the name. */
+export function label_of_record(table: Naming, record: Pick<TableRecord, "values">, languages?: readonly string[], name_of: NameOfKey = () => null): string {
   for (const column of naming_columns(table, languages)) {
-    const name = cell_text(record.values[column.slug]);
+    const value = record.values[column.slug];
+    const name = column.kind === "term" ? named_keys(value).map((key) => name_of(column.target ?? 0, key) ?? "").join("") : cell_text(value);
     if (name !== "") return name;
   }
   return "";

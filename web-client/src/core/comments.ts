@@ -45,7 +45,7 @@ export function find_threads(threads: readonly Thread[], { state, of, words }: T
     if (state !== "all" && thread.first.state !== state) return false;
     const comments = comments_in(thread);
     if (of !== null && !comments.some(({ user, text }) => user === of || mentions(text, of))) return false;
-    const said = comments.map(({ user, text }) => `${user} ${text}`.toLowerCase()).join(" ");
+    const said = comments.map(({ user, full_name, text }) => `${user} ${full_name ?? ""} ${text}`.toLowerCase()).join(" ");
     return wanted.every((word) => said.includes(word));
   });
 }
@@ -104,16 +104,6 @@ function link_in(found: string): string {
   } catch {
     return "";
   }
-}
-
-// Dark enough for white letters (contrast 4.5 and more), and told apart by people who are colour-blind as far as eight hues can be.
-const kPeople = ["#8a3b12", "#1f6258", "#2f5597", "#7a3b8f", "#8a2846", "#5b6300", "#0f6a83", "#5a4a3f"];
-
-/** The same one for a name, always. */
-export function color_of_person(name: string): string {
-  let hash = 0x811c9dc5; // FNV-1a
-  for (const letter of name) hash = Math.imul(hash ^ letter.codePointAt(0)!, 0x01000193);
-  return kPeople[((hash >>> 16) ^ (hash & 0xffff)) % kPeople.length]!;
 }
 
 /** Which comments a person has seen: all up to one, and of threads more. */

@@ -5,8 +5,15 @@ import { kProjectRoles, kRoles } from "./types";
 
 export const kLeastPasswordLength = 10; // characters, as the server counts them
 
+/** Somebody as answers of the server name them: what they sign in with, what they are called, and the colour of their account. */
+export interface Named {
+  user: string;
+  full_name?: string;
+  color?: string;
+}
+
 /** One or two letters that stand for a person. */
-export function initials({ user, full_name }: Pick<Me, "user" | "full_name">): string {
+export function initials({ user, full_name = "" }: Named): string {
   const words = full_name.trim() !== "" ? full_name.trim().split(/\s+/) : user.split(/[^\p{L}\p{N}]+/u).filter((word) => word !== "");
   const [first = "?", ...rest] = words;
   const last = rest[rest.length - 1] ?? "";
@@ -20,7 +27,7 @@ export function name_with(name: string, seen: string): string {
 }
 
 /** What a person is called where others read it. */
-export const called = ({ user, full_name }: Pick<Me, "user" | "full_name">): string => full_name.trim() || user;
+export const called = ({ user, full_name = "" }: Named): string => full_name.trim() || user;
 
 /** Those that somebody may give away, the least first: nobody makes another owner. */
 export const roles_to_give = (own: Role): Role[] => kRoles.slice(0, Math.min(kRoles.indexOf(own), kRoles.indexOf("administrator")) + 1);

@@ -94,6 +94,8 @@ export interface Table {
   labels: Labels;
   description: string;
   columns: Column[];
+  /** Id of the column that says what a record is called: no list of several things and no boolean. Absent: the first text that is required and unique, otherwise one that is either, otherwise any text. */
+  title_column?: number;
   /** How many. */
   records: number;
   /** Of the last change of columns or records. */
@@ -116,12 +118,19 @@ export interface TableRecord {
   point_count?: number;
 }
 
+/** Colour of a person. Of their account, the same everywhere and always; white letters are legible on it. */
+export type PersonColor = string;
+
 /** Whether there is still something to do. */
 export type CommentState = "open" | "resolved";
 
 /** Who settled a thread. */
 export interface CommentResolution {
   user: string;
+  /** Of `user`; absent: they gave none. */
+  full_name?: string;
+  /** Of `user`. */
+  color?: PersonColor;
   /** UTC, RFC 3339. */
   time: string;
 }
@@ -147,6 +156,10 @@ export interface Comment {
   /** Plain text; empty where it was deleted. */
   text: string;
   user: string;
+  /** Of `user`; absent: they gave none. */
+  full_name?: string;
+  /** Of `user`. */
+  color?: PersonColor;
   /** UTC, RFC 3339. */
   time: string;
   /** When its text was changed last. */
@@ -327,6 +340,10 @@ export interface Layer {
   order: number;
   /** Database layers: id of the project's table whose keys the texels hold. */
   table?: number;
+  /** What computed its values; absent: they were painted or sent. While it is locked, and not edited by hand, nobody changes its texels: 403. */
+  computed?: "expression" | "shape";
+  /** With `computed`: it was unlocked since, so that its values need not be those that were computed. */
+  edited_by_hand?: boolean;
   /** Computed layers: what its values are, over other layers, their records and the surface. */
   expression?: string;
   recompute?: Recompute;
@@ -389,7 +406,15 @@ export interface LayerOverride {
   visible?: boolean;
   opacity?: number;
   palette?: Palette;
+  /** Drawn ascending, as `order` of the layers. */
+  order?: number;
   highlight?: Highlight;
+}
+
+/** How somebody shows the layers of a model. Layers that it does not name are shown as everybody sees them at first. Only of layers that are there for the person. */
+export interface PersonalView {
+  /** Without `highlight`. */
+  layers: LayerOverride[];
 }
 
 /** Named view of a model. Where from, and what is shown how. Layers and looks that are gone are left out. */
@@ -781,6 +806,8 @@ export interface Welcome {
   layers: Layer[];
   /** By order. */
   looks: Look[];
+  /** What this person keeps of how they show the layers; absent: nothing, or this is a kiosk. */
+  personal_view?: PersonalView;
   limits: Limits;
   /** Of this user, so that the client resends what is not in them. */
   strokes: StrokeProgress[];
@@ -930,7 +957,7 @@ export interface PresenceUser {
   name: string;
   /** As it was when they came; absent: they gave none. */
   full_name?: string;
-  color: string;
+  color: PersonColor;
   pointer?: PresencePointer;
   /** Asks the others to look with this viewer. Default: false. */
   leading?: boolean;
@@ -1031,6 +1058,7 @@ export interface Login {
 export interface Me {
   user: string;
   full_name: string;
+  color: PersonColor;
   role: Role;
   has_password: boolean;
 }
@@ -1114,6 +1142,7 @@ export interface Person {
   id: number;
   user: string;
   full_name: string;
+  color: PersonColor;
   role: Role;
   state: PersonState;
   created: string;
@@ -1190,6 +1219,7 @@ export type ProjectRole = "viewer" | "annotator" | "curator";
 export interface Member {
   user: string;
   full_name: string;
+  color: PersonColor;
   role: ProjectRole;
 }
 
@@ -1280,6 +1310,7 @@ export interface GroupPatch {
 export interface ProjectPerson {
   user: string;
   full_name: string;
+  color: PersonColor;
 }
 
 /** Who sees the project. */
@@ -1303,6 +1334,10 @@ export interface Activity {
   begun: string;
   /** Absent: the server itself, by its command line */
   user?: string;
+  /** Of `user`; absent: they gave none. */
+  full_name?: string;
+  /** Of `user`. */
+  color?: PersonColor;
   kind: ActivityKind;
   /** Of an edit or of records and columns as in their history; of layers, looks, views, tours, models, tables and the project created, changed, deleted, of layers and models restored; of comments written, replied, resolved, reopened; of members added, changed, removed */
   op: string;
@@ -1358,6 +1393,10 @@ export interface BinEntry {
   table_name?: string;
   /** Who deleted it; absent: the server itself */
   user?: string;
+  /** Of `user`; absent: they gave none. */
+  full_name?: string;
+  /** Of `user`. */
+  color?: PersonColor;
   /** When */
   deleted: string;
   /** When it leaves the Bin: a layer or model is erased, what a record said stays in the history of its table */
@@ -1719,6 +1758,8 @@ export interface TablePatch {
   name?: string;
   labels?: Labels;
   description?: string;
+  /** Id or slug of the column that says what a record is called; empty: the best one by rule. */
+  title_column?: string;
 }
 
 /** Records of a table. */
@@ -2028,7 +2069,7 @@ export interface LayerCreate {
   slug?: string;
   /** Default: "numeric". */
   kind?: LayerKind;
-  /** Absent: u8; f32 for a computed layer. */
+  /** Absent: u8; f32 for what is computed, but for a condition. */
   type?: ValueType;
   /** Absent: the model's default. */
   resolution?: Resolution;
@@ -2042,22 +2083,22 @@ export interface LayerCreate {
   palette?: Palette;
   /** Default: 1. */
   opacity?: number;
-  /** Default: true. */
+  /** Absent: true, but for a computed layer, which must not cover what others look at: whoever made it sees it all the same. */
   visible?: boolean;
-  /** Nobody below curator changes its texels. Default: false. */
+  /** Nobody below curator changes its texels. Absent: false, but for a computed layer, which is always locked when it is made (false: 422). */
   locked?: boolean;
   /** What annotators change waits for a curator's review. Default: false. */
   review?: boolean;
   /** Absent: public. What it reads and is coloured by must be seen by all who see it. */
   visibility?: Visibility;
-  /** Absent: on top. */
+  /** Absent: on top, a computed layer below all others. */
   order?: number;
   /** Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own name. */
   table?: TableRef;
   /** Database layers without `table`: those of its own one. Absent: one text, Name. */
   columns?: ColumnCreate[];
   compute?: ShapeRecipe;
-  /** A computed layer: a number or a condition (1 or 0) over layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area). */
+  /** A computed layer: a number, or a condition (1 where it holds, not painted elsewhere) over layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area). */
   expression?: string;
   /** With `expression`; absent: manual. */
   recompute?: Recompute;
@@ -2336,7 +2377,7 @@ export interface LayerPatch {
   palette?: Palette;
   opacity?: number;
   visible?: boolean;
-  /** true: from the answer on nobody below curator changes its texels, until it is unlocked. */
+  /** true: from the answer on nobody below curator changes its texels, until it is unlocked. false, on a computed layer: from now on it is edited by hand, which stays known (`edited_by_hand`), and is not computed again by itself. */
   locked?: boolean;
   /** true: what annotators change from now on waits for a curator's review. What waits already keeps waiting when it becomes false. */
   review?: boolean;
@@ -2378,6 +2419,10 @@ export interface WaitingStroke {
   last: number;
   stroke: string;
   user: string;
+  /** Of `user`; absent: they gave none. */
+  full_name?: string;
+  /** Of `user`. */
+  color?: PersonColor;
   op: "stroke" | "fill" | "polygon" | "import" | "restore";
   /** UTC, RFC 3339. */
   begun: string;
@@ -2393,6 +2438,10 @@ export interface WaitingStroke {
 /** Whose strokes wait. */
 export interface ReviewPerson {
   user: string;
+  /** Of `user`; absent: they gave none. */
+  full_name?: string;
+  /** Of `user`. */
+  color?: PersonColor;
   strokes: number;
 }
 

@@ -79,6 +79,9 @@ export const may_download = (role: wire.Role, { source_download }: Pick<wire.Mod
 export const may_paint = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("annotator");
 /** Who may change what layers and models there are, and what they are called. */
 export const may_curate = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("curator");
+/** Its values are what was computed: nobody changes them until it is unlocked to be edited by hand. */
+export const is_as_computed = ({ computed, locked, edited_by_hand }: Pick<wire.Layer, "computed" | "locked" | "edited_by_hand">): boolean =>
+  computed !== undefined && locked && edited_by_hand !== true;
 /** Who may invite people, and say what they may do. */
 export const may_administer = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("administrator");
 

@@ -2,7 +2,7 @@
 // by id. What nobody says of a view, its name and text, is not of this file.
 
 import { same_palette } from "./palette";
-import type { Highlight, LayerOverride, Look, LookShown, View } from "./protocol.gen";
+import type { Highlight, LayerOverride, Look, LookShown, PersonalView, View } from "./protocol.gen";
 import { complete_palette, type Layer, type Palette } from "./types";
 
 /** Where from, and what is shown how: enough to show the same again, whatever the defaults are then. */
@@ -13,6 +13,7 @@ export interface LayerShown {
   visible?: boolean;
   opacity?: number;
   palette?: Palette;
+  order?: number;
   highlight?: Highlight;
 }
 
@@ -22,17 +23,29 @@ export interface LookSettings {
   opacity?: number;
 }
 
-/** What a view keeps of the layers: visibility and opacity of each, as the defaults may be others later; palettes and highlights where they are this
- *  person's own. */
+/** What a view keeps of the layers: visibility and opacity of each, as the defaults may be others later; palettes, places in the order and highlights
+ *  where they are this person's own. */
 export const layers_to_keep = (layers: readonly Layer[], shown: (layer: Layer) => LayerShown): LayerOverride[] =>
   layers.map((layer) => {
-    const { visible = layer.visible, opacity = layer.opacity, palette, highlight } = shown(layer);
+    const { visible = layer.visible, opacity = layer.opacity, palette, order, highlight } = shown(layer);
     const recolored = palette && !same_palette(palette, layer.palette);
-    return { layer: layer.id, visible, opacity, ...(recolored ? { palette } : {}), ...(highlight ? { highlight } : {}) };
+    const moved = order !== undefined && order !== layer.order;
+    return { layer: layer.id, visible, opacity, ...(recolored ? { palette } : {}), ...(moved ? { order } : {}), ...(highlight ? { highlight } : {}) };
   });
 
+/** Of how a layer is shown, what differs from what everybody sees at first; null: nothing. Highlights are of views. */
+export function own_part(layer: Layer, { visible, opacity, palette, order }: LayerShown): LayerShown | null {
+  const own: LayerShown = {
+    ...(visible !== undefined && visible !== layer.visible ? { visible } : {}),
+    ...(opacity !== undefined && Math.abs(opacity - layer.opacity) > 1e-6 ? { opacity } : {}),
+    ...(palette && !same_palette(palette, layer.palette) ? { palette } : {}),
+    ...(order !== undefined && order !== layer.order ? { order } : {}),
+  };
+  return Object.keys(own).length > 0 ? own : null;
+}
+
 /** How the layers that there are shown in a view, by id. */
-export function layers_of_view({ layers }: Pick<View, "layers">, known: readonly Layer[]): Map<number, LayerShown> {
+export function layers_of_view({ layers }: Pick<View, "layers"> | PersonalView, known: readonly Layer[]): Map<number, LayerShown> {
   const ids = new Set(known.map(({ id }) => id));
   return new Map(
     layers

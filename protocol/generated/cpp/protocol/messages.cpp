@@ -967,6 +967,7 @@ void read(const nlohmann::json& json, LayerOverride& value) {
   read_optional_member(json, "visible", value.visible);
   read_optional_member(json, "opacity", value.opacity);
   read_optional_member(json, "palette", value.palette);
+  read_optional_member(json, "order", value.order);
   read_optional_member(json, "highlight", value.highlight);
 }
 
@@ -976,7 +977,18 @@ nlohmann::json to_json(const LayerOverride& value) {
   write_optional_member(json, "visible", value.visible);
   write_optional_member(json, "opacity", value.opacity);
   write_optional_member(json, "palette", value.palette);
+  write_optional_member(json, "order", value.order);
   write_optional_member(json, "highlight", value.highlight);
+  return json;
+}
+
+void read(const nlohmann::json& json, PersonalView& value) {
+  read_member(json, "layers", value.layers);
+}
+
+nlohmann::json to_json(const PersonalView& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "layers", value.layers);
   return json;
 }
 
@@ -1417,6 +1429,7 @@ void read(const nlohmann::json& json, Welcome& value) {
   read_member(json, "model", value.model);
   read_member(json, "layers", value.layers);
   read_member(json, "looks", value.looks);
+  read_optional_member(json, "personal_view", value.personal_view);
   read_member(json, "limits", value.limits);
   read_member(json, "strokes", value.strokes);
 }
@@ -1430,6 +1443,7 @@ nlohmann::json to_json(const Welcome& value) {
   write_member(json, "model", value.model);
   write_member(json, "layers", value.layers);
   write_member(json, "looks", value.looks);
+  write_optional_member(json, "personal_view", value.personal_view);
   write_member(json, "limits", value.limits);
   write_member(json, "strokes", value.strokes);
   return json;
@@ -2211,6 +2225,7 @@ void read(const nlohmann::json& json, TablePatch& value) {
   read_optional_member(json, "name", value.name);
   read_optional_member(json, "labels", value.labels);
   read_optional_member(json, "description", value.description);
+  read_optional_member(json, "title_column", value.title_column);
 }
 
 nlohmann::json to_json(const TablePatch& value) {
@@ -2218,6 +2233,7 @@ nlohmann::json to_json(const TablePatch& value) {
   write_optional_member(json, "name", value.name);
   write_optional_member(json, "labels", value.labels);
   write_optional_member(json, "description", value.description);
+  write_optional_member(json, "title_column", value.title_column);
   return json;
 }
 
@@ -2410,8 +2426,8 @@ nlohmann::json to_json(const LayerCreate& value) {
   write_optional_member(json, "descriptions", value.descriptions);
   write_optional_member(json, "palette", value.palette);
   write_member(json, "opacity", value.opacity);
-  write_member(json, "visible", value.visible);
-  write_member(json, "locked", value.locked);
+  write_optional_member(json, "visible", value.visible);
+  write_optional_member(json, "locked", value.locked);
   write_member(json, "review", value.review);
   write_optional_member(json, "visibility", value.visibility);
   write_optional_member(json, "order", value.order);
@@ -2718,6 +2734,8 @@ void read(const nlohmann::json& json, WaitingStroke& value) {
   read_member(json, "last", value.last);
   read_member(json, "stroke", value.stroke);
   read_member(json, "user", value.user);
+  read_optional_member(json, "full_name", value.full_name);
+  read_optional_member(json, "color", value.color);
   read_member(json, "op", value.op);
   read_member(json, "begun", value.begun);
   read_member(json, "time", value.time);
@@ -2732,6 +2750,8 @@ nlohmann::json to_json(const WaitingStroke& value) {
   write_member(json, "last", value.last);
   write_member(json, "stroke", value.stroke);
   write_member(json, "user", value.user);
+  write_optional_member(json, "full_name", value.full_name);
+  write_optional_member(json, "color", value.color);
   write_member(json, "op", value.op);
   write_member(json, "begun", value.begun);
   write_member(json, "time", value.time);
@@ -2748,12 +2768,16 @@ Result<void> check(const WaitingStroke& value, const std::string& field) {
 
 void read(const nlohmann::json& json, ReviewPerson& value) {
   read_member(json, "user", value.user);
+  read_optional_member(json, "full_name", value.full_name);
+  read_optional_member(json, "color", value.color);
   read_member(json, "strokes", value.strokes);
 }
 
 nlohmann::json to_json(const ReviewPerson& value) {
   nlohmann::json json = nlohmann::json::object();
   write_member(json, "user", value.user);
+  write_optional_member(json, "full_name", value.full_name);
+  write_optional_member(json, "color", value.color);
   write_member(json, "strokes", value.strokes);
   return json;
 }

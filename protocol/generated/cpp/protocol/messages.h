@@ -45,6 +45,7 @@ enum class Schema {
   Column,
   Table,
   TableRecord,
+  PersonColor,
   CommentState,
   CommentResolution,
   Comment,
@@ -77,6 +78,7 @@ enum class Schema {
   LightMode,
   Light,
   LayerOverride,
+  PersonalView,
   View,
   TourLanguage,
   TourTransition,
@@ -310,7 +312,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 284;
+constexpr int kSchemaCount = 286;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -523,6 +525,7 @@ struct LayerOverride {
   std::optional<bool> visible;
   std::optional<double> opacity;
   std::optional<nlohmann::json> palette;
+  std::optional<int> order;  // Drawn ascending, as `order` of the layers.
   std::optional<Highlight> highlight;
   bool operator==(const LayerOverride&) const = default;
 };
@@ -530,6 +533,16 @@ void read(const nlohmann::json& json, LayerOverride& value);
 nlohmann::json to_json(const LayerOverride& value);
 template <>
 inline constexpr Schema kSchemaOf<LayerOverride> = Schema::LayerOverride;
+
+// How somebody shows the layers of a model. Layers that it does not name are shown as everybody sees them at first. Only of layers that are there for the person.
+struct PersonalView {
+  std::vector<LayerOverride> layers;  // Without `highlight`.
+  bool operator==(const PersonalView&) const = default;
+};
+void read(const nlohmann::json& json, PersonalView& value);
+nlohmann::json to_json(const PersonalView& value);
+template <>
+inline constexpr Schema kSchemaOf<PersonalView> = Schema::PersonalView;
 
 // How one comes to a stop.
 enum class TourTransition { cut, move };
@@ -915,6 +928,7 @@ struct Welcome {
   nlohmann::json model;
   std::vector<nlohmann::json> layers;
   std::vector<nlohmann::json> looks;  // By order.
+  std::optional<PersonalView> personal_view;  // What this person keeps of how they show the layers; absent: nothing, or this is a kiosk.
   Limits limits;
   std::vector<StrokeProgress> strokes;  // Of this user, so that the client resends what is not in them.
   bool operator==(const Welcome&) const = default;
@@ -1614,6 +1628,7 @@ struct TablePatch {
   std::optional<std::string> name;
   std::optional<Labels> labels;
   std::optional<std::string> description;
+  std::optional<std::string> title_column;  // Id or slug of the column that says what a record is called; empty: the best one by rule.
   bool operator==(const TablePatch&) const = default;
 };
 void read(const nlohmann::json& json, TablePatch& value);
@@ -1762,7 +1777,7 @@ struct LayerCreate {
   std::string name;
   std::optional<std::string> slug;  // Made from the name when absent; never all digits.
   strata::LayerKind kind = strata::LayerKind::numeric;
-  std::optional<strata::ValueType> type;  // Absent: u8; f32 for a computed layer.
+  std::optional<strata::ValueType> type;  // Absent: u8; f32 for what is computed, but for a condition.
   std::optional<int> resolution;  // Absent: the model's default.
   std::string unit;
   std::string description;
@@ -1770,15 +1785,15 @@ struct LayerCreate {
   std::optional<Descriptions> descriptions;
   std::optional<nlohmann::json> palette;
   double opacity = 1;
-  bool visible = true;
-  bool locked = false;  // Nobody below curator changes its texels.
+  std::optional<bool> visible;  // Absent: true, but for a computed layer, which must not cover what others look at: whoever made it sees it all the same.
+  std::optional<bool> locked;  // Nobody below curator changes its texels. Absent: false, but for a computed layer, which is always locked when it is made (false: 422).
   bool review = false;  // What annotators change waits for a curator's review.
   std::optional<strata::Visibility> visibility;  // Absent: public. What it reads and is coloured by must be seen by all who see it.
-  std::optional<int> order;  // Absent: on top.
+  std::optional<int> order;  // Absent: on top, a computed layer below all others.
   std::optional<TableRef> table;  // Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own name.
   std::optional<std::vector<ColumnCreate>> columns;  // Database layers without `table`: those of its own one. Absent: one text, Name.
   std::optional<ShapeRecipe> compute;
-  std::optional<std::string> expression;  // A computed layer: a number or a condition (1 or 0) over layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area).
+  std::optional<std::string> expression;  // A computed layer: a number, or a condition (1 where it holds, not painted elsewhere) over layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area).
   std::optional<Recompute> recompute;  // With `expression`; absent: manual.
   bool operator==(const LayerCreate&) const = default;
 };
@@ -1975,7 +1990,7 @@ struct LayerPatch {
   std::optional<nlohmann::json> palette;
   std::optional<double> opacity;
   std::optional<bool> visible;
-  std::optional<bool> locked;  // true: from the answer on nobody below curator changes its texels, until it is unlocked.
+  std::optional<bool> locked;  // true: from the answer on nobody below curator changes its texels, until it is unlocked. false, on a computed layer: from now on it is edited by hand, which stays known (`edited_by_hand`), and is not computed again by itself.
   std::optional<bool> review;  // true: what annotators change from now on waits for a curator's review. What waits already keeps waiting when it becomes false.
   std::optional<strata::Visibility> visibility;  // Counts at once, for open pages too.
   std::optional<int> order;
@@ -2031,6 +2046,8 @@ struct WaitingStroke {
   std::int64_t last = 0;  // Of its last batch.
   Uuid stroke;
   std::string user;
+  std::optional<std::string> full_name;  // Of `user`; absent: they gave none.
+  std::optional<std::string> color;  // Of `user`.
   WaitingStrokeOp op{};
   std::string begun;  // UTC, RFC 3339.
   std::string time;  // Of its last batch.
@@ -2048,6 +2065,8 @@ inline constexpr Schema kSchemaOf<WaitingStroke> = Schema::WaitingStroke;
 // Whose strokes wait.
 struct ReviewPerson {
   std::string user;
+  std::optional<std::string> full_name;  // Of `user`; absent: they gave none.
+  std::optional<std::string> color;  // Of `user`.
   std::int64_t strokes = 0;
   bool operator==(const ReviewPerson&) const = default;
 };

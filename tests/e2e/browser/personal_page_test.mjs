@@ -1,0 +1,142 @@
+// What one person hides and puts in another order is there again after a reload and in another browser, and others see nothing of it; a computed layer arrives hidden for others,
+// locked, and marked once it is edited by hand; and a person has one colour and one name everywhere.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { Browser, rgb } from "../support/browser.mjs";
+import { StrataServer, wait_for } from "../support/strata-server.mjs";
+
+const [cleo, elsewhere, ada] = [await Browser.open(), await Browser.open(), await Browser.open()];
+const server = new StrataServer({ demo: true });
+let step = "start";
+const say = (text) => console.log((step = text));
+
+async function shoot({ page }, name) {
+  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `personal_${name}.png`) });
+}
+const panel = ({ page }) => page.locator("strata-layer-panel");
+const button = (who, name) => panel(who).getByRole("button", { name, exact: true });
+const names = async (who) => (await panel(who).locator("li.layer .name").allTextContents()).map((text) => text.trim());
+const background = (locator) => locator.evaluate((each) => getComputedStyle(each).backgroundColor);
+async function choose_for(who, name, command) {
+  await button(who, `Options for ${name}`).click();
+  await who.page.getByRole("menuitem", { name: command, exact: true }).click();
+}
+async function look(who, model) {
+  await who.page.goto(`${server.url}/models/${model.id}`);
+  await who.drawn();
+}
+
+try {
+  await server.start();
+  const model = (await server.json("GET", "/models")).models[0];
+  const layers = `/models/${model.id}/layers`;
+  const layer = async (slug) => (await server.json("GET", layers)).layers.find((each) => each.slug === slug);
+  const cleos = await server.add_person("cleo", "curator");
+  const adas = await server.add_person("ada", "annotator");
+  await server.json("PATCH", "/users/cleo", { full_name: "Cleo Roe" });
+  for (const who of [cleo, elsewhere]) await who.sign_in(server, cleos);
+  await ada.sign_in(server, adas);
+  for (const who of [cleo, ada]) await look(who, model);
+  const before = (await server.json("GET", layers)).layers.map(({ id, visible, opacity, order }) => ({ id, visible, opacity, order }));
+
+  say("an annotator hides a layer and moves another");
+  const order = await names(ada);
+  await button(ada, "Hide cracks").click();
+  await choose_for(ada, order[0], "Move down");
+  const moved = [order[1], order[0], ...order.slice(2)];
+  assert.deepEqual(await names(ada), moved);
+  await ada.page.getByText("Back to the default").waitFor();
+  await wait_for(async () => {
+    await ada.page.reload();
+    await ada.drawn();
+    return (await button(ada, "Show cracks").count()) === 1 && JSON.stringify(await names(ada)) === JSON.stringify(moved);
+  }, "both to be there after a reload");
+  await shoot(ada, "kept");
+  assert.deepEqual((await server.json("GET", layers)).layers.map(({ id, visible, opacity, order: at }) => ({ id, visible, opacity, order: at })), before, "for others nothing has changed");
+  assert.deepEqual(await names(cleo), order);
+
+  say("a curator computes a condition: painted where it holds, hidden for others, locked for everybody");
+  await cleo.page.getByRole("button", { name: "New layer" }).click();
+  await cleo.page.getByRole("radio", { name: /From an expression/ }).click();
+  await cleo.page.getByLabel("Expression: a number").fill("moisture > 30 and not valid(cracks)");
+  await cleo.page.getByLabel("Name", { exact: true }).fill("Risk");
+  await cleo.page.getByRole("button", { name: "Compute layer" }).click();
+  await button(cleo, "Hide Risk").waitFor();
+  const risk = await layer("risk");
+  assert.deepEqual([risk.computed, risk.edited_by_hand, risk.locked, risk.visible, risk.type], ["expression", false, true, false, "u8"]);
+  assert.equal(Math.min(...(await server.json("GET", layers)).layers.map((each) => each.order)), risk.order, "it lies below all others");
+  await button(ada, "Show Risk").waitFor();
+  const { min, max } = await server.json("GET", `${layers}/risk/statistics`);
+  assert.deepEqual([min, max], [1, 1]);
+  await button(cleo, "Paint on Risk").click();
+  await panel(cleo).getByText("Locked: its values were computed.").waitFor();
+  const edits = async () => (await server.json("GET", `${layers}/risk/edits`)).total;
+  const computed = await edits();
+  await cleo.page.keyboard.press("b");
+  await cleo.page.locator("strata-brush-panel").getByText("The values of Risk were computed.").waitFor();
+  await cleo.drag([[0.46, 0.5], [0.56, 0.52]]);
+  await shoot(cleo, "computed");
+  await look(elsewhere, model);
+  await button(elsewhere, "Hide Risk").waitFor();
+
+  say("unlocked, it is edited by hand, and says so to everybody");
+  await panel(cleo).getByRole("button", { name: "Unlock to edit by hand" }).click();
+  await panel(cleo).getByText(/^Edited by hand: .* It is not computed again by itself\.$/).waitFor();
+  assert.equal(await edits(), computed, "nothing was painted while it was locked");
+  await cleo.page.keyboard.press("Escape");
+  await cleo.page.keyboard.press("b");
+  await cleo.drag([[0.46, 0.5], [0.56, 0.52]]);
+  await cleo.saved();
+  await wait_for(async () => (await edits()) > computed, "the stroke");
+  await button(ada, "Paint on Risk").click();
+  await panel(ada).getByText(/^Edited by hand/).waitFor();
+  await shoot(cleo, "by_hand");
+  await panel(cleo).getByRole("button", { name: "Compute again" }).click();
+  await cleo.page.getByText("This overwrites what was edited by hand.").waitFor();
+  await cleo.page.getByRole("dialog").getByRole("button", { name: "Compute again" }).click();
+  await wait_for(async () => (await layer("risk")).edited_by_hand === false, "the layer to be as it was computed");
+  await panel(cleo).getByText("Locked: its values were computed.").waitFor();
+
+  say("what everybody sees at first is changed only by asking for it");
+  await button(cleo, "Save as default for everyone").click();
+  await wait_for(async () => (await layer("risk")).visible, "the default");
+  await button(ada, "Back to the default").click();
+  await button(ada, "Hide cracks").waitFor();
+  assert.deepEqual(await names(ada), await names(cleo));
+
+  say("one colour and one name");
+  const { color } = await server.json("GET", "/users").then(({ users }) => users.find(({ user }) => user === "cleo"));
+  const wished = `rgb(${rgb(color).join(", ")})`;
+  await cleo.page.keyboard.press("c");
+  await cleo.page.mouse.click(...(await cleo.stage_box().then((box) => [box.x + box.width / 2, box.y + box.height * 0.6])));
+  await cleo.page.locator("strata-comment-card textarea").fill("Is this a fresh break?");
+  await cleo.page.locator("strata-comment-card").getByRole("button", { name: "Comment", exact: true }).click();
+  await cleo.page.locator("strata-comment-card article").getByText("Cleo Roe").waitFor();
+  await cleo.page.locator("strata-activity-panel").getByRole("button", { name: "Activity" }).click();
+  await cleo.page.locator("strata-activity-panel").getByText("Cleo Roe").first().waitFor();
+  const marks = {
+    account: cleo.page.locator("strata-account-menu .face"),
+    presence: cleo.page.locator("strata-people-menu .face").first(),
+    "presence of others": ada.page.locator('strata-people-menu .face[title^="Cleo Roe"]').first(),
+    comment: cleo.page.locator("strata-comment-card .person-mark").first(),
+    pin: cleo.page.locator("strata-comment-pins button").first(),
+    activity: cleo.page.locator("strata-activity-panel .person-mark").first(),
+  };
+  for (const [name, mark] of Object.entries(marks)) {
+    await mark.waitFor();
+    assert.equal(await background(mark), wished, name);
+    if (name !== "pin") assert.equal((await mark.textContent()).trim(), "CR", name);
+  }
+  await shoot(cleo, "one_colour");
+
+  for (const who of [cleo, elsewhere, ada]) who.assert_no_complaints();
+  assert.equal(await server.signal("SIGTERM"), 0);
+  server.assert_clean_log();
+} catch (error) {
+  console.error(`failed at: ${step}`);
+  for (const [name, who] of Object.entries({ cleo, elsewhere, ada })) await shoot(who, `failed_${name}`).catch(() => {});
+  throw error;
+} finally {
+  for (const who of [cleo, elsewhere, ada]) await who.close();
+  await server.remove();
+}

@@ -1,0 +1,8 @@
+// Why a layer may not be changed, in words.
+
+import { label_of } from "../core/cells";
+import { is_as_computed, type Layer } from "../core/types";
+import { texts } from "./texts";
+
+export const why_locked = (layer: Layer): string =>
+  is_as_computed(layer) ? texts.layers.computed_detail(label_of(layer)) : texts.layers.locked_detail(label_of(layer));
