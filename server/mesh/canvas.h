@@ -11,7 +11,8 @@ namespace strata::mesh {
 // shape quickly: charts lie in each other's bays and holes.
 class Canvas {
  public:
-  Canvas(int side, int gap);
+  Canvas(int side, int gap) : Canvas(side, side, gap) {}
+  Canvas(int width, int height, int gap);
 
   struct Spot {
     int x = -1, y = 0;
@@ -23,17 +24,24 @@ class Canvas {
   // Takes the texels of the mask, and all within `gap` texels of them.
   void put(const ChartMask& mask, Spot spot);
 
+  // How many words of bits were read and written so far: the work, whatever the machine.
+  std::uint64_t words_touched() const { return words_touched_; }
+
  private:
   using Word = std::uint64_t;
   const Word* words(int level, int y) const { return &levels_[level][static_cast<std::size_t>(y) * stride_]; }
   Word* words(int level, int y) { return &levels_[level][static_cast<std::size_t>(y) * stride_]; }
   void block(const ChartMask& mask, int row, int y);
   void rebuild(int y, int first_word, int last_word);
+  int longest_free(int y);
 
-  const int side_, gap_, word_count_, stride_;
+  const int width_, height_, gap_, word_count_, stride_;
   // Bit x of a row of level j: whether any of texels x … x + 2^j - 1 is taken. Rows have words more than they need, so that
   // reading beyond the end is reading free texels.
   std::vector<std::vector<Word>> levels_;
+  // Of each row: the longest run of free texels between the margins. Measured when it is asked for; less than 0: not yet.
+  std::vector<std::int32_t> longest_free_;
+  std::uint64_t words_touched_ = 0;
   std::vector<Word> blocked_;             // of the row that is searched: places where the chart does not fit
   std::vector<std::uint16_t> open_;       // words of it that are not yet all ones
   std::vector<std::uint16_t> row_order_;  // of the mask: those that block most first
