@@ -43,9 +43,11 @@ class TexelPieces {
     }
     if (sums_.size() < static_cast<std::size_t>(columns) + 2) sums_.resize(columns + 2, 0.0);
     for (int y = y0; y <= y1; ++y) {
+      // A long slanted triangle is in few of its columns in each row.
+      row_first_ = columns, row_last_ = -1;
       for (int k = 0; k < 3; ++k) add_edge(corners_[k], corners_[(k + 1) % 3], y, x0, columns);
       double sum = 0;
-      for (int i = 0; i < columns; ++i) {
+      for (int i = row_first_; i <= std::min(row_last_, columns - 1); ++i) {
         sum += sums_[i];
         sums_[i] = 0;
         const double piece = sum * sign_;
@@ -71,6 +73,7 @@ class TexelPieces {
     const double height = direction * (y_to - y_from);
     const int first = std::min(static_cast<int>(x_from), columns - 1),
               last = std::min(static_cast<int>(x_to), columns - 1);
+    row_first_ = std::min(row_first_, first), row_last_ = std::max(row_last_, last + 1);
     if (first == last) {
       const double middle = (x_from + x_to) / 2 - first;
       sums_[first] += height * (1 - middle);
@@ -90,6 +93,7 @@ class TexelPieces {
   glm::dvec2 low_{0}, high_{0};
   double area_ = 0, sign_ = 1;
   bool is_line_ = true;
+  int row_first_ = 0, row_last_ = -1;  // columns in which the row's sums change
   std::vector<double> sums_;
 };
 
