@@ -7,6 +7,7 @@
 
 #include "mesh/atlas_report.h"
 #include "mesh/chart_conflicts.h"
+#include "mesh/chart_cuts.h"
 #include "mesh/charts.h"
 #include "mesh/flatten.h"
 #include "mesh/packing.h"
@@ -21,7 +22,12 @@ constexpr double kExpectedCoverage = 0.66;
 // A narrow cone stretches least. Rugged surfaces fall into many small charts by it, whose margins fill the atlas: where
 // less than kGoodCoverage is used, a wider cone is tried and the denser of the two atlases taken.
 constexpr std::array<float, 2> kCones{55, 65};
-constexpr double kGoodCoverage = 0.6;
+constexpr double kGoodCoverage = 0.61, kWantedCoverage = 0.72;
+// Texels between charts: the gutter rings of neighbours (2 texels each) stay apart at the lowest resolution by the wide one.
+constexpr int kWideGap = 4, kNarrowGap = 2;
+// Hollow charts are cut from so many triangles on: smaller meshes have texels enough, and rather as few seams as possible.
+constexpr std::size_t kCutsFrom = 5000;
+constexpr double kLeastHollow = 0.003;  // box of a chart worth cutting, of the atlas
 // Faces that keep less than 1 / kMostStretch of their area get charts of their own, if they are worth as many texels; the
 // footprint of faces in those charts is at least kStraightFootprint. None has kNoFootprint: each is a chart then.
 constexpr float kMostStretch = 2.6f, kStraightFootprint = 0.45f, kNoFootprint = 2;
@@ -44,9 +50,11 @@ struct Unwrap {
   std::vector<Chart> charts;
   std::vector<glm::vec2> plane;  // of each corner, in its chart's plane
   std::vector<Outline> outlines;
+  float longest = 0;   // side of a chart, in units of the plane: longer ones are squeezed; 0: none are
+  int gap = kWideGap;  // texels between charts
+  PackingStart start;
+  double expected_coverage = 0;  // of the atlas, by area
   Packing packing;
-  int gap = 4;          // texels between charts
-  double coverage = 0;  // of the atlas, by area
 };
 
 std::vector<glm::vec2> lay_out(const Unwrap& unwrap, int resolution) {
@@ -80,17 +88,73 @@ tl::unexpected<Problem> no_room(std::size_t charts, int resolution) {
               "lowest_resolution");
 }
 
-// Widest gap first: at lowest_resolution the gutter rings of neighbours (2 texels each) then stay apart.
-Result<void> pack_with_gap(int resolution, const Progress& progress, Unwrap& unwrap) {
-  for (const int gap : {4, 2}) {
-    auto packing = pack_densely(unwrap.outlines, resolution, gap, progress, kThreads);
-    if (progress.cancelled()) return cancelled_problem();
-    if (!packing) continue;
-    unwrap.packing = std::move(*packing);
-    unwrap.gap = gap;
-    return {};
+// The surface of a face over its area in the plane: how much more a texel there holds than elsewhere.
+float stretch_of(const ChartSurface& surface, std::span<const glm::vec2> plane, std::uint32_t face) {
+  const glm::vec2* p = &plane[3 * std::size_t{face}];
+  const glm::vec2 ab = p[1] - p[0], ac = p[2] - p[0];
+  const float area = std::abs(ab.x * ac.y - ab.y * ac.x) / 2;
+  return area > 0 ? surface.original_frames.areas[face] / area : 0;
+}
+
+// By which a chart may be made shorter so that no texel of it holds too much.
+float least_scale(const ChartSurface& surface, const Unwrap& unwrap, const Chart& chart) {
+  float most = 1;
+  for (const auto face : chart.faces)
+    most = std::max(most, std::min(kMostStretch, stretch_of(surface, unwrap.plane, face)));
+  return most / kMostStretch;
+}
+
+void outline(const ChartSurface& surface, Unwrap& unwrap) {
+  unwrap.outlines = make_outlines(surface, unwrap.charts, unwrap.plane);
+  if (unwrap.longest <= 0) return;
+  for (std::size_t c = 0; c < unwrap.charts.size(); ++c) {
+    const glm::vec2 size = unwrap.outlines[c].size;
+    if (std::max(size.x, size.y) <= unwrap.longest) continue;
+    const float least = least_scale(surface, unwrap, unwrap.charts[c]);
+    const float x = std::max(least, std::min(1.f, unwrap.longest / size.x));
+    unwrap.outlines[c].squeeze({x, std::max(least / x, std::min(1.f, unwrap.longest / size.y))});
   }
-  return no_room(unwrap.outlines.size(), resolution);
+}
+
+double area_in_planes(const Unwrap& unwrap) {
+  double sum = 0;
+  for (std::size_t c = 0; c < unwrap.charts.size(); ++c) {
+    const glm::vec2 scale = unwrap.outlines[c].scale;
+    double area = 0;
+    for (const auto face : unwrap.charts[c].faces) {
+      const glm::vec2* p = &unwrap.plane[3 * std::size_t{face}];
+      const glm::vec2 ab = p[1] - p[0], ac = p[2] - p[0];
+      area += std::abs(ab.x * ac.y - ab.y * ac.x) / 2;
+    }
+    sum += area * scale.x * scale.y;
+  }
+  return sum;
+}
+
+Result<void> begin_pack(int resolution, const Progress& progress, Unwrap& unwrap) {
+  auto start = begin_packing(unwrap.outlines, resolution, unwrap.gap, progress, kThreads);
+  if (progress.cancelled()) return cancelled_problem();
+  if (!start) return no_room(unwrap.outlines.size(), resolution);
+  unwrap.start = std::move(*start);
+  const double texels = unwrap.start.expected_density / resolution;
+  unwrap.expected_coverage = area_in_planes(unwrap) * texels * texels;
+  return {};
+}
+
+// The narrow gap where the charts do not fit with the wide one.
+Result<void> begin_pack_somehow(int resolution, const Progress& progress, Unwrap& unwrap) {
+  auto begun = begin_pack(resolution, progress, unwrap);
+  if (begun || progress.cancelled() || unwrap.gap == kNarrowGap) return begun;
+  unwrap.gap = kNarrowGap;
+  return begin_pack(resolution, progress, unwrap);
+}
+
+Result<void> finish_pack(int resolution, const Progress& progress, Unwrap& unwrap) {
+  auto packing = finish_packing(unwrap.outlines, resolution, unwrap.gap, std::move(unwrap.start), progress, kThreads);
+  if (progress.cancelled()) return cancelled_problem();
+  if (!packing) return no_room(unwrap.outlines.size(), resolution);
+  unwrap.packing = std::move(*packing);
+  return {};
 }
 
 ChartOptions chart_options(const ChartSurface& surface, int lowest_resolution) {
@@ -107,23 +171,14 @@ Result<void> split(const ChartSurface& surface, std::span<const std::uint32_t> f
   if (faces.empty()) return {};
   ChartOptions options = chart_options(surface, lowest_resolution);
   options.smallest_footprint = smallest_footprint;
+  options.keeps_flat_pieces = smallest_footprint < kNoFootprint;
   const auto first = split_off(surface, faces, options, progress, unwrap.charts);
   if (!first) return cancelled_problem();
   flatten(surface, unwrap.charts, *first, progress, unwrap.plane, kThreads);
   return {};
 }
 
-double area_in_planes(std::span<const glm::vec2> plane) {
-  double area = 0;
-  for (std::size_t i = 0; i < plane.size(); i += 3) {
-    const glm::vec2 ab = plane[i + 1] - plane[i], ac = plane[i + 2] - plane[i];
-    area += std::abs(ab.x * ac.y - ab.y * ac.x) / 2;
-  }
-  return area;
-}
-
 Result<Unwrap> unwrap_once(const ChartSurface& surface, int attempt, int lowest_resolution, Progress& progress) {
-  const double side = lowest_resolution;
   ChartOptions options = chart_options(surface, lowest_resolution);
   options.cone_degrees = kCones[attempt];
   options.progress_from = 0.1 + 0.35 * attempt;
@@ -141,11 +196,59 @@ Result<Unwrap> unwrap_once(const ChartSurface& surface, int attempt, int lowest_
     return tl::unexpected(done.error());
   if (progress.cancelled()) return cancelled_problem();
   progress.report(options.progress_to + 0.05, "Packing the charts");
-  unwrap.outlines = make_outlines(surface, unwrap.charts, unwrap.plane);
-  if (auto packed = pack_with_gap(lowest_resolution, progress, unwrap); !packed) return tl::unexpected(packed.error());
-  const double density = unwrap.packing.texels_per_unit;
-  unwrap.coverage = area_in_planes(unwrap.plane) * density * density / (side * side);
+  outline(surface, unwrap);
+  if (auto begun = begin_pack_somehow(lowest_resolution, progress, unwrap); !begun)
+    return tl::unexpected(begun.error());
   return unwrap;
+}
+
+// Takes `changed` where it is denser.
+Result<void> take_denser(int lowest_resolution, const Progress& progress, Unwrap changed, Unwrap& unwrap) {
+  auto begun = begin_pack(lowest_resolution, progress, changed);
+  if (progress.cancelled()) return begun;
+  if (begun && changed.expected_coverage > unwrap.expected_coverage) unwrap = std::move(changed);
+  return {};
+}
+
+// Squeezes the charts that are longer than the atlas would be if as much of it were used as is wanted.
+void squeeze_long(const ChartSurface& surface, int lowest_resolution, Unwrap& unwrap) {
+  // What is squeezed is smaller, so that a little more must be.
+  for (int round = 0; round < 3; ++round) {
+    unwrap.longest = static_cast<float>((1 - 2.0 * kWideGap / lowest_resolution) *
+                                        std::sqrt(area_in_planes(unwrap) / kWantedCoverage));
+    outline(surface, unwrap);
+  }
+}
+
+// Where little of the atlas is used: charts whose length keeps all others small are squeezed, hollow ones cut, and the gaps
+// made narrow, until enough is used.
+Result<void> use_more(const ChartSurface& surface, int lowest_resolution, const Progress& progress, Unwrap& unwrap) {
+  const auto is_poor = [&] { return unwrap.expected_coverage < kGoodCoverage; };
+  const double area = area_in_planes(unwrap);
+  const double longest = std::sqrt(area / kWantedCoverage);
+  const bool is_long = std::any_of(unwrap.outlines.begin(), unwrap.outlines.end(), [&](const auto& some) {
+    return double{std::max(some.size.x, some.size.y)} > longest;
+  });
+  if (is_long) {
+    Unwrap shorter = unwrap;
+    squeeze_long(surface, lowest_resolution, shorter);
+    if (auto done = take_denser(lowest_resolution, progress, std::move(shorter), unwrap); !done) return done;
+  }
+  if (is_poor() && surface.mesh.triangle_count() >= kCutsFrom) {
+    Unwrap cut = unwrap;
+    if (cut_hollow_charts(surface, cut.plane, static_cast<float>(kLeastHollow * area / kWantedCoverage), cut.charts)) {
+      cut.longest = 0;
+      outline(surface, cut);
+      squeeze_long(surface, lowest_resolution, cut);
+      if (auto done = take_denser(lowest_resolution, progress, std::move(cut), unwrap); !done) return done;
+    }
+  }
+  if (is_poor() && unwrap.gap > kNarrowGap) {
+    Unwrap nearer = unwrap;
+    nearer.gap = kNarrowGap;
+    if (auto done = take_denser(lowest_resolution, progress, std::move(nearer), unwrap); !done) return done;
+  }
+  return {};
 }
 
 // Packs again what has a few small charts more: it usually fits as it is, or nearly.
@@ -156,7 +259,8 @@ Result<void> pack_again(int lowest_resolution, const Progress& progress, Unwrap&
     if (packing) return unwrap.packing = std::move(*packing), Result<void>{};
     if (progress.cancelled()) return cancelled_problem();
   }
-  return pack_with_gap(lowest_resolution, progress, unwrap);
+  if (auto begun = begin_pack_somehow(lowest_resolution, progress, unwrap); !begun) return begun;
+  return finish_pack(lowest_resolution, progress, unwrap);
 }
 
 }  // namespace
@@ -174,10 +278,14 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
     auto unwrap = unwrap_once(surface, attempt, lowest_resolution, progress);
     if (!unwrap && (!best || progress.cancelled())) return tl::unexpected(unwrap.error());
     if (!unwrap) break;
-    const bool is_dense = unwrap->coverage >= kGoodCoverage;
-    if (!best || unwrap->coverage > best->coverage) best = std::move(*unwrap);
+    const bool is_dense = unwrap->expected_coverage >= kGoodCoverage;
+    if (!best || unwrap->expected_coverage > best->expected_coverage) best = std::move(*unwrap);
     if (is_dense) break;
   }
+  if (best->expected_coverage < kGoodCoverage)
+    if (auto done = use_more(surface, lowest_resolution, progress, *best); !done) return tl::unexpected(done.error());
+
+  if (auto packed = finish_pack(lowest_resolution, progress, *best); !packed) return tl::unexpected(packed.error());
 
   Atlas atlas;
   const auto resolutions = verified_resolutions(lowest_resolution);
@@ -192,7 +300,7 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
     const float footprint = round == 0 ? kStraightFootprint : kNoFootprint;
     if (auto done = split(surface, conflicts, footprint, lowest_resolution, progress, *best); !done)
       return tl::unexpected(done.error());
-    best->outlines = make_outlines(surface, best->charts, best->plane);
+    outline(surface, *best);
     if (auto packed = pack_again(lowest_resolution, progress, *best); !packed) return tl::unexpected(packed.error());
   }
   progress.report(0.95, "Measuring the unfolded surface");
