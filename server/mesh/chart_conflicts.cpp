@@ -37,12 +37,11 @@ void find_conflicts(const Chart& chart, std::span<const glm::vec2> uvs, int reso
                     std::vector<std::uint8_t>& is_shared) {
   using Corners = std::array<SnappedPoint, 3>;
   const auto snapped = [&](std::uint32_t face) {
-    Corners p;
-    for (std::size_t k = 0; k < 3; ++k) {
+    const auto corner = [&](std::size_t k) {
       const glm::vec2 uv = uvs[3 * std::size_t{face} + k];
-      p[k] = snap_to_subtexels(double{uv.x} * resolution, double{uv.y} * resolution);
-    }
-    return p;
+      return snap_to_subtexels(double{uv.x} * resolution, double{uv.y} * resolution);
+    };
+    return Corners{corner(0), corner(1), corner(2)};
   };
   SnappedPoint low(std::numeric_limits<int>::max()), high(std::numeric_limits<int>::min());
   for (const auto face : chart.faces)
