@@ -98,16 +98,17 @@ struct ViewSettings {
   }
 };
 
+inline const Layer& layer_in(const Layer& layer) { return layer; }
+template <class State>
+const Layer& layer_in(const State& state) {
+  return state.layer;
+}
+
 // Layers, or what has one as `layer`, from bottom to top as somebody sees them; `of`: what they set of a layer, by id.
 template <class Layers, class Of>
 void sort_as_shown(Layers& layers, const Of& of) {
   const auto place = [&](const auto& each) {
-    const Layer& layer = [&]() -> const Layer& {
-      if constexpr (requires { each.layer.order; })
-        return each.layer;
-      else
-        return each;
-    }();
+    const Layer& layer = layer_in(each);
     const LayerView* own = of(layer.id);
     return own && own->order ? *own->order : layer.order;
   };

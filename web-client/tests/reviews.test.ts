@@ -26,8 +26,8 @@ const queue_of = (strokes: WaitingStroke[]): ReviewQueue => ({
 
 function make(role: "annotator" | "curator") {
   const layers = [
-    { id: 1, name: "Cracks", slug: "cracks", review: true },
-    { id: 2, name: "Plaster", slug: "plaster", review: false },
+    { id: 1, name: "Cracks", labels: {}, slug: "cracks", review: true },
+    { id: 2, name: "Plaster", labels: {}, slug: "plaster", review: false },
   ] as unknown as Layer[];
   const queues = new Map([
     [1, queue_of([stroke(4, "ada"), stroke(6, "ben")])],
