@@ -1,6 +1,7 @@
 #include "mesh/load.h"
 
 #include "mesh/file_comments.h"
+#include "mesh/file_nature.h"
 #include "mesh/load_formats.h"
 #include "mesh/texture_shelf.h"
 
@@ -10,15 +11,20 @@ namespace {
 Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
   const auto bytes = files.scan().bytes;
   if (bytes.empty()) return refuse_file("The file is empty.");
+  const InputKind kind = input_kind(files.scan().name);
   auto loaded = [&]() -> Result<LoadedMesh> {
-    switch (input_kind(files.scan().name)) {
+    switch (kind) {
       case InputKind::ply: return parse_ply(files, progress);
       case InputKind::obj: return parse_obj(files, progress);
       case InputKind::stl: return parse_stl(files, progress);
       default: return parse_gltf(files, progress);
     }
   }();
-  if (!loaded) return loaded;
+  if (!loaded) {
+    // What a reader of another format stumbles over says nothing to a person.
+    if (const auto other = other_nature(bytes, kind); other && loaded.error().status == 422) return refuse_file(*other);
+    return loaded;
+  }
   loaded->comments = file_comments(files);
   if (const auto unit = stated_unit(loaded->comments); unit && !loaded->unit) loaded->unit = unit->value;
   if (const auto up = stated_up(loaded->comments); up && loaded->up.empty()) loaded->up = up->value;

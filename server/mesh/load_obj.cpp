@@ -5,6 +5,7 @@
 #include "mesh/load_formats.h"
 #include "mesh/mtl.h"
 #include "mesh/obj_lines.h"
+#include "mesh/plain_text.h"
 #include "mesh/texture_shelf.h"
 #include "mesh/vertex_color.h"
 
@@ -22,7 +23,8 @@ class ObjReader {
  public:
   ObjReader(const InputFiles& files, Progress& progress, std::size_t max_triangles)
       : files_(files),
-        bytes_(files.scan().bytes),
+        text_(files.scan().bytes),
+        bytes_(text_.bytes()),
         progress_(progress),
         faces_(loaded_.mesh, max_triangles),
         shelf_(files, loaded_.mesh, loaded_.repairs) {}
@@ -34,6 +36,8 @@ class ObjReader {
     if (auto faces = read_faces(); !faces) return tl::unexpected(faces.error());
     if (colored_ > 0) note(loaded_.repairs, "vertices without colour", loaded_.mesh.positions.size() - colored_);
     faces_.report(loaded_.repairs);
+    note(loaded_.repairs, "faces that name texture coordinates which the file does not have", without_named_uv_);
+    note(loaded_.repairs, "faces that name normals which the file does not have", without_named_normal_);
     note(loaded_.repairs, "materials without a definition", undefined_.size());
     UdimTiles::resolve(shelf_, references_, loaded_.mesh);
     note(loaded_.repairs, "ignored lines, points, curves and free-form surfaces", ignored_);
@@ -51,6 +55,7 @@ class ObjReader {
       const std::string_view keyword = next_word(line);
       positions += keyword == "v";
       uvs += keyword == "vt";
+      normals_ += keyword == "vn";
       faces += keyword == "f";
       if (keyword == "mtllib" && libraries_.size() < kMostLibraries) libraries_.emplace_back(rest_of(line));
     }
@@ -58,7 +63,7 @@ class ObjReader {
       return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
     if (faces == 0)
       return refuse_file(positions > 0 ? "The OBJ has vertices but no faces: a point cloud cannot carry layers."
-                                       : "The OBJ has no faces; is this an OBJ file?");
+                                       : "The OBJ has neither vertices nor faces: it is empty, or no OBJ file.");
     // Lines that are shorter than "v 0 0 0", "vt 0" and "f 1 2 3" are refused or make nothing.
     loaded_.mesh.positions.reserve(std::min<std::uint64_t>(positions, bytes_.size() / 8 + 1));
     uvs_.reserve(std::min<std::uint64_t>(uvs, bytes_.size() / 5 + 1));
@@ -170,9 +175,12 @@ class ObjReader {
         ++positions_so_far_;
       } else if (keyword == "vt") {
         ++uvs_so_far_;
+      } else if (keyword == "vn") {
+        ++normals_so_far_;
       } else if (keyword == "f") {
         corners.clear();
         bool has_uv = true;
+        missing_uv_ = missing_normal_ = false;
         for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
           if (corners.size() == kMaxPolygonCorners) {
             return FaceBuilder::too_many_corners("line " + std::to_string(lines.line_number()));
@@ -183,6 +191,8 @@ class ObjReader {
             return tl::unexpected(corner.error());
           }
         }
+        without_named_uv_ += missing_uv_;
+        without_named_normal_ += missing_normal_;
         if (auto added = faces_.add(corners, has_uv); !added) return added;
       } else if (keyword == "usemtl") {
         use_material(rest_of(line));
@@ -193,8 +203,9 @@ class ObjReader {
     return {};
   }
 
-  // v, v/vt, v//vn or v/vt/vn; counted from 1, or backwards from the last that stands above the face.
-  Result<FaceBuilder::Corner> read_corner(const ObjLines& lines, std::string_view word, bool& has_uv) const {
+  // v, v/vt, v//vn or v/vt/vn; counted from 1, or backwards from the last that stands above the face. Texture coordinates
+  // and normals that are not there leave a face as it would be without them: writers name them out of habit.
+  Result<FaceBuilder::Corner> read_corner(const ObjLines& lines, std::string_view word, bool& has_uv) {
     const std::size_t slash = word.find('/');
     FaceBuilder::Corner corner;
     std::int64_t index = 0;
@@ -207,11 +218,16 @@ class ObjReader {
                               (index < 0 ? " (" + std::to_string(positions_so_far_) + " above this line)" : ""));
     }
     corner.position = static_cast<std::uint32_t>(*position);
-    std::string_view uv_word;
+    std::string_view uv_word, normal_word;
     if (slash != std::string_view::npos) {
       uv_word = word.substr(slash + 1);
-      uv_word = uv_word.substr(0, uv_word.find('/'));
+      const std::size_t second = uv_word.find('/');
+      if (second != std::string_view::npos) normal_word = uv_word.substr(second + 1);
+      uv_word = uv_word.substr(0, second);
     }
+    // Normals are not used, and so not looked at further.
+    if (!normal_word.empty() && !(parse_integer(normal_word, index) && resolve(index, normals_so_far_, normals_)))
+      missing_normal_ = true;
     if (uv_word.empty()) {
       has_uv = false;
       return corner;
@@ -219,14 +235,15 @@ class ObjReader {
     if (!parse_integer(uv_word, index)) return fault(lines, "\"" + printable(word) + "\" is no face corner");
     const auto uv = resolve(index, uvs_so_far_, uvs_.size());
     if (!uv) {
-      return fault(lines, "the face names texture coordinate " + std::to_string(index) + ", but the file has " +
-                              std::to_string(uvs_.size()));
+      has_uv = false;
+      missing_uv_ = true;
+      return corner;
     }
     corner.uv = uvs_[*uv] * uv_transform_.scale + uv_transform_.offset;
     return corner;
   }
 
-  static std::optional<std::uint64_t> resolve(std::int64_t index, std::uint64_t so_far, std::size_t count) {
+  static std::optional<std::uint64_t> resolve(std::int64_t index, std::uint64_t so_far, std::uint64_t count) {
     if (index > 0 && static_cast<std::uint64_t>(index) <= count) return static_cast<std::uint64_t>(index) - 1;
     if (index < 0 && index >= -static_cast<std::int64_t>(so_far)) return so_far - static_cast<std::uint64_t>(-index);
     return std::nullopt;
@@ -257,7 +274,8 @@ class ObjReader {
   }
 
   const InputFiles& files_;
-  std::span<const std::uint8_t> bytes_;
+  const PlainText text_;
+  const std::span<const std::uint8_t> bytes_;
   Progress& progress_;
   LoadedMesh loaded_;
   FaceBuilder faces_;
@@ -267,6 +285,9 @@ class ObjReader {
   std::size_t count_ = 0;
   std::uint64_t positions_so_far_ = 0;
   std::uint64_t uvs_so_far_ = 0;
+  std::uint64_t normals_ = 0, normals_so_far_ = 0;
+  std::uint64_t without_named_uv_ = 0, without_named_normal_ = 0;
+  bool missing_uv_ = false, missing_normal_ = false;  // of the face that is being read
   std::uint64_t colored_ = 0;
   std::uint64_t ignored_ = 0;
 

@@ -41,6 +41,7 @@ class PlyReader {
     }
     if (!has_vertices_) return refuse_file("The PLY has no element \"vertex\".");
     note(loaded_.repairs, "ignored bytes after the last element", source_.bytes_left_over());
+    note(loaded_.repairs, "lines with more words than the header says", source_.surplus_elements());
     for (auto& [element, begin] : put_off_) {
       source_ = begin;
       if (auto done = read_triangles(*element); !done) return tl::unexpected(done.error());
@@ -79,6 +80,7 @@ class PlyReader {
         const bool read = property.count_type ? skip_list(property) : source_.value(property.type, values[k]);
         if (!read) return broken("vertex", i, element.count);
       }
+      source_.end_element();
       mesh.positions.emplace_back(values[*x], values[*y], values[*z]);
       if (u >= 0) vertex_uvs_.emplace_back(values[u], values[v]);
       if (!colors.present()) continue;
@@ -132,6 +134,7 @@ class PlyReader {
           return broken("face", i, element.count);
         }
       }
+      source_.end_element();
       if (!uv_list_.empty() && uv_list_.size() == 2 * corners.size()) {
         has_uv = true;
         for (std::size_t k = 0; k < corners.size(); ++k) corners[k].uv = {uv_list_[2 * k], uv_list_[2 * k + 1]};
@@ -197,6 +200,7 @@ class PlyReader {
           return broken("tristrips", i, element.count);
         }
       }
+      source_.end_element();
     }
     return {};
   }
@@ -238,6 +242,7 @@ class PlyReader {
           return broken(element.name, i, element.count);
         }
       }
+      source_.end_element();
     }
     return {};
   }
@@ -298,7 +303,7 @@ Result<LoadedMesh> parse_ply(const InputFiles& files, Progress& progress, std::s
   const Result<PlyHeader> header = parse_ply_header(bytes);
   if (!header) return tl::unexpected(header.error());
   if (header->encoding == PlyEncoding::ascii) {
-    return PlyReader(PlyAsciiSource(bytes, header->data_offset), *header, files, progress, max_triangles).read();
+    return PlyReader(PlyAsciiSource(bytes, *header), *header, files, progress, max_triangles).read();
   }
   const PlyBinarySource source(bytes, header->data_offset, header->encoding == PlyEncoding::big_endian);
   return PlyReader(source, *header, files, progress, max_triangles).read();

@@ -5,6 +5,7 @@
 
 #include "mesh/face_builder.h"
 #include "mesh/load_formats.h"
+#include "mesh/plain_text.h"
 #include "mesh/text_number.h"
 
 namespace strata::mesh {
@@ -12,21 +13,23 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 80, kTriangleBytes = 50;
 constexpr std::uint64_t kTrianglesBetweenReports = 65536;
+constexpr std::size_t kSample = 65536;
 
 // Every triangle brings its own three points; `repair` joins those that are equal.
 class StlReader {
  public:
   StlReader(std::span<const std::uint8_t> bytes, Progress& progress, std::size_t max_triangles)
-      : bytes_(bytes), progress_(progress), faces_(loaded_.mesh, max_triangles) {}
+      : bytes_(bytes), plain_(bytes), progress_(progress), faces_(loaded_.mesh, max_triangles) {}
 
-  // Many binary files begin with "solid", as text does: the count decides where it fits the file.
+  // Many binary files begin with "solid", as text does, and text may begin with anything: the size decides where it is that
+  // of a binary file to the byte, and otherwise whether there are bytes that no text has.
   Result<LoadedMesh> read() {
     const auto count = binary_count();
     const std::uint64_t room = count ? (bytes_.size() - kHeaderBytes - 4) / kTriangleBytes : 0;
     const bool fits = count && *count <= room && *count > 0;
-    const bool text = starts_like_text();
     const bool exact = fits && bytes_.size() == kHeaderBytes + 4 + *count * kTriangleBytes;
-    const Result<void> done = text && !exact ? read_text() : read_binary(count, room);
+    const bool text = !exact && (is_all_text() || (!fits && has_words_of_text()));
+    const Result<void> done = text ? read_text() : read_binary(count, room);
     if (!done) return tl::unexpected(done.error());
     faces_.report(loaded_.repairs);
     return std::move(loaded_);
@@ -40,18 +43,32 @@ class StlReader {
     return count;
   }
 
-  bool starts_like_text() {
-    std::string_view line = text_;
-    line = line.substr(0, 1024);
-    if (next_word(line) != "solid") return false;
-    return line.find("facet") != std::string_view::npos || line.find("endsolid") != std::string_view::npos;
+  // Letters of any encoding; the count of a binary file, or its coordinates, have bytes of 0.
+  bool is_all_text() const {
+    const std::string_view sample = text_.substr(0, kSample);
+    return std::none_of(sample.begin(), sample.end(), [](char c) {
+      return static_cast<unsigned char>(c) < 32 && !is_blank(c) && c != kEndOfDosFile;
+    });
+  }
+  // Some writers pad a name with zeros.
+  bool has_words_of_text() const {
+    bool facet = false;
+    std::string_view rest = text_.substr(0, kSample);
+    for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+      if (facet && is_word(word, "vertex")) return true;
+      facet |= is_word(word, "facet");
+    }
+    return false;
   }
 
   Result<void> read_binary(std::optional<std::uint64_t> count, std::uint64_t room) {
-    if (!count) return refuse_file("This is not an STL file: it is shorter than the header of one.");
+    if (!count)
+      return refuse_file("This is not an STL file: it is no text, and shorter than the header of a binary one.");
     if (*count > room)
-      return refuse_file("The STL announces " + std::to_string(*count) + " triangles, but has bytes for " +
-                         std::to_string(room) + ": it is cut short, or not an STL.");
+      return refuse_file("The STL, a binary one, announces " + std::to_string(*count) +
+                         " triangles, but has bytes for " + std::to_string(room) +
+                         ": it is cut short, or not an STL. Export or upload it again.");
+    if (*count == 0) return refuse_file("The STL, a binary one, announces no triangle: it is empty.");
     loaded_.mesh.positions.reserve(3 * *count);
     faces_.reserve(*count);
     const std::uint8_t* at = bytes_.data() + kHeaderBytes + 4;
@@ -68,32 +85,43 @@ class StlReader {
     return {};
   }
 
-  // solid NAME { facet normal x y z  outer loop  vertex x y z ×3  endloop  endfacet } endsolid: only the vertices count.
+  // solid NAME { facet normal x y z  outer loop  vertex x y z ×3  endloop  endfacet } endsolid, in letters of any case: only the
+  // vertices count.
   Result<void> read_text() {
     std::vector<glm::dvec3> loop;
     std::string_view rest = text_;
+    bool any_word = false;
     for (std::uint64_t n = 0;; ++n) {
-      if (n % kTrianglesBetweenReports == 0 && !report(1 - double(rest.size()) / double(text_.size())))
+      if (n % kTrianglesBetweenReports == 0 &&
+          !report(1 - double(rest.size()) / double(std::max<std::size_t>(text_.size(), 1))))
         return cancelled_problem();
       const std::string_view word = next_word(rest);
       if (word.empty()) break;
-      if (word == "solid" || word == "endsolid") {  // their names may hold anything
-        rest.remove_prefix(std::min(rest.find('\n'), rest.size()));
-      } else if (word == "vertex") {
+      if (begins_comment(word)) {
+        skip_line(rest);
+      } else if (is_word(word, "solid") || is_word(word, "endsolid")) {  // their names may hold anything
+        any_word = true;
+        skip_line(rest);
+      } else if (is_word(word, "vertex")) {
+        any_word = true;
         glm::dvec3 point(0);
+        const std::string_view numbers = rest;
         for (int k = 0; k < 3; ++k)
           if (!parse_number(next_word(rest), point[k]))
-            return fault(rest, "a vertex without three numbers; the file is damaged or cut short");
+            return fault(numbers, "a vertex without three numbers; the file is damaged or cut short");
         if (loop.size() == kMaxPolygonCorners) return FaceBuilder::too_many_corners(place(rest));
         loop.push_back(point);
-      } else if (word == "endfacet" || word == "endloop") {
+      } else if (is_word(word, "endfacet") || is_word(word, "endloop")) {
         if (auto added = add(loop); !added) return added;
         loop.clear();
-      } else if (word == "facet" && !loop.empty()) {
-        return fault(rest, "a facet that does not end");
+      } else if (is_word(word, "facet")) {
+        any_word = true;
+        if (!loop.empty()) return fault(rest, "a facet that does not end");
       }
     }
     if (!loop.empty()) return refuse_file("The STL ends within a facet: it is cut short. Export or upload it again.");
+    if (!any_word) return refuse_file("This is not an STL file: it is text without a facet.");
+    if (loaded_.mesh.triangles.empty()) return refuse_file("The STL, a text, holds no triangle: it is empty.");
     return {};
   }
 
@@ -120,9 +148,25 @@ class StlReader {
     return word;
   }
 
+  static bool is_word(std::string_view word, std::string_view lower) {
+    return std::equal(word.begin(), word.end(), lower.begin(), lower.end(), [](char a, char b) {
+      return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
+    });
+  }
+  static bool begins_comment(std::string_view word) {
+    return word.front() == '#' || word.front() == ';' || word.front() == '!' || word.starts_with("//");
+  }
+  static void skip_line(std::string_view& rest) {
+    rest.remove_prefix(std::min(rest.find_first_of("\r\n"), rest.size()));
+  }
+
+  // Lines end at LF, CRLF, or CR alone.
   std::string place(std::string_view rest) const {
     const auto read = text_.substr(0, text_.size() - rest.size());
-    return "line " + std::to_string(1 + std::count(read.begin(), read.end(), '\n'));
+    std::uint64_t line = 1;
+    for (std::size_t i = 0; i < read.size(); ++i)
+      line += read[i] == '\n' || (read[i] == '\r' && text_.substr(i + 1, 1) != "\n");
+    return "line " + std::to_string(line);
   }
   tl::unexpected<Problem> fault(std::string_view rest, const std::string& what) const {
     return refuse_file("In the STL, at " + place(rest) + ", stands " + what + ".");
@@ -133,8 +177,11 @@ class StlReader {
     return !progress_.cancelled();
   }
 
-  std::span<const std::uint8_t> bytes_;
-  std::string_view text_{reinterpret_cast<const char*>(bytes_.data()), bytes_.size()};
+  static constexpr char kEndOfDosFile = 0x1a;
+
+  const std::span<const std::uint8_t> bytes_;
+  const PlainText plain_;
+  const std::string_view text_{reinterpret_cast<const char*>(plain_.bytes().data()), plain_.bytes().size()};
   Progress& progress_;
   LoadedMesh loaded_;
   FaceBuilder faces_;

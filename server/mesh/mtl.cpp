@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mesh/obj_lines.h"
+#include "mesh/plain_text.h"
 
 namespace strata::mesh {
 namespace {
@@ -70,7 +71,8 @@ void read_map(std::string_view line, MtlMaterial& material) {
 
 std::vector<MtlMaterial> parse_mtl(std::span<const std::uint8_t> bytes, std::size_t most) {
   std::vector<MtlMaterial> materials;
-  ObjLines lines(bytes);
+  const PlainText text(bytes);
+  ObjLines lines(text.bytes());
   std::string_view line;
   while (lines.next(line)) {
     const std::string_view keyword = next_word(line);

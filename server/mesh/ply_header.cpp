@@ -4,13 +4,14 @@
 #include <cstring>
 
 #include "mesh/load_formats.h"
+#include "mesh/plain_text.h"
 #include "mesh/text_number.h"
 
 namespace strata::mesh {
 namespace {
 
-constexpr std::size_t kMaxHeaderLine = 4096;
-constexpr std::size_t kMaxHeaderLines = 10000;
+constexpr std::size_t kMostHeader = std::size_t{16} << 20;
+constexpr std::size_t kMaxElements = 1000;
 constexpr std::size_t kMaxProperties = 1000;
 constexpr std::size_t kMaxTextureFiles = 4096;
 
@@ -54,7 +55,7 @@ std::string shown(std::string_view text) {
 class HeaderReader {
  public:
   explicit HeaderReader(std::span<const std::uint8_t> bytes)
-      : text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()) {}
+      : text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()), position_(utf8_mark(bytes)) {}
 
   Result<PlyHeader> read() {
     std::string_view line;
@@ -62,12 +63,13 @@ class HeaderReader {
       return refuse_file("This is not a PLY file: its first line is not \"ply\".");
     }
     while (next_line(line)) {
-      if (line_number_ > kMaxHeaderLines) return refuse_file("The PLY header has more than 10000 lines.");
       const auto words = split(line);
       if (words.empty()) continue;
       if (words[0] == "end_header") return finish();
       if (auto done = read_line(words); !done) return tl::unexpected(done.error());
     }
+    if (text_.size() - position_ > kMostHeader || position_ > kMostHeader)
+      return refuse_file("The PLY has no \"end_header\" in its first 16 MB.");
     return refuse_file("The PLY header has no \"end_header\": the file is cut short, or not a PLY.");
   }
 
@@ -75,8 +77,8 @@ class HeaderReader {
   // The end of the first line says how all end: in old Macintosh files with CR alone, where a byte LF after
   // "end_header" CR is already data. The CR of a CRLF counts as a blank.
   bool next_line(std::string_view& line) {
-    if (position_ >= text_.size()) return false;
-    const std::string_view rest = text_.substr(position_, kMaxHeaderLine);
+    if (position_ >= text_.size() || position_ > kMostHeader) return false;
+    const std::string_view rest = text_.substr(position_, kMostHeader);
     if (line_number_ == 0) {
       const std::size_t end = rest.find_first_of("\r\n");
       if (end != std::string_view::npos && rest[end] == '\r' && rest.substr(end + 1, 1) != "\n") line_end_ = '\r';
@@ -132,6 +134,7 @@ class HeaderReader {
     for (const PlyElement& other : header_.elements) {
       if (other.name == element.name) return fault("the element " + shown(words[1]) + " is declared twice.");
     }
+    if (header_.elements.size() == kMaxElements) return fault("more than 1000 elements.");
     header_.elements.push_back(std::move(element));
     return {};
   }
@@ -178,7 +181,7 @@ class HeaderReader {
   }
 
   std::string_view text_;
-  std::size_t position_ = 0;
+  std::size_t position_;
   std::size_t line_number_ = 0;
   char line_end_ = '\n';
   bool has_format_ = false;
@@ -205,6 +208,13 @@ std::uint64_t PlyElement::least_bytes(bool ascii) const {
   std::uint64_t sum = 0;
   for (const PlyProperty& property : properties)
     sum += ascii ? 2 : bytes_of(property.count_type.value_or(property.type));
+  return sum;
+}
+
+std::uint64_t PlyHeader::element_count() const {
+  std::uint64_t sum = 0;
+  for (const PlyElement& element : elements)
+    if (!element.properties.empty()) sum += element.count;  // each takes bytes, which the file has
   return sum;
 }
 

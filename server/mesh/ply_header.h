@@ -37,9 +37,12 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
   std::vector<std::string> texture_files;  // pictures named in comments, by texnumber
   std::size_t data_offset = 0;             // first byte after the header
+
+  std::uint64_t element_count() const;  // of all elements that have properties; no more than fits 64 bits
 };
 
-// Refuses what is no PLY, and counts that the rest of the file cannot hold. Line ends are LF, CRLF or CR.
+// Refuses what is no PLY, a header of more than 16 MB, and counts that the rest of the file cannot hold. Line ends are LF,
+// CRLF or CR, of lines of any length; a UTF-8 byte order mark may stand before them.
 Result<PlyHeader> parse_ply_header(std::span<const std::uint8_t> bytes);
 
 }  // namespace strata::mesh

@@ -68,6 +68,9 @@ class PlyBinarySource {
     return count <= rest() / static_cast<std::uint64_t>(bytes_of(type));
   }
 
+  void end_element() {}
+  std::uint64_t surplus_elements() const { return 0; }
+
   std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
   std::uint64_t rest() const { return static_cast<std::uint64_t>(end_ - at_); }
   std::uint64_t bytes_left_over() { return rest(); }
@@ -101,11 +104,15 @@ class PlyBinarySource {
   PlyFault fault_ = PlyFault::none;
 };
 
-// Ascii values are taken by blanks, not by lines: some writers fold long lists.
+// Ascii values are taken by blanks, not by lines: some writers fold long lists. Where there are exactly as many lines as elements,
+// though, what is left of a line behind an element's last value belongs to no other: MeshLab writes more words than the header
+// has properties.
 class PlyAsciiSource {
  public:
-  PlyAsciiSource(std::span<const std::uint8_t> bytes, std::size_t offset)
-      : text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()), at_(offset) {}
+  PlyAsciiSource(std::span<const std::uint8_t> bytes, const PlyHeader& header)
+      : text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
+        at_(header.data_offset),
+        lines_hold_elements_(count_lines(header.element_count() + 1) == header.element_count()) {}
 
   bool value(PlyType, double& result) {
     const std::string_view word = next_word();
@@ -133,6 +140,15 @@ class PlyAsciiSource {
 
   bool holds(PlyType, std::uint64_t count) const { return count <= (rest() + 1) / 2; }
 
+  // To be called when all values of an element with properties are read.
+  void end_element() {
+    if (!lines_hold_elements_) return;
+    bool surplus = false;
+    for (; at_ < text_.size() && !is_line_end(text_[at_]); ++at_) surplus |= !is_blank(text_[at_]);
+    surplus_elements_ += surplus;
+  }
+  std::uint64_t surplus_elements() const { return surplus_elements_; }  // that had more words than the header says
+
   std::size_t offset() const { return at_; }
   std::uint64_t rest() const { return text_.size() - at_; }
   std::uint64_t bytes_left_over() {
@@ -141,11 +157,30 @@ class PlyAsciiSource {
   }
   PlyFault fault() const { return fault_; }
   std::string place() const {
-    return "line " +
-           std::to_string(1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n'));
+    std::uint64_t line = 1;
+    for (std::size_t i = 0; i < at_; ++i)
+      line += text_[i] == '\n' || (text_[i] == '\r' && text_.substr(i + 1, 1) != "\n");
+    return "line " + std::to_string(line);
   }
 
  private:
+  static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+
+  // Of the lines that follow and are not blank; no further than to `most`.
+  std::uint64_t count_lines(std::uint64_t most) const {
+    std::uint64_t count = 0;
+    bool blank = true;
+    for (std::size_t i = at_; i < text_.size() && count < most; ++i) {
+      if (!is_line_end(text_[i])) {
+        blank = blank && is_blank(text_[i]);
+      } else if (!blank) {
+        ++count;
+        blank = true;
+      }
+    }
+    return count + (blank || count == most ? 0 : 1);
+  }
+
   std::string_view next_word() {
     while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
     std::size_t end = at_;
@@ -163,6 +198,8 @@ class PlyAsciiSource {
 
   std::string_view text_;
   std::size_t at_;
+  bool lines_hold_elements_;
+  std::uint64_t surplus_elements_ = 0;
   PlyFault fault_ = PlyFault::none;
 };
 

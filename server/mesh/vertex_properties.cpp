@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "mesh/load_formats.h"
+#include "mesh/plain_text.h"
 #include "mesh/ply_source.h"
 
 namespace strata::mesh {
@@ -78,6 +79,7 @@ Result<VertexProperty> read(Source source, const PlyHeader& header, const std::s
         const bool good = property.count_type ? skip_list(source, property) : source.value(property.type, values[k]);
         if (!good) return broken(element, i);
       }
+      if (!values.empty()) source.end_element();
       if (!is_vertex) continue;
       found.positions.emplace_back(values[*x], values[*y], values[*z]);
       found.values.push_back(values[*at]);
@@ -90,7 +92,10 @@ Result<VertexProperty> read(Source source, const PlyHeader& header, const std::s
 }  // namespace
 
 std::vector<std::string> vertex_property_names(std::span<const std::uint8_t> beginning) {
-  std::istringstream text(std::string(beginning.begin(), beginning.end()));
+  const auto plain = beginning.subspan(utf8_mark(beginning));
+  std::string lines(plain.begin(), plain.end());
+  std::replace(lines.begin(), lines.end(), '\r', '\n');  // they may end at CR alone
+  std::istringstream text(std::move(lines));
   std::string line;
   if (!std::getline(text, line) || !line.starts_with("ply")) return {};
   std::vector<std::string> names;
@@ -109,7 +114,7 @@ std::vector<std::string> vertex_property_names(std::span<const std::uint8_t> beg
 Result<VertexProperty> read_vertex_property(std::span<const std::uint8_t> file, const std::string& property) {
   const auto header = parse_ply_header(file);
   if (!header) return tl::unexpected(header.error());
-  if (header->encoding == PlyEncoding::ascii) return read(PlyAsciiSource(file, header->data_offset), *header, property);
+  if (header->encoding == PlyEncoding::ascii) return read(PlyAsciiSource(file, *header), *header, property);
   return read(PlyBinarySource(file, header->data_offset, header->encoding == PlyEncoding::big_endian), *header,
               property);
 }

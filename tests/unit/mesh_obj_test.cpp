@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh/load_formats.h"
+#include "mesh/plain_text.h"
 #include "mesh/polygon.h"
 #include "support/mesh_files.h"
 
@@ -102,6 +103,68 @@ TEST(MeshObj, lines_and_two_cornered_faces_are_dropped_and_counted) {
   EXPECT_EQ(count_of(loaded->repairs, "ignored lines, points, curves and free-form surfaces"), 2u);
 }
 
+TEST(MeshObj, faces_that_name_texture_coordinates_or_normals_which_are_not_there_are_read_without_them) {
+  const auto loaded = load_text(
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/3/2 4/4/2\n",
+      "a.obj");
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  EXPECT_EQ(loaded->mesh.triangle_count(), 2u);
+  EXPECT_EQ(loaded->mesh.corner_uvs[1], glm::vec2(1, 0));
+  EXPECT_EQ(count_of(loaded->repairs, "faces that name texture coordinates which the file does not have"), 1u);
+  EXPECT_EQ(count_of(loaded->repairs, "faces that name normals which the file does not have"), 1u);
+  EXPECT_EQ(count_of(loaded->repairs, "triangles without texture coordinates"), 1u);
+  // None at all, counted from above as well.
+  const auto none = load_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3/-3/-3 -2/-2/-2 -1/-1/-1\n", "a.obj");
+  ASSERT_TRUE(none) << none.error().detail;
+  EXPECT_TRUE(none->mesh.corner_uvs.empty());
+  EXPECT_EQ(count_of(none->repairs, "faces that name texture coordinates which the file does not have"), 1u);
+  EXPECT_EQ(count_of(none->repairs, "faces that name normals which the file does not have"), 1u);
+}
+
+// UTF-16 with its byte order mark; characters of two units included.
+std::string utf16(const std::u16string& text, bool big_endian) {
+  std::string bytes;
+  for (const char16_t unit : u"\ufeff" + text) {
+    const char low = static_cast<char>(unit & 255), high = static_cast<char>(unit >> 8);
+    bytes += big_endian ? high : low;
+    bytes += big_endian ? low : high;
+  }
+  return bytes;
+}
+
+TEST(MeshObj, line_ends_and_encodings_of_an_obj_and_its_mtl_make_no_difference) {
+  const std::u16string obj =
+      u"# caf\u00e9 \U0001F3FA\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 \\\n0\nusemtl T\u00f6pferei \U0001F3FA\nf 1 2 3\n";
+  const std::u16string mtl = u"newmtl T\u00f6pferei \U0001F3FA\nKd 1 0 0\n";
+  const auto with_ends = [](std::u16string text, const std::u16string& end) {
+    for (std::size_t at = 0; (at = text.find(u'\n', at)) != text.npos; at += end.size()) text.replace(at, 1, end);
+    return text;
+  };
+  const auto utf8 = [](const std::u16string& text) {
+    const std::string bytes = utf16(text, false);
+    const mesh::PlainText plain({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    return std::string(plain.bytes().begin(), plain.bytes().end());
+  };
+  EXPECT_EQ(utf8(u"\u00e9\U0001F3FA\u20ac"), "\u00e9\U0001F3FA\u20ac");
+  EXPECT_EQ(utf8(u"a\xd83c"), "a\ufffd") << "half of a pair";
+  for (const std::u16string end : {u"\n", u"\r\n", u"\r"})
+    for (int encoding = 0; encoding < 4; ++encoding) {
+      SCOPED_TRACE(std::to_string(end.size()) + (end[0] == u'\r' ? " CR " : " LF ") + std::to_string(encoding));
+      const auto encoded = [&](const std::u16string& text) {
+        const std::u16string ended = with_ends(text, end);
+        if (encoding < 2) return (encoding == 0 ? "" : "\xef\xbb\xbf") + utf8(ended);
+        return utf16(ended, encoding == 3);
+      };
+      const auto loaded = test::load_texts({{"a.obj", encoded(obj)}, {"a.mtl", encoded(mtl)}});
+      ASSERT_TRUE(loaded) << loaded.error().detail;
+      EXPECT_EQ(loaded->mesh.triangle_count(), 1u);
+      ASSERT_EQ(loaded->mesh.materials.size(), 1u);
+      EXPECT_EQ(loaded->mesh.materials[0].color, glm::vec4(1, 0, 0, 1));
+      EXPECT_EQ(loaded->mesh.triangle_materials, std::vector<std::uint16_t>{0});
+      EXPECT_TRUE(loaded->repairs.empty());
+    }
+}
+
 struct BadObj {
   std::string name, bytes, says;
   friend std::ostream& operator<<(std::ostream& out, const BadObj& bad) { return out << bad.name; }
@@ -124,7 +187,7 @@ std::string huge_polygon() {
 const std::string kThree = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 INSTANTIATE_TEST_SUITE_P(
     all, MalformedObj,
-    testing::Values(BadObj{"empty", "", "empty"}, BadObj{"other", "hello\n", "no faces"},
+    testing::Values(BadObj{"empty", "", "empty"}, BadObj{"other", "hello\n", "neither vertices nor faces"},
                     BadObj{"points", kThree, "point cloud"},
                     BadObj{"index", kThree + "\nf 1 2 4\n", "Line 5: the face names vertex 4, but the file has 3"},
                     BadObj{"zero", kThree + "f 0 1 2\n", "vertex 0"},
@@ -132,7 +195,10 @@ INSTANTIATE_TEST_SUITE_P(
                     BadObj{"lowest", kThree + "f -9223372036854775808 1 2\n", "Line 4"},
                     BadObj{"beyond", kThree + "f 99999999999999999999 1 2\n", "Line 4"},
                     BadObj{"word", kThree + "f a b c\n", "\"a\" is no face corner"},
-                    BadObj{"uv", kThree + "vt 0 0\nf 1/1 2/2 3/1\n", "texture coordinate 2"},
+                    BadObj{"uv", kThree + "vt 0 0\nf 1/1 2/x 3/1\n", "\"2/x\" is no face corner"},
+                    BadObj{"cr", "v 0 0 0\rv 1 x 0\rv 0 1 0\rf 1 2 3\r", "Line 2"},
+                    BadObj{"ply", "ply\nformat ascii 1.0\n", "The file is a PLY file by its content"},
+                    BadObj{"web_page", "\n<!DOCTYPE html><p>v 1</p>", "The file is a web page by its content"},
                     BadObj{"number", "v 0 0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n", "Line 2"},
                     BadObj{"after_continuation", "v 0 \\\n0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n", "Line 3"},
                     BadObj{"two_numbers", "v 0 0\nf 1 1 1\n", "needs three numbers"},

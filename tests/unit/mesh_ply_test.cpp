@@ -201,6 +201,44 @@ TEST(MeshPly, more_triangles_than_are_taken_are_refused_whatever_makes_them) {
   }
 }
 
+TEST(MeshPly, words_that_a_line_has_more_than_the_header_says_are_passed_over_and_said) {
+  const std::string texcoord = "property list uchar float texcoord\n", other = "element other 2\nproperty int a\n";
+  for (const std::string& end : {std::string("\n"), std::string("\r\n"), std::string("\r")}) {
+    std::string text = ascii(kSquare + other + "element face 2\nproperty list uchar int vertex_indices\n" + texcoord,
+                             "0 0 0 255\n1 0 0\n0 1 0 255 255 \n1 1 0\n5 6\n7\n3 0 1 2 6 0 0 1 0 0 1 9 1 1 1\n\n"
+                             "3 1 3 2 6 1 0 1 1 0 1 9 1 1 1"),
+                changed;
+    for (const char c : text) changed += c == '\n' ? end : std::string(1, c);
+    const auto loaded = load_text(changed, "a.ply");
+    ASSERT_TRUE(loaded) << loaded.error().detail;
+    EXPECT_EQ(loaded->mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2}));
+    EXPECT_EQ(loaded->mesh.corner_uvs[4], glm::vec2(1, 1));
+    EXPECT_EQ(count_of(loaded->repairs, "lines with more words than the header says"), 5u);
+  }
+}
+
+TEST(MeshPly, lists_may_be_folded_and_all_may_stand_in_one_line) {
+  for (const std::string data :
+       {"0 0 0\n1 0 0\n0 1 0\n1 1 0\n3\n0 1\n2\n", "0 0 0 1 0 0 0 1 0 1 1 0 3 0 1 2\n",
+        "0\n0\n0\n1 0\n0\n0 1 0\n1 1 0\n3 0 1 2", "0 0\n0 1\n0 0\n0 1\n0 1\n1 0\n3 0\n1 2\n"}) {
+    const auto loaded = load_text(ascii(kSquare + kFace, data), "a.ply");
+    ASSERT_TRUE(loaded) << data << loaded.error().detail;
+    EXPECT_EQ(loaded->mesh.triangles, (std::vector<std::uint32_t>{0, 1, 2}));
+    EXPECT_EQ(count_of(loaded->repairs, "lines with more words than the header says"), 0u);
+  }
+}
+
+TEST(MeshPly, header_lines_may_be_long_and_many_and_follow_a_byte_order_mark) {
+  std::string comments = "comment " + std::string(100'000, 'x') + "\n";
+  for (int i = 0; i < 20'000; ++i) comments += "comment " + std::to_string(i) + "\n";
+  const std::string text = ascii(comments + kSquare + kFace, "0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n");
+  for (const std::string& file : {text, "\xef\xbb\xbf" + text}) {
+    const auto loaded = load_text(file, "a.ply");
+    ASSERT_TRUE(loaded) << loaded.error().detail;
+    EXPECT_EQ(loaded->mesh.triangle_count(), 1u);
+  }
+}
+
 struct BadPly {
   std::string name, bytes, says;
   friend std::ostream& operator<<(std::ostream& out, const BadPly& bad) { return out << bad.name; }
@@ -219,8 +257,19 @@ const std::string kFour = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
 INSTANTIATE_TEST_SUITE_P(
     all, MalformedPly,
     testing::Values(
-        BadPly{"empty", "", "empty"}, BadPly{"other_file", "solid stl\n", "not a PLY"},
+        BadPly{"empty", "", "empty"}, BadPly{"other_file", "hello\n", "not a PLY"},
+        BadPly{"stl", "solid stl\n", "an STL file by its content"},
         BadPly{"no_end", "ply\nformat ascii 1.0\n", "end_header"},
+        BadPly{"no_end_in_16_mb", "ply\ncomment " + std::string(17u << 20, 'x') + "\n", "in its first 16 MB"},
+        BadPly{"many_elements",
+               [] {
+                 std::string text;
+                 for (int i = 0; i <= 1000; ++i) text += "element e" + std::to_string(i) + " 0\n";
+                 return ascii(text, "");
+               }(),
+               "more than 1000 elements"},
+        BadPly{"surplus_not_a_number", ascii(kSquare + kFace, "0 0 0 9\n1 0 0\n0 1 0\n1 1 zero\n3 0 1 2\n"),
+               "vertex 3 of 4 (line 13)"},
         BadPly{"bad_format", "ply\nformat binary_middle_endian 1.0\nend_header\n", "line 2"},
         BadPly{"no_format", "ply\nelement vertex 0\nend_header\n", "format"},
         BadPly{"bad_type", ascii("element vertex 1\nproperty quad x\n", "1"), "line 4: unknown type \"quad\""},

@@ -43,11 +43,21 @@ TEST(MeshStl, a_text_file_is_read_with_its_polygons_and_names) {
 }
 
 TEST(MeshStl, faults_are_refused_by_name) {
+  std::string other_text = "v 0 0 0\nf 1 1 1\n";  // a binary file would announce 538976288 triangles here
+  other_text.insert(0, 200, ' ');
   const std::pair<std::string, std::string> bad[] = {
       {binary_stl("scanner", 3, 2), "announces 3 triangles, but has bytes for 2"},
       {binary_stl("scanner", 4'000'000'000u, 1), "4000000000"},
       {binary_stl("scanner", 0, 0), "no triangle"},
-      {"short", "shorter than the header"},
+      {"short", "it is text without a facet"},
+      {std::string("sh\0rt", 5), "shorter than the header of a binary one"},
+      {"\xef\xbb\xbf", "it is text without a facet"},
+      {"solid a\rfacet normal 0 0 1\router loop\rvertex 0 0 zero\r", "line 4"},
+      {"solid a\r\nfacet\r\nvertex 0 0\r\n", "line 3"},
+      {other_text, "it is text without a facet"},
+      {"<!DOCTYPE html>" + std::string(200, ' '), "The file is a web page by its content"},
+      {"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "Git LFS"},
+      {"PK\3\4" + std::string(200, '\0'), "The file is a zip archive by its content"},
       {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n", "line 4"},
       {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0", "ends within a facet"},
       {"solid a\nfacet\nvertex 0 0 0\nfacet\n", "does not end"},
@@ -57,6 +67,52 @@ TEST(MeshStl, faults_are_refused_by_name) {
     ASSERT_FALSE(loaded) << says;
     EXPECT_THAT(loaded.error().detail, HasSubstr(says));
   }
+}
+
+std::string with_ends(std::string text, const std::string& end) {
+  for (std::size_t at = 0; (at = text.find('\n', at)) != text.npos; at += end.size()) text.replace(at, 1, end);
+  return text;
+}
+
+TEST(MeshStl, text_is_known_by_its_words_in_any_case_with_any_ends_of_lines_marks_and_comments) {
+  const std::string plain =
+      "solid pot\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\n"
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid pot\n";
+  std::string capitals = plain;
+  for (char& c : capitals) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
+  std::string mixed = plain;
+  mixed.replace(mixed.rfind("facet normal"), 12, "FACET Normal");
+  std::string commented = "# made by hand, 1 vertex\n// solid\n" + plain;
+  for (std::size_t at = 0; (at = commented.find("0\n", at)) != commented.npos; at += 20)
+    commented.insert(at + 1, " # vertex 9 9 9");
+  const std::string named = "solid " + std::string(3000, 'x') + plain.substr(5), nameless = "solid" + plain.substr(9);
+  const std::string padded = "solid pot" + std::string(90, '\0') + plain.substr(9);
+  const std::string dos = plain + "\x1a";
+  std::string utf16 = "\xff\xfe";
+  for (const char c : plain) utf16 += std::string{c, '\0'};
+  const std::pair<std::string, std::string> texts[] = {
+      {"plain", plain},         {"capitals", capitals}, {"mixed", mixed},
+      {"commented", commented}, {"long_name", named},   {"no_name", nameless},
+      {"padded_name", padded},  {"dos", dos},           {"no_solid", plain.substr(10)}};
+  for (const auto& [name, text] : texts)
+    for (const std::string end : {"\n", "\r\n", "\r"})
+      for (const std::string mark : {"", "\xef\xbb\xbf"}) {
+        SCOPED_TRACE(name + std::to_string(end.size()) + (end[0] == '\r' ? " CR " : " LF ") +
+                     std::to_string(mark.size()));
+        const auto loaded = load_text(mark + with_ends(text, end), "a.stl");
+        ASSERT_TRUE(loaded) << loaded.error().detail;
+        EXPECT_EQ(loaded->mesh.triangle_count(), 2u);
+        EXPECT_NEAR(mesh::surface_area(loaded->mesh), 1, 1e-12);
+      }
+  const auto wide = load_text(utf16, "a.stl");
+  ASSERT_TRUE(wide) << wide.error().detail;
+  EXPECT_EQ(wide->mesh.triangle_count(), 2u);
+}
+
+TEST(MeshStl, a_binary_file_with_a_tail_is_none_of_text_though_its_header_has_the_words) {
+  const auto loaded = load_text(binary_stl("solid facet vertex", 2, 2) + "tail", "a.stl");
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  EXPECT_EQ(loaded->mesh.triangle_count(), 2u);
 }
 
 TEST(MeshStl, bytes_behind_the_last_triangle_are_reported) {
